@@ -1,0 +1,30 @@
+//! What can be wrong with a system.
+
+/// A parametrization that does not remove the constraints.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RemovalError {
+    /// The number of parameters is not `n − h`.
+    #[error("removal `{removal}` has {found} parameters; n − h = {expected} are needed")]
+    WrongCount {
+        /// Name of the removal.
+        removal: String,
+        /// Number of parameters found.
+        found: usize,
+        /// `n − h`.
+        expected: usize,
+    },
+    /// A constraint does not vanish identically.
+    #[error("removal `{removal}` does not satisfy constraint {constraint} ({text}): residual {residual:.3e} where round-off allows {limit:.1e}")]
+    ConstraintRemains {
+        /// Name of the removal.
+        removal: String,
+        /// Number of the constraint, from 1.
+        constraint: usize,
+        /// The constraint as entered.
+        text: String,
+        /// Residual at a random point.
+        residual: f64,
+        /// Largest residual that round-off explains.
+        limit: f64,
+    },
+}

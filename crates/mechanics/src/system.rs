@@ -1,0 +1,158 @@
+//! A mechanical system with velocity constraints.
+
+use std::collections::HashMap;
+
+use symbolic::{Expr, Graph, Matrix, Symbol};
+
+/// One generalized coordinate `q`, with the symbols of its velocity and acceleration.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    /// Name as entered.
+    pub name: String,
+    /// Unit as entered, for example `m` or `rad`.
+    pub unit: String,
+    /// Symbol of `q`.
+    pub position: Symbol,
+    /// Symbol of `q̇`, named with one prime.
+    pub velocity: Symbol,
+    /// Symbol of `q̈`, named with two primes.
+    pub acceleration: Symbol,
+}
+
+/// One parameter and its value.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Symbol of the parameter.
+    pub symbol: Symbol,
+    /// Value, finite.
+    pub value: f64,
+}
+
+/// A mechanical system: coordinates `q ∈ Rⁿ`, Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`
+/// and generalized forces `Q(q, v, t) ∈ Rⁿ`.
+///
+/// All expressions live in [`System::graph`]. Names with primes are time derivatives.
+#[derive(Clone)]
+pub struct System {
+    /// The expressions of the system and of everything derived from it.
+    pub graph: Graph,
+    /// Coordinates, in the order as entered.
+    pub coordinates: Vec<Coordinate>,
+    /// Symbol of time.
+    pub time: Symbol,
+    /// Parameters with their values, in the order as entered.
+    pub parameters: Vec<Parameter>,
+    /// `L(q, v, t)`.
+    pub lagrangian: Expr,
+    /// `f(q, v, t)`, each to be zero along a motion.
+    pub constraints: Vec<Expr>,
+    /// `Q(q, v, t)`, one a coordinate; the number 0 where no force was given.
+    pub forces: Vec<Expr>,
+}
+
+/// A point of the motion: time, positions and velocities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Time.
+    pub t: f64,
+    /// Positions, length `n`.
+    pub q: Vec<f64>,
+    /// Velocities, length `n`.
+    pub v: Vec<f64>,
+}
+
+impl System {
+    /// A system with the given coordinates (name, unit) and nothing else: `L = 0`, no constraint, no force.
+    ///
+    /// Build the expressions in [`System::graph`] afterwards, with [`Coordinate::position`] and
+    /// [`Coordinate::velocity`], and set the public fields.
+    pub fn new(graph: Graph, coordinates: &[(&str, &str)]) -> Self {
+        let coordinates: Vec<Coordinate> = coordinates
+            .iter()
+            .map(|(name, unit)| Coordinate {
+                name: name.to_string(),
+                unit: unit.to_string(),
+                position: graph.symbol(name),
+                velocity: graph.symbol(&format!("{name}'")),
+                acceleration: graph.symbol(&format!("{name}''")),
+            })
+            .collect();
+        System {
+            time: graph.symbol("t"),
+            parameters: Vec::new(),
+            lagrangian: graph.zero(),
+            constraints: Vec::new(),
+            forces: vec![graph.zero(); coordinates.len()],
+            coordinates,
+            graph,
+        }
+    }
+
+    /// Number of coordinates, `n`.
+    pub fn dimension(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Symbols of `q`.
+    pub fn positions(&self) -> Vec<Symbol> {
+        self.coordinates.iter().map(|c| c.position).collect()
+    }
+
+    /// Symbols of `v = q̇`.
+    pub fn velocities(&self) -> Vec<Symbol> {
+        self.coordinates.iter().map(|c| c.velocity).collect()
+    }
+
+    /// Symbols of `a = q̈`.
+    pub fn accelerations(&self) -> Vec<Symbol> {
+        self.coordinates.iter().map(|c| c.acceleration).collect()
+    }
+
+    /// Values of the parameters.
+    pub fn parameter_values(&self) -> HashMap<Symbol, f64> {
+        self.parameters.iter().map(|p| (p.symbol, p.value)).collect()
+    }
+
+    /// The rates `(q, v), (v, a), (t, 1)` of every variable along a motion, for [`Graph::total_derivative`].
+    pub fn flow(&self) -> Vec<(Symbol, Expr)> {
+        let g = &self.graph;
+        let mut rates = Vec::with_capacity(2 * self.dimension() + 1);
+        for c in &self.coordinates {
+            rates.push((c.position, g.variable(c.velocity)));
+            rates.push((c.velocity, g.variable(c.acceleration)));
+        }
+        rates.push((self.time, g.one()));
+        rates
+    }
+
+    /// Constraint Jacobian `A = ∂f/∂v`, h×n.
+    pub fn constraint_jacobian(&self) -> Matrix {
+        self.graph.jacobian(&self.constraints, &self.velocities())
+    }
+
+    /// Velocity Hessian (mass matrix) `M = ∂²L/∂v²`, n×n.
+    pub fn velocity_hessian(&self) -> Matrix {
+        let v = self.velocities();
+        self.graph.jacobian(&self.graph.gradient(self.lagrangian, &v), &v)
+    }
+
+    /// Whether every constraint is linear (or affine) in `v`, that is whether `A` is free of `v`.
+    pub fn constraints_linear_in_velocity(&self) -> bool {
+        let a = self.constraint_jacobian();
+        let v = self.velocities();
+        !a.entries().iter().any(|&e| v.iter().any(|&s| self.graph.depends_on(e, s)))
+    }
+
+    /// Whether neither `L` nor `f` nor `Q` contains time.
+    pub fn is_autonomous(&self) -> bool {
+        std::iter::once(&self.lagrangian)
+            .chain(&self.constraints)
+            .chain(&self.forces)
+            .all(|&e| !self.graph.depends_on(e, self.time))
+    }
+
+    /// Whether a generalized force acts.
+    pub fn has_forces(&self) -> bool {
+        self.forces.iter().any(|&e| !self.graph.is_zero(e))
+    }
+}
