@@ -1,1 +1,144 @@
-//! (under construction)
+//! # The Chetaev formulation (d'Alembert–Lagrange with reaction multipliers)
+//!
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ` and
+//! generalized forces `Q(q, v, t)`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n).
+//!
+//! **The principle.** At every instant `t`
+//!
+//! ```text
+//! ( d/dt ∂L/∂v − ∂L/∂q − Q ) · δq = 0     for every virtual displacement with   A δq = 0.
+//! ```
+//!
+//! That is Chetaev's condition: a displacement is virtual when it lies in the kernel of `∂f/∂v`. For constraints linear in
+//! the velocities it is d'Alembert's principle; for others it is a definition.
+//!
+//! **The equations.** A covector that annihilates the kernel of `A` is a combination of the rows of `A`. So there are
+//! reaction multipliers `λ ∈ Rʰ` with
+//!
+//! ```text
+//! d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ ,        f(q, v, t) = 0 .
+//! ```
+//!
+//! The reaction `Aᵀ λ` does no work on virtual displacements. `λᵢ` has the unit of power over that of `fᵢ`: a force where `fᵢ`
+//! is a velocity.
+//!
+//! **One instant.** With `a = q̈` the first equation is linear in `(a, λ)`; so is the constraint after one differentiation in
+//! time. Together they are the saddle-point system
+//!
+//! ```text
+//! [ M  −Aᵀ ] [ a ]   [ L_q + Q − L_vq v − L_vt ]
+//! [ A    0 ] [ λ ] = [ −(f_q v + f_t)          ]
+//! ```
+//!
+//! which has one solution when `A` has full row rank and `M` is regular on the kernel of `A`. `M` itself may be singular.
+//!
+//! **What the motion depends on.** On `(q₀, v₀)` with `f(q₀, v₀, t₀) = 0`, and nothing else.
+//!
+//! **What stays constant.** The energy `v·L_v − L`, when nothing depends on time, `Q = 0`, and the motion itself is a virtual
+//! displacement, `A v = 0` wherever `f = 0` (for constraints homogeneous in `v`; *not* for affine ones). The
+//! momentum `∂L/∂vᵢ` of a coordinate that `L` does not contain and on which no reaction or force acts.
+//!
+//! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
+
+use mechanics::{
+    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
+    System, fresh_symbol,
+};
+use symbolic::{Expr, Symbol, Vanishing};
+
+/// Entry of the table of formulations.
+pub const FORMULATION: Formulation = Formulation { name: "chetaev", title: "Chetaev", needs_removal: false, derive };
+
+/// Derives the Chetaev equations with states `(q, v)` and unknowns `(a, λ)`.
+///
+/// # Errors
+/// None: every system has Chetaev equations. Whether they are regular shows when they are solved.
+pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
+    let mut equations = Equations::new(FORMULATION.name, system);
+    let g = equations.graph.clone();
+    let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
+    let flow = system.flow();
+    let lambda: Vec<Symbol> =
+        (1..=system.constraints.len()).map(|i| fresh_symbol(&g, &format!("lambda_{i}"))).collect();
+
+    // d/dt ∂L/∂v − ∂L/∂q − Q − Aᵀλ = 0
+    let jacobian = g.jacobian(&system.constraints, &v);
+    let momenta = g.gradient(system.lagrangian, &v);
+    let gradient = g.gradient(system.lagrangian, &q);
+    let reaction = g.transpose_vec(&jacobian, &g.variables(&lambda));
+    let mut residuals: Vec<Expr> = (0..q.len())
+        .map(|i| {
+            let inertia = g.total_derivative(momenta[i], &flow);
+            g.sub(inertia, g.sum(&[gradient[i], system.forces[i], reaction[i]]))
+        })
+        .collect();
+    equations.statements = (0..q.len())
+        .map(|i| Statement { meaning: format!("balance for {}", system.coordinates[i].name), expression: residuals[i] })
+        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), expression: f }))
+        .collect();
+    // d/dt f = 0
+    residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
+
+    for i in 0..q.len() {
+        equations.states.push(StateVariable {
+            symbol: q[i],
+            role: Role::Position,
+            rate: g.variable(v[i]),
+            start: g.variable(q[i]),
+        });
+    }
+    for i in 0..q.len() {
+        equations.states.push(StateVariable {
+            symbol: v[i],
+            role: Role::Velocity,
+            rate: g.variable(a[i]),
+            start: g.variable(v[i]),
+        });
+    }
+    equations.blocks = vec![Block {
+        unknowns: a.iter().chain(&lambda).copied().collect(),
+        residuals,
+        guess: Vec::new(),
+        regular: "constraint Jacobian of full row rank, mass matrix regular on its kernel",
+    }];
+    equations.coordinates = g.variables(&q);
+    equations.velocities = g.variables(&v);
+    equations.multipliers =
+        lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
+    equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {
+        velocities: v.clone(),
+        constraints: system.constraints.clone(),
+        jacobian: jacobian.clone(),
+        metric: g.jacobian(&momenta, &v),
+    });
+
+    if energy_is_constant(system, &jacobian) {
+        let energy = g.sub(g.dot(&g.variables(&v), &momenta), system.lagrangian);
+        equations.invariants.push(Named { name: "energy".into(), expression: energy });
+    }
+    for i in 0..q.len() {
+        let free = g.is_zero(gradient[i]) && g.is_zero(system.forces[i]) && jacobian.column(i).iter().all(|&e| g.is_zero(e));
+        if free {
+            let name = format!("momentum {}", system.coordinates[i].name);
+            equations.invariants.push(Named { name, expression: momenta[i] });
+        }
+    }
+    equations.graph = g;
+    Ok(equations)
+}
+
+/// Whether `v·L_v − L` is constant: nothing depends on time, no force acts, and `A v = 0` wherever `f = 0`.
+///
+/// `A v = 0` on `f = 0` is recognized where `A v` is a multiple of `f` with a constant factor: `f` homogeneous of
+/// degree `d` in `v` gives `A v = d f` (Euler).
+fn energy_is_constant(system: &System, jacobian: &symbolic::Matrix) -> bool {
+    let g = &system.graph;
+    let work = g.mat_vec(jacobian, &g.variables(&system.velocities()));
+    let homogeneous = system.constraints.iter().zip(work).all(|(&f, av)| {
+        (1..=4).any(|degree| {
+            let rest = g.sub(av, g.mul(g.integer(degree), f));
+            matches!(g.vanishes(rest, &system.parameter_values()), Vanishing::Exactly | Vanishing::Numerically { .. })
+        })
+    });
+    homogeneous && system.is_autonomous() && !system.has_forces()
+}

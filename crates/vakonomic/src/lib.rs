@@ -1,1 +1,219 @@
-//! (under construction)
+//! # The vakonomic formulation (stationary action among the curves that satisfy the constraint)
+//!
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints `f(q, v, t) = 0 ∈ Rʰ`.
+//! Write `A = ∂f/∂v` (h×n).
+//!
+//! **The principle.** Among all curves with fixed ends that satisfy the constraint, the motion makes the action stationary. Varied
+//! curves satisfy the constraint too, so to first order
+//!
+//! ```text
+//! δ ∫ L dt = 0     for all δq with   f_v δq̇ + f_q δq = 0 ,   δq = 0 at both ends.
+//! ```
+//!
+//! **The equations.** With multipliers `μ(t) ∈ Rʰ` the constraint is taken into the Lagrangian, `𝓛 = L + μ·f`, and
+//!
+//! ```text
+//! d/dt ∂𝓛/∂v − ∂𝓛/∂q = 0 ,        f(q, v, t) = 0 .
+//! ```
+//!
+//! Written out, `d/dt L_v − L_q = (f_qᵀ − Ȧᵀ) μ − Aᵀ μ̇`: what stands where Chetaev's `Aᵀ λ` stood also depends on the
+//! *curvature* `f_qᵀ − Ȧᵀ` of the constraint, and `−μ̇` is what corresponds to `λ`. For integrable constraints the curvature vanishes and
+//! the two formulations agree. `μᵢ` has the unit of action over that of `∫ fᵢ dt`.
+//!
+//! **One instant, multiplier form** ([`derive`]). With the state `(q, v, μ)` the equations are linear in `(a, μ̇)`:
+//!
+//! ```text
+//! [ 𝓛_vv  Aᵀ ] [ a  ]   [ 𝓛_q − 𝓛_vq v − 𝓛_vt ]
+//! [ A      0 ] [ μ̇ ] = [ −(f_q v + f_t)       ]
+//! ```
+//!
+//! **One instant, costate form** ([`derive_costate_form`]). With costates `p = ∂𝓛/∂v` the state is `(q, p)`, and
+//!
+//! ```text
+//! p − L_v − Aᵀ μ = 0 ,   f = 0    determine (v, μ);        q̇ = v ,   ṗ = ∂𝓛/∂q .
+//! ```
+//!
+//! These are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with `f = 0`. The constraint holds at every instant,
+//! not only by its derivative. For `L` kinetic energy the motions are the normal sub-Riemannian geodesics. The two
+//! forms are derived differently and have to agree.
+//!
+//! **What the motion depends on.** On `(q₀, v₀)` *and on* `μ₀ ∈ Rʰ`: one start, a family of motions with `h` parameters.
+//!
+//! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of every coordinate that
+//! neither `L` nor `f` contains.
+//!
+//! A generalized force has no place in a variational principle and is refused.
+//!
+//! Sources: V. V. Kozlov 1983; V. I. Arnold, V. V. Kozlov, A. I. Neishtadt, *Mathematical Aspects of Classical and Celestial
+//! Mechanics*, chapter 1.
+
+use mechanics::{
+    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,
+    StateVariable, Statement, System, fresh_symbol, refuse_forces,
+};
+use symbolic::{Expr, Graph, Symbol};
+
+/// Entry of the table of formulations: the multiplier form.
+pub const FORMULATION: Formulation =
+    Formulation { name: "vakonomic", title: "vakonomic", needs_removal: false, derive };
+
+/// The same motion in costate (Hamiltonian) form.
+pub const COSTATE_FORM: Formulation = Formulation {
+    name: "vakonomic-costate",
+    title: "vakonomic, costate form",
+    needs_removal: false,
+    derive: derive_costate_form,
+};
+
+/// What both forms start from.
+struct Augmented {
+    graph: Graph,
+    /// μ at an instant and μ₀ at the start
+    multipliers: Vec<Symbol>,
+    starts: Vec<Symbol>,
+    /// 𝓛 = L + μ·f
+    lagrangian: Expr,
+    /// ∂𝓛/∂v
+    momenta: Vec<Expr>,
+    /// ∂𝓛/∂q
+    gradient: Vec<Expr>,
+}
+
+fn augment(system: &System, graph: Graph) -> Augmented {
+    let fresh = |stem: &str, i: usize| fresh_symbol(&graph, &format!("{stem}_{i}"));
+    let multipliers: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh("mu", i)).collect();
+    let starts = (1..=system.constraints.len()).map(|i| fresh("mu0", i)).collect();
+    let coupling = graph.dot(&graph.variables(&multipliers), &system.constraints);
+    let lagrangian = graph.add(system.lagrangian, coupling);
+    let momenta = graph.gradient(lagrangian, &system.velocities());
+    let gradient = graph.gradient(lagrangian, &system.positions());
+    Augmented { multipliers, starts, lagrangian, momenta, gradient, graph }
+}
+
+/// Derives the multiplier form: states `(q, v, μ)`, unknowns `(a, μ̇)`, free constants `μ₀`.
+///
+/// # Errors
+/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
+pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
+    refuse_forces(system, FORMULATION.name)?;
+    let mut equations = Equations::new(FORMULATION.name, system);
+    let augmented = augment(system, equations.graph.clone());
+    let g = &augmented.graph;
+    let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
+    let rates: Vec<Symbol> =
+        augmented.multipliers.iter().map(|&mu| fresh_symbol(g, &format!("{}'", g.name(mu)))).collect();
+    let mut flow = system.flow();
+    flow.extend(augmented.multipliers.iter().zip(&rates).map(|(&mu, &rate)| (mu, g.variable(rate))));
+
+    // d/dt ∂𝓛/∂v − ∂𝓛/∂q = 0
+    let mut residuals: Vec<Expr> = (0..q.len())
+        .map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.gradient[i]))
+        .collect();
+    equations.statements = statements(system, &residuals);
+    // d/dt f = 0
+    residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
+
+    for i in 0..q.len() {
+        equations.states.push(state(g, q[i], Role::Position, g.variable(v[i]), q[i]));
+    }
+    for i in 0..q.len() {
+        equations.states.push(state(g, v[i], Role::Velocity, g.variable(a[i]), v[i]));
+    }
+    for (i, &mu) in augmented.multipliers.iter().enumerate() {
+        equations.states.push(state(g, mu, Role::Multiplier, g.variable(rates[i]), augmented.starts[i]));
+    }
+    equations.blocks = vec![Block {
+        unknowns: a.iter().chain(&rates).copied().collect(),
+        residuals,
+        guess: Vec::new(),
+        regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
+    }];
+    equations.velocities = g.variables(&v);
+    equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {
+        velocities: v.clone(),
+        constraints: system.constraints.clone(),
+        jacobian: system.constraint_jacobian(),
+        metric: system.velocity_hessian(),
+    });
+    finish(&mut equations, system, augmented);
+    Ok(equations)
+}
+
+/// Derives the costate form: states `(q, p)`, unknowns `(v, μ)`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`.
+///
+/// The equations for `(v, μ)` are linear where `L` is quadratic and `f` linear in `v`; otherwise they are
+/// solved by Newton's method from the previous instant.
+///
+/// # Errors
+/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
+pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
+    refuse_forces(system, COSTATE_FORM.name)?;
+    let mut equations = Equations::new(COSTATE_FORM.name, system);
+    let augmented = augment(system, equations.graph.clone());
+    let g = &augmented.graph;
+    let (q, v) = (system.positions(), system.velocities());
+    let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
+    let costates: Vec<Symbol> =
+        system.coordinates.iter().map(|c| fresh_symbol(g, &format!("p_{}", c.name))).collect();
+
+    // p − ∂𝓛/∂v = 0,  f = 0
+    let mut residuals: Vec<Expr> =
+        (0..q.len()).map(|i| g.sub(g.variable(costates[i]), augmented.momenta[i])).collect();
+    residuals.extend(&system.constraints);
+    equations.statements = statements(system, &residuals[..q.len()]);
+
+    for i in 0..q.len() {
+        equations.states.push(state(g, q[i], Role::Position, g.variable(v[i]), q[i]));
+    }
+    for i in 0..q.len() {
+        let start = g.substitute(augmented.momenta[i], &at_start);
+        equations.states.push(StateVariable {
+            symbol: costates[i],
+            role: Role::Costate,
+            rate: augmented.gradient[i],
+            start,
+        });
+    }
+    equations.blocks = vec![Block {
+        unknowns: v.iter().chain(&augmented.multipliers).copied().collect(),
+        residuals,
+        guess: g.variables(&v).into_iter().chain(g.variables(&augmented.starts)).collect(),
+        regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
+    }];
+    equations.velocities = g.variables(&v);
+    finish(&mut equations, system, augmented);
+    Ok(equations)
+}
+
+fn state(g: &Graph, symbol: Symbol, role: Role, rate: Expr, start: Symbol) -> StateVariable {
+    StateVariable { symbol, role, rate, start: g.variable(start) }
+}
+
+fn statements(system: &System, balances: &[Expr]) -> Vec<Statement> {
+    let balances = balances.iter().zip(&system.coordinates);
+    balances
+        .map(|(&e, c)| Statement { meaning: format!("balance for {}", c.name), expression: e })
+        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), expression: f }))
+        .collect()
+}
+
+/// What both forms share: outputs, free constants and the quantities that stay constant.
+fn finish(equations: &mut Equations, system: &System, augmented: Augmented) {
+    let g = &augmented.graph;
+    equations.coordinates = g.variables(&system.positions());
+    equations.multipliers =
+        augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
+    equations.free_constants =
+        augmented.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None }).collect();
+    if system.is_autonomous() {
+        let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
+        equations.invariants.push(Named { name: "energy".into(), expression: g.sub(action, augmented.lagrangian) });
+    }
+    for (i, c) in system.coordinates.iter().enumerate() {
+        if g.is_zero(augmented.gradient[i]) {
+            let name = format!("momentum {}", c.name);
+            equations.invariants.push(Named { name, expression: augmented.momenta[i] });
+        }
+    }
+    equations.graph = augmented.graph;
+}

@@ -1,0 +1,319 @@
+//! The common form in which a formulation hands over its equations of motion.
+//!
+//! A state `y` moves by `ẏ = F(t, y, z)`, where `z` (accelerations, multipliers or their rates) solves one small block
+//! of equations `R(z; t, y) = 0` at every instant, nearly always linear in `z`. Nothing here says how time is stepped.
+
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+use symbolic::{Expr, Graph, Matrix, Symbol};
+
+use crate::{Removal, System};
+
+/// What a state variable is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// A coordinate `q`.
+    Position,
+    /// A velocity `v = q̇`.
+    Velocity,
+    /// A displacement parameter `u`.
+    DisplacementParameter,
+    /// The rate `u̇` of a displacement parameter.
+    ParameterRate,
+    /// The second rate `ü`, a state only where `L` contains it.
+    ParameterSecondRate,
+    /// The momentum `G_u̇ − d/dt G_ü` that goes with `ü`.
+    ParameterMomentum,
+    /// A memory variable `w`.
+    Memory,
+    /// A memory costate `P`.
+    MemoryCostate,
+    /// A vakonomic multiplier `μ`.
+    Multiplier,
+    /// A costate `p = ∂𝓛/∂v`.
+    Costate,
+}
+
+/// One state variable with its rate and its value at the start.
+#[derive(Clone, Debug)]
+pub struct StateVariable {
+    /// Symbol.
+    pub symbol: Symbol,
+    /// What it is.
+    pub role: Role,
+    /// `ẏ`, an expression in `(t, y, z)` and the free constants.
+    pub rate: Expr,
+    /// `y(t₀)`, an expression in `(t₀, q₀, v₀)`, the free constants and, with a removal, `(u, u̇, ü, w)` at the start.
+    pub start: Expr,
+}
+
+/// Unknowns `z` of one instant and the equations `R(z; t, y) = 0` that determine them.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// `z`.
+    pub unknowns: Vec<Symbol>,
+    /// `R`, as many as unknowns.
+    pub residuals: Vec<Expr>,
+    /// A value of `z` near the solution at the start, in the symbols of the start; used where `R` is not linear in `z`.
+    pub guess: Vec<Expr>,
+    /// What has to be regular for the block to be solvable, in the field's words.
+    pub regular: &'static str,
+}
+
+/// A constant that `(q₀, v₀)` does not determine.
+#[derive(Clone, Debug)]
+pub struct FreeConstant {
+    /// Symbol of its value.
+    pub symbol: Symbol,
+    /// The quantity that vanishes at the horizon under the natural boundary condition, where there is one.
+    pub natural: Option<Expr>,
+}
+
+/// A named expression in `(t, y, z)`.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Name, ASCII.
+    pub name: String,
+    /// The expression.
+    pub expression: Expr,
+}
+
+/// An equation for the reader: `expression = 0`.
+#[derive(Clone, Debug)]
+pub struct Statement {
+    /// What the equation says.
+    pub meaning: String,
+    /// The side that is zero.
+    pub expression: Expr,
+}
+
+/// Return onto the constraint: `v ← v + δv` with the smallest `δvᵀ M δv` such that `f(q, v, t) = 0`.
+#[derive(Clone, Debug)]
+pub struct ConstraintProjection {
+    /// Velocity states that may be moved.
+    pub velocities: Vec<Symbol>,
+    /// `f`.
+    pub constraints: Vec<Expr>,
+    /// `A = ∂f/∂v`.
+    pub jacobian: Matrix,
+    /// `M`, the metric.
+    pub metric: Matrix,
+}
+
+/// Equations of motion as a formulation hands them over.
+#[derive(Clone)]
+pub struct Equations {
+    /// Name of the formulation.
+    pub formulation: &'static str,
+    /// Where all expressions live.
+    pub graph: Graph,
+    /// Symbol of time.
+    pub time: Symbol,
+    /// Values of the parameters.
+    pub parameters: HashMap<Symbol, f64>,
+    /// `y` with rates and start.
+    pub states: Vec<StateVariable>,
+    /// The equations of one instant.
+    pub blocks: Vec<Block>,
+    /// Constants that the start data leave free.
+    pub free_constants: Vec<FreeConstant>,
+    /// `q` in `(t, y)`.
+    pub coordinates: Vec<Expr>,
+    /// `q̇` in `(t, y, z)`.
+    pub velocities: Vec<Expr>,
+    /// Multipliers or costates, whatever the formulation has.
+    pub multipliers: Vec<Named>,
+    /// Quantities that stay constant along the motion.
+    pub invariants: Vec<Named>,
+    /// Projection onto the constraint, where the states can leave it.
+    pub projection: Option<ConstraintProjection>,
+    /// Expressions in `(t, y)` whose zero is a singularity of the equations.
+    pub guards: Vec<Expr>,
+    /// The derived equations, for the reader.
+    pub statements: Vec<Statement>,
+    /// What this system did not need.
+    pub left_out: Vec<String>,
+    /// The removal behind the equations, whose parameters and memory variables have to be started.
+    pub removal: Option<Removal>,
+}
+
+impl Equations {
+    /// Equations without content for `system`; a derivation fills the fields.
+    pub fn new(formulation: &'static str, system: &System) -> Self {
+        Equations {
+            formulation,
+            graph: system.graph.clone(),
+            time: system.time,
+            parameters: system.parameter_values(),
+            states: Vec::new(),
+            blocks: Vec::new(),
+            free_constants: Vec::new(),
+            coordinates: Vec::new(),
+            velocities: Vec::new(),
+            multipliers: Vec::new(),
+            invariants: Vec::new(),
+            projection: None,
+            guards: Vec::new(),
+            statements: Vec::new(),
+            left_out: Vec::new(),
+            removal: None,
+        }
+    }
+
+    /// Symbols of `y`.
+    pub fn state_symbols(&self) -> Vec<Symbol> {
+        self.states.iter().map(|s| s.symbol).collect()
+    }
+
+    /// Symbols of `z`, block after block.
+    pub fn unknowns(&self) -> Vec<Symbol> {
+        self.blocks.iter().flat_map(|b| b.unknowns.iter().copied()).collect()
+    }
+
+    /// Symbols of the free constants.
+    pub fn constant_symbols(&self) -> Vec<Symbol> {
+        self.free_constants.iter().map(|c| c.symbol).collect()
+    }
+
+    /// Leaves out what the motion does not need, and writes down what went.
+    ///
+    /// Blocks fall apart into independent ones; an unknown with a constant coefficient and an equation of its own is
+    /// solved on the spot; unknowns and states on which no coordinate or velocity depends are dropped;
+    /// coordinates that nothing else depends on are named as quadratures.
+    pub fn leave_out_unneeded(mut self) -> Self {
+        self.split_blocks();
+        self.solve_single_unknowns();
+        self.drop_unneeded();
+        self.name_quadratures();
+        self
+    }
+
+    fn split_blocks(&mut self) {
+        let mut split = Vec::new();
+        for block in std::mem::take(&mut self.blocks) {
+            let depends: Vec<Vec<bool>> = block
+                .residuals
+                .iter()
+                .map(|&r| block.unknowns.iter().map(|&z| self.graph.depends_on(r, z)).collect())
+                .collect();
+            let mut group: Vec<usize> = (0..block.unknowns.len()).collect();
+            for row in &depends {
+                let linked: Vec<usize> = (0..row.len()).filter(|&j| row[j]).map(|j| group[j]).collect();
+                if let Some(&smallest) = linked.iter().min() {
+                    for g in group.iter_mut().filter(|g| linked.contains(g)) {
+                        *g = smallest;
+                    }
+                }
+            }
+            let names: BTreeSet<usize> = group.iter().copied().collect();
+            let parts: Vec<(Vec<usize>, Vec<usize>)> = names
+                .iter()
+                .map(|&name| {
+                    let columns: Vec<usize> = (0..group.len()).filter(|&j| group[j] == name).collect();
+                    let rows = (0..depends.len()).filter(|&i| columns.iter().any(|&j| depends[i][j])).collect();
+                    (rows, columns)
+                })
+                .collect();
+            if parts.iter().any(|(rows, columns)| rows.len() != columns.len()) {
+                split.push(block); // structurally singular: kept whole, refused with its name when it is solved
+                continue;
+            }
+            for (rows, columns) in parts {
+                split.push(Block {
+                    unknowns: columns.iter().map(|&j| block.unknowns[j]).collect(),
+                    residuals: rows.iter().map(|&i| block.residuals[i]).collect(),
+                    guess: columns.iter().filter_map(|&j| block.guess.get(j).copied()).collect(),
+                    regular: block.regular,
+                });
+            }
+        }
+        self.blocks = split;
+    }
+
+    fn solve_single_unknowns(&mut self) {
+        let g = self.graph.clone();
+        let parameters: HashSet<Symbol> = self.parameters.keys().copied().collect();
+        let mut solved: HashMap<Symbol, Expr> = HashMap::new();
+        self.blocks.retain(|block| {
+            let ([unknown], [residual]) = (&block.unknowns[..], &block.residuals[..]) else { return true };
+            let coefficient = g.derivative(*residual, *unknown);
+            let constant = g.symbols_of(coefficient).iter().all(|s| parameters.contains(s));
+            let value = g.evaluate(coefficient, &self.parameters).unwrap_or(0.0);
+            if !constant || value == 0.0 || !value.is_finite() {
+                return true;
+            }
+            let rest = g.substitute(*residual, &HashMap::from([(*unknown, g.zero())]));
+            solved.insert(*unknown, g.neg(g.div(rest, coefficient)));
+            false
+        });
+        self.graph = g;
+        if !solved.is_empty() {
+            self.rewrite(&solved);
+        }
+    }
+
+    /// Substitutes in rates, outputs, invariants and guards.
+    fn rewrite(&mut self, map: &HashMap<Symbol, Expr>) {
+        let g = &self.graph;
+        for e in self
+            .states
+            .iter_mut()
+            .map(|s| &mut s.rate)
+            .chain(&mut self.coordinates)
+            .chain(&mut self.velocities)
+            .chain(self.multipliers.iter_mut().map(|n| &mut n.expression))
+            .chain(self.invariants.iter_mut().map(|n| &mut n.expression))
+            .chain(&mut self.guards)
+        {
+            *e = g.substitute(*e, map);
+        }
+    }
+
+    fn drop_unneeded(&mut self) {
+        let g = self.graph.clone();
+        let mut needed: HashSet<Symbol> = HashSet::new();
+        let mut pending: Vec<Expr> = self.coordinates.iter().chain(&self.velocities).copied().collect();
+        pending.extend(self.multipliers.iter().map(|m| m.expression));
+        while let Some(e) = pending.pop() {
+            for s in g.symbols_of(e) {
+                if !needed.insert(s) {
+                    continue;
+                }
+                pending.extend(self.states.iter().filter(|y| y.symbol == s).map(|y| y.rate));
+                for b in self.blocks.iter().filter(|b| b.unknowns.contains(&s)) {
+                    pending.extend(&b.residuals);
+                }
+            }
+        }
+        for y in self.states.iter().filter(|y| !needed.contains(&y.symbol)) {
+            self.left_out.push(format!("${}$: nothing that is asked for depends on it", g.latex_symbol(y.symbol)));
+        }
+        let dropped: HashSet<Symbol> =
+            self.states.iter().map(|y| y.symbol).chain(self.unknowns()).filter(|s| !needed.contains(s)).collect();
+        self.states.retain(|y| !dropped.contains(&y.symbol));
+        self.blocks.retain(|b| b.unknowns.iter().any(|z| !dropped.contains(z)));
+        self.invariants.retain(|i| g.symbols_of(i.expression).is_disjoint(&dropped.iter().copied().collect()));
+        self.graph = g;
+    }
+
+    fn name_quadratures(&mut self) {
+        let g = &self.graph;
+        let quadratures: Vec<String> = self
+            .states
+            .iter()
+            .filter(|y| matches!(y.role, Role::Position | Role::Memory | Role::DisplacementParameter))
+            .filter(|y| {
+                !self.states.iter().any(|other| g.depends_on(other.rate, y.symbol))
+                    && !self.blocks.iter().any(|b| b.residuals.iter().any(|&r| g.depends_on(r, y.symbol)))
+            })
+            .map(|y| format!("${}$", g.latex_symbol(y.symbol)))
+            .collect();
+        if !quadratures.is_empty() {
+            self.left_out.push(format!(
+                "{}: no equation of motion contains {}; found by quadrature along the way",
+                quadratures.join(", "),
+                if quadratures.len() == 1 { "it" } else { "them" }
+            ));
+        }
+    }
+}
