@@ -54,12 +54,13 @@ pub const FORMULATION: Formulation = Formulation { name: "chetaev", title: "Chet
 /// # Errors
 /// None: every system has Chetaev equations. Whether they are regular shows when they are solved.
 pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
-    let mut equations = Equations::new(FORMULATION.name, system);
-    let g = equations.graph.clone();
+    let system = system.clone();
+    let g = &system.graph;
+    let mut equations = Equations::new(FORMULATION.name, &system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
     let flow = system.flow();
     let lambda: Vec<Symbol> =
-        (1..=system.constraints.len()).map(|i| fresh_symbol(&g, &format!("lambda_{i}"))).collect();
+        (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
 
     // d/dt ∂L/∂v − ∂L/∂q − Q − Aᵀλ = 0
     let jacobian = g.jacobian(&system.constraints, &v);
@@ -73,8 +74,8 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         })
         .collect();
     equations.statements = (0..q.len())
-        .map(|i| Statement { meaning: format!("balance for {}", system.coordinates[i].name), expression: residuals[i] })
-        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), expression: f }))
+        .map(|i| Statement { meaning: format!("balance for {}", system.coordinates[i].name), left: residuals[i], right: g.zero() })
+        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), left: f, right: system.graph.zero() }))
         .collect();
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
@@ -112,7 +113,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         metric: g.jacobian(&momenta, &v),
     });
 
-    if energy_is_constant(system, &jacobian) {
+    if energy_is_constant(&system, &jacobian) {
         let energy = g.sub(g.dot(&g.variables(&v), &momenta), system.lagrangian);
         equations.invariants.push(Named { name: "energy".into(), expression: energy });
     }
@@ -123,7 +124,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
             equations.invariants.push(Named { name, expression: momenta[i] });
         }
     }
-    equations.graph = g;
+    equations.graph = system.graph;
     Ok(equations)
 }
 

@@ -78,13 +78,15 @@ pub struct Named {
     pub expression: Expr,
 }
 
-/// An equation for the reader: `expression = 0`.
+/// An equation for the reader: `left = right`.
 #[derive(Clone, Debug)]
 pub struct Statement {
     /// What the equation says.
     pub meaning: String,
-    /// The side that is zero.
-    pub expression: Expr,
+    /// Left-hand side.
+    pub left: Expr,
+    /// Right-hand side.
+    pub right: Expr,
 }
 
 /// Return onto the constraint: `v ← v + δv` with the smallest `δvᵀ M δv` such that `f(q, v, t) = 0`.
@@ -138,11 +140,11 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// Equations without content for `system`; a derivation fills the fields.
+    /// Equations without content for `system`; a derivation fills the fields, the graph last.
     pub fn new(formulation: &'static str, system: &System) -> Self {
         Equations {
             formulation,
-            graph: system.graph.clone(),
+            graph: Graph::new(),
             time: system.time,
             parameters: system.parameter_values(),
             states: Vec::new(),

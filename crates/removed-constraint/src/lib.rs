@@ -1,1 +1,225 @@
-//! (under construction)
+//! # The removed-constraint formulation (Gao 2017)
+//!
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` and constraints `f(q, v, t) = 0 ∈ Rʰ`. New displacement parameters `u ∈ Rᵐ`,
+//! `m = n − h`, are introduced such that the constraints hold whatever `u(t)` is. The price is integrals over the past; as
+//! *memory variables* `w ∈ Rᵏ` they are
+//!
+//! ```text
+//! ẇ = B(ü, u̇, u, w, t) ,      every qᵢ and q̇ᵢ an expression in (ü, u̇, u, w, t) .
+//! ```
+//!
+//! Knife edge `ẏ cos φ − ẋ sin φ = 0`: with `u̇` the speed along the blade, `ẋ = u̇ cos φ`, `ẏ = u̇ sin φ`; `u` and `φ` are free, `x` and `y` are memory.
+//!
+//! **The principle.** The system being unconstrained now, the action `∫ L dt` is stationary for all `δu` that vanish at both ends. What a
+//! variation of `u` does to `w` it does through `B`; `w(t₁)` is free.
+//!
+//! **The equations.** Take `ẇ = B` into account with costates `P ∈ Rᵏ`. With
+//!
+//! ```text
+//! G = L(ü, u̇, u, w, t) + P·B(ü, u̇, u, w, t)
+//!
+//! d²/dt² ∂G/∂ü − d/dt ∂G/∂u̇ + ∂G/∂u = 0 ,      Ṗ = −∂G/∂w ,      ẇ = B .
+//! ```
+//!
+//! (Varying `w` in `∫ [L + P·(B − ẇ)] dt` gives `Ṗ = −G_w` and the boundary term `−P(t₁)·δw(t₁)`; varying `u` gives the first.) This one statement
+//! contains the paper's equations (34) and (35): its integration constants `Cᵢ` are `Pᵢ(t₀)`. They can be chosen in three ways, and a motion has to
+//! say which: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon* `P(t₁) = 0`, which is what the variational
+//! principle itself asks for: the motion at time `t` then depends on `t₁`.
+//!
+//! **One instant, L of first order.** State `(u, u̇, w, P)`, linear in the unknown `ü`:
+//!
+//! ```text
+//! G_u̇u̇ ü = G_u − G_u̇u u̇ − G_u̇w B − G_u̇P Ṗ − G_u̇t .
+//! ```
+//!
+//! **One instant, L contains ü.** For those parameters the state also holds `ü` and the momentum `p = G_u̇ − d/dt G_ü`; then
+//! `ṗ = G_u`, and `d/dt G_ü = G_u̇ − p` is linear in the unknown `u⃛`. The Hessian of `G` in the highest rates has to be regular, else
+//! [`DerivationError::SingularHighestHessian`].
+//!
+//! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice of `u`*: different
+//! parametrizations of the same constraint give different families of motions.
+//!
+//! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇` (or `p`) of a parameter that `G` does not contain.
+//!
+//! **What is left out.** A costate `P` that starts at zero and whose rate vanishes is zero throughout and takes its terms with it; a
+//! costate whose rate vanishes is a constant and no state.
+//!
+//! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the principle of removal of constraint*, 2017.
+
+mod costates;
+
+use costates::Costates;
+use mechanics::{
+    Block, ConstantsRule, Derivation, DerivationError, DisplacementParameter, Equations, Formulation, FreeConstant, Named,
+    Removal, Role, StateVariable, Statement, System, fresh_symbol, generic_rank, refuse_forces,
+};
+use symbolic::{Expr, Graph, Symbol};
+
+/// Entry of the table of formulations.
+pub const FORMULATION: Formulation =
+    Formulation { name: "removed-constraint", title: "removed constraint", needs_removal: true, derive };
+
+/// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the order of the memory
+/// variables, then `p(t₀)` of parameters whose second rate `L` contains.
+///
+/// # Errors
+/// [`DerivationError::RemovalMissing`], [`DerivationError::ForceInVariationalPrinciple`],
+/// [`DerivationError::SingularHighestHessian`].
+pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    refuse_forces(system, FORMULATION.name)?;
+    let removal = derivation.removal.ok_or(DerivationError::RemovalMissing { formulation: FORMULATION.name })?;
+    let system = system.clone();
+    let g = &system.graph;
+    let mut equations = Equations::new(FORMULATION.name, &system);
+    let lagrangian = removal.rewrite(&system, system.lagrangian);
+
+    let zero_where_possible = !matches!(derivation.constants, ConstantsRule::Given(_));
+    let costates = Costates::new(g, removal, lagrangian, zero_where_possible);
+    let generating = costates.generating_function; // G
+    let parameters = classify(g, removal, generating);
+    let highest: Vec<Symbol> = parameters.iter().map(|p| p.highest).collect();
+    if parameters.iter().any(|p| p.momentum.is_some()) {
+        require_regular(&system, removal, generating, &parameters, &highest)?;
+    }
+
+    let mut flow = costates.flow(g, removal);
+    for p in &parameters {
+        flow.push((p.u.symbol, g.variable(p.u.rate)));
+        flow.push((p.u.rate, g.variable(p.u.second_rate)));
+        if p.momentum.is_some() {
+            flow.push((p.u.second_rate, g.variable(p.unknown)));
+        }
+    }
+    flow.push((system.time, g.one()));
+
+    let mut residuals = Vec::new();
+    for p in &parameters {
+        let u = p.u;
+        let gradient = g.derivative(generating, u.symbol);
+        let first = g.derivative(generating, u.rate);
+        let role = if u.coordinate.is_some() { Role::Position } else { Role::DisplacementParameter };
+        equations.states.push(state(g, u.symbol, role, g.variable(u.rate), u.symbol));
+        let (residual, conserved) = match p.momentum {
+            // d/dt ∂G/∂u̇ − ∂G/∂u = 0
+            None => (g.sub(g.total_derivative(first, &flow), gradient), first),
+            // d/dt ∂G/∂ü − ∂G/∂u̇ + p = 0,  ṗ = ∂G/∂u
+            Some(Momentum { state: momentum, start }) => {
+                let second = g.total_derivative(g.derivative(generating, u.second_rate), &flow);
+                equations.states.push(state(g, u.second_rate, Role::ParameterSecondRate, g.variable(p.unknown), u.second_rate));
+                equations.states.push(state(g, momentum, Role::ParameterMomentum, gradient, start));
+                (g.sum(&[second, g.neg(first), g.variable(momentum)]), g.variable(momentum))
+            }
+        };
+        equations.states.push(state(g, u.rate, Role::ParameterRate, g.variable(u.second_rate), u.rate));
+        let name = g.name(u.symbol);
+        equations.statements.push(Statement { meaning: format!("balance for {name}"), left: residual, right: g.zero() });
+        equations.multipliers.push(Named { name: format!("p_{name}"), expression: conserved });
+        if g.is_zero(gradient) {
+            equations.invariants.push(Named { name: format!("momentum {name}"), expression: conserved });
+        }
+        residuals.push(residual);
+    }
+    costates.hand_over(g, removal, &mut equations);
+    for p in &parameters {
+        if let Some(Momentum { start, .. }) = p.momentum {
+            equations.free_constants.push(FreeConstant { symbol: start, natural: None });
+        }
+    }
+    equations.blocks = vec![Block {
+        unknowns: parameters.iter().map(|p| p.unknown).collect(),
+        residuals,
+        guess: Vec::new(),
+        regular: "Hessian of G in the highest rates of the parameters regular",
+    }];
+    equations.coordinates = removal.coordinates.clone();
+    equations.velocities = removal.velocities(&system);
+    if system.is_autonomous() {
+        equations.invariants.push(Named { name: "energy".into(), expression: energy(g, generating, &parameters) });
+    }
+    let mut singular = equations.coordinates.clone();
+    singular.extend(removal.memory.iter().map(|w| w.rate));
+    singular.push(generating);
+    equations.guards = g.denominators(&singular);
+    equations.guards.retain(|&e| !g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s)));
+    equations.removal = Some(removal.clone());
+    drop(parameters);
+    equations.graph = system.graph;
+    Ok(equations)
+}
+
+/// A displacement parameter together with how its equation is solved.
+struct Parameter<'a> {
+    u: &'a DisplacementParameter,
+    /// `ü`, or `u̇` where `G` does not contain `ü`: the highest rate in `G`.
+    highest: Symbol,
+    /// What the instant is solved for: the rate of `highest`.
+    unknown: Symbol,
+    /// Present where `G` contains `ü`.
+    momentum: Option<Momentum>,
+}
+
+/// `p = G_u̇ − d/dt G_ü` and its value at the start.
+#[derive(Clone, Copy)]
+struct Momentum {
+    state: Symbol,
+    start: Symbol,
+}
+
+fn classify<'a>(g: &Graph, removal: &'a Removal, generating: Expr) -> Vec<Parameter<'a>> {
+    let classified = removal.parameters.iter().map(|u| {
+        if !g.depends_on(generating, u.second_rate) {
+            return Parameter { u, highest: u.rate, unknown: u.second_rate, momentum: None };
+        }
+        let name = g.name(u.symbol);
+        let momentum =
+            Momentum { state: fresh_symbol(g, &format!("p_{name}")), start: fresh_symbol(g, &format!("p0_{name}")) };
+        let unknown = g.symbol(&format!("{}'", g.name(u.second_rate)));
+        Parameter { u, highest: u.second_rate, unknown, momentum: Some(momentum) }
+    });
+    classified.collect()
+}
+
+fn require_regular(
+    system: &System,
+    removal: &Removal,
+    generating: Expr,
+    parameters: &[Parameter],
+    highest: &[Symbol],
+) -> Result<(), DerivationError> {
+    let g = &system.graph;
+    let hessian = g.jacobian(&g.gradient(generating, highest), highest);
+    let rank = generic_rank(g, &hessian, &system.parameter_values());
+    if rank == highest.len() {
+        return Ok(());
+    }
+    let second: Vec<String> =
+        parameters.iter().filter(|p| p.momentum.is_some()).map(|p| g.name(p.u.second_rate)).collect();
+    Err(DerivationError::SingularHighestHessian {
+        formulation: FORMULATION.name,
+        removal: removal.name.clone(),
+        second_rates: second.join(", "),
+        rank,
+        size: highest.len(),
+    })
+}
+
+/// `u̇·G_u̇ − G`; with `ü` in `G`: `u̇·p + ü·G_ü − G`.
+fn energy(g: &Graph, generating: Expr, parameters: &[Parameter]) -> Expr {
+    let mut terms = vec![g.neg(generating)];
+    for p in parameters {
+        let rate = g.variable(p.u.rate);
+        match p.momentum {
+            None => terms.push(g.mul(rate, g.derivative(generating, p.u.rate))),
+            Some(Momentum { state, .. }) => {
+                terms.push(g.mul(rate, g.variable(state)));
+                let second = p.u.second_rate;
+                terms.push(g.mul(g.variable(second), g.derivative(generating, second)));
+            }
+        }
+    }
+    g.sum(&terms)
+}
+
+fn state(g: &Graph, symbol: Symbol, role: Role, rate: Expr, start: Symbol) -> StateVariable {
+    StateVariable { symbol, role, rate, start: g.variable(start) }
+}

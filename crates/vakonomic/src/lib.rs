@@ -67,7 +67,6 @@ pub const COSTATE_FORM: Formulation = Formulation {
 
 /// What both forms start from.
 struct Augmented {
-    graph: Graph,
     /// μ at an instant and μ₀ at the start
     multipliers: Vec<Symbol>,
     starts: Vec<Symbol>,
@@ -79,15 +78,16 @@ struct Augmented {
     gradient: Vec<Expr>,
 }
 
-fn augment(system: &System, graph: Graph) -> Augmented {
-    let fresh = |stem: &str, i: usize| fresh_symbol(&graph, &format!("{stem}_{i}"));
+fn augment(system: &System) -> Augmented {
+    let graph = &system.graph;
+    let fresh = |stem: &str, i: usize| fresh_symbol(graph, &format!("{stem}_{i}"));
     let multipliers: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh("mu", i)).collect();
     let starts = (1..=system.constraints.len()).map(|i| fresh("mu0", i)).collect();
     let coupling = graph.dot(&graph.variables(&multipliers), &system.constraints);
     let lagrangian = graph.add(system.lagrangian, coupling);
     let momenta = graph.gradient(lagrangian, &system.velocities());
     let gradient = graph.gradient(lagrangian, &system.positions());
-    Augmented { multipliers, starts, lagrangian, momenta, gradient, graph }
+    Augmented { multipliers, starts, lagrangian, momenta, gradient }
 }
 
 /// Derives the multiplier form: states `(q, v, μ)`, unknowns `(a, μ̇)`, free constants `μ₀`.
@@ -95,10 +95,11 @@ fn augment(system: &System, graph: Graph) -> Augmented {
 /// # Errors
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
-    refuse_forces(system, FORMULATION.name)?;
-    let mut equations = Equations::new(FORMULATION.name, system);
-    let augmented = augment(system, equations.graph.clone());
-    let g = &augmented.graph;
+    let system = system.clone();
+    let g = &system.graph;
+    refuse_forces(&system, FORMULATION.name)?;
+    let mut equations = Equations::new(FORMULATION.name, &system);
+    let augmented = augment(&system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
     let rates: Vec<Symbol> =
         augmented.multipliers.iter().map(|&mu| fresh_symbol(g, &format!("{}'", g.name(mu)))).collect();
@@ -109,7 +110,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let mut residuals: Vec<Expr> = (0..q.len())
         .map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.gradient[i]))
         .collect();
-    equations.statements = statements(system, &residuals);
+    equations.statements = statements(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
 
@@ -147,10 +148,11 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// # Errors
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
-    refuse_forces(system, COSTATE_FORM.name)?;
-    let mut equations = Equations::new(COSTATE_FORM.name, system);
-    let augmented = augment(system, equations.graph.clone());
-    let g = &augmented.graph;
+    let system = system.clone();
+    let g = &system.graph;
+    refuse_forces(&system, COSTATE_FORM.name)?;
+    let mut equations = Equations::new(COSTATE_FORM.name, &system);
+    let augmented = augment(&system);
     let (q, v) = (system.positions(), system.velocities());
     let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
     let costates: Vec<Symbol> =
@@ -160,7 +162,7 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     let mut residuals: Vec<Expr> =
         (0..q.len()).map(|i| g.sub(g.variable(costates[i]), augmented.momenta[i])).collect();
     residuals.extend(&system.constraints);
-    equations.statements = statements(system, &residuals[..q.len()]);
+    equations.statements = statements(&system, &residuals[..q.len()]);
 
     for i in 0..q.len() {
         equations.states.push(state(g, q[i], Role::Position, g.variable(v[i]), q[i]));
@@ -192,14 +194,14 @@ fn state(g: &Graph, symbol: Symbol, role: Role, rate: Expr, start: Symbol) -> St
 fn statements(system: &System, balances: &[Expr]) -> Vec<Statement> {
     let balances = balances.iter().zip(&system.coordinates);
     balances
-        .map(|(&e, c)| Statement { meaning: format!("balance for {}", c.name), expression: e })
-        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), expression: f }))
+        .map(|(&e, c)| Statement { meaning: format!("balance for {}", c.name), left: e, right: system.graph.zero() })
+        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), left: f, right: system.graph.zero() }))
         .collect()
 }
 
 /// What both forms share: outputs, free constants and the quantities that stay constant.
-fn finish(equations: &mut Equations, system: &System, augmented: Augmented) {
-    let g = &augmented.graph;
+fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
+    let g = &system.graph;
     equations.coordinates = g.variables(&system.positions());
     equations.multipliers =
         augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
@@ -215,5 +217,5 @@ fn finish(equations: &mut Equations, system: &System, augmented: Augmented) {
             equations.invariants.push(Named { name, expression: augmented.momenta[i] });
         }
     }
-    equations.graph = augmented.graph;
+    equations.graph = system.graph;
 }

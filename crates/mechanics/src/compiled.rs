@@ -1,0 +1,400 @@
+//! Equations of motion turned into numbers: tapes and small linear solves, ready for any time integrator.
+
+use std::collections::{HashMap, HashSet};
+
+use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+
+use crate::equations::{Block, Equations};
+use crate::linear::{Factors, PIVOT_LIMIT, Singular};
+use crate::projection::Projector;
+
+/// Equations that cannot be evaluated at a point.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EvaluationFailure {
+    /// The equations of the instant are singular.
+    #[error("equations of the instant are singular (relative pivot {reciprocal:.1e}, limit {limit:.0e}); needed: {regular}")]
+    Singular {
+        /// Smallest pivot of the scaled matrix.
+        reciprocal: f64,
+        /// Smallest pivot that is accepted.
+        limit: f64,
+        /// What would have to be regular.
+        regular: &'static str,
+    },
+    /// Newton's method for equations that are not linear in the unknowns did not converge.
+    #[error("equations of the instant not solved after {iterations} Newton steps (last step {step:.1e}, limit {limit:.0e})")]
+    NotConverged {
+        /// Steps taken.
+        iterations: usize,
+        /// Relative length of the last step.
+        step: f64,
+        /// Length at which the iteration ends.
+        limit: f64,
+    },
+}
+
+/// A tape with its registers and outputs.
+#[derive(Clone)]
+pub(crate) struct Program {
+    tape: Tape,
+    registers: Workspace<f64>,
+    pub(crate) values: Vec<f64>,
+}
+
+impl Program {
+    pub(crate) fn new(equations: &Equations, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
+        let tape = equations.graph.compile(inputs, outputs, &equations.parameters)?;
+        Ok(Program { registers: tape.workspace(), values: vec![0.0; outputs.len()], tape })
+    }
+
+    pub(crate) fn run(&mut self, inputs: &[f64]) -> &[f64] {
+        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
+        &self.values
+    }
+}
+
+/// Where the numbers of one block are, and how it is solved.
+#[derive(Clone)]
+struct CompiledBlock {
+    /// Place of the first unknown in `z`, and their number.
+    first: usize,
+    size: usize,
+    /// Outputs: the matrix `∂R/∂z` row-major, then `R`; linear blocks at `z = 0`, others at the current `z`.
+    program: Program,
+    linear: bool,
+    factors: Factors,
+    regular: &'static str,
+}
+
+/// Compiled equations of motion `ẏ = F(t, y)`.
+///
+/// Evaluation needs `&mut self` because registers are reused; clone it for another thread.
+#[derive(Clone)]
+pub struct Compiled {
+    equations_of_instant: Vec<CompiledBlock>,
+    rates: Program,
+    outputs: Program,
+    guards: Program,
+    projector: Option<Projector>,
+    derivatives: Option<Derivatives>,
+    sizes: Sizes,
+    /// `t, y, constants, z` in this order.
+    inputs: Vec<f64>,
+}
+
+#[derive(Clone, Copy)]
+struct Sizes {
+    states: usize,
+    constants: usize,
+    coordinates: usize,
+    multipliers: usize,
+    invariants: usize,
+}
+
+impl Sizes {
+    fn known(&self) -> usize {
+        1 + self.states + self.constants
+    }
+}
+
+/// `∂F/∂y` by the implicit function theorem, exact derivatives from the graph.
+#[derive(Clone)]
+struct Derivatives {
+    /// ∂(rates)/∂y row-major, then ∂(rates)/∂z row-major, then ∂R/∂y row-major, block after block.
+    program: Program,
+    unknowns: usize,
+    column: Vec<f64>,
+}
+
+/// What is read off a motion at one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// `q`.
+    pub coordinates: Vec<f64>,
+    /// `q̇`.
+    pub velocities: Vec<f64>,
+    /// Multipliers or costates.
+    pub multipliers: Vec<f64>,
+    /// Quantities that should be constant.
+    pub invariants: Vec<f64>,
+}
+
+impl Compiled {
+    /// Compiles everything that a time integrator asks for, Jacobian left out.
+    ///
+    /// # Errors
+    /// [`CompileError`] where an expression contains a symbol that is neither state, parameter, constant nor unknown: a fault of the derivation.
+    pub fn new(equations: &Equations) -> Result<Self, CompileError> {
+        let mut known = vec![equations.time];
+        known.extend(equations.state_symbols());
+        known.extend(equations.constant_symbols());
+        let mut all = known.clone();
+        all.extend(equations.unknowns());
+
+        let mut first = 0;
+        let mut blocks = Vec::new();
+        for block in &equations.blocks {
+            blocks.push(compile_block(equations, block, first, &known, &all)?);
+            first += block.unknowns.len();
+        }
+        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
+        let named = |list: &[crate::Named]| list.iter().map(|n| n.expression).collect::<Vec<_>>();
+        let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
+        let outputs: Vec<Expr> =
+            [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
+        Ok(Compiled {
+            equations_of_instant: blocks,
+            rates: Program::new(equations, &all, &rates)?,
+            outputs: Program::new(equations, &all, &outputs)?,
+            guards: Program::new(equations, &known, &equations.guards)?,
+            projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
+            derivatives: None,
+            sizes: Sizes {
+                states: rates.len(),
+                constants: equations.free_constants.len(),
+                coordinates: equations.coordinates.len(),
+                multipliers: multipliers.len(),
+                invariants: invariants.len(),
+            },
+            inputs: vec![0.0; all.len()],
+        })
+    }
+
+    /// Adds the exact Jacobian `∂F/∂y`, which implicit methods need.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn with_jacobian(mut self, equations: &Equations) -> Result<Self, CompileError> {
+        let g = &equations.graph;
+        let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
+        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
+        let mut outputs = g.jacobian(&rates, &states).entries().to_vec();
+        outputs.extend(g.jacobian(&rates, &unknowns).entries());
+        for block in &equations.blocks {
+            outputs.extend(g.jacobian(&block.residuals, &states).entries());
+        }
+        let mut inputs = vec![equations.time];
+        inputs.extend(states);
+        inputs.extend(equations.constant_symbols());
+        inputs.extend(&unknowns);
+        let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
+        self.derivatives = Some(Derivatives {
+            program: Program::new(equations, &inputs, &outputs)?,
+            unknowns: unknowns.len(),
+            column: vec![0.0; largest],
+        });
+        Ok(self)
+    }
+
+    /// Number of states.
+    pub fn dimension(&self) -> usize {
+        self.sizes.states
+    }
+
+    /// Sets the values of the free constants.
+    ///
+    /// # Panics
+    /// If the length is not that of [`Equations::free_constants`].
+    pub fn set_constants(&mut self, constants: &[f64]) {
+        let first = 1 + self.sizes.states;
+        self.inputs[first..first + self.sizes.constants].copy_from_slice(constants);
+    }
+
+    /// Sets the point from which blocks that are not linear are solved for the first time.
+    ///
+    /// # Panics
+    /// If the length is not that of [`Equations::unknowns`].
+    pub fn set_guess(&mut self, unknowns: &[f64]) {
+        let known = self.sizes.known();
+        self.inputs[known..].copy_from_slice(unknowns);
+    }
+
+    /// `F(t, y)`.
+    ///
+    /// # Errors
+    /// [`EvaluationFailure`] where the equations of the instant cannot be solved.
+    pub fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        rates.copy_from_slice(self.rates.run(&self.inputs));
+        Ok(())
+    }
+
+    /// Coordinates, velocities, multipliers and invariants at `(t, y)`.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn outputs(&mut self, t: f64, y: &[f64]) -> Result<Outputs, EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        let Sizes { coordinates: n, multipliers, invariants, .. } = self.sizes;
+        let values = self.outputs.run(&self.inputs);
+        let (q, rest) = values.split_at(n);
+        let (v, rest) = rest.split_at(n);
+        let (m, i) = rest.split_at(multipliers);
+        debug_assert_eq!(i.len(), invariants);
+        Ok(Outputs {
+            coordinates: q.to_vec(),
+            velocities: v.to_vec(),
+            multipliers: m.to_vec(),
+            invariants: i.to_vec(),
+        })
+    }
+
+    /// Number of guards.
+    pub fn guards(&self) -> usize {
+        self.guards.values.len()
+    }
+
+    /// Values of the guards, whose zeros are singularities.
+    pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
+        self.load(t, y);
+        values.copy_from_slice(self.guards.run(&self.inputs[..self.sizes.known()]));
+    }
+
+    /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.
+    ///
+    /// # Errors
+    /// [`EvaluationFailure`] where constraint Jacobian or metric are singular.
+    pub fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, EvaluationFailure> {
+        self.load(t, y);
+        let known = self.sizes.known();
+        match &mut self.projector {
+            None => Ok(0.0),
+            Some(projector) => projector.project(&mut self.inputs[..known], y),
+        }
+    }
+
+    /// `∂F/∂y`, row-major.
+    ///
+    /// For a block `R(z; t, y) = 0`: `∂z/∂y = −(∂R/∂z)⁻¹ ∂R/∂y`.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    ///
+    /// # Panics
+    /// If [`Compiled::with_jacobian`] was not called.
+    pub fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        let n = self.sizes.states;
+        let d = self.derivatives.as_mut().expect("compiled with_jacobian");
+        let values = d.program.run(&self.inputs);
+        let (direct, rest) = values.split_at(n * n);
+        let (by_unknown, mut by_state) = rest.split_at(n * d.unknowns);
+        jacobian.copy_from_slice(direct);
+        for block in &mut self.equations_of_instant {
+            let size = block.size;
+            for column in 0..n {
+                let b = &mut d.column[..size];
+                for (i, x) in b.iter_mut().enumerate() {
+                    *x = -by_state[i * n + column];
+                }
+                if b.iter().all(|&x| x == 0.0) {
+                    continue;
+                }
+                block.factors.solve(b);
+                for row in 0..n {
+                    let sensitivity = &by_unknown[row * d.unknowns + block.first..][..size];
+                    let change: f64 = sensitivity.iter().zip(&*b).map(|(s, x)| s * x).sum();
+                    jacobian[row * n + column] += change;
+                }
+            }
+            by_state = &by_state[size * n..];
+        }
+        Ok(())
+    }
+
+    fn load(&mut self, t: f64, y: &[f64]) {
+        self.inputs[0] = t;
+        self.inputs[1..1 + y.len()].copy_from_slice(y);
+    }
+
+    fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        let known = self.sizes.known();
+        for block in &mut self.equations_of_instant {
+            if block.linear {
+                block.step(&self.inputs[..known])?;
+                let (r, z) = (block.solution(), &mut self.inputs[known + block.first..]);
+                z[..r.len()].copy_from_slice(r);
+            } else {
+                block.newton(&mut self.inputs, known)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Newton steps allowed for one instant; relative step at which the iteration ends.
+const NEWTON_STEPS: usize = 50;
+const NEWTON_LIMIT: f64 = 1e-14;
+
+impl CompiledBlock {
+    /// Evaluates, factorizes, and leaves `−(∂R/∂z)⁻¹ R` in the place of `R`.
+    fn step(&mut self, inputs: &[f64]) -> Result<(), EvaluationFailure> {
+        self.program.run(inputs);
+        let (matrix, residual) = self.program.values.split_at_mut(self.size * self.size);
+        let regular = self.regular;
+        self.factors.factorize(matrix).map_err(|Singular { reciprocal }| EvaluationFailure::Singular {
+            reciprocal,
+            limit: PIVOT_LIMIT,
+            regular,
+        })?;
+        for x in residual.iter_mut() {
+            *x = -*x;
+        }
+        self.factors.solve(residual);
+        Ok(())
+    }
+
+    fn solution(&self) -> &[f64] {
+        &self.program.values[self.size * self.size..]
+    }
+
+    /// Newton's method from the current `z`; ends when the step no longer shrinks at round-off.
+    fn newton(&mut self, inputs: &mut [f64], known: usize) -> Result<(), EvaluationFailure> {
+        let mut previous = f64::INFINITY;
+        for iteration in 0..NEWTON_STEPS {
+            self.step(inputs)?;
+            let (mut length, mut size) = (0.0_f64, 0.0_f64);
+            let first = known + self.first;
+            for (x, dx) in inputs[first..first + self.size].iter_mut().zip(self.solution()) {
+                *x += dx;
+                length = length.max(dx.abs());
+                size = size.max(x.abs());
+            }
+            let relative = length / size.max(f64::MIN_POSITIVE);
+            if relative <= NEWTON_LIMIT || (relative < 1e-10 && relative >= previous) {
+                return Ok(());
+            }
+            if !relative.is_finite() {
+                return Err(EvaluationFailure::NotConverged { iterations: iteration + 1, step: relative, limit: NEWTON_LIMIT });
+            }
+            previous = relative;
+        }
+        Err(EvaluationFailure::NotConverged { iterations: NEWTON_STEPS, step: previous, limit: NEWTON_LIMIT })
+    }
+}
+
+fn compile_block(
+    equations: &Equations,
+    block: &Block,
+    first: usize,
+    known: &[Symbol],
+    all: &[Symbol],
+) -> Result<CompiledBlock, CompileError> {
+    let g = &equations.graph;
+    let matrix = g.jacobian(&block.residuals, &block.unknowns);
+    let unknowns: HashSet<Symbol> = block.unknowns.iter().copied().collect();
+    let linear = matrix.entries().iter().all(|&e| g.symbols_of(e).iter().all(|s| !unknowns.contains(s)));
+    let at_zero: HashMap<Symbol, Expr> = block.unknowns.iter().map(|&z| (z, g.zero())).collect();
+    let mut outputs = matrix.entries().to_vec();
+    outputs.extend(block.residuals.iter().map(|&r| if linear { g.substitute(r, &at_zero) } else { r }));
+    let size = block.unknowns.len();
+    Ok(CompiledBlock {
+        first,
+        size,
+        program: Program::new(equations, if linear { known } else { all }, &outputs)?,
+        linear,
+        factors: Factors::new(size),
+        regular: block.regular,
+    })
+}

@@ -1,0 +1,148 @@
+//! Small dense linear systems in place, without allocation: the one solve of every instant.
+//!
+//! Written here and not taken from a crate because it runs once an evaluation on matrices of 1 to 20 rows, where the
+//! allocation of a general factorization costs more than the elimination.
+
+/// A matrix that cannot be solved with: the smallest pivot over the largest after scaling, and the limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Singular {
+    pub(crate) reciprocal: f64,
+}
+
+/// Pivots under this fraction of the scaled matrix are taken for zero.
+pub(crate) const PIVOT_LIMIT: f64 = 1e-13;
+
+/// LU factors of an n×n matrix, row-major, with partial pivoting; rows and columns scaled so that units do not matter.
+#[derive(Clone, Debug)]
+pub(crate) struct Factors {
+    n: usize,
+    lu: Vec<f64>,
+    rows: Vec<usize>,
+    row_scale: Vec<f64>,
+    column_scale: Vec<f64>,
+    work: Vec<f64>,
+}
+
+impl Factors {
+    pub(crate) fn new(n: usize) -> Self {
+        let (lu, rows) = (vec![0.0; n * n], vec![0; n]);
+        Factors { n, lu, rows, row_scale: vec![1.0; n], column_scale: vec![1.0; n], work: vec![0.0; n] }
+    }
+
+    /// Factorizes `matrix` (row-major, n×n).
+    pub(crate) fn factorize(&mut self, matrix: &[f64]) -> Result<(), Singular> {
+        let n = self.n;
+        self.lu.copy_from_slice(matrix);
+        self.scale()?;
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            *row = i;
+        }
+        for k in 0..n {
+            let mut best = (k, self.lu[k * n + k].abs());
+            for i in k + 1..n {
+                let x = self.lu[i * n + k].abs();
+                if x > best.1 {
+                    best = (i, x);
+                }
+            }
+            if best.1.is_nan() || best.1 < PIVOT_LIMIT {
+                return Err(Singular { reciprocal: best.1 });
+            }
+            if best.0 != k {
+                self.rows.swap(k, best.0);
+                for j in 0..n {
+                    self.lu.swap(k * n + j, best.0 * n + j);
+                }
+            }
+            let (upper, lower) = self.lu.split_at_mut((k + 1) * n);
+            let pivot_row = &upper[k * n..];
+            for row in lower.chunks_exact_mut(n) {
+                if row[k] == 0.0 {
+                    continue;
+                }
+                let factor = row[k] / pivot_row[k];
+                row[k] = factor;
+                for j in k + 1..n {
+                    row[j] -= factor * pivot_row[j];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Scales columns, then rows, to a largest entry of 1.
+    fn scale(&mut self) -> Result<(), Singular> {
+        let n = self.n;
+        for j in 0..n {
+            let largest = (0..n).fold(0.0_f64, |a, i| a.max(self.lu[i * n + j].abs()));
+            if largest == 0.0 || !largest.is_finite() {
+                return Err(Singular { reciprocal: if largest == 0.0 { 0.0 } else { f64::NAN } });
+            }
+            self.column_scale[j] = 1.0 / largest;
+        }
+        for (i, row) in self.lu.chunks_exact_mut(n).enumerate() {
+            let mut largest = 0.0_f64;
+            for (x, s) in row.iter_mut().zip(&self.column_scale) {
+                *x *= s;
+                largest = largest.max(x.abs());
+            }
+            if largest == 0.0 || !largest.is_finite() {
+                return Err(Singular { reciprocal: if largest == 0.0 { 0.0 } else { f64::NAN } });
+            }
+            self.row_scale[i] = 1.0 / largest;
+            for x in row {
+                *x *= self.row_scale[i];
+            }
+        }
+        Ok(())
+    }
+
+    /// Overwrites `b` by the solution.
+    pub(crate) fn solve(&mut self, b: &mut [f64]) {
+        let n = self.n;
+        for i in 0..n {
+            let row = self.rows[i];
+            let mut x = b[row] * self.row_scale[row];
+            for j in 0..i {
+                x -= self.lu[i * n + j] * self.work[j];
+            }
+            self.work[i] = x;
+        }
+        for i in (0..n).rev() {
+            let mut x = self.work[i];
+            for j in i + 1..n {
+                x -= self.lu[i * n + j] * self.work[j];
+            }
+            self.work[i] = x / self.lu[i * n + i];
+        }
+        for i in 0..n {
+            b[i] = self.work[i] * self.column_scale[i];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_a_saddle_point_system_in_any_units() {
+        // [ 2 0 −1; 0 1 −1; 1 1 0 ] z = (1, 2, 3), z = (0.6667.., 2.3333.., 0.3333..)
+        for unit in [1e-12, 1.0, 1e12] {
+            let mut f = Factors::new(3);
+            f.factorize(&[2.0, 0.0, -unit, 0.0, 1.0, -unit, unit, unit, 0.0]).unwrap();
+            let mut b = [1.0, 2.0, 3.0 * unit];
+            f.solve(&mut b);
+            assert!((b[0] - 2.0 / 3.0).abs() < 1e-14 && (b[1] - 7.0 / 3.0).abs() < 1e-14);
+            assert!((b[2] * unit - 1.0 / 3.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn refuses_dependent_rows() {
+        let mut f = Factors::new(2);
+        assert!(f.factorize(&[1.0, 2.0, 2.0, 4.0]).is_err());
+        assert!(f.factorize(&[0.0, 0.0, 2.0, 4.0]).is_err());
+        assert!(f.factorize(&[f64::NAN, 1.0, 2.0, 4.0]).is_err());
+    }
+}

@@ -1,0 +1,64 @@
+//! Ranks of matrices of expressions.
+
+use std::collections::HashMap;
+
+use nalgebra::DMatrix;
+use symbolic::{Graph, Matrix, Symbol};
+
+/// Singular values under this fraction of the largest count as zero.
+pub(crate) const RANK_LIMIT: f64 = 1e-9;
+
+/// Points at which a generic rank is taken.
+const POINTS: u64 = 6;
+
+/// Numerical rank: the number of singular values over `RANK_LIMIT` times the largest, rows scaled to their largest entry.
+pub(crate) fn rank(mut matrix: DMatrix<f64>) -> usize {
+    for mut row in matrix.row_iter_mut() {
+        let scale = row.amax();
+        if scale > 0.0 {
+            row /= scale;
+        }
+    }
+    let singular = matrix.singular_values();
+    let largest = singular.iter().fold(0.0_f64, |a, &b| a.max(b));
+    singular.iter().filter(|&&s| largest > 0.0 && s > RANK_LIMIT * largest).count()
+}
+
+/// The rank that `matrix` has almost everywhere: the largest found at a few points with fixed pseudo-random coordinates,
+/// those not counted at which an entry is not finite. `constants` keep their values.
+pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, f64>) -> usize {
+    if matrix.rows() == 0 || matrix.columns() == 0 {
+        return 0;
+    }
+    let at = |point| {
+        let values = random_values(graph, matrix, constants, point);
+        let entries: Vec<f64> =
+            matrix.entries().iter().map(|&e| graph.evaluate(e, &values).unwrap_or(f64::NAN)).collect();
+        entries
+            .iter()
+            .all(|x| x.is_finite())
+            .then(|| rank(DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries)))
+    };
+    (0..POINTS).filter_map(at).max().unwrap_or(0)
+}
+
+/// Values in ±[0.3, 1.3] for every symbol of `matrix` that is not a constant, a pure function of `(symbol, point)`.
+fn random_values(
+    graph: &Graph,
+    matrix: &Matrix,
+    constants: &HashMap<Symbol, f64>,
+    point: u64,
+) -> HashMap<Symbol, f64> {
+    let mut values = constants.clone();
+    let symbols: std::collections::BTreeSet<Symbol> =
+        matrix.entries().iter().flat_map(|&e| graph.symbols_of(e)).collect();
+    for (i, symbol) in symbols.into_iter().enumerate() {
+        let mut x = (point << 32 | i as u64).wrapping_add(0x9E37_79B9_7F4A_7C15);
+        x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        x ^= x >> 31;
+        let magnitude = 0.3 + (x >> 11) as f64 / (1u64 << 53) as f64;
+        values.entry(symbol).or_insert(if x & 1 == 0 { magnitude } else { -magnitude });
+    }
+    values
+}
