@@ -27,4 +27,20 @@ pub enum RemovalError {
         /// Largest residual that round-off explains.
         limit: f64,
     },
+    /// Automatic removal needs constraints linear in the velocities.
+    #[error("constraint {constraint} ({text}) is not linear in the velocities; it can only be removed by a parametrization written by hand")]
+    NotLinear {
+        /// Number of the constraint, from 1.
+        constraint: usize,
+        /// The constraint as entered.
+        text: String,
+    },
+    /// The constraint Jacobian has no full row rank at the start.
+    #[error("the constraints are dependent at the start: largest remaining pivot {pivot:.1e}, limit {limit:.0e}")]
+    Dependent {
+        /// Largest pivot that was left, rows scaled to 1.
+        pivot: f64,
+        /// Smallest pivot that is accepted.
+        limit: f64,
+    },
 }

@@ -1,0 +1,131 @@
+//! Is the constraint integrable? Frobenius' test by the Lie flag of the admissible directions.
+
+use std::collections::HashMap;
+
+use symbolic::{Expr, Matrix, Symbol, Vanishing};
+
+use crate::automatic_removal::Split;
+use crate::rank::generic_rank;
+use crate::{RemovalError, State, System};
+
+/// Verdict of [`integrability`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrability {
+    /// There is no constraint.
+    Unconstrained,
+    /// Every constraint is (a combination of) total time derivatives: `f = 0` confines the configuration.
+    Integrable {
+        /// Whether the brackets vanish by simplification and not only at random points.
+        exact: bool,
+    },
+    /// Some independent combinations of the constraints are total time derivatives, the others are not.
+    PartlyIntegrable {
+        /// Number of integrable combinations.
+        integrals: usize,
+        /// Number of constraints.
+        constraints: usize,
+    },
+    /// No combination of the constraints is integrable: every configuration can be reached.
+    Nonintegrable {
+        /// Brackets that had to be nested until all directions were reached.
+        depth: usize,
+    },
+    /// A constraint is not linear in the velocities; Frobenius' test is about those that are.
+    NonlinearInVelocity,
+}
+
+impl Integrability {
+    /// Whether the verdict predicts that all formulations agree (T1).
+    pub fn is_integrable(self) -> bool {
+        matches!(self, Integrability::Unconstrained | Integrability::Integrable { .. })
+    }
+}
+
+impl std::fmt::Display for Integrability {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Integrability::Unconstrained => write!(f, "no constraint"),
+            Integrability::Integrable { exact: true } => write!(f, "integrable (brackets vanish identically)"),
+            Integrability::Integrable { exact: false } => write!(f, "integrable (brackets vanish at random points)"),
+            Integrability::PartlyIntegrable { integrals, constraints } => {
+                write!(f, "partly integrable: {integrals} of {constraints} constraints are integrable combinations")
+            }
+            Integrability::Nonintegrable { depth } => {
+                write!(f, "nonintegrable: brackets nested {depth} deep reach every direction")
+            }
+            Integrability::NonlinearInVelocity => {
+                write!(f, "not linear in the velocities: Frobenius' test does not apply")
+            }
+        }
+    }
+}
+
+/// Frobenius' test for constraints `A(q,t) v + b(q,t) = 0`.
+///
+/// The admissible directions in the space of `(q, t)` are spanned by fields `X₁ … X_m` (and `T = c ∂_q + ∂_t` where anything depends on time or
+/// `b ≠ 0`). Brackets `[X, Y] = Y_x X − X_x Y` are added until the rank no longer grows; what is missing to the full dimension is the number of
+/// integrals. Ranks are taken at random points; fields are differentiated exactly.
+///
+/// # Errors
+/// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.
+pub fn integrability(system: &System, state: &State) -> Result<Integrability, RemovalError> {
+    let h = system.constraints.len();
+    if h == 0 {
+        return Ok(Integrability::Unconstrained);
+    }
+    if !system.constraints_linear_in_velocity() {
+        return Ok(Integrability::NonlinearInVelocity);
+    }
+    let g = &system.graph;
+    let split = Split::new(system, state)?;
+    let with_time = split.offset.iter().any(|&e| !g.is_zero(e))
+        || system.constraints.iter().any(|&f| g.depends_on(f, system.time));
+    let mut space: Vec<Symbol> = system.positions();
+    if with_time {
+        space.push(system.time);
+    }
+    let admissible = split.fields(system, with_time);
+    let constants: HashMap<Symbol, f64> = system.parameter_values();
+    let rank_of = |fields: &[Vec<Expr>]| {
+        generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &constants)
+    };
+    let bracket = |x: &[Expr], y: &[Expr]| -> Vec<Expr> {
+        let along = |field: &[Expr], by: &[Expr], i: usize| g.dot(&g.gradient(field[i], &space), by);
+        (0..space.len()).map(|i| g.sub(along(y, x, i), along(x, y, i))).collect()
+    };
+
+    let mut fields = admissible.clone();
+    let mut newest = admissible.clone();
+    let mut rank = fields.len();
+    let (mut depth, mut exact) = (0, true);
+    while rank < space.len() {
+        let mut added = Vec::new();
+        for x in &admissible {
+            for y in &newest {
+                let z = bracket(x, y);
+                if z.iter().all(|&e| matches!(g.vanishes(e, &constants), Vanishing::Exactly)) {
+                    continue;
+                }
+                fields.push(z.clone());
+                if rank_of(&fields) > rank {
+                    rank += 1;
+                    added.push(z);
+                } else {
+                    exact = false;
+                    fields.pop();
+                }
+            }
+        }
+        if added.is_empty() {
+            break;
+        }
+        depth += 1;
+        newest = added;
+    }
+    let integrals = space.len() - rank;
+    Ok(match integrals {
+        0 => Integrability::Nonintegrable { depth },
+        _ if integrals == h => Integrability::Integrable { exact },
+        _ => Integrability::PartlyIntegrable { integrals, constraints: h },
+    })
+}
