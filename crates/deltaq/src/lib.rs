@@ -1,1 +1,30 @@
-//! (under construction)
+//! One system with velocity constraints, several formulations of its motion: derive, integrate, compare.
+//!
+//! Given `L(q, v, t)` and `f(q, v, t) = 0`, what are the equations of motion? Three answers are in use, and they differ where `f` is not
+//! integrable. Their derivations are the front pages of the crates `chetaev`, `vakonomic` and `removed_constraint`; this crate puts them
+//! into one table, integrates them with one time loop, and says whether two motions are the same.
+//!
+//! - [`FORMULATIONS`]: the table.
+//! - [`derive`], [`solve`]: one motion, with its global error estimate.
+//! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
+
+mod comparison;
+mod error;
+mod fit;
+mod gap;
+mod growth;
+mod horizon;
+mod metric;
+mod motion;
+mod table;
+
+pub use comparison::{
+    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, derive, removals, setting, solve_choice,
+};
+pub use error::SolveError;
+pub use fit::best_fit;
+pub use gap::{CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, THRESHOLDS, Verdict, compare_motions};
+pub use growth::{Growth, LeadingTerm, growth, leading_term};
+pub use metric::Metric;
+pub use motion::{Ending, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
+pub use table::{FORMULATIONS, formulation};

@@ -1,0 +1,291 @@
+//! One scene in every formulation, pair by pair.
+
+use std::time::Instant;
+
+use mechanics::{
+    ConstantsRule, Derivation, Equations, Formulation, Integrability, Removal, RemovalError, Scene, State, System,
+    integrability,
+};
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::best_fit;
+use crate::gap::{Gap, Verdict, compare_motions};
+use crate::growth::{Growth, LeadingTerm, growth, leading_term};
+use crate::metric::Metric;
+use crate::{FORMULATIONS, Motion, Setting, Settings, SolveError, formulation, solve};
+
+/// One formulation of the scene, with all choices made.
+#[derive(Clone)]
+pub struct Choice {
+    /// What the reader sees: the formulation, and the removal where there are several.
+    pub label: String,
+    /// Name of the formulation.
+    pub formulation: &'static str,
+    /// The removal, where the formulation needs one.
+    pub removal: Option<Removal>,
+    /// Free constants.
+    pub constants: ConstantsRule,
+}
+
+/// A choice and what became of it.
+pub struct Run {
+    /// The choice.
+    pub choice: Choice,
+    /// The motion, or why there is none.
+    pub outcome: Result<Motion, SolveError>,
+}
+
+/// Two runs compared.
+pub struct Pair {
+    /// Index of the first run.
+    pub first: usize,
+    /// Index of the second run.
+    pub second: usize,
+    /// The gap between them.
+    pub gap: Gap,
+    /// Growth of `second − first` near the start, where it stands out from the errors.
+    pub growth: Option<Growth>,
+    /// Predicted leading term, for Chetaev and vakonomic.
+    pub predicted: Option<LeadingTerm>,
+}
+
+/// The best that free constants can do.
+pub struct Fit {
+    /// Index of the run whose constants were fitted.
+    pub run: usize,
+    /// Index of the run that was to be met.
+    pub target: usize,
+    /// The fitted motion; `None` where no constants lead to a motion over the whole horizon.
+    pub fitted: Option<FittedMotion>,
+}
+
+/// A motion with fitted constants.
+pub struct FittedMotion {
+    /// Names and values of the constants.
+    pub constants: Vec<(String, f64)>,
+    /// The gap that remains.
+    pub gap: Gap,
+}
+
+/// A scene in every formulation.
+pub struct Comparison {
+    /// The scene.
+    pub scene: Scene,
+    /// Frobenius' verdict on the constraints.
+    pub integrability: Integrability,
+    /// Runs: the formulations of the table in order, removals within.
+    pub runs: Vec<Run>,
+    /// Pairs of runs that both gave a motion.
+    pub pairs: Vec<Pair>,
+    /// Fits of free constants.
+    pub fits: Vec<Fit>,
+}
+
+impl Comparison {
+    /// The first run of a formulation.
+    pub fn run(&self, formulation: &str) -> Option<usize> {
+        self.runs.iter().position(|r| r.choice.formulation == formulation)
+    }
+
+    /// The pair of two runs, in either order.
+    pub fn pair(&self, a: usize, b: usize) -> Option<&Pair> {
+        self.pairs.iter().find(|p| (p.first, p.second) == (a, b) || (p.first, p.second) == (b, a))
+    }
+}
+
+/// The removals of a scene: those written by hand, then the automatic ones that apply and are not the same again.
+///
+/// # Errors
+/// [`RemovalError`] where no removal was written by hand and none can be found automatically.
+pub fn removals(scene: &Scene) -> Result<Vec<Removal>, RemovalError> {
+    let mut removals = scene.removals.clone();
+    for automatic in [Removal::by_coordinates, Removal::by_quasi_velocities] {
+        match automatic(&scene.system, &scene.start) {
+            Ok(removal) => {
+                let known = removals.iter().any(|r| same_parameters(&scene.system, r, &removal));
+                if !known {
+                    removals.push(removal);
+                }
+            }
+            Err(error) if removals.is_empty() => return Err(error),
+            Err(_) => {}
+        }
+    }
+    Ok(removals)
+}
+
+/// Whether two removals use the same coordinates as parameters, and nothing else.
+fn same_parameters(system: &System, a: &Removal, b: &Removal) -> bool {
+    let coordinates = |r: &Removal| r.parameters.iter().map(|u| u.coordinate).collect::<Option<Vec<usize>>>();
+    let plain = |r: &Removal| {
+        let memory: usize = r.memory.iter().filter(|w| w.coordinate.is_some()).count();
+        memory + r.parameters.len() == system.dimension()
+    };
+    coordinates(a).is_some() && coordinates(a) == coordinates(b) && plain(a) && plain(b)
+}
+
+/// Every choice that a comparison of `scene` makes.
+///
+/// # Errors
+/// As [`removals`].
+pub fn choices(scene: &Scene) -> Result<Vec<Choice>, RemovalError> {
+    let mut choices = Vec::new();
+    for formulation in FORMULATIONS {
+        let plain = |constants| Choice {
+            label: formulation.title.into(),
+            formulation: formulation.name,
+            removal: None,
+            constants,
+        };
+        if !formulation.needs_removal {
+            let free = formulation.name != "chetaev" && !scene.system.constraints.is_empty();
+            let constants =
+                if free { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero };
+            choices.push(plain(constants));
+            continue;
+        }
+        for removal in removals(scene)? {
+            choices.push(Choice {
+                label: format!("{} ({})", formulation.title, removal.name),
+                formulation: formulation.name,
+                constants: removal.constants.clone(),
+                removal: Some(removal),
+            });
+        }
+    }
+    Ok(choices)
+}
+
+/// Derives the equations of a choice, without what they do not need.
+///
+/// # Errors
+/// [`SolveError::Derivation`], [`SolveError::Removal`].
+pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
+    let formulation: &Formulation = formulation(choice.formulation).unwrap_or(&FORMULATIONS[0]);
+    let removal = choice.removal.as_ref();
+    let equations = (formulation.derive)(system, &Derivation { removal, constants: &choice.constants })?;
+    Ok(equations.leave_out_unneeded())
+}
+
+/// Derives and integrates a choice from the start of the scene.
+///
+/// # Errors
+/// [`SolveError`] where there is no motion.
+pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
+    let clock = Instant::now();
+    let equations = derive(&scene.system, choice)?;
+    let derive = clock.elapsed().as_secs_f64();
+    let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
+    motion.seconds.derive = derive;
+    Ok(motion)
+}
+
+/// What every motion of a scene starts from.
+pub fn setting(scene: &Scene) -> Setting<'_> {
+    Setting { system: &scene.system, start: &scene.start, end: scene.start.t + scene.duration }
+}
+
+/// Computes all formulations of a scene and compares them. `extra` are further runs, derived elsewhere.
+///
+/// # Errors
+/// [`RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
+pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Comparison, SolveError> {
+    let integrability = integrability(&scene.system, &scene.start)?;
+    let mut metric = Metric::new(&scene.system)?;
+    let mut runs: Vec<Run> = choices(&scene)?
+        .into_iter()
+        .map(|choice| Run { outcome: solve_choice(&scene, &choice, settings), choice })
+        .collect();
+    runs.extend(extra);
+
+    let mut pairs = Vec::new();
+    for first in 0..runs.len() {
+        for second in first + 1..runs.len() {
+            let (left, right) = runs.split_at_mut(second);
+            let (Ok(one), Ok(two)) = (&mut left[first].outcome, &mut right[0].outcome) else { continue };
+            let gap = compare_motions(one, two, &mut metric)?;
+            let mut pair = Pair { first, second, gap, growth: None, predicted: None };
+            if pair.gap.verdict == Verdict::Different {
+                let points = pair.gap.points.clone();
+                let limit = |t: f64| points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+                pair.growth = growth(two, one, &mut metric, &limit)?;
+            }
+            let names = (left[first].choice.formulation, right[0].choice.formulation);
+            if names == ("chetaev", "vakonomic")
+                && let Ok(chetaev) = &mut left[first].outcome
+            {
+                let reaction = chetaev.at(scene.start.t)?.multipliers;
+                pair.predicted = leading_term(&scene.system, &scene.start, &scene.multipliers, &reaction)?;
+            }
+            pairs.push(pair);
+        }
+    }
+    let fits = fits(&scene, &mut runs, &pairs, &mut metric, settings)?;
+    Ok(Comparison { scene, integrability, runs, pairs, fits })
+}
+
+/// Fits: vakonomic to Chetaev, and the first removed-constraint run to Chetaev and to vakonomic, where they differ.
+fn fits(
+    scene: &Scene,
+    runs: &mut [Run],
+    pairs: &[Pair],
+    metric: &mut Metric,
+    settings: &Settings,
+) -> Result<Vec<Fit>, SolveError> {
+    let mut fits = Vec::new();
+    for (name, target) in [("vakonomic", "chetaev"), ("removed-constraint", "chetaev"), ("removed-constraint", "vakonomic")] {
+        let find = |name: &str| {
+            runs.iter().position(|r| r.choice.formulation == name && r.outcome.as_ref().is_ok_and(Motion::is_complete))
+        };
+        let (Some(run), Some(target)) = (find(name), find(target)) else { continue };
+        let different = pairs
+            .iter()
+            .any(|p| (p.first, p.second) == (target.min(run), target.max(run)) && p.gap.verdict == Verdict::Different);
+        if !different {
+            continue;
+        }
+        let mut choice = runs[run].choice.clone();
+        choice.constants = ConstantsRule::Given(Vec::new());
+        let equations = derive(&scene.system, &choice)?;
+        let mut guesses = vec![vec![0.0; equations.free_constants.len()]];
+        if let Ok(motion) = &runs[run].outcome
+            && motion.constants.len() == equations.free_constants.len()
+        {
+            guesses.push(motion.constants.clone());
+        }
+        if name == "vakonomic" {
+            guesses.extend(costate_free_guess(&scene.system, &scene.start));
+        }
+        guesses.dedup();
+        let Ok(goal) = &mut runs[target].outcome else { continue };
+        let fitted = best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?;
+        let fitted = match fitted {
+            None => None,
+            Some(mut motion) => {
+                let gap = compare_motions(goal, &mut motion, metric)?;
+                let names = crate::constant_names(&motion.equations);
+                Some(FittedMotion { constants: names.into_iter().zip(motion.constants.clone()).collect(), gap })
+            }
+        };
+        fits.push(Fit { run, target, fitted });
+    }
+    Ok(fits)
+}
+
+/// The `μ₀` that makes the costate `L_v + Aᵀ μ₀` smallest: where a vakonomic motion can be a Chetaev one, it often is this.
+fn costate_free_guess(system: &System, start: &State) -> Option<Vec<f64>> {
+    let system = system.clone();
+    let g = &system.graph;
+    let mut values = system.parameter_values();
+    values.insert(system.time, start.t);
+    for (i, c) in system.coordinates.iter().enumerate() {
+        values.extend([(c.position, start.q[i]), (c.velocity, start.v[i])]);
+    }
+    let number = |&e: &symbolic::Expr| g.evaluate(e, &values).ok();
+    let momenta: Option<Vec<f64>> = g.gradient(system.lagrangian, &system.velocities()).iter().map(number).collect();
+    let jacobian = system.constraint_jacobian();
+    let entries: Option<Vec<f64>> = jacobian.entries().iter().map(number).collect();
+    let a = DMatrix::from_row_slice(jacobian.rows(), jacobian.columns(), &entries?);
+    let solution = a.transpose().svd(true, true).solve(&-DVector::from_vec(momenta?), 1e-12).ok()?;
+    Some(solution.as_slice().to_vec())
+}

@@ -1,0 +1,62 @@
+//! Why a motion could not be computed.
+
+use integrate::{BoundaryError, CallError};
+use mechanics::{DerivationError, EvaluationFailure, RemovalError, StartError};
+use symbolic::CompileError;
+
+/// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// The formulation has no equations for this system.
+    #[error(transparent)]
+    Derivation(#[from] DerivationError),
+    /// The removal does not fit the system.
+    #[error(transparent)]
+    Removal(#[from] RemovalError),
+    /// Start values of the formulation's own states could not be found.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// The derived equations contain an unknown symbol.
+    #[error("the derived equations cannot be compiled: {0}")]
+    Compile(#[from] CompileError),
+    /// The equations cannot be evaluated at the start.
+    #[error("at the start: {0}")]
+    AtStart(#[from] EvaluationFailure),
+    /// A wrong number of free constants.
+    #[error("{formulation} has {expected} free constants ({names}); {found} were given")]
+    ConstantCount {
+        /// Name of the formulation.
+        formulation: String,
+        /// Number of free constants.
+        expected: usize,
+        /// Their names.
+        names: String,
+        /// Number given.
+        found: usize,
+    },
+    /// A natural boundary condition where the formulation has none.
+    #[error("{formulation} has no natural boundary condition for its free constants")]
+    NoNaturalCondition {
+        /// Name of the formulation.
+        formulation: String,
+    },
+    /// The horizon is not after the start.
+    #[error("the horizon {horizon} is not after the start {start}")]
+    Horizon {
+        /// Horizon asked for.
+        horizon: f64,
+        /// Start time.
+        start: f64,
+    },
+    /// No free constants satisfy the natural boundary condition at the horizon, as far as was found.
+    #[error("natural boundary condition at the horizon {horizon}: {error}")]
+    Boundary {
+        /// Horizon asked for.
+        horizon: f64,
+        /// What the boundary-value solver says.
+        error: BoundaryError,
+    },
+    /// The time integrator was called wrongly.
+    #[error(transparent)]
+    Call(#[from] CallError),
+}

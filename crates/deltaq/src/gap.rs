@@ -1,0 +1,154 @@
+//! Two motions of one system: are they the same, from when not, by how much.
+
+use integrate::find_root;
+
+use crate::metric::Metric;
+use crate::{Ending, Motion, SolveError};
+
+/// A gap has to be this many times the sum of the two error estimates to count as a difference.
+pub const CERTAINTY: f64 = 10.0;
+
+/// Relative error estimate that both motions have to stay under to be called the same.
+pub const SAME_ESTIMATE: f64 = 1e-8;
+
+/// Relative round-off that no error estimate goes under.
+const ROUND_OFF: f64 = 2e-15;
+
+/// Gaps whose first times are reported.
+pub const THRESHOLDS: [f64; 3] = [1e-6, 1e-3, 1e-1];
+
+/// Instants at which a gap is sampled.
+const SAMPLES: usize = 600;
+
+/// The word on two motions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// The gap stays under the certainty limit over the whole horizon, and the estimates are small.
+    Same,
+    /// The gap passes the certainty limit.
+    Different,
+    /// Neither can be said.
+    Undecided {
+        /// Why.
+        because: String,
+    },
+}
+
+/// The gap at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct GapPoint {
+    /// Time.
+    pub t: f64,
+    /// `sqrt(Δqᵀ M Δq)`.
+    pub gap: f64,
+    /// What the gap has to pass to count: [`CERTAINTY`] times the sum of the error estimates up to `t`.
+    pub limit: f64,
+}
+
+/// What the comparison of two motions found.
+#[derive(Clone, Debug)]
+pub struct Gap {
+    /// The word.
+    pub verdict: Verdict,
+    /// Time up to which both motions exist.
+    pub end: f64,
+    /// First time at which the gap passes the certainty limit.
+    pub certain_from: Option<f64>,
+    /// First times at which the gap passes [`THRESHOLDS`].
+    pub passes: [Option<f64>; 3],
+    /// Largest gap.
+    pub largest: f64,
+    /// Largest difference of each coordinate.
+    pub largest_by_coordinate: Vec<f64>,
+    /// Sum of the two error estimates at the end, kinetic metric.
+    pub estimate: f64,
+    /// Length of the first motion's way, by which estimates are made relative.
+    pub scale: f64,
+    /// Gap over time.
+    pub points: Vec<GapPoint>,
+}
+
+/// Compares two motions of one system from one start, over the time that both exist.
+///
+/// # Errors
+/// [`SolveError`] where a motion cannot be read off.
+pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Metric) -> Result<Gap, SolveError> {
+    let (t0, end) = (first.start(), first.end().min(second.end()));
+    let mut points = Vec::new();
+    let mut largest_by_coordinate = Vec::new();
+    let (mut estimate, mut scale) = (0.0_f64, 0.0_f64);
+    let origin = first.at(t0)?;
+    let mut largest_length = 0.0_f64;
+    for t in sample_times(t0, end) {
+        let one = first.at(t)?;
+        let two = second.at(t)?;
+        let (q, v) = (&one.coordinates, &one.velocities);
+        let difference = subtract(q, &two.coordinates);
+        largest_by_coordinate.resize(difference.len(), 0.0_f64);
+        for (l, d) in largest_by_coordinate.iter_mut().zip(&difference) {
+            *l = l.max(d.abs());
+        }
+        let errors = [first.difference_of_runs(t)?, second.difference_of_runs(t)?];
+        let sum: f64 = errors.iter().map(|e| metric.length(t, q, v, e)).sum();
+        estimate = estimate.max(sum);
+        scale = scale.max(metric.length(t, q, v, &subtract(q, &origin.coordinates)));
+        largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
+        let limit = CERTAINTY * (estimate + ROUND_OFF * largest_length);
+        points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit });
+    }
+    let largest = points.iter().fold(0.0_f64, |a, p| a.max(p.gap));
+    let mut gap_at = |t: f64| -> f64 {
+        match (first.at(t), second.at(t)) {
+            (Ok(one), Ok(two)) => {
+                metric.length(t, &one.coordinates, &one.velocities, &subtract(&one.coordinates, &two.coordinates))
+            }
+            _ => f64::NAN,
+        }
+    };
+    let passes = THRESHOLDS.map(|threshold| first_passing(&points, &mut gap_at, threshold));
+    let certain_from = points.iter().find(|p| p.gap > p.limit).map(|p| p.t);
+    let complete = first.is_complete() && second.is_complete();
+    let relative = if scale > 0.0 { estimate / scale } else { estimate };
+    let verdict = if certain_from.is_some() {
+        Verdict::Different
+    } else if !complete {
+        let stop = [&first.ending, &second.ending].into_iter().find_map(|e| match e {
+            Ending::Stopped { t, cause } => Some(format!("no difference up to t = {t:.6}, where one stops: {cause}")),
+            Ending::Completed => None,
+        });
+        Verdict::Undecided { because: stop.unwrap_or_default() }
+    } else if relative < SAME_ESTIMATE {
+        Verdict::Same
+    } else {
+        Verdict::Undecided {
+            because: format!("relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"),
+        }
+    };
+    Ok(Gap { verdict, end, certain_from, passes, largest, largest_by_coordinate, estimate, scale, points })
+}
+
+pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(x, y)| x - y).collect()
+}
+
+/// Times dense near the start (geometric) and everywhere (equidistant), start left out.
+fn sample_times(start: f64, end: f64) -> Vec<f64> {
+    let length = end - start;
+    let half = SAMPLES / 2;
+    let mut times: Vec<f64> = (1..=half).map(|i| start + length * i as f64 / half as f64).collect();
+    times.extend((0..half).map(|i| start + length * 10f64.powf(-5.0 + 5.0 * i as f64 / half as f64)));
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// First time at which `gap` reaches `threshold`: bracketed by the samples, refined on the dense output.
+fn first_passing(points: &[GapPoint], gap: &mut dyn FnMut(f64) -> f64, threshold: f64) -> Option<f64> {
+    let index = points.iter().position(|p| p.gap >= threshold && p.gap > p.limit)?;
+    let right = points[index].t;
+    let Some(left) = index.checked_sub(1).map(|i| points[i].t) else { return Some(right) };
+    if points[index - 1].gap >= threshold {
+        return Some(right);
+    }
+    find_root(&mut |t| gap(t) - threshold, left, right, 1e-12 * right.abs().max(f64::MIN_POSITIVE)).or(Some(right))
+}

@@ -1,0 +1,169 @@
+//! How a gap starts: exponent and leading coefficient, measured and predicted.
+
+use std::collections::HashMap;
+
+use mechanics::{State, System};
+use nalgebra::{DMatrix, DVector};
+use symbolic::{CompileError, Symbol};
+
+use crate::gap::subtract;
+use crate::metric::{Metric, numbers};
+use crate::{Motion, SolveError};
+
+/// Growth of a gap near the start: `gap ≈ coefficient · (t − t₀)^exponent`.
+#[derive(Clone, Debug)]
+pub struct Growth {
+    /// Slope of log gap over log t, extrapolated to the start.
+    pub exponent: f64,
+    /// `Δq / (t − t₀)^k` extrapolated to the start, `k` the rounded exponent; length n.
+    pub coefficient: Vec<f64>,
+    /// Its kinetic length.
+    pub length: f64,
+    /// Fit range in `t − t₀`.
+    pub from: f64,
+    /// Fit range in `t − t₀`.
+    pub to: f64,
+}
+
+/// The leading term of `q_vakonomic − q_Chetaev` for constraints linear in `v` (T5).
+#[derive(Clone, Debug)]
+pub struct LeadingTerm {
+    /// 2 where `Π C μ₀ ≠ 0`, else 3.
+    pub exponent: u32,
+    /// `½ Π C μ₀`, or `−⅙ Π C λ₀`; length n.
+    pub coefficient: Vec<f64>,
+    /// Its kinetic length.
+    pub length: f64,
+}
+
+/// Fraction of the common time over which the growth is fitted.
+const FIT_FRACTION: f64 = 0.02;
+/// Instants in the fit.
+const FIT_POINTS: usize = 24;
+/// A gap has to be this many times its certainty limit to be used in the fit.
+const FIT_CERTAINTY: f64 = 20.0;
+/// A leading term under this fraction of the terms it is made of counts as zero.
+const VANISHES: f64 = 1e-10;
+
+/// Fits the growth of `first − second` near the start. `None` where the gap does not stand out from the errors there.
+///
+/// # Errors
+/// [`SolveError`] where a motion cannot be read off.
+pub fn growth(
+    first: &mut Motion,
+    second: &mut Motion,
+    metric: &mut Metric,
+    limit_at: &dyn Fn(f64) -> f64,
+) -> Result<Option<Growth>, SolveError> {
+    let start = first.start();
+    let horizon = first.end().min(second.end()) - start;
+    let mut to = horizon * FIT_FRACTION;
+    let origin = first.at(start)?;
+    let (q0, v0) = (origin.coordinates, origin.velocities);
+    let mut differences: Vec<(f64, Vec<f64>, f64)> = Vec::new();
+    for _ in 0..6 {
+        differences.clear();
+        for i in 0..FIT_POINTS {
+            let s = to * (0.15 + 0.85 * i as f64 / (FIT_POINTS - 1) as f64);
+            let difference = subtract(&first.at(start + s)?.coordinates, &second.at(start + s)?.coordinates);
+            let gap = metric.length(start, &q0, &v0, &difference);
+            if gap > FIT_CERTAINTY * limit_at(start + s) {
+                differences.push((s, difference, gap));
+            }
+        }
+        if differences.len() == FIT_POINTS || to * 2.0 > 0.3 * horizon {
+            break;
+        }
+        to *= 2.0;
+    }
+    if differences.len() < FIT_POINTS / 2 {
+        return Ok(None);
+    }
+    let from = differences[0].0;
+    // log gap = log c + k log s + a s + b s²
+    let design = |s: f64| [1.0, s.ln(), s / to, (s / to).powi(2)];
+    let logarithms: Vec<f64> = differences.iter().map(|d| d.2.ln()).collect();
+    let Some(fit) = least_squares(&differences, &design, &logarithms) else { return Ok(None) };
+    let exponent = fit[1];
+    let k = exponent.round();
+    // Δq / s^k = c + c₁ s + c₂ s² + c₃ s³, coordinate by coordinate
+    let powers = |s: f64| [1.0, s / to, (s / to).powi(2), (s / to).powi(3)];
+    let mut coefficient = vec![0.0; q0.len()];
+    for (i, c) in coefficient.iter_mut().enumerate() {
+        let scaled: Vec<f64> = differences.iter().map(|(s, d, _)| d[i] / s.powf(k)).collect();
+        match least_squares(&differences, &powers, &scaled) {
+            Some(fit) => *c = fit[0],
+            None => return Ok(None),
+        }
+    }
+    let length = metric.length(start, &q0, &v0, &coefficient);
+    Ok(Some(Growth { exponent, coefficient, length, from, to }))
+}
+
+fn least_squares(
+    at: &[(f64, Vec<f64>, f64)],
+    design: &dyn Fn(f64) -> [f64; 4],
+    values: &[f64],
+) -> Option<DVector<f64>> {
+    let matrix = DMatrix::from_fn(at.len(), 4, |i, j| design(at[i].0)[j]);
+    matrix.svd(true, true).solve(&DVector::from_column_slice(values), 1e-14).ok()
+}
+
+/// Predicts the leading term of `q_vakonomic − q_Chetaev` from one start:
+///
+/// ```text
+/// ½ Π C μ₀ t² + O(t³),   and where Π C μ₀ = 0:   −⅙ Π C λ₀ t³ + O(t⁴)
+/// C = f_qᵀ − Ȧᵀ  (n×h, curvature of the constraint),   Π = M⁻¹ − M⁻¹Aᵀ (A M⁻¹ Aᵀ)⁻¹ A M⁻¹ .
+/// ```
+///
+/// `None` where a constraint is not linear in `v` or `M` is singular at the start. `reaction` is Chetaev's `λ₀`.
+///
+/// # Errors
+/// [`CompileError`] where an expression contains an undefined symbol.
+pub fn leading_term(
+    system: &System,
+    state: &State,
+    multipliers: &[f64],
+    reaction: &[f64],
+) -> Result<Option<LeadingTerm>, CompileError> {
+    if system.constraints.is_empty() || !system.constraints_linear_in_velocity() {
+        return Ok(None);
+    }
+    let system = system.clone();
+    let g = &system.graph;
+    let mut values: HashMap<Symbol, f64> = system.parameter_values();
+    values.insert(system.time, state.t);
+    for (i, c) in system.coordinates.iter().enumerate() {
+        values.extend([(c.position, state.q[i]), (c.velocity, state.v[i])]);
+    }
+    let (q, v) = (system.positions(), system.velocities());
+    let jacobian = system.constraint_jacobian();
+    let flow: Vec<_> = system.flow().into_iter().filter(|(s, _)| !v.contains(s)).collect();
+    let jacobian_rate = symbolic::Matrix::from_fn(jacobian.rows(), jacobian.columns(), |i, j| {
+        g.total_derivative(jacobian[(i, j)], &flow)
+    });
+    let a = numbers(g, &jacobian, &values)?;
+    let curvature =
+        (numbers(g, &g.jacobian(&system.constraints, &q), &values)? - numbers(g, &jacobian_rate, &values)?).transpose();
+    let mass = numbers(g, &system.velocity_hessian(), &values)?;
+    let Some(inverse) = mass.clone().try_inverse() else { return Ok(None) };
+    let Some(middle) = (&a * &inverse * a.transpose()).try_inverse() else { return Ok(None) };
+    let projector = &inverse - &inverse * a.transpose() * middle * &a * &inverse;
+    let term = |weight: f64, multiplier: &[f64]| {
+        let force = &curvature * DVector::from_column_slice(multiplier);
+        let coefficient = &projector * &force * weight;
+        let size = (&inverse * &force).norm() * weight.abs();
+        let vanishes = coefficient.norm() <= VANISHES * size || size == 0.0;
+        let length = (coefficient.transpose() * &mass * &coefficient)[(0, 0)].abs().sqrt();
+        (vanishes, coefficient.as_slice().to_vec(), length)
+    };
+    let (vanishes, coefficient, length) = term(0.5, multipliers);
+    if !vanishes {
+        return Ok(Some(LeadingTerm { exponent: 2, coefficient, length }));
+    }
+    if multipliers.iter().any(|&mu| mu != 0.0) {
+        return Ok(None); // Π C μ₀ = 0 with μ₀ ≠ 0: the next term is not given by λ₀ alone
+    }
+    let (vanishes, coefficient, length) = term(-1.0 / 6.0, reaction);
+    Ok((!vanishes).then_some(LeadingTerm { exponent: 3, coefficient, length }))
+}

@@ -1,0 +1,60 @@
+//! Free constants from the natural boundary condition at a horizon.
+
+use integrate::{BoundaryError, ShootOptions, Status, shoot};
+
+use crate::motion::{Prepared, Settings};
+use crate::{SolveError, TIGHTER};
+
+/// Finds the constants `C` for which every [`mechanics::FreeConstant::natural`] quantity vanishes at `horizon`.
+///
+/// Single shooting: the constants are the unknowns, the quantities at the horizon the residuals.
+pub(crate) fn natural_constants(
+    prepared: &mut Prepared,
+    horizon: f64,
+    settings: &Settings,
+) -> Result<Vec<f64>, SolveError> {
+    let equations = &prepared.equations;
+    let constants = &equations.free_constants;
+    if constants.is_empty() {
+        return Ok(Vec::new());
+    }
+    let start = prepared.start_time();
+    if horizon.is_nan() || horizon <= start {
+        return Err(SolveError::Horizon { horizon, start });
+    }
+    let formulation = || equations.formulation.to_string();
+    // the quantities are states: costates of memory variables
+    let places: Option<Vec<usize>> = constants
+        .iter()
+        .map(|c| {
+            let symbol = equations.graph.as_symbol(c.natural?)?;
+            equations.states.iter().position(|y| y.symbol == symbol)
+        })
+        .collect();
+    let Some(places) = places else { return Err(SolveError::NoNaturalCondition { formulation: formulation() }) };
+    let guess = vec![0.0; constants.len()];
+    let tolerance = settings.tolerance * TIGHTER;
+    let mut failure = None;
+    let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
+        let mut end = vec![0.0; prepared.equations.states.len()];
+        match prepared.run(constants, horizon, tolerance, settings) {
+            Ok(run) if run.status == Status::Completed => run.dense.evaluate(horizon, &mut end),
+            Ok(run) => return Err(BoundaryError::Evaluation { reason: format!("{:?}", run.status) }),
+            Err(error) => {
+                let reason = error.to_string();
+                failure = Some(error);
+                return Err(BoundaryError::Evaluation { reason });
+            }
+        }
+        for (r, &place) in residual.iter_mut().zip(&places) {
+            *r = end[place];
+        }
+        Ok(())
+    };
+    let shot = shoot(&mut residual, &guess, &ShootOptions::default());
+    match (shot, failure) {
+        (Ok(shot), _) => Ok(shot.unknowns),
+        (Err(_), Some(error)) => Err(error),
+        (Err(error), None) => Err(SolveError::Boundary { horizon, error }),
+    }
+}

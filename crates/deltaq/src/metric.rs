@@ -1,0 +1,77 @@
+//! The kinetic metric: how far two configurations are apart.
+
+use std::collections::HashMap;
+
+use mechanics::System;
+use symbolic::{CompileError, Graph, Matrix, Symbol, Tape, Workspace};
+
+/// The length `sqrt(Δqᵀ M Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
+#[derive(Clone)]
+pub struct Metric {
+    tape: Tape,
+    registers: Workspace<f64>,
+    dimension: usize,
+    inputs: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Metric {
+    /// Compiles `M(t, q, v)` and `f(t, q, v)` of `system`.
+    ///
+    /// # Errors
+    /// [`CompileError`] where `L` or `f` contain a symbol that is not defined.
+    pub fn new(system: &System) -> Result<Self, CompileError> {
+        let system = system.clone(); // the Hessian is built in a graph of its own
+        let mut outputs = system.velocity_hessian().entries().to_vec();
+        outputs.extend(&system.constraints);
+        let mut inputs = vec![system.time];
+        inputs.extend(system.positions());
+        inputs.extend(system.velocities());
+        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values())?;
+        Ok(Metric {
+            registers: tape.workspace(),
+            dimension: system.dimension(),
+            inputs: vec![0.0; inputs.len()],
+            values: vec![0.0; outputs.len()],
+            tape,
+        })
+    }
+
+    fn load(&mut self, t: f64, q: &[f64], v: &[f64]) {
+        let n = self.dimension;
+        self.inputs[0] = t;
+        self.inputs[1..=n].copy_from_slice(q);
+        self.inputs[1 + n..].copy_from_slice(v);
+        self.tape.evaluate(&self.inputs, &mut self.registers, &mut self.values);
+    }
+
+    /// `sqrt(|Δqᵀ M Δq|)` with `M` at `(t, q, v)`.
+    pub fn length(&mut self, t: f64, q: &[f64], v: &[f64], difference: &[f64]) -> f64 {
+        self.load(t, q, v);
+        let n = self.dimension;
+        let rows = self.values[..n * n].chunks_exact(n);
+        let square: f64 = rows
+            .zip(difference)
+            .map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>())
+            .sum();
+        square.abs().sqrt()
+    }
+
+    /// `max |fᵢ(t, q, v)|`, 0 where there is no constraint.
+    pub fn constraint_residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        self.load(t, q, v);
+        let n = self.dimension;
+        self.values[n * n..].iter().fold(0.0, |a, f| a.max(f.abs()))
+    }
+}
+
+/// The numbers in a matrix of expressions at given values of all its symbols.
+pub(crate) fn numbers(
+    graph: &Graph,
+    matrix: &Matrix,
+    values: &HashMap<Symbol, f64>,
+) -> Result<nalgebra::DMatrix<f64>, CompileError> {
+    let entries: Result<Vec<f64>, CompileError> =
+        matrix.entries().iter().map(|&e| graph.evaluate(e, values)).collect();
+    Ok(nalgebra::DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries?))
+}

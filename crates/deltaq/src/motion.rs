@@ -1,0 +1,320 @@
+//! One motion: equations and start data in, a trajectory with its error estimate out.
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use integrate::{DenseOutput, Method, Options, Problem, Projection, ProjectionReport, Solution, Start, Status, StopCause, Work};
+use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System, complete_removal_start};
+use symbolic::Symbol;
+
+use crate::SolveError;
+use crate::horizon::natural_constants;
+
+/// The tolerance of the second run over that of the first.
+pub const TIGHTER: f64 = 1e-2;
+
+/// How a motion is integrated.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Tolerance of the first run; the second, whose trajectory is kept, has [`TIGHTER`] times this.
+    pub tolerance: f64,
+    /// Method.
+    pub method: Method,
+    /// Projection onto the constraint after every step.
+    pub projection: Projection,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { tolerance: 1e-11, method: Method::Dop853, projection: Projection::EveryStep }
+    }
+}
+
+/// How a motion ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// At the time asked for.
+    Completed,
+    /// Earlier, with the time and the cause in words.
+    Stopped {
+        /// Time reached.
+        t: f64,
+        /// Cause.
+        cause: String,
+    },
+}
+
+/// Wall-clock seconds spent.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seconds {
+    /// From system to equations.
+    pub derive: f64,
+    /// From equations to tapes, start values included.
+    pub compile: f64,
+    /// Free constants and time integration, both runs.
+    pub integrate: f64,
+}
+
+/// A trajectory with everything that was learned on the way.
+#[derive(Clone)]
+pub struct Motion {
+    /// The equations behind it.
+    pub equations: Equations,
+    /// Values of the free constants.
+    pub constants: Vec<f64>,
+    /// How it ended.
+    pub ending: Ending,
+    /// Work of the kept run.
+    pub work: Work,
+    /// What projection did in the kept run.
+    pub projection: ProjectionReport,
+    /// Time spent.
+    pub seconds: Seconds,
+    compiled: Compiled,
+    kept: DenseOutput,
+    looser: DenseOutput,
+    state: Vec<f64>,
+    other: Vec<f64>,
+}
+
+impl Motion {
+    /// Time of the start.
+    pub fn start(&self) -> f64 {
+        self.kept.start()
+    }
+
+    /// Last time that both runs reached.
+    pub fn end(&self) -> f64 {
+        let (a, b) = (self.kept.end(), self.looser.end());
+        if self.kept.start() <= a { a.min(b) } else { a.max(b) }
+    }
+
+    /// Whether the motion reached the time asked for.
+    pub fn is_complete(&self) -> bool {
+        self.ending == Ending::Completed
+    }
+
+    /// End points of the steps of the kept run.
+    pub fn step_times(&self) -> Vec<f64> {
+        self.kept.step_times()
+    }
+
+    /// Coordinates, velocities, multipliers and invariants at `t`.
+    ///
+    /// # Errors
+    /// [`SolveError::AtStart`] where the equations of the instant cannot be solved.
+    pub fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
+        self.kept.evaluate(t, &mut self.state);
+        Ok(self.compiled.outputs(t, &self.state)?)
+    }
+
+    /// Difference of the coordinates of the two runs at `t`: what the looser run was wrong by, and a bound in practice for the kept one.
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn difference_of_runs(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
+        let kept = self.at(t)?.coordinates;
+        self.looser.evaluate(t, &mut self.other);
+        let looser = self.compiled.outputs(t, &self.other)?.coordinates;
+        Ok(kept.iter().zip(&looser).map(|(a, b)| a - b).collect())
+    }
+
+    /// Largest deviation of each invariant from its value at the start, over `samples` times.
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn invariant_drift(&mut self, samples: usize) -> Result<Vec<(String, f64, f64)>, SolveError> {
+        let start = self.at(self.start())?.invariants;
+        let mut drift = vec![0.0_f64; start.len()];
+        for t in self.grid(samples) {
+            for (d, (now, then)) in drift.iter_mut().zip(self.at(t)?.invariants.iter().zip(&start)) {
+                *d = d.max((now - then).abs());
+            }
+        }
+        let names = self.equations.invariants.iter().map(|i| i.name.clone());
+        Ok(names.zip(start).zip(drift).map(|((name, start), drift)| (name, start, drift)).collect())
+    }
+
+    /// `samples + 1` equidistant times from start to end.
+    pub fn grid(&self, samples: usize) -> Vec<f64> {
+        let (a, b) = (self.start(), self.end());
+        (0..=samples).map(|i| a + (b - a) * i as f64 / samples as f64).collect()
+    }
+}
+
+/// What a motion starts from: a system and a state on its constraint.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// The system.
+    pub system: &'a System,
+    /// `(t₀, q₀, v₀)`.
+    pub start: &'a State,
+    /// Time at which the motion is to end.
+    pub end: f64,
+}
+
+/// Equations compiled and started: what every run of the same motion shares.
+pub(crate) struct Prepared {
+    pub(crate) equations: Equations,
+    pub(crate) compiled: Compiled,
+    start_tape: symbolic::Tape,
+    start_inputs: Vec<f64>,
+    t: f64,
+    implicit: bool,
+}
+
+impl Prepared {
+    pub(crate) fn new(setting: Setting, equations: Equations, settings: &Settings) -> Result<Self, SolveError> {
+        let implicit = !matches!(settings.method, Method::Dop853 | Method::Tsit45);
+        let mut compiled = Compiled::new(&equations)?;
+        if implicit {
+            compiled = compiled.with_jacobian(&equations)?;
+        }
+        let mut values: HashMap<Symbol, f64> = HashMap::from([(equations.time, setting.start.t)]);
+        for (i, c) in setting.system.coordinates.iter().enumerate() {
+            values.insert(c.position, setting.start.q[i]);
+            values.insert(c.velocity, setting.start.v[i]);
+        }
+        if let Some(removal) = &equations.removal {
+            values.extend(complete_removal_start(setting.system, removal, setting.start)?.values);
+        }
+        let (mut symbols, mut start_inputs): (Vec<Symbol>, Vec<f64>) = values.into_iter().unzip();
+        symbols.extend(equations.constant_symbols());
+        start_inputs.resize(symbols.len(), 0.0);
+        let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
+        outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
+        let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
+        Ok(Prepared { equations, compiled, start_tape, start_inputs, t: setting.start.t, implicit })
+    }
+
+    /// Sets the free constants and returns `y(t₀)`.
+    pub(crate) fn start(&mut self, constants: &[f64]) -> Vec<f64> {
+        let first = self.start_inputs.len() - constants.len();
+        self.start_inputs[first..].copy_from_slice(constants);
+        let mut values = vec![0.0; self.start_tape.outputs()];
+        self.start_tape.evaluate(&self.start_inputs, &mut self.start_tape.workspace(), &mut values);
+        let guess = values.split_off(self.equations.states.len());
+        self.compiled.set_constants(constants);
+        if guess.len() == self.equations.unknowns().len() {
+            self.compiled.set_guess(&guess);
+        }
+        values
+    }
+
+    /// One run.
+    pub(crate) fn run(
+        &mut self,
+        constants: &[f64],
+        end: f64,
+        tolerance: f64,
+        settings: &Settings,
+    ) -> Result<Solution, SolveError> {
+        let y = self.start(constants);
+        let mut options = Options::with_tolerance(tolerance);
+        options.method = settings.method;
+        options.projection = settings.projection;
+        self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
+        let mut runner = Runner(&mut self.compiled);
+        debug_assert!(!self.implicit || matches!(settings.method, Method::Bdf | Method::TrBdf2 | Method::Esdirk34));
+        Ok(integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?)
+    }
+}
+
+/// Integrates `equations` from `setting.start` to `setting.end`, twice, and keeps the tighter run.
+///
+/// # Errors
+/// [`SolveError`] where the motion could not be started; how it ended otherwise is [`Motion::ending`].
+pub fn solve(
+    setting: Setting,
+    equations: Equations,
+    constants: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Motion, SolveError> {
+    let clock = Instant::now();
+    let mut prepared = Prepared::new(setting, equations, settings)?;
+    let compile = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    let constants = resolve(&mut prepared, constants, settings)?;
+    let looser = prepared.run(&constants, setting.end, settings.tolerance, settings)?;
+    let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, settings)?;
+    let integrate = clock.elapsed().as_secs_f64();
+    let ending = ending(&prepared.equations, &kept.status);
+    let size = prepared.equations.states.len();
+    Ok(Motion {
+        ending,
+        constants,
+        work: kept.work,
+        projection: kept.projection,
+        seconds: Seconds { derive: 0.0, compile, integrate },
+        kept: kept.dense,
+        looser: looser.dense,
+        state: vec![0.0; size],
+        other: vec![0.0; size],
+        equations: prepared.equations,
+        compiled: prepared.compiled,
+    })
+}
+
+fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -> Result<Vec<f64>, SolveError> {
+    let expected = prepared.equations.free_constants.len();
+    match rule {
+        ConstantsRule::Zero => Ok(vec![0.0; expected]),
+        ConstantsRule::Given(values) if values.len() == expected => Ok(values.clone()),
+        ConstantsRule::Given(values) => Err(SolveError::ConstantCount {
+            formulation: prepared.equations.formulation.into(),
+            expected,
+            names: constant_names(&prepared.equations).join(", "),
+            found: values.len(),
+        }),
+        ConstantsRule::Natural { horizon } => natural_constants(prepared, *horizon, settings),
+    }
+}
+
+/// Names of the free constants.
+pub fn constant_names(equations: &Equations) -> Vec<String> {
+    equations.free_constants.iter().map(|c| equations.graph.name(c.symbol)).collect()
+}
+
+fn ending(equations: &Equations, status: &Status) -> Ending {
+    let Status::Stopped { t, cause } = status else { return Ending::Completed };
+    let cause = match cause {
+        StopCause::Event { index } => {
+            format!("{} vanishes, by which the equations divide", equations.graph.plain(equations.guards[*index]))
+        }
+        StopCause::NotFinite { component } => {
+            let symbol = equations.states.get(*component).map(|y| equations.graph.name(y.symbol));
+            format!("{} is no longer finite", symbol.unwrap_or_default())
+        }
+        other => other.to_string(),
+    };
+    Ending::Stopped { t: *t, cause }
+}
+
+/// Compiled equations as the time integrator sees them.
+struct Runner<'a>(&'a mut Compiled);
+
+fn refused(failure: mechanics::EvaluationFailure) -> integrate::EvaluationError {
+    integrate::EvaluationError { reason: failure.to_string() }
+}
+
+impl Problem for Runner<'_> {
+    fn dimension(&self) -> usize {
+        self.0.dimension()
+    }
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.0.rates(t, y, rates).map_err(refused)
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.0.jacobian(t, y, jacobian).map_err(refused)
+    }
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, integrate::EvaluationError> {
+        self.0.project(t, y).map_err(refused)
+    }
+    fn events(&self) -> usize {
+        self.0.guards()
+    }
+    fn event_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.0.guard_values(t, y, values);
+        Ok(())
+    }
+}
