@@ -163,7 +163,7 @@ pub fn choices(scene: &Scene) -> Result<Vec<Choice>, RemovalError> {
 pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
     let formulation: &Formulation = formulation(choice.formulation).unwrap_or(&FORMULATIONS[0]);
     let removal = choice.removal.as_ref();
-    let equations = (formulation.derive)(system, &Derivation { removal, constants: &choice.constants })?;
+    let equations = (formulation.derive)(system, &Derivation { removal })?;
     Ok(equations.leave_out_unneeded())
 }
 
@@ -244,9 +244,7 @@ fn fits(
         if !different {
             continue;
         }
-        let mut choice = runs[run].choice.clone();
-        choice.constants = ConstantsRule::Given(Vec::new());
-        let equations = derive(&scene.system, &choice)?;
+        let equations = derive(&scene.system, &runs[run].choice)?;
         let mut guesses = vec![vec![0.0; equations.free_constants.len()]];
         if let Ok(motion) = &runs[run].outcome
             && motion.constants.len() == equations.free_constants.len()

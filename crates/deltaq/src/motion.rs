@@ -259,15 +259,29 @@ fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -
     let expected = prepared.equations.free_constants.len();
     match rule {
         ConstantsRule::Zero => Ok(vec![0.0; expected]),
-        ConstantsRule::Given(values) if values.len() == expected => Ok(values.clone()),
-        ConstantsRule::Given(values) => Err(SolveError::ConstantCount {
-            formulation: prepared.equations.formulation.into(),
-            expected,
-            names: constant_names(&prepared.equations).join(", "),
-            found: values.len(),
-        }),
+        ConstantsRule::Given(values) => given_constants(&prepared.equations, values),
         ConstantsRule::Natural { horizon } => natural_constants(prepared, *horizon, settings),
     }
+}
+
+/// Values given one a free constant, or one a memory variable (then those without a costate have to be zero).
+fn given_constants(equations: &Equations, values: &[f64]) -> Result<Vec<f64>, SolveError> {
+    let constants = &equations.free_constants;
+    if values.len() == constants.len() {
+        return Ok(values.to_vec());
+    }
+    let memory = equations.removal.as_ref().map_or(0, |r| r.memory.len());
+    let used: Vec<Option<usize>> = constants.iter().map(|c| c.memory).collect();
+    let unused_are_zero = values.iter().enumerate().all(|(i, &x)| x == 0.0 || used.contains(&Some(i)));
+    if values.len() == memory && unused_are_zero {
+        return Ok(used.into_iter().map(|i| i.map_or(0.0, |i| values[i])).collect());
+    }
+    Err(SolveError::ConstantCount {
+        formulation: equations.formulation.into(),
+        expected: constants.len(),
+        names: constant_names(equations).join(", "),
+        found: values.len(),
+    })
 }
 
 /// Names of the free constants.

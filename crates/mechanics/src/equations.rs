@@ -67,6 +67,8 @@ pub struct FreeConstant {
     pub symbol: Symbol,
     /// The quantity that vanishes at the horizon under the natural boundary condition, where there is one.
     pub natural: Option<Expr>,
+    /// Index of the memory variable whose costate starts here, if it is one.
+    pub memory: Option<usize>,
 }
 
 /// A named expression in `(t, y, z)`.

@@ -2,15 +2,13 @@
 
 use symbolic::{Graph, Symbol};
 
-use crate::{ConstantsRule, Equations, Removal, System};
+use crate::{Equations, Removal, System};
 
 /// What a derivation may depend on besides the system.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Derivation<'a> {
     /// The parametrization that removes the constraints, for formulations that need one.
     pub removal: Option<&'a Removal>,
-    /// How the free constants are chosen; constants that are known to be zero take terms with them.
-    pub constants: &'a ConstantsRule,
 }
 
 /// A system for which a formulation has no equations.

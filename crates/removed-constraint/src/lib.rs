@@ -41,8 +41,8 @@
 //!
 //! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇` (or `p`) of a parameter that `G` does not contain.
 //!
-//! **What is left out.** A costate `P` that starts at zero and whose rate vanishes is zero throughout and takes its terms with it; a
-//! costate whose rate vanishes is a constant and no state.
+//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is a quadrature; its costate is
+//! zero at the free end, does not move, and takes its terms with it.
 //!
 //! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the principle of removal of constraint*, 2017.
 
@@ -50,7 +50,7 @@ mod costates;
 
 use costates::Costates;
 use mechanics::{
-    Block, ConstantsRule, Derivation, DerivationError, DisplacementParameter, Equations, Formulation, FreeConstant, Named,
+    Block, Derivation, DerivationError, DisplacementParameter, Equations, Formulation, FreeConstant, Named,
     Removal, Role, StateVariable, Statement, System, fresh_symbol, generic_rank, refuse_forces,
 };
 use symbolic::{Expr, Graph, Symbol};
@@ -72,9 +72,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     let g = &system.graph;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let lagrangian = removal.rewrite(&system, system.lagrangian);
-
-    let zero_where_possible = !matches!(derivation.constants, ConstantsRule::Given(_));
-    let costates = Costates::new(g, removal, lagrangian, zero_where_possible);
+    let costates = Costates::new(g, removal, lagrangian);
     let generating = costates.generating_function; // G
     let parameters = classify(g, removal, generating);
     let highest: Vec<Symbol> = parameters.iter().map(|p| p.highest).collect();
@@ -82,7 +80,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
         require_regular(&system, removal, generating, &parameters, &highest)?;
     }
 
-    let mut flow = costates.flow(g, removal);
+    let mut flow = costates.flow(removal);
     for p in &parameters {
         flow.push((p.u.symbol, g.variable(p.u.rate)));
         flow.push((p.u.rate, g.variable(p.u.second_rate)));
@@ -122,7 +120,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     costates.hand_over(g, removal, &mut equations);
     for p in &parameters {
         if let Some(Momentum { start, .. }) = p.momentum {
-            equations.free_constants.push(FreeConstant { symbol: start, natural: None });
+            equations.free_constants.push(FreeConstant { symbol: start, natural: None, memory: None });
         }
     }
     equations.blocks = vec![Block {

@@ -206,7 +206,7 @@ fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
     equations.multipliers =
         augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
     equations.free_constants =
-        augmented.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None }).collect();
+        augmented.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None, memory: None }).collect();
     if system.is_autonomous() {
         let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
         equations.invariants.push(Named { name: "energy".into(), expression: g.sub(action, augmented.lagrangian) });

@@ -1,0 +1,73 @@
+//! The deliberately wrong fourth formulation, a control of the harness itself.
+//!
+//! Lindelöf's mistake of 1895: put the constraint into the Lagrangian and write Lagrange's equations for what is left,
+//!
+//! ```text
+//! L̃(u̇, u, w, t) = L with q, q̇ replaced by the removal,     d/dt ∂L̃/∂u̇ − ∂L̃/∂u = 0 ,     ẇ = B ,
+//! ```
+//!
+//! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form (`w` in neither `L` nor `B`),
+//! and wrong nearly everywhere else. A harness that does not notice is broken.
+
+use deltaq::{Choice, Run, Settings, removals, setting, solve};
+use mechanics::{Block, ConstantsRule, Equations, Removal, Role, Scene, StateVariable, Statement, System};
+
+/// Name of the control in tables and files.
+pub const NAME: &str = "substitution";
+
+/// The wrong equations for `removal`.
+///
+/// Second rates are treated as Lagrange's equations of first order would: the removal must not bring them into `L`.
+pub fn derive(system: &System, removal: &Removal) -> Equations {
+    let system = system.clone();
+    let g = &system.graph;
+    let mut equations = Equations::new(NAME, &system);
+    let lagrangian = removal.rewrite(&system, system.lagrangian);
+    let flow = removal.flow(&system);
+    let mut residuals = Vec::new();
+    for u in &removal.parameters {
+        let momentum = g.derivative(lagrangian, u.rate);
+        let residual = g.sub(g.total_derivative(momentum, &flow), g.derivative(lagrangian, u.symbol));
+        let meaning = format!("balance for {}", g.name(u.symbol));
+        equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
+        residuals.push(residual);
+        let role = if u.coordinate.is_some() { Role::Position } else { Role::DisplacementParameter };
+        for (symbol, role, rate) in [(u.symbol, role, u.rate), (u.rate, Role::ParameterRate, u.second_rate)] {
+            let (rate, start) = (g.variable(rate), g.variable(symbol));
+            equations.states.push(StateVariable { symbol, role, rate, start });
+        }
+    }
+    for w in &removal.memory {
+        let role = if w.coordinate.is_some() { Role::Position } else { Role::Memory };
+        let start = g.variable(w.symbol);
+        equations.states.push(StateVariable { symbol: w.symbol, role, rate: w.rate, start });
+    }
+    equations.blocks = vec![Block {
+        unknowns: removal.parameters.iter().map(|u| u.second_rate).collect(),
+        residuals,
+        guess: Vec::new(),
+        regular: "Hessian of the substituted L in the rates of the parameters regular",
+    }];
+    equations.coordinates = removal.coordinates.clone();
+    equations.velocities = removal.velocities(&system);
+    equations.removal = Some(removal.clone());
+    equations.graph = system.graph;
+    equations.leave_out_unneeded()
+}
+
+/// The control on the first removal of a scene; nothing where the scene has none, or where forces act.
+pub fn run(scene: &Scene, settings: &Settings) -> Option<Run> {
+    if scene.system.has_forces() {
+        return None;
+    }
+    let removal = removals(scene).ok()?.into_iter().next()?;
+    let equations = derive(&scene.system, &removal);
+    let choice = Choice {
+        label: "substitution (wrong on purpose)".into(),
+        formulation: NAME,
+        removal: Some(removal),
+        constants: ConstantsRule::Zero,
+    };
+    let outcome = solve(setting(scene), equations, &ConstantsRule::Zero, settings);
+    Some(Run { choice, outcome })
+}
