@@ -1,0 +1,167 @@
+//! The solution as a function of time.
+
+use crate::error::DenseError;
+
+/// Piecewise polynomial; valid between [`start`](DenseOutput::start) and [`end`](DenseOutput::end) of what was integrated.
+///
+/// On the step from `t_k` to `t_k + h`, with `θ = (t − t_k)/h`, each component is
+///
+/// ```text
+/// y(θ) = c₀ + θ (c₁ + (1−θ) (c₂ + θ (c₃ + (1−θ) (c₄ + …))))
+/// ```
+///
+/// whatever the method (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.10). It is continuous,
+/// also where a projection moved the state at the end of a step.
+#[derive(Clone, Debug)]
+pub struct DenseOutput {
+    dimension: usize,
+    /// Coefficients a component and step.
+    terms: usize,
+    start: f64,
+    end: f64,
+    start_state: Vec<f64>,
+    end_state: Vec<f64>,
+    /// Step k begins at `begins[k]` and has the length `widths[k]`, of either sign.
+    begins: Vec<f64>,
+    widths: Vec<f64>,
+    /// `coefficients[(k · terms + j) · dimension + i]`: step k, basis function j, component i. Empty: ends only.
+    coefficients: Vec<f64>,
+}
+
+impl DenseOutput {
+    pub(crate) fn new(t: f64, y: &[f64], degree: usize) -> Self {
+        Self {
+            dimension: y.len(),
+            terms: degree + 1,
+            start: t,
+            end: t,
+            start_state: y.to_vec(),
+            end_state: y.to_vec(),
+            begins: Vec::new(),
+            widths: Vec::new(),
+            coefficients: Vec::new(),
+        }
+    }
+
+    /// Room for the coefficients of one more step, to be filled and then either kept by `push` or dropped by `pop_room`.
+    pub(crate) fn room(&mut self) -> &mut [f64] {
+        let length = self.terms * self.dimension;
+        let stored = self.coefficients.len();
+        self.coefficients.resize(stored + length, 0.0);
+        &mut self.coefficients[stored..]
+    }
+
+    /// The coefficients in the last room.
+    pub(crate) fn last_room(&self) -> &[f64] {
+        &self.coefficients[self.coefficients.len() - self.terms * self.dimension..]
+    }
+
+    pub(crate) fn pop_room(&mut self) {
+        self.coefficients.truncate(self.coefficients.len() - self.terms * self.dimension);
+    }
+
+    /// One more step, from `begin` over `width`, of which the part up to `end` is valid; `y` is the state at `end`.
+    pub(crate) fn push(&mut self, begin: f64, width: f64, end: f64, y: &[f64]) {
+        self.begins.push(begin);
+        self.widths.push(width);
+        self.end = end;
+        self.end_state.copy_from_slice(y);
+    }
+
+    /// Where the integration started.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// How far it came: the end asked for, or where it stopped. Smaller than the start for backward integration.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// The number of unknowns.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The state at [`start`](DenseOutput::start).
+    pub fn start_state(&self) -> &[f64] {
+        &self.start_state
+    }
+
+    /// The state at [`end`](DenseOutput::end).
+    pub fn end_state(&self) -> &[f64] {
+        &self.end_state
+    }
+
+    /// End points of the steps: the start, then the end of each step, the last of them being [`end`](DenseOutput::end).
+    pub fn step_times(&self) -> Vec<f64> {
+        let mut times = self.begins.clone();
+        times.push(self.end);
+        times
+    }
+
+    /// Writes the state at `t` into `y`.
+    ///
+    /// A `t` outside of the range by no more than round-off is moved to the end of the range. Farther outside, with
+    /// a slice of the wrong length or where nothing was stored ([`crate::Dense::EndOnly`]), debug builds panic; release
+    /// builds answer with the state at the nearer end, as far as the slice reaches. Where the time is not known to be
+    /// in range, ask [`try_evaluate`](DenseOutput::try_evaluate).
+    pub fn evaluate(&self, t: f64, y: &mut [f64]) {
+        if let Err(error) = self.try_evaluate(t, y) {
+            debug_assert!(false, "{error}");
+            let nearer_start = (t - self.start).abs() < (t - self.end).abs();
+            let state = if nearer_start { &self.start_state } else { &self.end_state };
+            for (y, state) in y.iter_mut().zip(state) {
+                *y = *state;
+            }
+        }
+    }
+
+    /// Writes the state at `t` into `y`.
+    ///
+    /// # Errors
+    /// [`DenseError::OutsideRange`] for a `t` farther outside of the range than round-off, `16 ε max(|start|, |end|)`;
+    /// [`DenseError::NotStored`] between the ends where only they were stored; [`DenseError::Dimension`] where `y` has
+    /// the wrong length. `y` is then untouched.
+    pub fn try_evaluate(&self, t: f64, y: &mut [f64]) -> Result<(), DenseError> {
+        let (start, end) = (self.start, self.end);
+        if y.len() != self.dimension {
+            return Err(DenseError::Dimension { expected: self.dimension, found: y.len() });
+        }
+        let slack = 16.0 * f64::EPSILON * start.abs().max(end.abs());
+        let inside = t >= start.min(end) - slack && t <= start.max(end) + slack;
+        if !inside {
+            return Err(DenseError::OutsideRange { t, start, end });
+        }
+        let forward = end >= start;
+        let before = |a: f64, b: f64| if forward { a <= b } else { a >= b };
+        if before(end, t) {
+            y.copy_from_slice(&self.end_state);
+        } else if before(t, start) {
+            y.copy_from_slice(&self.start_state);
+        } else if self.coefficients.is_empty() {
+            return Err(DenseError::NotStored { t, start, end });
+        } else {
+            // The last step that begins at or before t; there is one, since t is past the start.
+            let step = self.begins.partition_point(|&begin| before(begin, t)).saturating_sub(1);
+            let length = self.terms * self.dimension;
+            let coefficients = &self.coefficients[step * length..(step + 1) * length];
+            evaluate_segment(coefficients, (t - self.begins[step]) / self.widths[step], y);
+        }
+        Ok(())
+    }
+}
+
+/// The nested polynomial of one step at θ.
+pub(crate) fn evaluate_segment(coefficients: &[f64], theta: f64, y: &mut [f64]) {
+    let dimension = y.len();
+    let terms = coefficients.len() / dimension;
+    y.copy_from_slice(&coefficients[(terms - 1) * dimension..]);
+    for (j, row) in coefficients[..(terms - 1) * dimension].chunks_exact(dimension).enumerate().rev() {
+        // c_{j+1} is multiplied by θ for even j, by 1 − θ for odd j.
+        let factor = if j % 2 == 0 { theta } else { 1.0 - theta };
+        for (y, c) in y.iter_mut().zip(row) {
+            *y = c + factor * *y;
+        }
+    }
+}

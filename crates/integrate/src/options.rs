@@ -1,0 +1,79 @@
+//! How to integrate.
+
+/// The time-stepping method.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Method {
+    /// Dormand and Prince's explicit Runge–Kutta method of order 8(5,3), dense output of order 7; for non-stiff problems.
+    Dop853,
+    /// Tsitouras' explicit Runge–Kutta method of order 5(4) (diffsol).
+    Tsit45,
+    /// Backward differentiation formulas of variable order 1 to 5 (diffsol); for stiff problems.
+    Bdf,
+    /// The trapezoidal rule and BDF2 in one step, order 2, L-stable (diffsol); for stiff problems at low accuracy.
+    TrBdf2,
+    /// Singly diagonally implicit Runge–Kutta method of order 4(3), L-stable (diffsol); for stiff problems.
+    Esdirk34,
+}
+
+impl Method {
+    /// Every method there is.
+    pub const ALL: [Method; 5] = [Method::Dop853, Method::Tsit45, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
+}
+
+/// Whether accepted states are moved back onto the invariant manifold ([`crate::Problem::project`]).
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Projection {
+    /// After each accepted step.
+    EveryStep,
+    /// Never.
+    Off,
+}
+
+/// What is kept of the solution between its ends.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Dense {
+    /// One polynomial a step. [`Method::Dop853`] spends three more evaluations a step on it.
+    Everywhere,
+    /// Only the two end points.
+    EndOnly,
+}
+
+/// Method, tolerances and limits of an integration.
+///
+/// The local error `e` of a step is kept below `|e_i| ≤ absolute + relative · max(|y_i|, |y_i,new|)` in the root mean
+/// square over the components.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The time-stepping method.
+    pub method: Method,
+    /// Tolerance relative to each component of the state; > 0. Below 2e-15 it is read as 2e-15.
+    pub relative_tolerance: f64,
+    /// Tolerance in the state's own units; > 0.
+    pub absolute_tolerance: f64,
+    /// Whether accepted states are projected.
+    pub projection: Projection,
+    /// Limit on the number of attempted (accepted and rejected) steps; > 0.
+    pub max_steps: usize,
+    /// What is kept between the ends.
+    pub dense: Dense,
+}
+
+impl Options {
+    /// [`Method::Dop853`] with both tolerances equal, projection after each step, dense output, at most 100 000 steps.
+    ///
+    /// ```
+    /// use integrate::{Method, Options};
+    /// let options = Options { method: Method::Bdf, ..Options::with_tolerance(1e-8) };
+    /// assert_eq!(options.relative_tolerance, options.absolute_tolerance);
+    /// ```
+    pub fn with_tolerance(tolerance: f64) -> Self {
+        Self {
+            method: Method::Dop853,
+            relative_tolerance: tolerance,
+            absolute_tolerance: tolerance,
+            projection: Projection::EveryStep,
+            max_steps: 100_000,
+            dense: Dense::Everywhere,
+        }
+    }
+}

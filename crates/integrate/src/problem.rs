@@ -1,0 +1,96 @@
+//! What is to be integrated.
+
+use thiserror::Error;
+
+/// An initial-value problem's right-hand side, with what belongs to it: Jacobian, projection, events.
+///
+/// ```text
+/// y' = F(t, y),   y ∈ Rⁿ,   J(t, y) = ∂F/∂y (n×n, row-major),   g_k(t, y) = 0: event k
+/// ```
+///
+/// All methods take `&mut self`, so that an implementation may keep work space. Equations in the linearly implicit form
+/// `W(t, y) y' = F` are handed over solved for `y'`: the caller factorises `W` inside [`rates`](Problem::rates)
+/// (a mass matrix that depends on the state is not supported by the library behind the implicit methods).
+///
+/// # Examples
+/// ```
+/// use integrate::{EvaluationError, Options, Problem, Start, integrate};
+///
+/// struct Oscillator;
+/// impl Problem for Oscillator {
+///     fn dimension(&self) -> usize { 2 }
+///     fn rates(&mut self, _t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
+///         rates[0] = y[1];
+///         rates[1] = -y[0];
+///         Ok(())
+///     }
+///     fn jacobian(&mut self, _t: f64, _y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
+///         jacobian.copy_from_slice(&[0.0, 1.0, -1.0, 0.0]);
+///         Ok(())
+///     }
+/// }
+///
+/// let start = Start { t: 0.0, y: vec![1.0, 0.0] };
+/// let solution = integrate(&mut Oscillator, &start, 1.0, &Options::with_tolerance(1e-12)).unwrap();
+/// let mut y = [0.0; 2];
+/// solution.dense.evaluate(0.5, &mut y);
+/// assert!((y[0] - 0.5f64.cos()).abs() < 1e-11);
+/// ```
+pub trait Problem {
+    /// The number n of unknowns.
+    fn dimension(&self) -> usize;
+
+    /// Writes `F(t, y)`; `y` and `rates` have length n.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where `F` is not defined. The integration then tries shorter steps before it stops.
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError>;
+
+    /// Writes `∂F/∂y(t, y)`, row-major: `jacobian[i * n + j] = ∂F_i/∂y_j`. Only the implicit methods ask for it.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where it is not defined.
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError>;
+
+    /// Moves `y` onto the invariant manifold; returns the Euclidean length of the move (0 where there is nothing to
+    /// project onto).
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where no nearby point of the manifold was found. The step is then tried again, shorter.
+    fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<f64, EvaluationError> {
+        Ok(0.0)
+    }
+
+    /// The number of event functions; a sign change of one is located and ends the integration.
+    fn events(&self) -> usize {
+        0
+    }
+
+    /// Writes the event functions' values `g_k(t, y)`; `values` has length [`events`](Problem::events).
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where they are not defined.
+    fn event_values(&mut self, _t: f64, _y: &[f64], _values: &mut [f64]) -> Result<(), EvaluationError> {
+        Ok(())
+    }
+}
+
+/// `F` (or its Jacobian, the projection, an event function) could not be evaluated here.
+///
+/// `reason` is the problem's own words, with the measured value and the limit:
+/// "mass matrix singular: reciprocal condition 3e-17, limit 1e-14".
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{reason}")]
+pub struct EvaluationError {
+    /// The problem's own words.
+    pub reason: String,
+}
+
+/// A point on the time axis and the state there: integration runs from `t` to `end`, forwards or backwards.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Start time.
+    pub t: f64,
+    /// State at the start, of length [`Problem::dimension`].
+    pub y: Vec<f64>,
+}

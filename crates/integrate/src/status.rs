@@ -1,0 +1,100 @@
+//! How an integration ended, and what it cost.
+
+use crate::dense::DenseOutput;
+
+/// What an integration returns.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// How it ended. Whatever it says, `dense` is valid as far as it reaches.
+    pub status: Status,
+    /// The solution as a function of time.
+    pub dense: DenseOutput,
+    /// What it cost.
+    pub work: Work,
+    /// How far the projections moved the states.
+    pub projection: ProjectionReport,
+}
+
+/// How an integration ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// The end was reached, exactly.
+    Completed,
+    /// The integration ended before: the dense output reaches from the start to `t`.
+    Stopped {
+        /// Where it stopped.
+        t: f64,
+        /// Why.
+        cause: StopCause,
+    },
+}
+
+/// Why an integration stopped before its end.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum StopCause {
+    /// An event function changed sign (or reached zero).
+    Event {
+        /// Which one, counted from 0.
+        index: usize,
+    },
+    /// F could not be evaluated however small the step.
+    Evaluation {
+        /// The problem's own words.
+        reason: String,
+    },
+    /// A rate or a state became NaN or infinite however small the step.
+    NotFinite {
+        /// Which one, counted from 0.
+        component: usize,
+    },
+    /// The error estimate asked for a step that no longer moves the time.
+    StepTooSmall {
+        /// The length of the step asked for.
+        step: f64,
+        /// The smallest length allowed there.
+        limit: f64,
+    },
+    /// The limit on attempted steps was reached.
+    TooManySteps {
+        /// [`crate::Options::max_steps`].
+        limit: usize,
+    },
+    /// The library behind the method gave up.
+    Solver {
+        /// Its words.
+        reason: String,
+    },
+}
+
+/// What an integration cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Attempts thrown away: error too large, or evaluation impossible.
+    pub rejected: usize,
+    /// Evaluations of F, all of them: stages, starting step, dense output, those that failed.
+    pub evaluations: usize,
+    /// Evaluations of ∂F/∂y.
+    pub jacobians: usize,
+}
+
+/// How far the projections moved the states (Euclidean lengths).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProjectionReport {
+    /// Number of projections of accepted steps.
+    pub projections: usize,
+    /// The longest move.
+    pub largest: f64,
+    /// The sum of the moves' lengths.
+    pub total: f64,
+}
+
+impl ProjectionReport {
+    pub(crate) fn record(&mut self, moved: f64) {
+        self.projections += 1;
+        self.largest = self.largest.max(moved);
+        self.total += moved;
+    }
+}

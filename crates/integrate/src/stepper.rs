@@ -1,0 +1,48 @@
+//! What a method is to the time loop.
+
+use crate::status::StopCause;
+use crate::system::Failure;
+
+/// A time-stepping method at a point `(t, y)` of its way.
+///
+/// The loop calls `attempt`; on a candidate it may move the candidate's state (projection), then calls `finish` and then
+/// `advance`. Until `advance` the step can be taken back with `shrink`.
+pub(crate) trait Stepper {
+    /// Degree of the polynomials written by `finish`.
+    fn degree(&self) -> usize;
+
+    /// The time reached.
+    fn time(&self) -> f64;
+
+    /// Tries one step from the point reached, with the method's own step control. Never goes past the end.
+    fn attempt(&mut self) -> Attempt;
+
+    /// The candidate's state.
+    fn candidate(&mut self) -> &mut [f64];
+
+    /// Completes the candidate, whose state may have been moved; writes the coefficients of the step's polynomial.
+    fn finish(&mut self, moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure>;
+
+    /// Makes the candidate the point reached.
+    fn advance(&mut self) -> Result<(), StopCause>;
+
+    /// Drops the candidate; the next attempt is to be half as long.
+    fn shrink(&mut self) -> Result<(), StopCause>;
+}
+
+/// What came of an attempt.
+pub(crate) enum Attempt {
+    /// A step to `t`, its error within the tolerance; `rejected` attempts were thrown away inside the method.
+    Candidate { t: f64, rejected: usize },
+    /// The error was too large; the step has been shortened.
+    Rejected,
+    /// Not possible; a shorter step may be.
+    Failed(Failure),
+    /// Not possible at all.
+    GaveUp(StopCause),
+}
+
+/// The shortest step that still moves the time `t` by more than its own round-off.
+pub(crate) fn shortest_step(t: f64) -> f64 {
+    (10.0 * f64::EPSILON * t.abs()).max(1e-300)
+}

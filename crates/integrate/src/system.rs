@@ -1,0 +1,166 @@
+//! The problem as the steppers and the time loop see it: every call counted, every value checked.
+
+use std::cell::RefCell;
+
+use crate::problem::{EvaluationError, Problem};
+use crate::status::{StopCause, Work};
+
+/// Why a step could not be taken, though a shorter one may be possible.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Failure {
+    Evaluation { reason: String },
+    NotFinite { component: usize },
+}
+
+impl From<EvaluationError> for Failure {
+    fn from(error: EvaluationError) -> Self {
+        Failure::Evaluation { reason: error.reason }
+    }
+}
+
+impl From<Failure> for StopCause {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Evaluation { reason } => StopCause::Evaluation { reason },
+            Failure::NotFinite { component } => StopCause::NotFinite { component },
+        }
+    }
+}
+
+/// The first NaN or infinite component, if any, as a failure.
+pub(crate) fn check_finite(values: &[f64]) -> Result<(), Failure> {
+    // 0 · x is 0 for finite x and NaN otherwise: one pass without branches.
+    if values.iter().fold(0.0, |sum, x| sum + 0.0 * x) == 0.0 {
+        return Ok(());
+    }
+    let component = values.iter().position(|x| !x.is_finite()).unwrap_or(0);
+    Err(Failure::NotFinite { component })
+}
+
+/// Shared by the time loop and the stepper; the interior mutability serves diffsol, whose closures are `Fn`.
+pub(crate) struct System<'p> {
+    dimension: usize,
+    events: usize,
+    inner: RefCell<Inner<'p>>,
+}
+
+struct Inner<'p> {
+    problem: &'p mut dyn Problem,
+    work: Work,
+    /// The last failure inside a callback that cannot return one.
+    failure: Option<Failure>,
+    /// The point at which `jacobian` was evaluated; empty `y`: nowhere yet.
+    jacobian_t: f64,
+    jacobian_y: Vec<f64>,
+    jacobian: Vec<f64>,
+}
+
+impl<'p> System<'p> {
+    pub(crate) fn new(problem: &'p mut dyn Problem) -> Self {
+        Self {
+            dimension: problem.dimension(),
+            events: problem.events(),
+            inner: RefCell::new(Inner {
+                problem,
+                work: Work::default(),
+                failure: None,
+                jacobian_t: f64::NAN,
+                jacobian_y: Vec::new(),
+                jacobian: Vec::new(),
+            }),
+        }
+    }
+
+    pub(crate) fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    pub(crate) fn events(&self) -> usize {
+        self.events
+    }
+
+    pub(crate) fn work(&self) -> Work {
+        self.inner.borrow().work
+    }
+
+    pub(crate) fn count_step(&self) {
+        self.inner.borrow_mut().work.steps += 1;
+    }
+
+    pub(crate) fn count_rejected(&self, attempts: usize) {
+        self.inner.borrow_mut().work.rejected += attempts;
+    }
+
+    /// F(t, y), finite or an error.
+    pub(crate) fn rates(&self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
+        let inner = &mut *self.inner.borrow_mut();
+        inner.work.evaluations += 1;
+        inner.problem.rates(t, y, rates)?;
+        check_finite(rates)
+    }
+
+    /// F(t, y) for callers that take no errors: the failure is kept for [`System::take_failure`] and NaN is written.
+    pub(crate) fn rates_or_nan(&self, t: f64, y: &[f64], rates: &mut [f64]) {
+        if let Err(failure) = check_finite(y).and_then(|()| self.rates(t, y, rates)) {
+            self.inner.borrow_mut().failure = Some(failure);
+            rates.fill(f64::NAN);
+        }
+    }
+
+    /// `product = ∂F/∂y(t, y) · v`. The matrix is evaluated once a point, however many products are asked for.
+    pub(crate) fn jacobian_product_or_nan(&self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) {
+        let inner = &mut *self.inner.borrow_mut();
+        if let Err(failure) = inner.evaluate_jacobian(t, y) {
+            inner.failure = Some(failure);
+            inner.jacobian_y.clear();
+            product.fill(f64::NAN);
+            return;
+        }
+        for (row, p) in inner.jacobian.chunks_exact(y.len()).zip(product) {
+            *p = row.iter().zip(v).map(|(j, v)| j * v).sum();
+        }
+    }
+
+    pub(crate) fn take_failure(&self) -> Option<Failure> {
+        self.inner.borrow_mut().failure.take()
+    }
+
+    /// Projects `y`; returns the length of the move.
+    pub(crate) fn project(&self, t: f64, y: &mut [f64]) -> Result<f64, Failure> {
+        let moved = self.inner.borrow_mut().problem.project(t, y)?;
+        check_finite(y)?;
+        if moved.is_finite() {
+            Ok(moved)
+        } else {
+            Err(Failure::Evaluation { reason: format!("the projection at t = {t} reports a move of length {moved}") })
+        }
+    }
+
+    pub(crate) fn event_values(&self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.inner.borrow_mut().problem.event_values(t, y, values)?;
+        match values.iter().position(|g| !g.is_finite()) {
+            None => Ok(()),
+            Some(index) => {
+                Err(Failure::Evaluation { reason: format!("event function {index} is {} at t = {t}", values[index]) })
+            }
+        }
+    }
+}
+
+impl Inner<'_> {
+    fn evaluate_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        check_finite(y)?;
+        if self.jacobian_t == t && self.jacobian_y == y {
+            return Ok(());
+        }
+        self.jacobian_t = t;
+        self.jacobian_y.clear();
+        self.jacobian_y.extend_from_slice(y);
+        self.jacobian.resize(y.len() * y.len(), 0.0);
+        self.work.jacobians += 1;
+        self.problem.jacobian(t, y, &mut self.jacobian)?;
+        check_finite(&self.jacobian).map_err(|_| Failure::Evaluation {
+            reason: format!("the Jacobian has an entry that is NaN or infinite at t = {t}"),
+        })
+    }
+}

@@ -1,0 +1,141 @@
+//! The one time loop: every method, forwards and backwards, with events, projection, checks and counters.
+
+use crate::dense::{DenseOutput, evaluate_segment};
+use crate::events::{EventWatch, Segment};
+use crate::options::{Dense, Options, Projection};
+use crate::problem::Start;
+use crate::status::{ProjectionReport, Solution, Status, StopCause};
+use crate::stepper::{Attempt, Stepper};
+use crate::system::{Failure, System, check_finite};
+
+/// So many times in a row is a step that cannot be evaluated halved.
+const HALVINGS: usize = 60;
+
+/// Integrates with `stepper`, or reports that it could not be set up.
+pub(crate) fn run(
+    system: &System,
+    stepper: Result<&mut dyn Stepper, StopCause>,
+    start: &Start,
+    end: f64,
+    options: &Options,
+) -> Solution {
+    let degree = stepper.as_ref().map_or(1, |stepper| stepper.degree());
+    let mut record = Record {
+        system,
+        dense: DenseOutput::new(start.t, &start.y, degree),
+        projection: ProjectionReport::default(),
+        options,
+    };
+    let status = match stepper.and_then(|stepper| record.walk(stepper, start, end)) {
+        Ok(()) => Status::Completed,
+        Err(cause) => Status::Stopped { t: record.dense.end(), cause },
+    };
+    let Record { dense, projection, .. } = record;
+    Solution { status, dense, work: system.work(), projection }
+}
+
+/// What has been integrated so far.
+struct Record<'a, 'p> {
+    system: &'a System<'p>,
+    dense: DenseOutput,
+    projection: ProjectionReport,
+    options: &'a Options,
+}
+
+impl Record<'_, '_> {
+    fn walk(&mut self, stepper: &mut dyn Stepper, start: &Start, end: f64) -> Result<(), StopCause> {
+        let system = self.system;
+        let mut watch = EventWatch::new(system, start.t, &start.y)?;
+        // The last failure since the last accepted step, and the number of them.
+        let mut failure: Option<Failure> = None;
+        let mut failures = 0;
+        while stepper.time() != end {
+            let work = system.work();
+            if work.steps + work.rejected >= self.options.max_steps {
+                return Err(StopCause::TooManySteps { limit: self.options.max_steps });
+            }
+            let taken = match stepper.attempt() {
+                Attempt::Candidate { t, rejected } => {
+                    system.count_rejected(rejected);
+                    self.take(stepper, &mut watch, t)
+                }
+                Attempt::Rejected => {
+                    system.count_rejected(1);
+                    continue;
+                }
+                Attempt::Failed(failure) => Err(failure),
+                Attempt::GaveUp(cause) => return Err(failure.map_or(cause, StopCause::from)),
+            };
+            match taken {
+                Ok(None) => {
+                    stepper.advance()?;
+                    watch.advance();
+                    (failure, failures) = (None, 0);
+                }
+                Ok(Some(index)) => return Err(StopCause::Event { index }),
+                Err(error) => {
+                    system.count_rejected(1);
+                    failures += 1;
+                    if failures > HALVINGS || stepper.shrink().is_err() {
+                        return Err(error.into());
+                    }
+                    failure = Some(error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks, projects and stores the candidate that ends at `t`; returns the event that cuts it short.
+    fn take(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        watch: &mut EventWatch,
+        t: f64,
+    ) -> Result<Option<usize>, Failure> {
+        let begin = stepper.time();
+        let candidate = stepper.candidate();
+        check_finite(candidate)?;
+        let mut moved = None;
+        if self.options.projection == Projection::EveryStep {
+            moved = Some(self.system.project(t, candidate)?);
+        }
+        let watching = self.system.events() > 0;
+        let has_room = watching || self.options.dense == Dense::Everywhere;
+        let room = if has_room { Some(self.dense.room()) } else { None };
+        let found = stepper.finish(moved.is_some_and(|length| length != 0.0), room).and_then(|()| {
+            if !watching {
+                return Ok(None);
+            }
+            let coefficients = self.dense.last_room();
+            let segment = Segment { coefficients, begin, width: t - begin, end: t };
+            let found = watch.look(self.system, &segment)?;
+            Ok(found.map(|found| (found.index, found.theta, segment.time(found.theta))))
+        });
+        let found = match found {
+            Ok(found) => found,
+            Err(failure) => {
+                if has_room {
+                    self.dense.pop_room();
+                }
+                return Err(failure);
+            }
+        };
+        let mut end = t;
+        if let Some((_, theta, t_event)) = found {
+            let mut state = vec![0.0; self.dense.dimension()];
+            evaluate_segment(self.dense.last_room(), theta, &mut state);
+            stepper.candidate().copy_from_slice(&state);
+            end = t_event;
+        }
+        if has_room && self.options.dense == Dense::EndOnly {
+            self.dense.pop_room();
+        }
+        self.dense.push(begin, t - begin, end, stepper.candidate());
+        self.system.count_step();
+        if let Some(length) = moved {
+            self.projection.record(length);
+        }
+        Ok(found.map(|(index, ..)| index))
+    }
+}
