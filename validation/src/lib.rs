@@ -1,1 +1,11 @@
-//! The harness.
+//! The harness behind the `deltaq` command: scenes, the control formulation, the commands, the reports.
+
+pub mod catalogue;
+pub mod cli;
+pub mod compare_command;
+pub mod main_job;
+pub mod picture;
+pub mod report;
+pub mod show_command;
+pub mod solve_command;
+pub mod substitution;

@@ -1,0 +1,167 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
+#[derive(Parser, Debug)]
+#[command(name = "deltaq", version, about, max_term_width = 100)]
+pub struct Cli {
+    /// What to do; without it the main job runs: every scene in every formulation, reports written.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Options of the main job.
+    #[command(flatten)]
+    pub job: JobArguments,
+}
+
+/// Options of the main job.
+#[derive(Args, Debug)]
+pub struct JobArguments {
+    /// Folder that the reports are written to.
+    #[arg(long, default_value = "reports")]
+    pub out: PathBuf,
+    /// Scenes to run, all if left out. The overview is written only when all of them run.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub scenes: Vec<String>,
+    /// No progress bar.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// The subcommands.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// List the built-in scenes.
+    List,
+    /// Show the equations of a scene, what was left out of them, and whether its constraints are integrable.
+    Show(ShowArguments),
+    /// Integrate a scene in one formulation.
+    Solve(SolveArguments),
+    /// Compare all formulations of one or more scenes.
+    Compare(CompareArguments),
+    /// Run the main job in memory and compare its verdicts with those in the reports folder.
+    Reports(ReportsArguments),
+}
+
+/// `deltaq show`.
+#[derive(Args, Debug)]
+pub struct ShowArguments {
+    /// Built-in name or path of a scene file.
+    pub scene: String,
+    /// Replace a parameter or a start value.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub overrides: Vec<(String, f64)>,
+    /// Formulas in LaTeX.
+    #[arg(long)]
+    pub latex: bool,
+}
+
+/// `deltaq solve`.
+#[derive(Args, Debug)]
+pub struct SolveArguments {
+    /// Built-in name or path of a scene file.
+    pub scene: String,
+    /// chetaev, vakonomic, vakonomic-costate or removed-constraint.
+    #[arg(long, short)]
+    pub formulation: String,
+    /// Vakonomic multipliers at the start, one a constraint.
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
+    pub mu0: Option<Vec<f64>>,
+    /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
+    #[arg(long, value_name = "NAME")]
+    pub removal: Option<String>,
+    /// Free constants of the removed-constraint equations: `zero`, `horizon=T` or `start=A,B,…` (P(t₀), in the order of the
+    /// memory variables). Those of the removal if left out.
+    #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
+    pub constants: Option<String>,
+    /// Time-stepping method.
+    #[arg(long, value_enum, default_value_t = MethodName::Dop853)]
+    pub method: MethodName,
+    /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
+    #[arg(long, default_value_t = 1e-10)]
+    pub tolerance: f64,
+    /// Times to print: `a,b,c` or `from:to:count`. 101 equidistant ones if left out.
+    #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// Replace a parameter (`g=1.6`), a start value (`x=1`, `x'=2`) or `duration`.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub overrides: Vec<(String, f64)>,
+    /// No projection onto the constraint.
+    #[arg(long)]
+    pub no_projection: bool,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    pub format: Format,
+}
+
+/// `deltaq compare`.
+#[derive(Args, Debug)]
+pub struct CompareArguments {
+    /// Built-in names or paths of scene files.
+    #[arg(required = true)]
+    pub scenes: Vec<String>,
+    /// Folder for the pages and pictures; to the terminal if left out.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace a parameter or a start value.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub overrides: Vec<(String, f64)>,
+    /// Tolerance of the looser of the two runs of every motion.
+    #[arg(long, default_value_t = 1e-11)]
+    pub tolerance: f64,
+}
+
+/// `deltaq reports`.
+#[derive(Args, Debug)]
+pub struct ReportsArguments {
+    /// Compare only; nothing is written.
+    #[arg(long, required = true)]
+    pub check: bool,
+    /// Folder of the reports.
+    #[arg(long, default_value = "reports")]
+    pub out: PathBuf,
+}
+
+/// Names of the methods.
+#[derive(ValueEnum, Clone, Copy, Debug)]
+pub enum MethodName {
+    /// Explicit Runge–Kutta, order 8.
+    Dop853,
+    /// Explicit Runge–Kutta, order 5.
+    Tsit45,
+    /// Backward differentiation formulas.
+    Bdf,
+    /// Implicit, order 2.
+    TrBdf2,
+    /// Implicit Runge–Kutta, order 4.
+    Esdirk34,
+}
+
+impl From<MethodName> for integrate::Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Dop853 => integrate::Method::Dop853,
+            MethodName::Tsit45 => integrate::Method::Tsit45,
+            MethodName::Bdf => integrate::Method::Bdf,
+            MethodName::TrBdf2 => integrate::Method::TrBdf2,
+            MethodName::Esdirk34 => integrate::Method::Esdirk34,
+        }
+    }
+}
+
+/// Output formats.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// One line a time.
+    Csv,
+    /// One object.
+    Json,
+}
+
+fn assignment(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=VALUE"))?;
+    let number: f64 = value.trim().parse().map_err(|_| format!("`{value}` in `{text}` is not a number"))?;
+    Ok((name.trim().to_string(), number))
+}

@@ -1,0 +1,53 @@
+//! Equations for the reader, printed from the expressions that are integrated.
+
+use std::fmt::Write;
+
+use mechanics::Equations;
+use symbolic::Expr;
+
+/// How formulas are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EquationStyle {
+    /// The scene language.
+    Plain,
+    /// LaTeX in fenced `math` blocks.
+    Latex,
+}
+
+/// Expressions with more nodes than this are written with named intermediate quantities.
+const LONG: usize = 60;
+
+/// The derived equations and what was left out of them.
+pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
+    let g = &equations.graph;
+    let mut sides: Vec<Expr> = equations.statements.iter().flat_map(|s| [s.left, s.right]).collect();
+    let mut text = String::new();
+    if sides.iter().any(|&e| g.size(&[e]) > LONG) {
+        let (definitions, short) = g.abbreviate(&sides, "s");
+        sides = short;
+        for (symbol, value) in definitions {
+            line(&mut text, equations, style, g.variable(symbol), value);
+        }
+        if !text.is_empty() {
+            text = format!("Intermediate quantities:\n\n{text}\nEquations:\n\n");
+        }
+    }
+    for pair in sides.chunks_exact(2) {
+        line(&mut text, equations, style, pair[0], pair[1]);
+    }
+    if !equations.left_out.is_empty() {
+        text += "\nLeft out, because this scene does not need it:\n\n";
+        for words in &equations.left_out {
+            let _ = writeln!(text, "- {words}");
+        }
+    }
+    text
+}
+
+fn line(text: &mut String, equations: &Equations, style: EquationStyle, left: Expr, right: Expr) {
+    let g = &equations.graph;
+    let _ = match style {
+        EquationStyle::Plain => writeln!(text, "  {} = {}", g.plain(left), g.plain(right)),
+        EquationStyle::Latex => writeln!(text, "```math\n{} = {}\n```", g.latex(left), g.latex(right)),
+    };
+}

@@ -1,0 +1,50 @@
+//! Files are written whole or not at all.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+/// A file of a report.
+#[derive(Clone, Debug)]
+pub struct File {
+    /// Path inside the folder of reports.
+    pub path: PathBuf,
+    /// Text.
+    pub text: String,
+}
+
+/// Writes every file beside its place first; only when all are written are they moved into place.
+///
+/// # Errors
+/// Whatever the file system says, with the path.
+pub fn write_all(folder: &Path, files: &[File]) -> Result<()> {
+    let mut waiting = Vec::new();
+    for file in files {
+        let path = folder.join(&file.path);
+        let parent = path.parent().unwrap_or(folder);
+        fs::create_dir_all(parent).with_context(|| format!("cannot create {}", parent.display()))?;
+        let mut temporary =
+            tempfile::NamedTempFile::new_in(parent).with_context(|| format!("cannot write in {}", parent.display()))?;
+        temporary.write_all(file.text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
+        waiting.push((temporary, path));
+    }
+    for (temporary, path) in waiting {
+        make_readable(temporary.as_file())?;
+        temporary.persist(&path).with_context(|| format!("cannot replace {}", path.display()))?;
+    }
+    Ok(())
+}
+
+/// Temporary files are private; reports are for everybody.
+#[cfg(unix)]
+fn make_readable(file: &fs::File) -> Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    Ok(file.set_permissions(fs::Permissions::from_mode(0o644))?)
+}
+
+#[cfg(not(unix))]
+fn make_readable(_: &fs::File) -> Result<()> {
+    Ok(())
+}

@@ -1,0 +1,17 @@
+//! Reports: Markdown that reads well on a code host, SVG pictures by relative link, one JSON file for machines.
+
+mod equations;
+mod files;
+mod numbers;
+mod overview;
+mod pictures;
+mod scene_page;
+mod tables;
+mod verdicts;
+
+pub use equations::{EquationStyle, equations_text};
+pub use files::{File, write_all};
+pub use overview::overview;
+pub use pictures::pictures;
+pub use scene_page::{answer, scene_page};
+pub use verdicts::{difference_of_verdicts, verdicts};

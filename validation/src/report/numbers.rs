@@ -1,0 +1,56 @@
+//! Numbers as readers like them.
+
+/// Few digits: `0.123`, `12.3`, `1.2e-7`; `0` for zero.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 {
+        "0".into()
+    } else if !x.is_finite() {
+        x.to_string()
+    } else if (0.001..10_000.0).contains(&x.abs()) {
+        let digits = (2 - x.abs().log10().floor() as i32).max(0) as usize;
+        let text = format!("{x:.digits$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+    } else {
+        format!("{x:.1e}")
+    }
+}
+
+/// Five significant digits.
+pub(crate) fn precise(x: f64) -> String {
+    if x == 0.0 {
+        "0".into()
+    } else if (0.001..10_000.0).contains(&x.abs()) {
+        let digits = (4 - x.abs().log10().floor() as i32).max(0) as usize;
+        format!("{x:.digits$}")
+    } else {
+        format!("{x:.4e}")
+    }
+}
+
+/// A number or a dash.
+pub(crate) fn or_dash(x: Option<f64>) -> String {
+    x.map_or("–".into(), short)
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(crate) fn enumerate(items: &[String]) -> String {
+    match items {
+        [] => "none".into(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_numbers() {
+        let cases = [(0.0, "0"), (0.12345, "0.123"), (12.0, "12"), (1.0e-7, "1.0e-7"), (-3.14159, "-3.14"), (2500.0, "2500")];
+        for (x, text) in cases {
+            assert_eq!(short(x), text);
+        }
+        assert_eq!(enumerate(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+    }
+}

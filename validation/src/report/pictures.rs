@@ -1,0 +1,131 @@
+//! The pictures of one scene.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use deltaq::{Comparison, Run};
+
+use crate::picture::{Aspect, Axis, Curve, Panel, Picture, SmallMultiples, Style};
+use crate::report::File;
+use crate::substitution;
+
+/// Instants drawn of a motion.
+const INSTANTS: usize = 400;
+
+/// The colour and dash of a formulation, the same in every picture.
+fn style(run: &Run) -> Style {
+    match run.choice.formulation {
+        "chetaev" => Style::Chetaev,
+        "removed-constraint" => Style::RemovedConstraint,
+        substitution::NAME => Style::Substituted,
+        _ => Style::Vakonomic,
+    }
+}
+
+/// The runs that are drawn: the first of each formulation, the costate form left out (it is the vakonomic motion again).
+pub(crate) fn drawn(comparison: &Comparison) -> Vec<usize> {
+    ["chetaev", "vakonomic", "removed-constraint", substitution::NAME]
+        .iter()
+        .filter_map(|name| comparison.run(name))
+        .filter(|&i| comparison.runs[i].outcome.is_ok())
+        .collect()
+}
+
+/// Coordinates over time, the path in the plane where there is one, the gap to Chetaev over time.
+///
+/// # Errors
+/// Where a motion cannot be read off or a picture cannot be drawn.
+pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
+    let name = comparison.scene.name.clone();
+    let mut files = Vec::new();
+    let mut add = |kind: &str, text: String| {
+        files.push(File { path: PathBuf::from(format!("scenes/{name}-{kind}.svg")), text });
+    };
+    let motions = sample(comparison)?;
+    let coordinates = &comparison.scene.system.coordinates;
+    let curves = |value: &dyn Fn(&(f64, Vec<f64>)) -> (f64, f64)| -> Vec<Curve> {
+        let curve = |m: &Drawn| Curve {
+            label: m.label.clone(),
+            style: m.style,
+            points: m.points.iter().map(value).collect(),
+        };
+        motions.iter().map(curve).collect()
+    };
+    let panels = coordinates.iter().enumerate().map(|(i, c)| Panel {
+        y: Axis::linear(format!("{} ({})", c.name, c.unit)),
+        curves: curves(&|(t, q)| (*t, q[i])),
+    });
+    let multiples = SmallMultiples {
+        title: format!("{}: coordinates over time", comparison.scene.title),
+        x: Axis::linear("t (s)"),
+        panels: panels.collect(),
+        columns: if coordinates.len() > 1 { 2 } else { 1 },
+    };
+    add("coordinates", multiples.to_svg()?);
+
+    let place = |name: &str| coordinates.iter().position(|c| c.name == name);
+    if let (Some(x), Some(y)) = (place("x"), place("y")) {
+        let picture = Picture {
+            title: format!("{}: path in the plane", comparison.scene.title),
+            x: Axis::linear(format!("x ({})", coordinates[x].unit)),
+            y: Axis::linear(format!("y ({})", coordinates[y].unit)),
+            curves: curves(&|(_, q)| (q[x], q[y])),
+            aspect: Aspect::Equal,
+        };
+        add("path", picture.to_svg()?);
+    }
+    let gaps = gap_curves(comparison);
+    if !gaps.is_empty() {
+        let picture = Picture {
+            title: format!("{}: gap to the Chetaev motion", comparison.scene.title),
+            x: Axis::log("t − t₀ (s)"),
+            y: Axis::log("gap, kinetic metric"),
+            curves: gaps,
+            aspect: Aspect::Fill,
+        };
+        add("gap", picture.to_svg()?);
+    }
+    Ok(files)
+}
+
+struct Drawn {
+    label: String,
+    style: Style,
+    points: Vec<(f64, Vec<f64>)>,
+}
+
+fn sample(comparison: &mut Comparison) -> Result<Vec<Drawn>> {
+    let mut motions = Vec::new();
+    for i in drawn(comparison) {
+        let run = &mut comparison.runs[i];
+        let (label, style) = (run.choice.label.clone(), style(run));
+        let Ok(motion) = &mut run.outcome else { continue };
+        let mut points = Vec::new();
+        for t in motion.grid(INSTANTS) {
+            points.push((t, motion.at(t)?.coordinates));
+        }
+        motions.push(Drawn { label, style, points });
+    }
+    Ok(motions)
+}
+
+fn gap_curves(comparison: &Comparison) -> Vec<Curve> {
+    let start = comparison.scene.start.t;
+    let Some(chetaev) = comparison.run("chetaev") else { return Vec::new() };
+    let mut curves = Vec::new();
+    let mut limit: Vec<(f64, f64)> = Vec::new();
+    for i in drawn(comparison).into_iter().filter(|&i| i != chetaev) {
+        let Some(pair) = comparison.pair(chetaev, i) else { continue };
+        let run = &comparison.runs[i];
+        let points = pair.gap.points.iter().filter(|p| p.gap > 0.0).map(|p| (p.t - start, p.gap));
+        curves.push(Curve { label: run.choice.label.clone(), style: style(run), points: points.collect() });
+        if limit.is_empty() {
+            limit = pair.gap.points.iter().filter(|p| p.limit > 0.0).map(|p| (p.t - start, p.limit)).collect();
+        }
+    }
+    curves.retain(|c| !c.points.is_empty());
+    if !curves.is_empty() && !limit.is_empty() {
+        curves.push(Curve { label: "certainty limit".into(), style: Style::Threshold, points: limit });
+    }
+    curves
+}

@@ -1,0 +1,217 @@
+//! `deltaq solve`: one scene, one formulation, one trajectory.
+
+use anyhow::{Context, Result, bail};
+use deltaq::{Choice, Ending, FORMULATIONS, Metric, Motion, Settings, formulation, removals, solve_choice};
+use integrate::Projection;
+use mechanics::{ConstantsRule, Removal, Scene};
+use serde_json::{Map, Value, json};
+
+use crate::catalogue;
+use crate::cli::{Format, SolveArguments};
+
+/// Relative error estimate over which a trajectory is not trusted.
+const TRUSTED: f64 = 1e-3;
+
+/// Times at which invariants and error estimates are sampled.
+const SAMPLES: usize = 200;
+
+/// How the command ended: the text to print, and whether the trajectory can be trusted.
+pub struct Answer {
+    /// For standard output.
+    pub text: String,
+    /// Why the trajectory cannot be trusted to the end, for standard error.
+    pub complaint: Option<String>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Bad input: the scene, the formulation, the removal, the constants, the times.
+pub fn run(arguments: &SolveArguments) -> Result<Answer> {
+    let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
+    let choice = choice(&scene, arguments)?;
+    let settings = Settings {
+        tolerance: arguments.tolerance,
+        method: arguments.method.into(),
+        projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
+    };
+    let wanted = times(arguments.times.as_deref(), &scene)?;
+    let mut motion = solve_choice(&scene, &choice, &settings)?;
+    let estimate = error_estimate(&mut motion, &scene)?;
+    let complaint = match &motion.ending {
+        Ending::Stopped { t, cause } => Some(format!("stopped at t = {t}: {cause}")),
+        Ending::Completed if estimate.relative.is_nan() || estimate.relative > TRUSTED => Some(format!(
+            "not to be trusted: relative error estimate {:.1e}, limit {TRUSTED:.0e}; ask for a smaller --tolerance",
+            estimate.relative
+        )),
+        Ending::Completed => None,
+    };
+    let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();
+    let text = match arguments.format {
+        Format::Csv => csv(&scene, &mut motion, &reached)?,
+        Format::Json => json_text(&scene, &choice, &mut motion, &reached, estimate.absolute, complaint.as_deref())?,
+    };
+    Ok(Answer { text, complaint })
+}
+
+fn choice(scene: &Scene, arguments: &SolveArguments) -> Result<Choice> {
+    let Some(entry) = formulation(&arguments.formulation) else {
+        let names: Vec<&str> = FORMULATIONS.iter().map(|f| f.name).collect();
+        bail!("unknown formulation `{}`; known: {}", arguments.formulation, names.join(", "));
+    };
+    let removal = if entry.needs_removal { Some(pick_removal(scene, arguments.removal.as_deref())?) } else { None };
+    if removal.is_none() && (arguments.removal.is_some() || arguments.constants.is_some()) {
+        bail!("--removal and --constants belong to the removed-constraint formulation, not to {}", entry.name);
+    }
+    if arguments.mu0.is_some() && !entry.name.starts_with("vakonomic") {
+        bail!("--mu0 belongs to the vakonomic formulation, not to {}", entry.name);
+    }
+    let constants = match (&removal, &arguments.constants, &arguments.mu0) {
+        (Some(_), Some(text), _) => constants_rule(text)?,
+        (Some(removal), None, _) => removal.constants.clone(),
+        (None, _, Some(mu0)) => ConstantsRule::Given(mu0.clone()),
+        (None, _, None) if entry.name.starts_with("vakonomic") => ConstantsRule::Given(scene.multipliers.clone()),
+        (None, _, None) => ConstantsRule::Zero,
+    };
+    Ok(Choice { label: entry.title.into(), formulation: entry.name, removal, constants })
+}
+
+fn pick_removal(scene: &Scene, name: Option<&str>) -> Result<Removal> {
+    let by_name = match name {
+        Some("coordinates") => Some(Removal::by_coordinates(&scene.system, &scene.start)?),
+        Some("quasi-velocities") => Some(Removal::by_quasi_velocities(&scene.system, &scene.start)?),
+        _ => None,
+    };
+    if let Some(removal) = by_name {
+        return Ok(removal);
+    }
+    let known = removals(scene)?;
+    let names: Vec<String> = known.iter().map(|r| r.name.clone()).collect();
+    let found = known.into_iter().find(|r| name.is_none_or(|n| r.name == n));
+    found.with_context(|| {
+        format!("unknown removal `{}`; known: {}, coordinates, quasi-velocities", name.unwrap_or(""), names.join(", "))
+    })
+}
+
+fn constants_rule(text: &str) -> Result<ConstantsRule> {
+    let numbers = |list: &str| -> Result<Vec<f64>> {
+        list.split(',').map(|x| x.trim().parse().with_context(|| format!("`{x}` in `{text}` is not a number"))).collect()
+    };
+    match text.split_once('=') {
+        None if text == "zero" => Ok(ConstantsRule::Zero),
+        Some(("horizon", time)) => {
+            Ok(ConstantsRule::Natural { horizon: time.parse().with_context(|| format!("`{time}` is not a time"))? })
+        }
+        Some(("start", list)) => Ok(ConstantsRule::Given(numbers(list)?)),
+        _ => bail!("`{text}` is none of zero, horizon=T, start=A,B,…"),
+    }
+}
+
+fn times(text: Option<&str>, scene: &Scene) -> Result<Vec<f64>> {
+    let (start, end) = (scene.start.t, scene.start.t + scene.duration);
+    let range = |from: f64, to: f64, count: usize| -> Vec<f64> {
+        (0..count).map(|i| from + (to - from) * i as f64 / (count.max(2) - 1) as f64).collect()
+    };
+    let Some(text) = text else { return Ok(range(start, end, 101)) };
+    let number = |x: &str| -> Result<f64> {
+        x.trim().parse().with_context(|| format!("`{x}` in --times {text} is not a number"))
+    };
+    let times = match text.split(':').collect::<Vec<_>>()[..] {
+        [from, to, count] => {
+            let count: usize = count.parse().with_context(|| format!("`{count}` in --times {text} is not a count"))?;
+            if !(1..=1_000_000).contains(&count) {
+                bail!("--times {text} asks for {count} times; 1 to 1000000 are possible");
+            }
+            range(number(from)?, number(to)?, count)
+        }
+        [list] => list.split(',').map(number).collect::<Result<_>>()?,
+        _ => bail!("--times {text} is neither `a,b,c` nor `from:to:count`"),
+    };
+    for &t in &times {
+        if !(start..=end).contains(&t) {
+            bail!("--times: {t} is outside of the run, which goes from {start} to {end}; see --set duration=…");
+        }
+    }
+    Ok(times)
+}
+
+struct Estimate {
+    absolute: f64,
+    relative: f64,
+}
+
+/// Largest difference of the two runs in the kinetic metric, and over the length of the way.
+fn error_estimate(motion: &mut Motion, scene: &Scene) -> Result<Estimate> {
+    let mut metric = Metric::new(&scene.system)?;
+    let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
+    for t in motion.grid(SAMPLES) {
+        let now = motion.at(t)?;
+        let length = |metric: &mut Metric, d: &[f64]| metric.length(t, &now.coordinates, &now.velocities, d);
+        absolute = absolute.max(length(&mut metric, &motion.difference_of_runs(t)?));
+        let way: Vec<f64> = now.coordinates.iter().zip(&scene.start.q).map(|(a, b)| a - b).collect();
+        scale = scale.max(length(&mut metric, &way));
+    }
+    Ok(Estimate { absolute, relative: if scale > 0.0 { absolute / scale } else { absolute } })
+}
+
+fn csv(scene: &Scene, motion: &mut Motion, times: &[f64]) -> Result<String> {
+    let mut columns = vec!["t".to_string()];
+    columns.extend(scene.system.coordinates.iter().map(|c| c.name.clone()));
+    columns.extend(scene.system.coordinates.iter().map(|c| format!("{}'", c.name)));
+    columns.extend(motion.equations.multipliers.iter().map(|m| m.name.clone()));
+    let mut text = columns.join(",") + "\n";
+    for &t in times {
+        let now = motion.at(t)?;
+        let numbers = [vec![t], now.coordinates, now.velocities, now.multipliers].concat();
+        text += &(numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",") + "\n");
+    }
+    Ok(text)
+}
+
+fn json_text(
+    scene: &Scene,
+    choice: &Choice,
+    motion: &mut Motion,
+    times: &[f64],
+    error_estimate: f64,
+    complaint: Option<&str>,
+) -> Result<String> {
+    let mut rows = Vec::new();
+    for &t in times {
+        rows.push(motion.at(t)?);
+    }
+    let names: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
+    let columns = |names: &[String], row: &dyn Fn(&mechanics::Outputs) -> Vec<f64>| -> Value {
+        let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
+        names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
+    };
+    let multipliers: Vec<String> = motion.equations.multipliers.iter().map(|m| m.name.clone()).collect();
+    let invariants: Map<String, Value> = motion
+        .invariant_drift(SAMPLES)?
+        .into_iter()
+        .map(|(name, start, drift)| (name, json!({ "start": start, "drift": drift })))
+        .collect();
+    let constants: Map<String, Value> =
+        deltaq::constant_names(&motion.equations).into_iter().zip(motion.constants.iter().map(|&c| json!(c))).collect();
+    let value = json!({
+        "scene": scene.name,
+        "formulation": choice.formulation,
+        "removal": choice.removal.as_ref().map(|r| &r.name),
+        "status": if complaint.is_none() { "completed" } else { "stopped" },
+        "cause": complaint,
+        "end": motion.end(),
+        "free_constants": constants,
+        "times": times,
+        "coordinates": columns(&names, &|r| r.coordinates.clone()),
+        "velocities": columns(&names, &|r| r.velocities.clone()),
+        "multipliers": columns(&multipliers, &|r| r.multipliers.clone()),
+        "error_estimate": error_estimate,
+        "invariants": invariants,
+        "projection": { "count": motion.projection.projections, "largest": motion.projection.largest },
+        "work": { "steps": motion.work.steps, "rejected": motion.work.rejected, "evaluations": motion.work.evaluations },
+        "seconds": {
+            "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
+        },
+    });
+    Ok(serde_json::to_string_pretty(&value)? + "\n")
+}
