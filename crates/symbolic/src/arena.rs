@@ -1,0 +1,201 @@
+//! The node store behind a graph: hash-consing, names, dependency sets.
+
+use crate::number::{Number, Rational};
+use crate::{Expr, Function, Symbol};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::Arc;
+
+/// What an expression is made of. Children always have smaller ids than their parents.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Node {
+    Number(Number),
+    Symbol(Symbol),
+    /// constant + Σ coefficient·term; terms sorted by id, neither sums nor numbers.
+    Sum(Number, Arc<[(Expr, Number)]>),
+    /// Π base^exponent; bases sorted by id.
+    Product(Arc<[(Expr, Rational)]>),
+    /// base^exponent where the exponent is not a rational number.
+    Power(Expr, Expr),
+    Call(Function, Expr),
+    /// The angle of the point (second, first).
+    Atan2(Expr, Expr),
+}
+
+impl Node {
+    pub(crate) fn children(&self) -> Vec<Expr> {
+        match self {
+            Node::Number(_) | Node::Symbol(_) => Vec::new(),
+            Node::Sum(_, terms) => terms.iter().map(|(t, _)| *t).collect(),
+            Node::Product(factors) => factors.iter().map(|(b, _)| *b).collect(),
+            Node::Power(a, b) | Node::Atan2(a, b) => vec![*a, *b],
+            Node::Call(_, a) => vec![*a],
+        }
+    }
+}
+
+/// Sorted symbols an expression depends on, shared between expressions.
+type Dependencies = Arc<[Symbol]>;
+
+#[derive(Clone)]
+pub(crate) struct Arena {
+    nodes: Vec<Node>,
+    ids: FxHashMap<Node, Expr>,
+    names: Vec<Arc<str>>,
+    symbols: FxHashMap<Arc<str>, Symbol>,
+    /// For each node an index into `sets`.
+    dependencies: Vec<u32>,
+    sets: Vec<Dependencies>,
+    set_ids: FxHashMap<Dependencies, u32>,
+    pub(crate) derivatives: FxHashMap<(Expr, Symbol), Expr>,
+}
+
+impl Default for Arena {
+    fn default() -> Self {
+        let mut arena = Self {
+            nodes: Vec::new(),
+            ids: FxHashMap::default(),
+            names: Vec::new(),
+            symbols: FxHashMap::default(),
+            dependencies: Vec::new(),
+            sets: Vec::new(),
+            set_ids: FxHashMap::default(),
+            derivatives: FxHashMap::default(),
+        };
+        arena.number(Number::ZERO);
+        arena.number(Number::ONE);
+        arena
+    }
+}
+
+impl Arena {
+    pub(crate) const ZERO: Expr = Expr(0);
+    pub(crate) const ONE: Expr = Expr(1);
+
+    pub(crate) fn node(&self, e: Expr) -> &Node {
+        &self.nodes[e.0 as usize]
+    }
+
+    pub(crate) fn intern(&mut self, node: Node) -> Expr {
+        if let Some(&e) = self.ids.get(&node) {
+            return e;
+        }
+        let e = Expr(u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions"));
+        let set = self.dependency_set(&node);
+        self.dependencies.push(set);
+        self.nodes.push(node.clone());
+        self.ids.insert(node, e);
+        e
+    }
+
+    pub(crate) fn number(&mut self, n: Number) -> Expr {
+        self.intern(Node::Number(n))
+    }
+
+    pub(crate) fn as_number(&self, e: Expr) -> Option<Number> {
+        match self.node(e) {
+            Node::Number(n) => Some(*n),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn symbol(&mut self, name: &str) -> Symbol {
+        if let Some(&s) = self.symbols.get(name) {
+            return s;
+        }
+        let s = Symbol(u32::try_from(self.names.len()).expect("fewer than 2^32 symbols"));
+        let name: Arc<str> = name.into();
+        self.names.push(name.clone());
+        self.symbols.insert(name, s);
+        self.intern(Node::Symbol(s));
+        s
+    }
+
+    pub(crate) fn find_symbol(&self, name: &str) -> Option<Symbol> {
+        self.symbols.get(name).copied()
+    }
+
+    pub(crate) fn name(&self, s: Symbol) -> &str {
+        &self.names[s.0 as usize]
+    }
+
+    /// The symbols `e` depends on, sorted.
+    pub(crate) fn dependencies(&self, e: Expr) -> &[Symbol] {
+        &self.sets[self.dependencies[e.0 as usize] as usize]
+    }
+
+    pub(crate) fn depends_on(&self, e: Expr, s: Symbol) -> bool {
+        self.dependencies(e).binary_search(&s).is_ok()
+    }
+
+    fn dependency_set(&mut self, node: &Node) -> u32 {
+        if let Node::Symbol(s) = node {
+            return self.intern_set(vec![*s]);
+        }
+        let mut sets: Vec<u32> = node
+            .children()
+            .iter()
+            .map(|c| self.dependencies[c.0 as usize])
+            .collect();
+        sets.sort_unstable();
+        sets.dedup();
+        if let [only] = sets[..] {
+            return only;
+        }
+        let mut symbols: Vec<Symbol> = sets
+            .iter()
+            .flat_map(|&s| self.sets[s as usize].iter().copied())
+            .collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        self.intern_set(symbols)
+    }
+
+    fn intern_set(&mut self, symbols: Vec<Symbol>) -> u32 {
+        if let Some(&id) = self.set_ids.get(&symbols[..]) {
+            return id;
+        }
+        let id = u32::try_from(self.sets.len()).expect("fewer sets than nodes");
+        let set: Dependencies = symbols.into();
+        self.sets.push(set.clone());
+        self.set_ids.insert(set, id);
+        id
+    }
+
+    /// The nodes reachable from `roots` through nodes that satisfy `enter`, children first.
+    pub(crate) fn reachable(&self, roots: &[Expr], enter: impl Fn(Expr) -> bool) -> Vec<Expr> {
+        let mut seen = FxHashSet::default();
+        let mut stack: Vec<Expr> = roots.iter().copied().filter(|e| enter(*e)).collect();
+        while let Some(e) = stack.pop() {
+            if seen.insert(e) {
+                let children = self.node(e).children();
+                stack.extend(
+                    children
+                        .into_iter()
+                        .filter(|c| enter(*c) && !seen.contains(c)),
+                );
+            }
+        }
+        let mut order: Vec<Expr> = seen.into_iter().collect();
+        order.sort_unstable();
+        order
+    }
+
+    /// `e` with its children replaced by what `image` says, simplified again.
+    pub(crate) fn rebuild(&mut self, e: Expr, image: &FxHashMap<Expr, Expr>) -> Expr {
+        let of = |c: &Expr| image.get(c).copied().unwrap_or(*c);
+        match self.node(e).clone() {
+            Node::Number(_) | Node::Symbol(_) => e,
+            Node::Sum(constant, terms) => {
+                let parts = terms.iter().map(|(t, c)| (of(t), *c)).collect();
+                self.linear(constant, parts)
+            }
+            Node::Product(factors) => {
+                let factors = factors.iter().map(|(b, r)| (of(b), *r)).collect();
+                self.power_product(Number::ONE, factors)
+            }
+            Node::Power(base, exponent) => self.pow(of(&base), of(&exponent)),
+            Node::Call(function, argument) => self.call(function, of(&argument)),
+            Node::Atan2(y, x) => self.atan2(of(&y), of(&x)),
+        }
+    }
+}

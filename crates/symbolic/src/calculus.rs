@@ -1,0 +1,217 @@
+//! Derivatives and substitution.
+
+use crate::arena::{Arena, Node};
+use crate::number::{Number, Rational};
+use crate::{Expr, Function, Graph, Matrix, Symbol};
+use rustc_hash::FxHashMap;
+use std::collections::HashMap;
+
+impl Graph {
+    /// ∂e/∂symbol
+    ///
+    /// ```
+    /// use symbolic::{Function, Graph};
+    /// let g = Graph::new();
+    /// let s = g.symbol("phi");
+    /// let sine = g.call(Function::Sin, g.variable(s));
+    /// assert_eq!(g.derivative(sine, s), g.call(Function::Cos, g.variable(s)));
+    /// ```
+    pub fn derivative(&self, e: Expr, symbol: Symbol) -> Expr {
+        self.arena.borrow_mut().derivative(e, symbol)
+    }
+
+    /// (∂e/∂s for s in `symbols`)
+    pub fn gradient(&self, e: Expr, symbols: &[Symbol]) -> Vec<Expr> {
+        let mut arena = self.arena.borrow_mut();
+        symbols.iter().map(|s| arena.derivative(e, *s)).collect()
+    }
+
+    /// The matrix ∂eᵢ/∂sⱼ: a row for each expression, a column for each symbol.
+    pub fn jacobian(&self, es: &[Expr], symbols: &[Symbol]) -> Matrix {
+        Matrix::from_fn(es.len(), symbols.len(), |i, j| {
+            self.derivative(es[i], symbols[j])
+        })
+    }
+
+    /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs. Explicit time has to be among
+    /// them as (t, 1).
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (x, v) = (g.symbol("x"), g.symbol("x'"));
+    /// let energy = g.powi(g.variable(x), 2);
+    /// let power = g.product(&[g.integer(2), g.variable(x), g.variable(v)]);
+    /// assert_eq!(g.total_derivative(energy, &[(x, g.variable(v))]), power);
+    /// ```
+    pub fn total_derivative(&self, e: Expr, rates: &[(Symbol, Expr)]) -> Expr {
+        let terms: Vec<Expr> = rates
+            .iter()
+            .filter(|(s, _)| self.depends_on(e, *s))
+            .map(|(s, rate)| self.mul(self.derivative(e, *s), *rate))
+            .collect();
+        self.sum(&terms)
+    }
+
+    /// `e` with every symbol of `map` replaced, all at once.
+    ///
+    /// ```
+    /// use std::collections::HashMap;
+    /// let g = symbolic::Graph::new();
+    /// let (x, y) = (g.symbol("x"), g.symbol("y"));
+    /// let swap = HashMap::from([(x, g.variable(y)), (y, g.variable(x))]);
+    /// let difference = g.sub(g.variable(x), g.variable(y));
+    /// assert_eq!(g.substitute(difference, &swap), g.neg(difference));
+    /// ```
+    pub fn substitute(&self, e: Expr, map: &HashMap<Symbol, Expr>) -> Expr {
+        self.substitute_all(&[e], map)[0]
+    }
+
+    /// [`Graph::substitute`] for several expressions, sharing the work.
+    pub fn substitute_all(&self, es: &[Expr], map: &HashMap<Symbol, Expr>) -> Vec<Expr> {
+        let mut arena = self.arena.borrow_mut();
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        let touched = arena.reachable(es, |e| {
+            arena.dependencies(e).iter().any(|s| map.contains_key(s))
+        });
+        for e in touched {
+            let new = match arena.node(e) {
+                Node::Symbol(s) => map[s],
+                _ => arena.rebuild(e, &image),
+            };
+            image.insert(e, new);
+        }
+        es.iter()
+            .map(|e| image.get(e).copied().unwrap_or(*e))
+            .collect()
+    }
+}
+
+impl Arena {
+    pub(crate) fn derivative(&mut self, e: Expr, s: Symbol) -> Expr {
+        if !self.depends_on(e, s) {
+            return Self::ZERO;
+        }
+        if let Some(d) = self.derivatives.get(&(e, s)) {
+            return *d;
+        }
+        let open = self.reachable(&[e], |n| {
+            self.depends_on(n, s) && !self.derivatives.contains_key(&(n, s))
+        });
+        for n in open {
+            let d = self.derivative_of_node(n, s);
+            self.derivatives.insert((n, s), d);
+        }
+        self.derivatives[&(e, s)]
+    }
+
+    /// ∂e/∂s, given those of the children.
+    fn derivative_of_node(&mut self, e: Expr, s: Symbol) -> Expr {
+        match self.node(e).clone() {
+            Node::Number(_) => Self::ZERO,
+            Node::Symbol(_) => Self::ONE,
+            Node::Sum(_, terms) => {
+                let parts = terms.iter().map(|(t, c)| (self.known(*t, s), *c)).collect();
+                self.linear(Number::ZERO, parts)
+            }
+            Node::Product(factors) => {
+                let mut parts = Vec::new();
+                for (i, (base, exponent)) in factors.iter().enumerate() {
+                    let inner = self.known(*base, s);
+                    if inner == Self::ZERO {
+                        continue;
+                    }
+                    let mut rest = factors.to_vec();
+                    // An exponent so large that one less does not fit keeps the factor apart.
+                    match exponent.add(Rational::integer(-1)) {
+                        Some(lower) => rest[i].1 = lower,
+                        None => rest.push((*base, Rational::integer(-1))),
+                    }
+                    rest.push((inner, Rational::ONE));
+                    parts.push((
+                        self.power_product(Number::Exact(*exponent), rest),
+                        Number::ONE,
+                    ));
+                }
+                self.linear(Number::ZERO, parts)
+            }
+            Node::Power(base, exponent) => {
+                // b^e ( e' log b + e b'/b )
+                let (db, de) = (self.known(base, s), self.known(exponent, s));
+                let mut parts = Vec::new();
+                if de != Self::ZERO {
+                    let log = self.call(Function::Log, base);
+                    parts.push((self.times(&[e, log, de]), Number::ONE));
+                }
+                if db != Self::ZERO {
+                    let lower = self.linear(Number::MINUS_ONE, vec![(exponent, Number::ONE)]);
+                    let power = self.pow(base, lower);
+                    parts.push((self.times(&[exponent, power, db]), Number::ONE));
+                }
+                self.linear(Number::ZERO, parts)
+            }
+            Node::Call(function, argument) => {
+                let outer = self.outer_derivative(function, argument, e);
+                let inner = self.known(argument, s);
+                self.times(&[outer, inner])
+            }
+            Node::Atan2(y, x) => {
+                // (x y' − y x') / (x² + y²)
+                let (dy, dx) = (self.known(y, s), self.known(x, s));
+                let (a, b) = (self.times(&[x, dy]), self.times(&[y, dx]));
+                let top = self.linear(Number::ZERO, vec![(a, Number::ONE), (b, Number::MINUS_ONE)]);
+                let (xx, yy) = (self.times(&[x, x]), self.times(&[y, y]));
+                let bottom = self.linear(Number::ZERO, vec![(xx, Number::ONE), (yy, Number::ONE)]);
+                let factors = vec![(top, Rational::ONE), (bottom, Rational::integer(-1))];
+                self.power_product(Number::ONE, factors)
+            }
+        }
+    }
+
+    fn known(&self, e: Expr, s: Symbol) -> Expr {
+        if self.depends_on(e, s) {
+            self.derivatives[&(e, s)]
+        } else {
+            Self::ZERO
+        }
+    }
+
+    pub(crate) fn times(&mut self, factors: &[Expr]) -> Expr {
+        let factors = factors.iter().map(|f| (*f, Rational::ONE)).collect();
+        self.power_product(Number::ONE, factors)
+    }
+
+    /// f'(u), where `value` is the node f(u).
+    fn outer_derivative(&mut self, function: Function, u: Expr, value: Expr) -> Expr {
+        let square = |arena: &mut Arena, e: Expr| arena.times(&[e, e]);
+        let minus_half = Rational::new(-1, 2).expect("a fraction");
+        // constant + c·square, to a power
+        let mut inverse = |constant: i64, c: i64, of: Expr, exponent: Rational, sign: i64| {
+            let squared = square(self, of);
+            let inner = self.linear(
+                Number::integer(constant),
+                vec![(squared, Number::integer(c))],
+            );
+            self.power_product(Number::integer(sign), vec![(inner, exponent)])
+        };
+        let minus_one = Rational::integer(-1);
+        match function {
+            Function::Sin => self.call(Function::Cos, u),
+            Function::Cos => {
+                let sine = self.call(Function::Sin, u);
+                self.scale(Number::MINUS_ONE, sine)
+            }
+            Function::Tan => inverse(1, 1, value, Rational::ONE, 1),
+            Function::Sinh => self.call(Function::Cosh, u),
+            Function::Cosh => self.call(Function::Sinh, u),
+            Function::Tanh => inverse(1, -1, value, Rational::ONE, 1),
+            Function::Asin => inverse(1, -1, u, minus_half, 1),
+            Function::Acos => inverse(1, -1, u, minus_half, -1),
+            Function::Atan => inverse(1, 1, u, minus_one, 1),
+            Function::Asinh => inverse(1, 1, u, minus_half, 1),
+            Function::Acosh => inverse(-1, 1, u, minus_half, 1),
+            Function::Atanh => inverse(1, -1, u, minus_one, 1),
+            Function::Exp => value,
+            Function::Log => self.power_product(Number::ONE, vec![(u, minus_one)]),
+        }
+    }
+}

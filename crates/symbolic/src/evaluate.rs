@@ -1,0 +1,171 @@
+//! From expressions to values.
+
+use crate::arena::{Arena, Node};
+use crate::number::Number;
+use crate::tape::Tape;
+use crate::{Expr, Graph, Symbol, lower};
+use rustc_hash::FxHashMap;
+use std::collections::HashMap;
+
+/// Why an expression cannot be evaluated.
+///
+/// ```
+/// use std::collections::HashMap;
+/// use symbolic::{CompileError, Graph};
+/// let g = Graph::new();
+/// let x = g.variable(g.symbol("x"));
+/// let error = g.evaluate(x, &HashMap::new());
+/// assert_eq!(error, Err(CompileError::Unbound { name: "x".into() }));
+/// ```
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompileError {
+    /// A symbol that is neither input nor constant.
+    #[error("`{name}` has no value: it is neither an input nor a constant")]
+    Unbound {
+        /// Its name.
+        name: String,
+    },
+    /// A part that depends on no input and is not a finite number.
+    #[error("`{expression}` is not finite")]
+    NotFinite {
+        /// That part, with the constants in it; cut if it is long.
+        expression: String,
+    },
+}
+
+impl Graph {
+    /// A flat program for `outputs`. `constants` are folded in; a symbol that is both is an input.
+    ///
+    /// # Errors
+    /// If a symbol is neither input nor constant, or something is not finite whatever the inputs.
+    pub fn compile(
+        &self,
+        inputs: &[Symbol],
+        outputs: &[Expr],
+        constants: &HashMap<Symbol, f64>,
+    ) -> Result<Tape, CompileError> {
+        let values: HashMap<Symbol, Expr> = constants
+            .iter()
+            .filter(|(s, _)| !inputs.contains(s))
+            .map(|(s, x)| (*s, self.number(*x)))
+            .collect();
+        let folded = self.substitute_all(outputs, &values);
+        self.check_bound(&folded, |s| inputs.contains(&s))?;
+        let arena = self.arena.borrow();
+        for (e, original) in folded.iter().zip(outputs) {
+            if let Some(n) = arena.as_number(*e)
+                && !n.is_finite()
+            {
+                drop(arena);
+                return Err(self.not_finite(*original));
+            }
+        }
+        let (mut program, ids) = lower::lower(&arena, inputs, &folded);
+        program.fuse(&ids);
+        let tape = Tape::assemble(&program, inputs.len(), &ids);
+        if !tape.workspace::<f64>().is_finite() {
+            let constant = |e: Expr| arena.dependencies(e).is_empty();
+            let culprit = arena
+                .reachable(&folded, |_| true)
+                .into_iter()
+                .find(|e| constant(*e) && !arena.value(*e, &FxHashMap::default()).is_finite());
+            drop(arena);
+            return Err(self.not_finite(culprit.unwrap_or(folded[0])));
+        }
+        Ok(tape)
+    }
+
+    /// The value of `e`. Slow: for single values.
+    ///
+    /// # Errors
+    /// If a symbol has no value, or the value is not finite.
+    ///
+    /// ```
+    /// use std::collections::HashMap;
+    /// let g = symbolic::Graph::new();
+    /// let x = g.symbol("x");
+    /// let e = g.powi(g.variable(x), -1);
+    /// assert_eq!(g.evaluate(e, &HashMap::from([(x, 4.0)])), Ok(0.25));
+    /// assert!(g.evaluate(e, &HashMap::from([(x, 0.0)])).is_err());
+    /// ```
+    pub fn evaluate(&self, e: Expr, values: &HashMap<Symbol, f64>) -> Result<f64, CompileError> {
+        self.check_bound(&[e], |s| values.contains_key(&s))?;
+        let arena = self.arena.borrow();
+        let mut known: FxHashMap<Expr, f64> = FxHashMap::default();
+        for n in arena.reachable(&[e], |_| true) {
+            let value = match arena.node(n) {
+                Node::Symbol(s) => values[s],
+                _ => arena.value(n, &known),
+            };
+            if !value.is_finite() {
+                drop(arena);
+                return Err(self.not_finite(n));
+            }
+            known.insert(n, value);
+        }
+        Ok(known[&e])
+    }
+
+    fn check_bound(&self, es: &[Expr], bound: impl Fn(Symbol) -> bool) -> Result<(), CompileError> {
+        match self.symbols_of_all(es).into_iter().find(|s| !bound(*s)) {
+            Some(s) => Err(CompileError::Unbound { name: self.name(s) }),
+            None => Ok(()),
+        }
+    }
+
+    fn not_finite(&self, e: Expr) -> CompileError {
+        let mut expression = if self.size(&[e]) > 50 {
+            "…".to_owned()
+        } else {
+            self.plain(e)
+        };
+        if let Some((end, _)) = expression.char_indices().nth(100) {
+            expression.truncate(end);
+            expression.push('…');
+        }
+        CompileError::NotFinite { expression }
+    }
+}
+
+impl Arena {
+    /// The value of one node from those of its children; children that are missing must be constant.
+    fn value(&self, e: Expr, known: &FxHashMap<Expr, f64>) -> f64 {
+        let of = |c: &Expr| match known.get(c) {
+            Some(x) => *x,
+            None => self.constant_value(*c),
+        };
+        match self.node(e) {
+            Node::Number(n) => n.to_f64(),
+            Node::Symbol(_) => f64::NAN,
+            Node::Sum(constant, terms) => {
+                constant.to_f64() + terms.iter().map(|(t, c)| c.to_f64() * of(t)).sum::<f64>()
+            }
+            Node::Product(factors) => factors
+                .iter()
+                .map(
+                    |(b, r)| match r.as_integer().and_then(|n| i32::try_from(n).ok()) {
+                        Some(n) => of(b).powi(n),
+                        None => of(b).powf(r.to_f64()),
+                    },
+                )
+                .product(),
+            Node::Power(base, exponent) => of(base).powf(of(exponent)),
+            Node::Call(function, argument) => function.apply(of(argument)),
+            Node::Atan2(y, x) => of(y).atan2(of(x)),
+        }
+    }
+
+    /// The value of an expression without symbols.
+    fn constant_value(&self, e: Expr) -> f64 {
+        if let Some(n) = self.as_number(e) {
+            return Number::to_f64(n);
+        }
+        let mut known = FxHashMap::default();
+        for n in self.reachable(&[e], |_| true) {
+            let value = self.value(n, &known);
+            known.insert(n, value);
+        }
+        known[&e]
+    }
+}

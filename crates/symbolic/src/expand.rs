@@ -1,0 +1,127 @@
+//! Multiplying out.
+
+use crate::arena::{Arena, Node};
+use crate::number::{Number, Rational};
+use crate::{Expr, Graph};
+use rustc_hash::FxHashMap;
+
+/// Terms beyond which [`Graph::expand`] leaves a product as it is.
+const TERM_LIMIT: usize = 100_000;
+
+impl Graph {
+    /// `e` with products of sums and positive integer powers of sums multiplied out, inside functions
+    /// as well. A product that would have more than 100 000 terms stays as it is.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
+    /// let product = g.mul(g.add(x, y), g.sub(x, y));
+    /// assert_eq!(g.expand(product), g.sub(g.powi(x, 2), g.powi(y, 2)));
+    /// ```
+    pub fn expand(&self, e: Expr) -> Expr {
+        self.arena.borrow_mut().expand(e, TERM_LIMIT)
+    }
+}
+
+impl Arena {
+    /// `e` multiplied out, except for products of more than `limit` terms.
+    pub(crate) fn expand(&mut self, e: Expr, limit: usize) -> Expr {
+        let mut e = e;
+        // Products of terms can have sums as factors again, as √(x+y)·√(x+y) has.
+        for _ in 0..8 {
+            let expanded = self.expand_once(e, limit);
+            if expanded == e {
+                break;
+            }
+            e = expanded;
+        }
+        e
+    }
+
+    fn expand_once(&mut self, e: Expr, limit: usize) -> Expr {
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for n in self.reachable(&[e], |_| true) {
+            let mut new = self.rebuild(n, &image);
+            if let Node::Product(factors) = self.node(new).clone() {
+                new = self.expand_product(new, &factors, limit);
+            }
+            if new != n {
+                image.insert(n, new);
+            }
+        }
+        image.get(&e).copied().unwrap_or(e)
+    }
+
+    fn expand_product(&mut self, whole: Expr, factors: &[(Expr, Rational)], limit: usize) -> Expr {
+        let mut rest = Vec::new();
+        let mut sums: Vec<(Expr, i64)> = Vec::new();
+        let mut terms = 1_usize;
+        for (base, exponent) in factors {
+            let n = exponent.floor();
+            match self.node(*base) {
+                Node::Sum(_, inner) if n >= 1 => {
+                    terms = terms.saturating_mul(power_terms(inner.len() + 1, n));
+                    sums.push((*base, n));
+                    // (x+y)^(3/2) = (x+y) (x+y)^(1/2)
+                    if let Some(fraction) = exponent.add(Rational::integer(-n)) {
+                        rest.push((*base, fraction));
+                    }
+                }
+                _ => rest.push((*base, *exponent)),
+            }
+        }
+        if sums.is_empty() || terms > limit {
+            return whole;
+        }
+        let mut total = self.power_product(Number::ONE, rest);
+        for (sum, n) in sums {
+            for _ in 0..n {
+                total = self.multiply_out(total, sum);
+            }
+        }
+        total
+    }
+
+    fn summands(&self, e: Expr) -> Vec<(Option<Expr>, Number)> {
+        match self.node(e) {
+            Node::Sum(constant, terms) => {
+                let mut all: Vec<_> = terms.iter().map(|(t, c)| (Some(*t), *c)).collect();
+                if !constant.is_zero() {
+                    all.push((None, *constant));
+                }
+                all
+            }
+            Node::Number(n) => vec![(None, *n)],
+            _ => vec![(Some(e), Number::ONE)],
+        }
+    }
+
+    pub(crate) fn multiply_out(&mut self, a: Expr, b: Expr) -> Expr {
+        let (left, right) = (self.summands(a), self.summands(b));
+        let mut constant = Number::ZERO;
+        let mut parts = Vec::with_capacity(left.len() * right.len());
+        for (s, c) in &left {
+            for (t, d) in &right {
+                let coefficient = c.mul(*d);
+                match (s, t) {
+                    (None, None) => constant = constant.add(coefficient),
+                    (Some(e), None) | (None, Some(e)) => parts.push((*e, coefficient)),
+                    (Some(s), Some(t)) => parts.push((self.times(&[*s, *t]), coefficient)),
+                }
+            }
+        }
+        self.linear(constant, parts)
+    }
+}
+
+/// At most this many terms are in the n-th power of a sum of k: (n+k−1 over n).
+fn power_terms(k: usize, n: i64) -> usize {
+    let mut count = 1_u128;
+    for i in 1..=n.unsigned_abs() {
+        count = count * (u128::from(i) + k as u128 - 1) / u128::from(i);
+        if count > 1 << 60 {
+            return usize::MAX;
+        }
+    }
+    count as usize
+}

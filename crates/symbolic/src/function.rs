@@ -1,0 +1,106 @@
+//! The elementary functions.
+
+use crate::Scalar;
+use crate::number::Number;
+
+/// An elementary function of one argument.
+///
+/// ```
+/// use symbolic::Function;
+/// assert_eq!(Function::Asinh.name(), "asinh");
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[allow(missing_docs)]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Asin,
+    Acos,
+    Atan,
+    Asinh,
+    Acosh,
+    Atanh,
+    Exp,
+    Log,
+}
+
+impl Function {
+    /// All of them.
+    pub const ALL: [Function; 14] = [
+        Function::Sin,
+        Function::Cos,
+        Function::Tan,
+        Function::Sinh,
+        Function::Cosh,
+        Function::Tanh,
+        Function::Asin,
+        Function::Acos,
+        Function::Atan,
+        Function::Asinh,
+        Function::Acosh,
+        Function::Atanh,
+        Function::Exp,
+        Function::Log,
+    ];
+
+    /// The name under which [`Graph::parse`](crate::Graph::parse) knows it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Function::Sin => "sin",
+            Function::Cos => "cos",
+            Function::Tan => "tan",
+            Function::Sinh => "sinh",
+            Function::Cosh => "cosh",
+            Function::Tanh => "tanh",
+            Function::Asin => "asin",
+            Function::Acos => "acos",
+            Function::Atan => "atan",
+            Function::Asinh => "asinh",
+            Function::Acosh => "acosh",
+            Function::Atanh => "atanh",
+            Function::Exp => "exp",
+            Function::Log => "log",
+        }
+    }
+
+    /// −1 for an odd function, 1 for an even one, 0 for neither.
+    pub(crate) fn parity(self) -> i8 {
+        match self {
+            Function::Cos | Function::Cosh => 1,
+            Function::Acos | Function::Acosh | Function::Exp | Function::Log => 0,
+            _ => -1,
+        }
+    }
+
+    /// The value at 0, where that is rational.
+    pub(crate) fn at_zero(self) -> Option<Number> {
+        match self {
+            Function::Cos | Function::Cosh | Function::Exp => Some(Number::ONE),
+            Function::Acos | Function::Acosh | Function::Log => None,
+            _ => Some(Number::ZERO),
+        }
+    }
+
+    pub(crate) fn apply<T: Scalar>(self, x: T) -> T {
+        match self {
+            Function::Sin => x.sin(),
+            Function::Cos => x.cos(),
+            Function::Tan => x.tan(),
+            Function::Sinh => x.sinh(),
+            Function::Cosh => x.cosh(),
+            Function::Tanh => x.tanh(),
+            Function::Asin => x.asin(),
+            Function::Acos => x.acos(),
+            Function::Atan => x.atan(),
+            Function::Asinh => x.asinh(),
+            Function::Acosh => x.acosh(),
+            Function::Atanh => x.atanh(),
+            Function::Exp => x.exp(),
+            Function::Log => x.log(),
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! The graph and its constructors.
+
+use crate::Function;
+use crate::arena::{Arena, Node};
+use crate::matrix::Matrix;
+use crate::number::{Number, Rational};
+use std::cell::RefCell;
+
+/// A node of a [`Graph`]. Equal expressions are the same node (hash-consing).
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Expr(pub(crate) u32);
+
+/// A named variable of a [`Graph`].
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Symbol(pub(crate) u32);
+
+/// The store of expressions. Building needs only `&Graph`; it is `Send`, not `Sync`, and a clone
+/// keeps all ids.
+///
+/// An [`Expr`] or [`Symbol`] belongs to the graph that made it (and to clones made later); in another
+/// graph it means something else or panics.
+///
+/// ```
+/// use symbolic::Graph;
+/// let g = Graph::new();
+/// let x = g.variable(g.symbol("x"));
+/// assert_eq!(g.mul(x, g.add(x, x)), g.mul(g.integer(2), g.powi(x, 2)));
+/// ```
+#[derive(Clone, Default)]
+pub struct Graph {
+    pub(crate) arena: RefCell<Arena>,
+}
+
+impl std::fmt::Debug for Graph {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Graph").finish_non_exhaustive()
+    }
+}
+
+impl Graph {
+    /// An empty graph.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The symbol of that name: an identifier followed by primes, such as `x`, `x'` or `mu_1'`. The
+    /// same name is the same symbol.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// assert_eq!(g.symbol("x'"), g.symbol("x'"));
+    /// ```
+    pub fn symbol(&self, name: &str) -> Symbol {
+        self.arena.borrow_mut().symbol(name)
+    }
+
+    /// The symbol of that name, if there is one already.
+    pub fn find_symbol(&self, name: &str) -> Option<Symbol> {
+        self.arena.borrow().find_symbol(name)
+    }
+
+    /// The name of a symbol, with its primes.
+    pub fn name(&self, symbol: Symbol) -> String {
+        self.arena.borrow().name(symbol).to_owned()
+    }
+
+    /// The symbol as an expression.
+    pub fn variable(&self, symbol: Symbol) -> Expr {
+        self.arena.borrow_mut().intern(Node::Symbol(symbol))
+    }
+
+    /// Several symbols as expressions.
+    pub fn variables(&self, symbols: &[Symbol]) -> Vec<Expr> {
+        symbols.iter().map(|s| self.variable(*s)).collect()
+    }
+
+    /// The symbol that `e` is, if it is one.
+    pub fn as_symbol(&self, e: Expr) -> Option<Symbol> {
+        match self.arena.borrow().node(e) {
+            Node::Symbol(s) => Some(*s),
+            _ => None,
+        }
+    }
+
+    /// 0
+    pub fn zero(&self) -> Expr {
+        Arena::ZERO
+    }
+
+    /// 1
+    pub fn one(&self) -> Expr {
+        Arena::ONE
+    }
+
+    /// The integer n, exactly.
+    pub fn integer(&self, n: i64) -> Expr {
+        self.arena.borrow_mut().number(Number::integer(n))
+    }
+
+    /// The fraction numerator/denominator, exactly; not finite for a zero denominator.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// assert_eq!(g.ratio(2, 4), g.number(0.5));
+    /// ```
+    pub fn ratio(&self, numerator: i64, denominator: i64) -> Expr {
+        self.arena
+            .borrow_mut()
+            .number(Number::ratio(numerator, denominator))
+    }
+
+    /// The number x; exactly the fraction of its shortest decimal where that fits, so that
+    /// `number(9.81)` is 981/100.
+    pub fn number(&self, x: f64) -> Expr {
+        self.arena.borrow_mut().number(Number::from_f64(x))
+    }
+
+    /// The value of `e`, if it is a number. A division by zero among numbers is a number that is not
+    /// finite.
+    pub fn as_number(&self, e: Expr) -> Option<f64> {
+        self.arena.borrow().as_number(e).map(Number::to_f64)
+    }
+
+    /// Structurally the number 0 (see [`Graph::vanishes`] for the test that also expands and
+    /// samples).
+    pub fn is_zero(&self, e: Expr) -> bool {
+        e == Arena::ZERO
+    }
+
+    /// a + b
+    pub fn add(&self, a: Expr, b: Expr) -> Expr {
+        self.sum(&[a, b])
+    }
+
+    /// a − b
+    pub fn sub(&self, a: Expr, b: Expr) -> Expr {
+        let parts = vec![(a, Number::ONE), (b, Number::MINUS_ONE)];
+        self.arena.borrow_mut().linear(Number::ZERO, parts)
+    }
+
+    /// a · b
+    pub fn mul(&self, a: Expr, b: Expr) -> Expr {
+        self.product(&[a, b])
+    }
+
+    /// a / b; not finite for b = 0.
+    pub fn div(&self, a: Expr, b: Expr) -> Expr {
+        let factors = vec![(a, Rational::ONE), (b, Rational::integer(-1))];
+        self.arena.borrow_mut().power_product(Number::ONE, factors)
+    }
+
+    /// −a
+    pub fn neg(&self, a: Expr) -> Expr {
+        self.arena.borrow_mut().scale(Number::MINUS_ONE, a)
+    }
+
+    /// base^exponent, with 0⁰ = 1; not finite for a negative power of 0.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let x = g.variable(g.symbol("x"));
+    /// assert_eq!(g.pow(g.sqrt(x), g.integer(2)), x);
+    /// assert_ne!(g.sqrt(g.powi(x, 2)), x); // it is |x|
+    /// ```
+    pub fn pow(&self, base: Expr, exponent: Expr) -> Expr {
+        self.arena.borrow_mut().pow(base, exponent)
+    }
+
+    /// baseⁿ for an integer n
+    pub fn powi(&self, base: Expr, exponent: i32) -> Expr {
+        let factors = vec![(base, Rational::integer(exponent.into()))];
+        self.arena.borrow_mut().power_product(Number::ONE, factors)
+    }
+
+    /// √a
+    pub fn sqrt(&self, a: Expr) -> Expr {
+        self.pow(a, self.ratio(1, 2))
+    }
+
+    /// function(argument), with the sign of an odd or even function's argument taken out.
+    ///
+    /// ```
+    /// use symbolic::{Function, Graph};
+    /// let g = Graph::new();
+    /// let x = g.variable(g.symbol("x"));
+    /// let odd = g.call(Function::Sin, g.neg(x));
+    /// assert_eq!(odd, g.neg(g.call(Function::Sin, x)));
+    /// ```
+    pub fn call(&self, function: Function, argument: Expr) -> Expr {
+        self.arena.borrow_mut().call(function, argument)
+    }
+
+    /// The angle of the point (x, y).
+    pub fn atan2(&self, y: Expr, x: Expr) -> Expr {
+        self.arena.borrow_mut().atan2(y, x)
+    }
+
+    /// Σ terms
+    pub fn sum(&self, terms: &[Expr]) -> Expr {
+        let parts = terms.iter().map(|t| (*t, Number::ONE)).collect();
+        self.arena.borrow_mut().linear(Number::ZERO, parts)
+    }
+
+    /// Π factors
+    pub fn product(&self, factors: &[Expr]) -> Expr {
+        let factors = factors.iter().map(|f| (*f, Rational::ONE)).collect();
+        self.arena.borrow_mut().power_product(Number::ONE, factors)
+    }
+
+    /// Σ aᵢ bᵢ
+    ///
+    /// # Panics
+    /// If the two differ in length.
+    pub fn dot(&self, a: &[Expr], b: &[Expr]) -> Expr {
+        assert_eq!(
+            a.len(),
+            b.len(),
+            "the dot product needs two vectors of the same length"
+        );
+        let terms: Vec<Expr> = a.iter().zip(b).map(|(a, b)| self.mul(*a, *b)).collect();
+        self.sum(&terms)
+    }
+
+    /// m v
+    ///
+    /// # Panics
+    /// If `v` does not have as many entries as `m` has columns.
+    pub fn mat_vec(&self, m: &Matrix, v: &[Expr]) -> Vec<Expr> {
+        assert_eq!(
+            m.columns(),
+            v.len(),
+            "a matrix times a vector of another length"
+        );
+        (0..m.rows()).map(|i| self.dot(m.row(i), v)).collect()
+    }
+
+    /// mᵀ v
+    ///
+    /// # Panics
+    /// If `v` does not have as many entries as `m` has rows.
+    pub fn transpose_vec(&self, m: &Matrix, v: &[Expr]) -> Vec<Expr> {
+        assert_eq!(
+            m.rows(),
+            v.len(),
+            "a transposed matrix times a vector of another length"
+        );
+        (0..m.columns())
+            .map(|j| self.dot(&m.column(j), v))
+            .collect()
+    }
+
+    /// a b
+    ///
+    /// # Panics
+    /// If `b` does not have as many rows as `a` has columns.
+    pub fn mat_mul(&self, a: &Matrix, b: &Matrix) -> Matrix {
+        assert_eq!(
+            a.columns(),
+            b.rows(),
+            "the product of two matrices that do not fit"
+        );
+        let columns: Vec<Vec<Expr>> = (0..b.columns()).map(|j| b.column(j)).collect();
+        Matrix::from_fn(a.rows(), b.columns(), |i, j| {
+            self.dot(a.row(i), &columns[j])
+        })
+    }
+}

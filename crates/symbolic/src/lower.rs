@@ -1,0 +1,252 @@
+//! From the graph to a straight-line program.
+
+use crate::Expr;
+use crate::Symbol;
+use crate::arena::{Arena, Node};
+use crate::number::{Number, Rational};
+use crate::program::{Id, Program, Value};
+use rustc_hash::FxHashMap;
+
+/// The program that computes `outputs`, and the value of each.
+pub(crate) fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> (Program, Vec<Id>) {
+    let mut lowering = Lowering {
+        arena,
+        program: Program::default(),
+        values: FxHashMap::default(),
+    };
+    for (i, s) in inputs.iter().enumerate() {
+        let index = u32::try_from(i).expect("fewer than 2^32 inputs");
+        let input = lowering.program.push(Value::Input(index));
+        lowering
+            .values
+            .entry(Leaf::Symbol(*s))
+            .or_insert(Parts::of(input));
+    }
+    for e in arena.reachable(outputs, |_| true) {
+        let parts = lowering.node(e);
+        lowering.values.insert(Leaf::Node(e), parts);
+    }
+    let outputs = outputs.iter().map(|e| lowering.whole(*e)).collect();
+    (lowering.program, outputs)
+}
+
+#[derive(PartialEq, Eq, Hash)]
+enum Leaf {
+    Symbol(Symbol),
+    Node(Expr),
+}
+
+/// A value as constant · varying; either may be absent, for 1.
+#[derive(Clone, Copy)]
+struct Parts {
+    constant: Option<Id>,
+    varying: Option<Id>,
+}
+
+impl Parts {
+    fn of(varying: Id) -> Self {
+        Self {
+            constant: None,
+            varying: Some(varying),
+        }
+    }
+}
+
+struct Lowering<'a> {
+    arena: &'a Arena,
+    program: Program,
+    values: FxHashMap<Leaf, Parts>,
+}
+
+impl Lowering<'_> {
+    fn whole(&mut self, e: Expr) -> Id {
+        match self.values[&Leaf::Node(e)] {
+            Parts {
+                constant: None,
+                varying: None,
+            } => self.program.constant(Number::ONE),
+            Parts {
+                constant: Some(v),
+                varying: None,
+            }
+            | Parts {
+                constant: None,
+                varying: Some(v),
+            } => v,
+            Parts {
+                constant: Some(a),
+                varying: Some(b),
+            } => self.program.push(Value::Mul(a, b)),
+        }
+    }
+
+    fn parts(&self, v: Id) -> Parts {
+        if self.program.is_constant(v) {
+            Parts {
+                constant: Some(v),
+                varying: None,
+            }
+        } else {
+            Parts::of(v)
+        }
+    }
+
+    fn node(&mut self, e: Expr) -> Parts {
+        let arena = self.arena;
+        let v = match arena.node(e) {
+            Node::Number(n) => self.program.constant(*n),
+            Node::Symbol(s) => return self.values[&Leaf::Symbol(*s)],
+            Node::Sum(constant, terms) => self.sum(*constant, terms),
+            Node::Product(factors) => return self.product(factors),
+            Node::Power(base, exponent) => {
+                let (base, exponent) = (self.whole(*base), self.whole(*exponent));
+                self.program.push(Value::Pow(base, exponent))
+            }
+            Node::Call(function, argument) => {
+                let argument = self.whole(*argument);
+                self.program.push(Value::Call(*function, argument))
+            }
+            Node::Atan2(y, x) => {
+                let (y, x) = (self.whole(*y), self.whole(*x));
+                self.program.push(Value::Atan2(y, x))
+            }
+        };
+        self.parts(v)
+    }
+
+    /// Σ c·t, terms with the same |c| added up before c is multiplied.
+    fn sum(&mut self, constant: Number, terms: &[(Expr, Number)]) -> Id {
+        let mut groups: Vec<(Option<Id>, Vec<(bool, Id)>)> = Vec::new();
+        let mut places: FxHashMap<Option<Id>, usize> = FxHashMap::default();
+        let mut rest: Vec<(bool, Id)> = Vec::new();
+        for (t, c) in terms {
+            let parts = self.values[&Leaf::Node(*t)];
+            let scale = self.scaled(c.abs(), parts.constant);
+            let Some(varying) = parts.varying else {
+                rest.push((c.is_negative(), self.or_one(scale)));
+                continue;
+            };
+            let place = *places.entry(scale).or_insert_with(|| {
+                groups.push((scale, Vec::new()));
+                groups.len() - 1
+            });
+            groups[place].1.push((c.is_negative(), varying));
+        }
+        if !constant.is_zero() {
+            rest.push((
+                constant.is_negative(),
+                self.program.constant(constant.abs()),
+            ));
+        }
+        let mut total: Vec<(bool, Id)> = Vec::new();
+        for (scale, members) in groups {
+            let (negative, value) = match scale {
+                // Without a factor the terms are just terms of the whole sum.
+                None => {
+                    total.extend(members);
+                    continue;
+                }
+                Some(scale) => {
+                    let (negative, value) = self.signed_sum(&members);
+                    (negative, self.program.push(Value::Mul(scale, value)))
+                }
+            };
+            total.push((negative, value));
+        }
+        if !rest.is_empty() {
+            total.push(self.signed_sum(&rest));
+        }
+        match self.signed_sum(&total) {
+            (false, v) => v,
+            (true, v) => self.program.push(Value::Neg(v)),
+        }
+    }
+
+    /// Σ ±v as (is it to be negated?, value): it starts with a positive term where there is one.
+    fn signed_sum(&mut self, terms: &[(bool, Id)]) -> (bool, Id) {
+        let first = terms.iter().position(|(negative, _)| !negative);
+        let all_negative = first.is_none();
+        let first = first.unwrap_or(0);
+        let mut value = terms[first].1;
+        for (i, (negative, v)) in terms.iter().enumerate() {
+            if i != first {
+                value = self.program.push(if *negative != all_negative {
+                    Value::Sub(value, *v)
+                } else {
+                    Value::Add(value, *v)
+                });
+            }
+        }
+        (all_negative, value)
+    }
+
+    fn scaled(&mut self, c: Number, constant: Option<Id>) -> Option<Id> {
+        if c.is_one() {
+            return constant;
+        }
+        let c = self.program.constant(c);
+        Some(match constant {
+            Some(k) => self.program.push(Value::Mul(c, k)),
+            None => c,
+        })
+    }
+
+    fn or_one(&mut self, v: Option<Id>) -> Id {
+        v.unwrap_or_else(|| self.program.constant(Number::ONE))
+    }
+
+    fn product(&mut self, factors: &[(Expr, Rational)]) -> Parts {
+        let mut sides = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+        for (base, exponent) in factors {
+            let v = self.whole(*base);
+            let side =
+                2 * usize::from(self.program.is_constant(v)) + usize::from(exponent.is_negative());
+            let power = self.positive_power(v, *exponent);
+            sides[side].push(power);
+        }
+        let [above, below, constant_above, constant_below] = sides;
+        Parts {
+            constant: self.quotient(&constant_above, &constant_below),
+            varying: self.quotient(&above, &below),
+        }
+    }
+
+    fn quotient(&mut self, above: &[Id], below: &[Id]) -> Option<Id> {
+        let mut multiply = |factors: &[Id]| {
+            factors
+                .iter()
+                .copied()
+                .reduce(|a, b| self.program.push(Value::Mul(a, b)))
+        };
+        match (multiply(above), multiply(below)) {
+            (above, None) => above,
+            (None, Some(b)) => Some(self.program.push(Value::Recip(b))),
+            (Some(a), Some(b)) => Some(self.program.push(Value::Div(a, b))),
+        }
+    }
+
+    /// v to the absolute value of a non-zero exponent
+    fn positive_power(&mut self, v: Id, exponent: Rational) -> Id {
+        let (n, d) = (exponent.numerator().unsigned_abs(), exponent.denominator());
+        match d {
+            1 => self.program.powi(v, n),
+            2 => {
+                let root = self.program.push(Value::Sqrt(v));
+                if n == 1 {
+                    return root;
+                }
+                let whole = self.program.powi(v, n / 2);
+                self.program.push(Value::Mul(whole, root))
+            }
+            _ => {
+                let exponent = if exponent.is_negative() {
+                    exponent.neg()
+                } else {
+                    exponent
+                };
+                let exponent = self.program.constant(Number::Exact(exponent));
+                self.program.push(Value::Pow(v, exponent))
+            }
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Normal forms in which an identity becomes the number zero.
+
+use crate::arena::{Arena, Node};
+use crate::number::{Number, Rational};
+use crate::{Expr, Function};
+use rustc_hash::FxHashMap;
+
+/// sin(n u) is taken apart up to this n.
+const MULTIPLE_LIMIT: i64 = 8;
+/// Rounds of clearing denominators.
+const ROUNDS: usize = 4;
+
+impl Arena {
+    /// The numerator of `e` as a polynomial in sines, cosines, roots and symbols, with sin² replaced by
+    /// 1 − cos²; `None` where it grows over `limit` terms.
+    ///
+    /// It is zero only if `e` is; an identity between other functions it may miss.
+    pub(crate) fn normal_numerator(&mut self, e: Expr, limit: usize) -> Option<Expr> {
+        let mut e = self.with_split_angles(e);
+        for _ in 0..ROUNDS {
+            e = self.expand(e, limit);
+            e = self.without_even_sines(e);
+            e = self.expand(e, limit);
+            if self.term_count(e) > limit {
+                return None;
+            }
+            let cleared = self.cleared(e);
+            if cleared == e {
+                break;
+            }
+            e = cleared;
+        }
+        Some(e)
+    }
+
+    pub(crate) fn term_count(&self, e: Expr) -> usize {
+        match self.node(e) {
+            Node::Sum(_, terms) => terms.len(),
+            _ => 1,
+        }
+    }
+
+    /// tan = sin/cos, and sines and cosines of sums by the addition theorems; likewise hyperbolic ones.
+    fn with_split_angles(&mut self, e: Expr) -> Expr {
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for n in self.reachable(&[e], |_| true) {
+            let mut new = self.rebuild(n, &image);
+            if let Node::Call(function, argument) = *self.node(new) {
+                new = self.split_call(function, argument).unwrap_or(new);
+            }
+            if new != n {
+                image.insert(n, new);
+            }
+        }
+        image.get(&e).copied().unwrap_or(e)
+    }
+
+    fn split_call(&mut self, function: Function, argument: Expr) -> Option<Expr> {
+        let hyperbolic = match function {
+            Function::Sin | Function::Cos | Function::Tan => false,
+            Function::Sinh | Function::Cosh | Function::Tanh => true,
+            _ => return None,
+        };
+        let (sine, cosine) = self.sine_and_cosine(argument, hyperbolic);
+        Some(match function {
+            Function::Sin | Function::Sinh => sine,
+            Function::Cos | Function::Cosh => cosine,
+            _ => self.power_product(
+                Number::ONE,
+                vec![(sine, Rational::ONE), (cosine, Rational::integer(-1))],
+            ),
+        })
+    }
+
+    /// (sin u, cos u) or (sinh u, cosh u) in terms of those of the parts of u.
+    fn sine_and_cosine(&mut self, u: Expr, hyperbolic: bool) -> (Expr, Expr) {
+        let Node::Sum(constant, terms) = self.node(u).clone() else {
+            return self.plain_pair(u, hyperbolic);
+        };
+        if terms.len() > 4 {
+            return self.plain_pair(u, hyperbolic);
+        }
+        let mut total = (Self::ZERO, Self::ONE);
+        if !constant.is_zero() {
+            let constant = self.number(constant);
+            total = self.plain_pair(constant, hyperbolic);
+        }
+        for (t, c) in terms.iter() {
+            // The integer multiple of a unit, so that 3x/2 and x/2 share the unit x/2.
+            let (times, unit) = match c {
+                Number::Exact(r) if r.numerator().abs() <= MULTIPLE_LIMIT => {
+                    (r.numerator(), Number::ratio(1, r.denominator()))
+                }
+                _ => (1, *c),
+            };
+            let unit = self.scale(unit, *t);
+            let single = self.plain_pair(unit, hyperbolic);
+            for _ in 0..times.abs() {
+                let part = if times < 0 {
+                    (self.scale(Number::MINUS_ONE, single.0), single.1)
+                } else {
+                    single
+                };
+                total = self.added_angles(total, part, hyperbolic);
+            }
+        }
+        total
+    }
+
+    fn plain_pair(&mut self, u: Expr, hyperbolic: bool) -> (Expr, Expr) {
+        if hyperbolic {
+            (self.call(Function::Sinh, u), self.call(Function::Cosh, u))
+        } else {
+            (self.call(Function::Sin, u), self.call(Function::Cos, u))
+        }
+    }
+
+    /// sin(a+b) = sin a cos b + cos a sin b, cos(a+b) = cos a cos b ∓ sin a sin b
+    fn added_angles(&mut self, a: (Expr, Expr), b: (Expr, Expr), hyperbolic: bool) -> (Expr, Expr) {
+        let sign = if hyperbolic {
+            Number::ONE
+        } else {
+            Number::MINUS_ONE
+        };
+        let (sc, cs) = (self.multiply_out(a.0, b.1), self.multiply_out(a.1, b.0));
+        let (cc, ss) = (self.multiply_out(a.1, b.1), self.multiply_out(a.0, b.0));
+        let sine = self.linear(Number::ZERO, vec![(sc, Number::ONE), (cs, Number::ONE)]);
+        let cosine = self.linear(Number::ZERO, vec![(cc, Number::ONE), (ss, sign)]);
+        (sine, cosine)
+    }
+
+    /// sin² = 1 − cos², sinh² = cosh² − 1, in every power of at least 2.
+    fn without_even_sines(&mut self, e: Expr) -> Expr {
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for n in self.reachable(&[e], |_| true) {
+            let mut new = self.rebuild(n, &image);
+            if let Node::Product(factors) = self.node(new).clone() {
+                let mut replaced = Vec::with_capacity(factors.len());
+                for (base, exponent) in factors.iter() {
+                    self.replace_even_sine(*base, *exponent, &mut replaced);
+                }
+                new = self.power_product(Number::ONE, replaced);
+            }
+            if new != n {
+                image.insert(n, new);
+            }
+        }
+        image.get(&e).copied().unwrap_or(e)
+    }
+
+    fn replace_even_sine(
+        &mut self,
+        base: Expr,
+        exponent: Rational,
+        factors: &mut Vec<(Expr, Rational)>,
+    ) {
+        let (function, argument, sign) = match *self.node(base) {
+            Node::Call(Function::Sin, u) => (Function::Cos, u, 1),
+            Node::Call(Function::Sinh, u) => (Function::Cosh, u, -1),
+            _ => return factors.push((base, exponent)),
+        };
+        let Some(n) = exponent.as_integer().filter(|n| n.abs() >= 2) else {
+            return factors.push((base, exponent));
+        };
+        let cosine = self.call(function, argument);
+        let square = self.times(&[cosine, cosine]);
+        let replacement = self.linear(
+            Number::integer(sign),
+            vec![(square, Number::integer(-sign))],
+        );
+        factors.push((replacement, Rational::integer(n / 2)));
+        factors.push((base, Rational::integer(n % 2)));
+    }
+
+    /// A sum times the greatest denominator of its terms.
+    fn cleared(&mut self, e: Expr) -> Expr {
+        let terms: Vec<Expr> = match self.node(e) {
+            Node::Sum(_, terms) => terms.iter().map(|(t, _)| *t).collect(),
+            _ => vec![e],
+        };
+        let mut lowest: FxHashMap<Expr, Rational> = FxHashMap::default();
+        for t in terms {
+            let Node::Product(factors) = self.node(t) else {
+                continue;
+            };
+            for (base, exponent) in factors.iter().filter(|(_, r)| r.is_negative()) {
+                let least = lowest.entry(*base).or_insert(*exponent);
+                *least = (*least).min(*exponent);
+            }
+        }
+        if lowest.is_empty() {
+            return e;
+        }
+        let mut factors: Vec<_> = lowest.into_iter().map(|(b, r)| (b, r.neg())).collect();
+        factors.sort_unstable();
+        let denominator = self.power_product(Number::ONE, factors);
+        self.multiply_out(e, denominator)
+    }
+}

@@ -1,0 +1,351 @@
+//! Numbers of the graph: exact rationals while they fit, `f64` beyond.
+
+use num_rational::Ratio;
+use num_traits::{CheckedAdd, CheckedMul};
+use std::hash::{Hash, Hasher};
+
+/// Integers up to here are exact in `f64`, so a quotient of two of them is rounded once.
+const EXACT_IN_F64: i64 = 1 << 53;
+
+/// A reduced fraction; compared and hashed by its two parts.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct Rational(Ratio<i64>);
+
+#[expect(
+    clippy::derived_hash_with_manual_eq,
+    reason = "equality of reduced fractions is by parts"
+)]
+impl Hash for Rational {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (self.numerator(), self.denominator()).hash(state);
+    }
+}
+
+impl PartialOrd for Rational {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Rational {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.cmp(&other.0)
+    }
+}
+
+impl Rational {
+    pub(crate) const ONE: Rational = Rational(Ratio::new_raw(1, 1));
+
+    /// `None` for a zero denominator, or where the reduced fraction does not fit.
+    pub(crate) fn new(numerator: i64, denominator: i64) -> Option<Self> {
+        if denominator == 0 || numerator == i64::MIN || denominator == i64::MIN {
+            return None;
+        }
+        Some(Self(Ratio::new(numerator, denominator)))
+    }
+
+    pub(crate) fn integer(n: i64) -> Self {
+        Self(Ratio::new_raw(n, 1))
+    }
+
+    fn fitting(ratio: Ratio<i64>) -> Option<Self> {
+        (*ratio.numer() != i64::MIN).then_some(Self(ratio))
+    }
+
+    pub(crate) fn numerator(self) -> i64 {
+        *self.0.numer()
+    }
+
+    pub(crate) fn denominator(self) -> i64 {
+        *self.0.denom()
+    }
+
+    pub(crate) fn is_zero(self) -> bool {
+        self.numerator() == 0
+    }
+
+    pub(crate) fn is_negative(self) -> bool {
+        self.numerator() < 0
+    }
+
+    pub(crate) fn as_integer(self) -> Option<i64> {
+        (self.denominator() == 1).then_some(self.numerator())
+    }
+
+    pub(crate) fn floor(self) -> i64 {
+        self.numerator().div_euclid(self.denominator())
+    }
+
+    pub(crate) fn add(self, other: Self) -> Option<Self> {
+        self.0.checked_add(&other.0).and_then(Self::fitting)
+    }
+
+    pub(crate) fn mul(self, other: Self) -> Option<Self> {
+        self.0.checked_mul(&other.0).and_then(Self::fitting)
+    }
+
+    pub(crate) fn neg(self) -> Self {
+        Self(-self.0)
+    }
+
+    pub(crate) fn recip(self) -> Option<Self> {
+        (!self.is_zero()).then(|| Self(self.0.recip()))
+    }
+
+    pub(crate) fn powi(self, exponent: i64) -> Option<Self> {
+        let base = if exponent < 0 { self.recip()? } else { self };
+        let n = u32::try_from(exponent.unsigned_abs()).ok();
+        match (base.numerator(), base.denominator()) {
+            (0, _) => return Some(if exponent == 0 { Self::ONE } else { base }),
+            (1, 1) => return Some(Self::ONE),
+            (-1, 1) => return Some(if exponent % 2 == 0 { Self::ONE } else { base }),
+            _ => {}
+        }
+        let n = n?;
+        Self::new(
+            base.numerator().checked_pow(n)?,
+            base.denominator().checked_pow(n)?,
+        )
+    }
+
+    /// The exact `root`-th root of a positive fraction, if it is rational.
+    fn root(self, root: i64) -> Option<Self> {
+        let exact = |n: i64| {
+            let guess = (n as f64).powf(1.0 / root as f64).round() as i64;
+            let power = u32::try_from(root).ok()?;
+            (guess - 1..=guess + 1).find(|g| *g > 0 && g.checked_pow(power) == Some(n))
+        };
+        Self::new(exact(self.numerator())?, exact(self.denominator())?)
+    }
+
+    /// `self^exponent` where that is rational, for a positive fraction.
+    pub(crate) fn pow(self, exponent: Self) -> Option<Self> {
+        if let Some(n) = exponent.as_integer() {
+            return self.powi(n);
+        }
+        if self.numerator() <= 0 {
+            return None;
+        }
+        self.root(exponent.denominator())?
+            .powi(exponent.numerator())
+    }
+
+    pub(crate) fn to_f64(self) -> f64 {
+        self.numerator() as f64 / self.denominator() as f64
+    }
+}
+
+/// An exact rational, or a float where no exact one fits. Zero is always exact, and so is every
+/// float whose shortest decimal is a fraction that converts back to the same float.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Number {
+    Exact(Rational),
+    Float(f64),
+}
+
+impl PartialEq for Number {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Number::Exact(a), Number::Exact(b)) => a == b,
+            (Number::Float(a), Number::Float(b)) => a.to_bits() == b.to_bits(),
+            _ => false,
+        }
+    }
+}
+
+impl Eq for Number {}
+
+impl Hash for Number {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        match self {
+            Number::Exact(r) => r.hash(state),
+            Number::Float(x) => x.to_bits().hash(state),
+        }
+    }
+}
+
+impl Number {
+    pub(crate) const ZERO: Number = Number::Exact(Rational(Ratio::new_raw(0, 1)));
+    pub(crate) const ONE: Number = Number::Exact(Rational::ONE);
+    pub(crate) const MINUS_ONE: Number = Number::Exact(Rational(Ratio::new_raw(-1, 1)));
+    pub(crate) const UNDEFINED: Number = Number::Float(f64::NAN);
+
+    pub(crate) fn integer(n: i64) -> Self {
+        Self::ratio(n, 1)
+    }
+
+    pub(crate) fn ratio(numerator: i64, denominator: i64) -> Self {
+        match Rational::new(numerator, denominator) {
+            Some(r) => Number::Exact(r),
+            None => Self::from_f64(numerator as f64 / denominator as f64),
+        }
+    }
+
+    pub(crate) fn from_f64(x: f64) -> Self {
+        if x.is_nan() {
+            return Self::UNDEFINED;
+        }
+        if x.is_infinite() {
+            return Number::Float(x);
+        }
+        if x == x.trunc() && x.abs() <= EXACT_IN_F64 as f64 {
+            return Number::Exact(Rational::integer(x as i64));
+        }
+        match exact_decimal(&format!("{x:e}")) {
+            Some(r) if r.to_f64() == x => Number::Exact(r),
+            _ => Number::Float(x),
+        }
+    }
+
+    /// A decimal literal such as `9.81` or `1e-3`; `None` where it is beyond the range of `f64`.
+    pub(crate) fn from_decimal(literal: &str) -> Option<Self> {
+        if let Some(r) = exact_decimal(literal) {
+            return Some(Number::Exact(r));
+        }
+        let x: f64 = literal.parse().ok()?;
+        let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
+        let lost = x == 0.0 && mantissa.bytes().any(|c| matches!(c, b'1'..=b'9'));
+        (x.is_finite() && !lost).then(|| Self::from_f64(x))
+    }
+
+    pub(crate) fn to_f64(self) -> f64 {
+        match self {
+            Number::Exact(r) => r.to_f64(),
+            Number::Float(x) => x,
+        }
+    }
+
+    pub(crate) fn is_zero(self) -> bool {
+        matches!(self, Number::Exact(r) if r.is_zero())
+    }
+
+    pub(crate) fn is_one(self) -> bool {
+        self == Self::ONE
+    }
+
+    pub(crate) fn is_finite(self) -> bool {
+        !matches!(self, Number::Float(x) if !x.is_finite())
+    }
+
+    pub(crate) fn is_negative(self) -> bool {
+        match self {
+            Number::Exact(r) => r.is_negative(),
+            Number::Float(x) => x < 0.0,
+        }
+    }
+
+    pub(crate) fn abs(self) -> Self {
+        if self.is_negative() { self.neg() } else { self }
+    }
+
+    fn combine(
+        self,
+        other: Self,
+        exact: fn(Rational, Rational) -> Option<Rational>,
+        float: fn(f64, f64) -> f64,
+    ) -> Self {
+        if let (Number::Exact(a), Number::Exact(b)) = (self, other)
+            && let Some(r) = exact(a, b)
+        {
+            return Number::Exact(r);
+        }
+        Self::from_f64(float(self.to_f64(), other.to_f64()))
+    }
+
+    pub(crate) fn add(self, other: Self) -> Self {
+        self.combine(other, Rational::add, |a, b| a + b)
+    }
+
+    pub(crate) fn mul(self, other: Self) -> Self {
+        self.combine(other, Rational::mul, |a, b| a * b)
+    }
+
+    pub(crate) fn neg(self) -> Self {
+        match self {
+            Number::Exact(r) => Number::Exact(r.neg()),
+            Number::Float(x) => Self::from_f64(-x),
+        }
+    }
+
+    /// `1/self`; infinite for zero.
+    pub(crate) fn recip(self) -> Self {
+        self.powi(-1)
+    }
+
+    /// `self^exponent`; infinite for zero to a negative power, and `0^0 = 1`.
+    pub(crate) fn powi(self, exponent: i64) -> Self {
+        if let Number::Exact(r) = self
+            && let Some(power) = r.powi(exponent)
+        {
+            return Number::Exact(power);
+        }
+        Self::from_f64(match i32::try_from(exponent) {
+            Ok(n) => self.to_f64().powi(n),
+            Err(_) => self.to_f64().powf(exponent as f64),
+        })
+    }
+}
+
+/// `digits[.digits][e±digits]` as a fraction, where numerator and denominator fit.
+fn exact_decimal(literal: &str) -> Option<Rational> {
+    let (mantissa, exponent) = match literal.split_once(['e', 'E']) {
+        Some((m, e)) => (m, e.parse::<i32>().ok()?),
+        None => (literal, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let fraction = fraction.trim_end_matches('0');
+    let digits: i64 = if fraction.is_empty() {
+        whole.parse().ok()?
+    } else {
+        format!("{whole}{fraction}").parse().ok()?
+    };
+    let scale = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
+    if scale >= 0 {
+        if digits == 0 {
+            return Some(Rational::integer(0));
+        }
+        let factor = 10_i64.checked_pow(scale.unsigned_abs())?;
+        return Rational::new(digits.checked_mul(factor)?, 1);
+    }
+    let r = Rational::new(digits, 10_i64.checked_pow(scale.unsigned_abs())?)?;
+    let fits = r.numerator().abs() <= EXACT_IN_F64 && r.denominator() <= EXACT_IN_F64;
+    (fits || r.denominator() == 1).then_some(r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_exact_where_they_fit() {
+        assert_eq!(Number::from_decimal("9.81"), Some(Number::ratio(981, 100)));
+        assert_eq!(Number::from_decimal("1e-3"), Some(Number::ratio(1, 1000)));
+        assert_eq!(Number::from_decimal(".5"), Some(Number::ratio(1, 2)));
+        assert_eq!(Number::from_decimal("5."), Some(Number::integer(5)));
+        assert_eq!(Number::from_decimal("1e400"), None);
+        assert_eq!(Number::from_decimal("1e-400"), None);
+        assert_eq!(Number::from_f64(9.81), Number::ratio(981, 100));
+        assert!(matches!(Number::from_f64(0.1 + 0.2), Number::Float(_)));
+    }
+
+    #[test]
+    fn overflow_falls_back_to_floats() {
+        let big = Number::integer(i64::MAX);
+        assert_eq!(big.mul(big).to_f64(), (i64::MAX as f64).powi(2));
+        assert_eq!(Number::integer(i64::MIN).neg().to_f64(), -(i64::MIN as f64));
+        assert_eq!(Number::integer(2).powi(-2000), Number::ZERO);
+        assert!(!Number::ZERO.recip().is_finite());
+        assert_eq!(Number::ZERO.powi(0), Number::ONE);
+    }
+
+    #[test]
+    fn rational_roots_are_found() {
+        let half = Rational::new(1, 2).unwrap();
+        assert_eq!(
+            Rational::new(49, 100).unwrap().pow(half),
+            Rational::new(7, 10)
+        );
+        assert_eq!(Rational::integer(2).pow(half), None);
+        assert_eq!(Rational::integer(-4).pow(half), None);
+    }
+}

@@ -1,0 +1,235 @@
+//! What can be wrong with a formula, and where.
+
+use std::fmt;
+
+/// A formula that could not be read: what is wrong, and the place.
+///
+/// ```
+/// use symbolic::{Graph, ParseErrorKind};
+/// let g = Graph::new();
+/// let x = g.variable(g.symbol("x"));
+/// let scope = |name: &str| (name == "x").then_some(x);
+/// let error = g.parse("1 + 2 x", &scope, &["x".into()]).unwrap_err();
+/// assert!(matches!(error.kind, ParseErrorKind::ImplicitMultiplication { .. }));
+/// assert_eq!((error.line(), error.column()), (1, 7));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParseError {
+    /// What is wrong.
+    pub kind: ParseErrorKind,
+    /// The whole text that was read.
+    pub text: String,
+    /// Where the offending piece starts in `text`, in bytes.
+    pub offset: usize,
+    /// Length of the offending piece in bytes; 0 at the end of the text.
+    pub length: usize,
+}
+
+/// What is wrong with a formula.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ParseErrorKind {
+    /// There is no formula.
+    #[error("there is no expression here")]
+    Empty,
+    /// A character that no formula contains.
+    #[error("unexpected character {found:?}{}", hinted(.hint.as_deref()))]
+    UnexpectedCharacter {
+        /// The character.
+        found: char,
+        /// What may have been meant.
+        hint: Option<String>,
+    },
+    /// Something that cannot stand here.
+    #[error("expected {expected}, found `{}`", shortened(.found))]
+    UnexpectedToken {
+        /// What was found.
+        found: String,
+        /// What could stand here.
+        expected: &'static str,
+    },
+    /// The formula stops too early.
+    #[error("the expression ends where {expected} is expected")]
+    UnexpectedEnd {
+        /// What could stand here.
+        expected: &'static str,
+    },
+    /// An opening parenthesis without its partner.
+    #[error("this parenthesis is never closed")]
+    UnclosedParenthesis,
+    /// A closing parenthesis without its partner.
+    #[error("this closing parenthesis has no opening one")]
+    UnmatchedParenthesis,
+    /// A name that means nothing here.
+    #[error("undefined name `{}`{}", shortened(.name), meant(.suggestion.as_deref()))]
+    Undefined {
+        /// The name.
+        name: String,
+        /// A similar name that is defined.
+        suggestion: Option<String>,
+    },
+    /// A call of something that is not known at all.
+    #[error("unknown function `{}`{}", shortened(.name), meant(.suggestion.as_deref()))]
+    UnknownFunction {
+        /// The name.
+        name: String,
+        /// A similar function.
+        suggestion: Option<String>,
+    },
+    /// A function that has no derivative everywhere.
+    #[error(
+        "`{name}` is not differentiable, and equations of motion need two derivatives; {instead}"
+    )]
+    NotSmooth {
+        /// The function.
+        name: String,
+        /// What to write instead.
+        instead: &'static str,
+    },
+    /// A function with too few or too many arguments.
+    #[error("`{function}` takes {expected} argument{}, found {found}", plural(*.expected))]
+    WrongArgumentCount {
+        /// The function.
+        function: String,
+        /// How many arguments it takes.
+        expected: usize,
+        /// How many were given.
+        found: usize,
+    },
+    /// A function that is used like a variable.
+    #[error("`{name}` is a function and needs an argument: write {name}(…)")]
+    FunctionWithoutArgument {
+        /// The function.
+        name: String,
+    },
+    /// A variable that is used like a function.
+    #[error("`{name}` is not a function; for a product write {name}*(…)")]
+    VariableCalled {
+        /// The variable.
+        name: String,
+    },
+    /// Two factors without a multiplication sign between them.
+    #[error("a multiplication sign is missing: write {left}*{right}")]
+    ImplicitMultiplication {
+        /// The end of the first factor.
+        left: String,
+        /// The start of the second.
+        right: String,
+    },
+    /// A literal beyond the range of numbers.
+    #[error("the number {} is out of range (about 1e-308 to 1e308)", shortened(.literal))]
+    NumberOutOfRange {
+        /// The literal.
+        literal: String,
+    },
+    /// A divisor that is the number zero.
+    #[error("division by zero")]
+    DivisionByZero,
+    /// A number that is not finite, such as log(0).
+    #[error("the value is not finite")]
+    NotFinite,
+    /// More nested parentheses or powers than are accepted.
+    #[error("more than {limit} nested parentheses or powers")]
+    TooDeep {
+        /// The greatest accepted depth.
+        limit: usize,
+    },
+}
+
+fn hinted(hint: Option<&str>) -> String {
+    hint.map_or_else(String::new, |h| format!("; {h}"))
+}
+
+fn meant(suggestion: Option<&str>) -> String {
+    suggestion.map_or_else(String::new, |s| format!("; did you mean `{s}`?"))
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+/// At most 40 characters of `text`.
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Characters shown on each side of the place.
+const WINDOW: usize = 50;
+
+impl ParseError {
+    fn line_start(&self) -> usize {
+        self.text[..self.offset].rfind('\n').map_or(0, |i| i + 1)
+    }
+
+    /// The line of the offending piece, counted from 1.
+    pub fn line(&self) -> usize {
+        self.text[..self.offset].matches('\n').count() + 1
+    }
+
+    /// The column of the offending piece in characters, counted from 1.
+    pub fn column(&self) -> usize {
+        self.text[self.line_start()..self.offset].chars().count() + 1
+    }
+
+    /// The line with the offending piece, cut to a window round it, and the row of carets below it.
+    fn excerpt(&self) -> (String, String) {
+        let before = &self.text[self.line_start()..self.offset];
+        let after = &self.text[self.offset..];
+        let after = &after[..after.find('\n').unwrap_or(after.len())];
+        let cut_before = before
+            .char_indices()
+            .rev()
+            .nth(WINDOW - 1)
+            .map_or(0, |(i, _)| i);
+        let cut_after = after
+            .char_indices()
+            .nth(WINDOW)
+            .map_or(after.len(), |(i, _)| i);
+        let mut line = String::new();
+        if cut_before > 0 {
+            line.push('…');
+        }
+        line.extend(before[cut_before..].chars().map(printable));
+        let margin = line.chars().count();
+        line.extend(
+            after[..cut_after]
+                .trim_end_matches('\r')
+                .chars()
+                .map(printable),
+        );
+        if cut_after < after.len() {
+            line.push('…');
+        }
+        let end = self.length.min(cut_after);
+        let carets = after
+            .char_indices()
+            .take_while(|(i, _)| *i < end)
+            .count()
+            .max(1);
+        (line, " ".repeat(margin) + &"^".repeat(carets))
+    }
+}
+
+/// Control characters, tabs among them, become spaces, so that the carets stand right.
+fn printable(c: char) -> char {
+    if c.is_control() { ' ' } else { c }
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (line, carets) = self.excerpt();
+        write!(
+            f,
+            "line {}, column {}: {}",
+            self.line(),
+            self.column(),
+            self.kind
+        )?;
+        write!(f, "\n  {line}\n  {carets}")
+    }
+}
+
+impl std::error::Error for ParseError {}

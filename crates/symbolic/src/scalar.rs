@@ -1,0 +1,131 @@
+//! The number types a [`Tape`](crate::Tape) can be evaluated in.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number type: what a [`Tape`](crate::Tape) needs to be evaluated in it.
+///
+/// Angles are in radians. Outside its domain a function gives the type's "not a number".
+///
+/// ```
+/// use symbolic::Scalar;
+/// assert_eq!(<f64 as Scalar>::from_ratio(981, 100), 9.81);
+/// ```
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The number nearest to `x`.
+    fn from_f64(x: f64) -> Self;
+    /// `numerator / denominator`, rounded in this type.
+    fn from_ratio(numerator: i64, denominator: i64) -> Self;
+    /// √x
+    fn sqrt(self) -> Self;
+    /// sin x
+    fn sin(self) -> Self;
+    /// cos x
+    fn cos(self) -> Self;
+    /// (sin x, cos x)
+    fn sin_cos(self) -> (Self, Self) {
+        (self.sin(), self.cos())
+    }
+    /// tan x
+    fn tan(self) -> Self;
+    /// sinh x
+    fn sinh(self) -> Self;
+    /// cosh x
+    fn cosh(self) -> Self;
+    /// tanh x
+    fn tanh(self) -> Self;
+    /// arcsin x
+    fn asin(self) -> Self;
+    /// arccos x
+    fn acos(self) -> Self;
+    /// arctan x
+    fn atan(self) -> Self;
+    /// arsinh x
+    fn asinh(self) -> Self;
+    /// arcosh x
+    fn acosh(self) -> Self;
+    /// artanh x
+    fn atanh(self) -> Self;
+    /// eˣ
+    fn exp(self) -> Self;
+    /// natural logarithm of x
+    fn log(self) -> Self;
+    /// x to a real power
+    fn powf(self, exponent: Self) -> Self;
+    /// The angle of the point (x, y), with `self` as y.
+    fn atan2(self, x: Self) -> Self;
+}
+
+impl Scalar for f64 {
+    #[inline]
+    fn from_f64(x: f64) -> f64 {
+        x
+    }
+    fn from_ratio(numerator: i64, denominator: i64) -> f64 {
+        numerator as f64 / denominator as f64
+    }
+    #[inline]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    #[inline]
+    fn sin(self) -> f64 {
+        f64::sin(self)
+    }
+    #[inline]
+    fn cos(self) -> f64 {
+        f64::cos(self)
+    }
+    #[inline]
+    fn sin_cos(self) -> (f64, f64) {
+        f64::sin_cos(self)
+    }
+    fn tan(self) -> f64 {
+        f64::tan(self)
+    }
+    fn sinh(self) -> f64 {
+        f64::sinh(self)
+    }
+    fn cosh(self) -> f64 {
+        f64::cosh(self)
+    }
+    fn tanh(self) -> f64 {
+        f64::tanh(self)
+    }
+    fn asin(self) -> f64 {
+        f64::asin(self)
+    }
+    fn acos(self) -> f64 {
+        f64::acos(self)
+    }
+    fn atan(self) -> f64 {
+        f64::atan(self)
+    }
+    fn asinh(self) -> f64 {
+        f64::asinh(self)
+    }
+    fn acosh(self) -> f64 {
+        f64::acosh(self)
+    }
+    fn atanh(self) -> f64 {
+        f64::atanh(self)
+    }
+    fn exp(self) -> f64 {
+        f64::exp(self)
+    }
+    fn log(self) -> f64 {
+        f64::ln(self)
+    }
+    fn powf(self, exponent: f64) -> f64 {
+        f64::powf(self, exponent)
+    }
+    fn atan2(self, x: f64) -> f64 {
+        f64::atan2(self, x)
+    }
+}
