@@ -1,0 +1,320 @@
+//! From values to lengths along an axis, and the ticks that stand there.
+//!
+//! Everything here works in the *measure* of an axis: the value itself on a linear axis, its decimal logarithm on a
+//! logarithmic one.
+
+use super::text::{decimal, power_of_ten, width};
+use super::{Axis, PictureError, Scale};
+
+/// Values beyond are treated as not finite, so that differences of two values stay finite.
+const LARGEST: f64 = 1e300;
+/// Values below are treated as zero on a logarithmic axis.
+const SMALLEST: f64 = 1e-300;
+/// Font size of tick labels, in pixels.
+pub(super) const TICK_SIZE: f64 = 12.0;
+
+/// Why a value has no place on an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LeftOut {
+    NotFinite,
+    NotPositive,
+}
+
+/// A range in the measure of an axis; `low < high`, both finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Interval {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+/// Which way an axis runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Direction {
+    Horizontal,
+    Vertical,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tick {
+    /// Place in the measure of the axis.
+    pub(super) at: f64,
+    pub(super) label: String,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Ticks {
+    pub(super) labelled: Vec<Tick>,
+    /// Places of the short ticks without label.
+    pub(super) minor: Vec<f64>,
+    /// What every label is to be multiplied by: `×10⁻⁷`.
+    pub(super) factor: Option<String>,
+}
+
+impl Interval {
+    pub(super) fn span(self) -> f64 {
+        self.high - self.low
+    }
+
+    pub(super) fn contains(self, at: f64) -> bool {
+        (self.low..=self.high).contains(&at)
+    }
+
+    /// Place of a measure as a fraction of the length.
+    pub(super) fn fraction(self, at: f64) -> f64 {
+        (at - self.low) / self.span()
+    }
+
+    /// The interval with the same middle and this span.
+    pub(super) fn with_span(self, span: f64) -> Self {
+        let middle = self.low / 2.0 + self.high / 2.0;
+        Self { low: middle - span / 2.0, high: middle + span / 2.0 }
+    }
+}
+
+/// The measure of a value.
+pub(super) fn measure(scale: Scale, value: f64) -> Result<f64, LeftOut> {
+    if !value.is_finite() || value.abs() > LARGEST {
+        return Err(LeftOut::NotFinite);
+    }
+    match scale {
+        Scale::Linear => Ok(value),
+        Scale::Log if value >= SMALLEST => Ok(value.log10()),
+        Scale::Log => Err(LeftOut::NotPositive),
+    }
+}
+
+/// The range an axis was given.
+pub(super) fn given(axis: &Axis) -> Result<Option<Interval>, PictureError> {
+    let Some((low, high)) = axis.range else {
+        return Ok(None);
+    };
+    let refusal = || PictureError::Range { axis: axis.label.clone(), low, high };
+    let interval = Interval {
+        low: measure(axis.scale, low).map_err(|_| refusal())?,
+        high: measure(axis.scale, high).map_err(|_| refusal())?,
+    };
+    if high - low < 1e-9 * low.abs().max(high.abs()) || interval.span() < 1e-290 {
+        return Err(refusal());
+    }
+    Ok(Some(interval))
+}
+
+/// The range that holds all `measures`, with `margin` of its span on both sides.
+pub(super) fn around(scale: Scale, measures: impl Iterator<Item = f64>, margin: f64) -> Option<Interval> {
+    let (low, high) = measures.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    if low > high {
+        return None;
+    }
+    let interval = Interval { low, high };
+    let magnitude = low.abs().max(high.abs());
+    let span = interval.span();
+    let one_value = match scale {
+        Scale::Linear => span <= 1e-6 * magnitude || span < 1e-290,
+        Scale::Log => span < 1e-6,
+    };
+    Some(match (one_value, scale) {
+        (false, _) => interval.with_span(span * (1.0 + 2.0 * margin)),
+        (true, Scale::Linear) if magnitude < 1e-290 => interval.with_span(2.0),
+        (true, Scale::Linear) => interval.with_span(0.1 * magnitude),
+        (true, Scale::Log) => interval.with_span(1.0),
+    })
+}
+
+/// Ticks for an axis of this length in pixels.
+pub(super) fn ticks(scale: Scale, interval: Interval, length: f64, direction: Direction) -> Ticks {
+    match scale {
+        Scale::Linear => linear_ticks(interval, length, direction),
+        Scale::Log => log_ticks(interval, length, direction),
+    }
+}
+
+/// How many labels a length has room for.
+fn room(length: f64, direction: Direction) -> usize {
+    let each = match direction {
+        Direction::Horizontal => 70.0,
+        Direction::Vertical => 42.0,
+    };
+    let count = (length / each) as usize;
+    count.max(2)
+}
+
+/// Do the labels stand apart?
+fn apart(labelled: &[Tick], interval: Interval, length: f64, direction: Direction) -> bool {
+    labelled.windows(2).all(|pair| {
+        let distance = (interval.fraction(pair[1].at) - interval.fraction(pair[0].at)) * length;
+        match direction {
+            Direction::Vertical => distance >= 18.0,
+            Direction::Horizontal => {
+                let widths = width(&pair[0].label, TICK_SIZE) + width(&pair[1].label, TICK_SIZE);
+                distance >= widths / 2.0 + 10.0
+            }
+        }
+    })
+}
+
+fn linear_ticks(interval: Interval, length: f64, direction: Direction) -> Ticks {
+    let mut ticks = Ticks::default();
+    for count in (1..=room(length, direction)).rev() {
+        ticks = linear_ticks_at_most(interval, count);
+        if apart(&ticks.labelled, interval, length, direction) {
+            break;
+        }
+    }
+    ticks
+}
+
+/// Multiples of 1, 2 or 5 times a power of ten, with at most `count` steps between them.
+fn linear_ticks_at_most(interval: Interval, count: usize) -> Ticks {
+    let least = interval.span() / count as f64;
+    let power = least.log10().floor() as i32;
+    let (digit, power) = [(1, power), (2, power), (5, power), (1, power + 1), (2, power + 1)]
+        .into_iter()
+        .find(|&(digit, power)| f64::from(digit) * ten_to(power) >= least * (1.0 - 1e-9))
+        .unwrap_or((5, power + 1));
+    let step = f64::from(digit) * ten_to(power);
+    let magnitude = interval.low.abs().max(interval.high.abs());
+    let exponent = magnitude.log10().floor() as i32;
+    let exponent = if (-3..5).contains(&exponent) { 0 } else { exponent };
+    let decimals = usize::try_from(exponent - power).unwrap_or(0);
+    // A hair of slack, so that a range that ends on a tick shows it.
+    let first = (interval.low / step - 1e-9).ceil() as i64;
+    let last = (interval.high / step + 1e-9).floor() as i64;
+    let labelled = (first..=last)
+        .map(|i| {
+            let digits = (i * i64::from(digit)) as f64;
+            Tick {
+                at: (i as f64 * step).clamp(interval.low, interval.high),
+                label: decimal(digits * ten_to(power - exponent), decimals),
+            }
+        })
+        .collect();
+    Ticks { labelled, minor: Vec::new(), factor: (exponent != 0).then(|| format!("×{}", power_of_ten(exponent))) }
+}
+
+/// 10ⁿ to the last bit, which repeated multiplication is not.
+fn ten_to(n: i32) -> f64 {
+    format!("1e{n}").parse().unwrap_or(f64::NAN)
+}
+
+fn log_ticks(interval: Interval, length: f64, direction: Direction) -> Ticks {
+    let first = (interval.low - 1e-9).ceil() as i32;
+    let last = (interval.high + 1e-9).floor() as i32;
+    let clamp = |at: f64| at.clamp(interval.low, interval.high);
+    if last - first < 2 {
+        return short_log_ticks(interval, length, direction);
+    }
+    let decades = |stride: i32| {
+        (first..=last)
+            .filter(move |exponent| exponent.rem_euclid(stride) == 0)
+            .map(move |exponent| Tick { at: clamp(f64::from(exponent)), label: power_of_ten(exponent) })
+            .collect::<Vec<_>>()
+    };
+    let (stride, labelled) = [1, 2, 3, 4, 5, 10, 20, 50, 100]
+        .into_iter()
+        .map(|stride| (stride, decades(stride)))
+        .find(|(_, labelled)| labelled.len() <= room(length, direction) && apart(labelled, interval, length, direction))
+        .unwrap_or_else(|| (1000, decades(1000)));
+    // Between labelled decades: 2 to 9 where they are neighbours and wide, the decades themselves where they are not.
+    let minor: Vec<f64> = if stride > 1 {
+        (first..=last).map(f64::from).collect()
+    } else if length / interval.span() >= 30.0 {
+        (first - 1..=last)
+            .flat_map(|exponent| (2..10).map(move |digit| f64::from(exponent) + f64::from(digit).log10()))
+            .collect()
+    } else {
+        Vec::new()
+    };
+    Ticks { labelled, minor: minor.into_iter().filter(|at| interval.contains(*at)).collect(), factor: None }
+}
+
+/// Ticks of a logarithmic axis with less than two whole decades: 1, 2, 5 times powers of ten if there are three of
+/// them, else those of a linear axis.
+fn short_log_ticks(interval: Interval, length: f64, direction: Direction) -> Ticks {
+    let exponents = (interval.low - 1.0).floor() as i32..=(interval.high + 1.0).floor() as i32;
+    let plain = exponents.clone().all(|exponent| (-4..=4).contains(&exponent));
+    let label = |digit: i32, exponent: i32| match (plain, digit) {
+        (true, _) => decimal(f64::from(digit) * ten_to(exponent), usize::try_from(-exponent).unwrap_or(0)),
+        (false, 1) => power_of_ten(exponent),
+        (false, _) => format!("{digit}×{}", power_of_ten(exponent)),
+    };
+    let place = |digit: i32, exponent: i32| f64::from(exponent) + f64::from(digit).log10();
+    let labelled: Vec<Tick> = exponents
+        .clone()
+        .flat_map(|exponent| [1, 2, 5].map(|digit| (digit, exponent)))
+        .filter(|&(digit, exponent)| interval.contains(place(digit, exponent)))
+        .map(|(digit, exponent)| Tick { at: place(digit, exponent), label: label(digit, exponent) })
+        .collect();
+    if labelled.len() < 3 || !apart(&labelled, interval, length, direction) {
+        return narrow_log_ticks(interval, length, direction);
+    }
+    let minor = exponents
+        .flat_map(|exponent| (2..10).map(move |digit| place(digit, exponent)))
+        .filter(|at| interval.contains(*at))
+        .collect();
+    Ticks { labelled, minor, factor: None }
+}
+
+/// Equally spaced values on a logarithmic axis, for a range of less than a decade.
+fn narrow_log_ticks(interval: Interval, length: f64, direction: Direction) -> Ticks {
+    let values = Interval { low: 10f64.powf(interval.low), high: 10f64.powf(interval.high) };
+    for count in (1..=room(length, direction)).rev() {
+        let mut ticks = linear_ticks_at_most(values, count);
+        for tick in &mut ticks.labelled {
+            tick.at = tick.at.log10().clamp(interval.low, interval.high);
+        }
+        if apart(&ticks.labelled, interval, length, direction) {
+            return ticks;
+        }
+    }
+    Ticks::default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(scale: Scale, low: f64, high: f64) -> Vec<String> {
+        let interval = Interval { low: measure(scale, low).unwrap(), high: measure(scale, high).unwrap() };
+        let ticks = ticks(scale, interval, 340.0, Direction::Vertical);
+        assert!(apart(&ticks.labelled, interval, 340.0, Direction::Vertical));
+        let mut labels: Vec<String> = ticks.labelled.into_iter().map(|tick| tick.label).collect();
+        labels.extend(ticks.factor);
+        labels
+    }
+
+    #[test]
+    fn linear_labels() {
+        assert_eq!(labels(Scale::Linear, 0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(Scale::Linear, -12.0, 31.0), ["−10", "0", "10", "20", "30"]);
+        assert_eq!(labels(Scale::Linear, 0.0, 4.2e-7), ["0", "1", "2", "3", "4", "×10⁻⁷"]);
+        assert_eq!(labels(Scale::Linear, -1e300, 1e300).last().unwrap(), "×10³⁰⁰");
+        assert!(labels(Scale::Linear, 1.0, 1.0 + 1e-8).len() >= 3);
+    }
+
+    #[test]
+    fn log_labels() {
+        assert_eq!(labels(Scale::Log, 1e-6, 1e1), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹"]);
+        assert_eq!(labels(Scale::Log, 3e-15, 2.0), ["10⁻¹⁴", "10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]);
+        assert_eq!(labels(Scale::Log, 0.1, 7.0), ["0.1", "0.2", "0.5", "1", "2", "5"]);
+        assert_eq!(labels(Scale::Log, 1e-7, 7e-6).first().unwrap(), "10⁻⁷");
+        assert!(labels(Scale::Log, 3.0, 4.0).len() >= 3);
+        assert!((3..=10).contains(&labels(Scale::Log, 1e-300, 1e300).len()));
+    }
+
+    #[test]
+    fn ranges() {
+        let same = around(Scale::Linear, [3.0, 3.0].into_iter(), 0.05).unwrap();
+        assert!(same.low < 3.0 && same.high > 3.0);
+        let zero = around(Scale::Linear, [0.0].into_iter(), 0.05).unwrap();
+        assert_eq!((zero.low, zero.high), (-1.0, 1.0));
+        assert_eq!(around(Scale::Log, std::iter::empty(), 0.05), None);
+        assert_eq!(measure(Scale::Log, -1.0), Err(LeftOut::NotPositive));
+        assert_eq!(measure(Scale::Linear, f64::INFINITY), Err(LeftOut::NotFinite));
+        for range in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (1.0, 1.0 + 1e-12), (0.0, f64::MAX)] {
+            let axis = Axis { range: Some(range), ..Axis::linear("x (m)") };
+            assert!(matches!(given(&axis), Err(PictureError::Range { .. })), "{range:?}");
+        }
+        let axis = Axis { range: Some((0.0, 1.0)), ..Axis::log("x (m)") };
+        assert!(matches!(given(&axis), Err(PictureError::Range { .. })));
+    }
+}

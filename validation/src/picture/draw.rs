@@ -1,0 +1,278 @@
+//! The SVG document.
+
+use super::axis::TICK_SIZE;
+use super::frame::{Frame, Framed, LEGEND_ROW, TITLE_SIZE};
+use super::layout::{self, Entry, LABEL_SIZE, Measured, SWATCH, WIDTH};
+use super::style::{Cap, INK, INKS, Stroke, Style};
+use super::text::{escape, fit, px, width};
+use super::trace::{Coarseness, Extent, Place, Trace};
+use super::{Aspect, Axis, Curve, PictureError};
+
+/// What a file should not pass, in bytes.
+const BUDGET: usize = 60_000;
+
+/// Everything a document shows.
+pub(super) struct Plots<'a> {
+    pub(super) title: &'a str,
+    pub(super) x: &'a Axis,
+    pub(super) panels: Vec<Plot<'a>>,
+    /// At least 1.
+    pub(super) columns: usize,
+    /// Height of each plot in pixels, with [`Aspect::Fill`].
+    pub(super) height: f64,
+    pub(super) aspect: Aspect,
+}
+
+/// One plot of the document.
+pub(super) struct Plot<'a> {
+    pub(super) y: &'a Axis,
+    pub(super) curves: &'a [Curve],
+}
+
+pub(super) fn document(plots: &Plots) -> Result<String, PictureError> {
+    let measured: Vec<Vec<Measured>> = plots
+        .panels
+        .iter()
+        .map(|panel| {
+            let measure = |curve| Measured::new(curve, plots.x, panel.y);
+            panel.curves.iter().map(measure).collect()
+        })
+        .collect();
+    let ranges = layout::ranges(plots, &measured)?;
+    let legend = layout::legend(plots, &measured);
+    let mut svg = String::new();
+    for coarseness in Coarseness::STEPS {
+        svg = sheet(plots, &measured, &ranges, &legend, coarseness);
+        if svg.len() <= BUDGET {
+            break;
+        }
+    }
+    Ok(svg)
+}
+
+/// The whole document at one coarseness.
+fn sheet(
+    plots: &Plots,
+    measured: &[Vec<Measured>],
+    ranges: &layout::Ranges,
+    legend: &[Entry],
+    coarseness: Coarseness,
+) -> String {
+    let frame = Frame::new(plots, ranges, legend);
+    let framed = frame.plots(plots, measured, legend);
+    let mut out = String::new();
+    let title = escape(plots.title);
+    out.push_str(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
+         aria-label=\"{title}\" class=\"picture\" color=\"{}\" \
+         font-family=\"system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif\">\n\
+         <title>{title}</title>\n<desc>{}</desc>\n\
+         <style>@media (prefers-color-scheme:light){{.picture{{color:{}}}}}\
+         @media (prefers-color-scheme:dark){{.picture{{color:{}}}}}</style>\n",
+        INKS[0],
+        escape(&description(plots, legend)),
+        INKS[1],
+        INKS[2],
+        w = px(WIDTH),
+        h = px(frame.height),
+    ));
+    for (row, line) in (1u32..).zip(&frame.title) {
+        let y = f64::from(row) * 20.0;
+        out.push_str(&format!(
+            "<text x=\"{}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" font-weight=\"600\" fill=\"{INK}\">{}</text>\n",
+            px(frame.left),
+            px(y),
+            escape(line)
+        ));
+    }
+    let (placed, _) = layout::place_legend(legend, WIDTH - frame.left - 8.0);
+    for place in &placed {
+        swatch(&mut out, place, &frame);
+    }
+    for plot in &framed {
+        axes(&mut out, plot);
+        curves(&mut out, plot, coarseness);
+    }
+    out.push_str("</svg>\n");
+    out
+}
+
+/// What the picture shows, for readers who do not see it.
+fn description(plots: &Plots, legend: &[Entry]) -> String {
+    let vertical: Vec<&str> = plots.panels.iter().map(|panel| panel.y.label.as_str()).collect();
+    let curves: Vec<String> = legend.iter().map(Entry::text).collect();
+    format!("{} over {}. Curves: {}.", vertical.join(", "), plots.x.label, curves.join("; "))
+}
+
+fn swatch(out: &mut String, place: &layout::Placed, frame: &Frame) {
+    let (x, y) = (frame.left + place.x, frame.legend_top + (f64::from(place.row) + 0.5) * LEGEND_ROW);
+    out.push_str(&format!("<g transform=\"translate({} {})\">", px(x), px(y)));
+    let entry = place.entry;
+    let trace = Trace { lines: vec![vec![(0.0, 0.0), (SWATCH, 0.0)]], dots: Vec::new() };
+    strokes(out, entry.style, &trace);
+    marks(out, entry, &[(SWATCH / 2.0, 0.0)]);
+    out.push_str(&format!(
+        "<text x=\"{}\" y=\"4.5\" font-size=\"{LABEL_SIZE}\" fill=\"{INK}\">{}</text></g>\n",
+        px(SWATCH + 8.0),
+        escape(&place.text)
+    ));
+}
+
+/// Frame, grid, ticks and labels of one plot.
+fn axes(out: &mut String, plot: &Framed) {
+    let Extent { width: w, height: h } = plot.extent;
+    out.push_str(&format!(
+        "<g transform=\"translate({} {})\" font-size=\"{TICK_SIZE}\" fill=\"{INK}\">\n",
+        px(plot.corner.0),
+        px(plot.corner.1)
+    ));
+    let (mut grid, mut ticks) = (String::new(), String::new());
+    for tick in &plot.x_ticks.labelled {
+        let x = px(plot.across(tick.at));
+        grid.push_str(&format!("M{x} 0v{}", px(h)));
+        ticks.push_str(&format!("M{x} {}v5", px(h)));
+    }
+    for tick in &plot.y_ticks.labelled {
+        let y = px(plot.down(tick.at));
+        grid.push_str(&format!("M0 {y}h{}", px(w)));
+        ticks.push_str(&format!("M0 {y}h-5"));
+    }
+    for &at in &plot.x_ticks.minor {
+        ticks.push_str(&format!("M{} {}v3", px(plot.across(at)), px(h)));
+    }
+    for &at in &plot.y_ticks.minor {
+        ticks.push_str(&format!("M0 {}h-3", px(plot.down(at))));
+    }
+    out.push_str(&format!(
+        "<path d=\"{grid}\" fill=\"none\" stroke=\"{INK}\" stroke-opacity=\".2\"/>\n\
+         <path d=\"{ticks}M0 0h{}v{}h-{0}z\" fill=\"none\" stroke=\"{INK}\"/>\n",
+        px(w),
+        px(h)
+    ));
+    for tick in &plot.y_ticks.labelled {
+        text(out, (-9.0, plot.down(tick.at) + 4.3), "end", &tick.label);
+    }
+    if let Some(factor) = &plot.y_ticks.factor {
+        text(out, (0.0, -7.0), "start", factor);
+    }
+    if let Some(label) = plot.x_label {
+        for tick in &plot.x_ticks.labelled {
+            text(out, (plot.across(tick.at), h + 18.0), "middle", &tick.label);
+        }
+        if let Some(factor) = &plot.x_ticks.factor {
+            text(out, (w, h + 37.0), "end", factor);
+        }
+        out.push_str(&format!(
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
+            px(w / 2.0),
+            px(h + 38.0),
+            escape(&fit(label, LABEL_SIZE, w))
+        ));
+    }
+    let widest = plot.y_ticks.labelled.iter().map(|tick| width(&tick.label, TICK_SIZE));
+    out.push_str(&format!("<text transform=\"translate(-{} {}) rotate(-90)\" text-anchor=\"middle\" font-size=\"{LABEL_SIZE}\">{}</text>\n",
+        px(widest.fold(0.0, f64::max) + 18.0),
+        px(h / 2.0),
+        escape(&fit(&plot.plot.y.label, LABEL_SIZE, h + 20.0))
+    ));
+    thresholds(out, plot);
+    out.push_str("</g>\n");
+}
+
+/// Names of the thresholds, at their right ends.
+fn thresholds(out: &mut String, plot: &Framed) {
+    let named: Vec<(&str, f64)> = plot
+        .plot
+        .curves
+        .iter()
+        .zip(plot.measured)
+        .filter(|(curve, _)| curve.style == Style::Threshold)
+        .filter_map(|(curve, measured)| {
+            let end = measured.runs.last().and_then(|run| run.last()).map(|point| point.1);
+            let at = measured.level.or(end)?;
+            plot.y.contains(at).then(|| (curve.label.as_str(), plot.down(at)))
+        })
+        .collect();
+    let wanted: Vec<f64> = named.iter().map(|(_, y)| *y).collect();
+    let places = layout::spread(&wanted, 14.0, plot.extent.height);
+    for ((label, _), y) in named.iter().zip(places) {
+        text(out, (plot.extent.width + 6.0, y + 4.3), "start", &fit(label, TICK_SIZE, 150.0));
+    }
+}
+
+fn text(out: &mut String, (x, y): Place, anchor: &str, content: &str) {
+    out.push_str(&format!(
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text>\n",
+        px(x),
+        px(y),
+        escape(content)
+    ));
+}
+
+/// The curves of one plot, clipped to its frame.
+fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
+    out.push_str(&format!(
+        "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\">\n",
+        px(plot.corner.0),
+        px(plot.corner.1),
+        px(plot.extent.width),
+        px(plot.extent.height)
+    ));
+    let mut order: Vec<(&Curve, &Measured)> = plot.plot.curves.iter().zip(plot.measured).collect();
+    order.sort_by_key(|(curve, _)| curve.style.depth());
+    let place = |&(x, y): &(f64, f64)| (plot.across(x), plot.down(y));
+    for (curve, measured) in order {
+        let trace = match measured.level {
+            Some(level) => Trace {
+                lines: vec![vec![(0.0, plot.down(level)), (plot.extent.width, plot.down(level))]],
+                dots: Vec::new(),
+            },
+            None => {
+                let runs: Vec<Vec<Place>> = measured.runs.iter().map(|run| run.iter().map(place).collect()).collect();
+                Trace::new(&runs, plot.extent, coarseness)
+            }
+        };
+        strokes(out, curve.style, &trace);
+        if let Some(entry) = plot.legend.iter().find(|entry| entry.stands_for(curve)) {
+            let phase = 0.25 + 0.5 * (entry.rank % 4) as f64 / 4.0;
+            let points: Vec<Place> = measured.runs.iter().flatten().map(place).collect();
+            let places = if points.len() <= 12 { points } else { trace.marks(7, phase) };
+            marks(out, entry, &places);
+        }
+    }
+    out.push_str("</svg>\n");
+}
+
+fn strokes(out: &mut String, style: Style, trace: &Trace) {
+    let path = trace.path();
+    for Stroke { colour, width, dash, cap, opacity } in style.strokes() {
+        if !path.is_empty() {
+            out.push_str(&format!("<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\""));
+            if !dash.is_empty() {
+                out.push_str(&format!(" stroke-dasharray=\"{dash}\""));
+            }
+            if cap == Cap::Round {
+                out.push_str(" stroke-linecap=\"round\"");
+            }
+            if opacity < 1.0 {
+                out.push_str(&format!(" stroke-opacity=\"{opacity}\""));
+            }
+            out.push_str(" stroke-linejoin=\"round\"/>\n");
+        }
+        for &(x, y) in &trace.dots {
+            let radius = px(2.0 + width / 2.0);
+            out.push_str(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"{radius}\" fill=\"{colour}\"/>\n", px(x), px(y)));
+        }
+    }
+}
+
+fn marks(out: &mut String, entry: &Entry, places: &[Place]) {
+    let (Some(mark), Some(stroke)) = (entry.mark, entry.style.strokes().pop()) else {
+        return;
+    };
+    if places.is_empty() {
+        return;
+    }
+    let path: String = places.iter().map(|&(x, y)| format!("M{} {}{}", px(x), px(y), mark.path())).collect();
+    out.push_str(&format!("<path d=\"{path}\" fill=\"{}\"/>\n", stroke.colour));
+}

@@ -1,0 +1,163 @@
+//! Colours, dashes and widths.
+
+/// What a curve stands for, which fixes how it is drawn.
+///
+/// Colours are those of Okabe and Ito that reach a contrast of 3 on white and on black alike; dash and width tell the
+/// curves apart without colour. A gap between two formulations is drawn in both their colours by turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Style {
+    /// Motion of the d'Alembert–Lagrange equations (blue, wide, solid).
+    Chetaev,
+    /// Motion of the vakonomic equations (vermilion, long dashes).
+    Vakonomic,
+    /// Motion of the removed-constraint equations (green, dots).
+    RemovedConstraint,
+    /// Motion of the deliberately wrong fourth: the constraint put into the Lagrangian (purple, dash and dot).
+    Substituted,
+    /// Gap between the Chetaev and the vakonomic motion.
+    ChetaevVakonomic,
+    /// Gap between the Chetaev and the removed-constraint motion.
+    ChetaevRemovedConstraint,
+    /// Gap between the vakonomic and the removed-constraint motion.
+    VakonomicRemovedConstraint,
+    /// What the others are measured against (a grey band beneath them).
+    Reference,
+    /// Size of the errors, below which a gap means nothing (grey, thin, dotted).
+    ErrorFloor,
+    /// A value that is to be passed or kept (grey, thin, dashed; named at its right end).
+    Threshold,
+}
+
+/// One pass of the pen along a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stroke {
+    pub(super) colour: &'static str,
+    pub(super) width: f64,
+    /// Lengths of dashes and spaces; empty for a solid line.
+    pub(super) dash: &'static str,
+    pub(super) cap: Cap,
+    pub(super) opacity: f64,
+}
+
+/// End of a line and of each of its dashes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cap {
+    Flat,
+    Round,
+}
+
+/// Shape set along a curve whose style is taken already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mark {
+    Circle,
+    Square,
+    Triangle,
+    Diamond,
+}
+
+pub(super) const INK: &str = "currentColor";
+pub(super) const BLUE: &str = "#0072B2";
+pub(super) const VERMILION: &str = "#D55E00";
+pub(super) const GREEN: &str = "#009E73";
+pub(super) const PURPLE: &str = "#CC79A7";
+
+/// Ink for a viewer that says nothing, a light page and a dark one.
+pub(super) const INKS: [&str; 3] = ["#7a7f86", "#505860", "#a9b1ba"];
+
+const fn stroke(colour: &'static str, width: f64, dash: &'static str) -> Stroke {
+    Stroke { colour, width, dash, cap: Cap::Flat, opacity: 1.0 }
+}
+
+impl Style {
+    /// The passes of the pen, lowest first.
+    pub(super) fn strokes(self) -> Vec<Stroke> {
+        match self {
+            Self::Chetaev => vec![stroke(BLUE, 5.4, "")],
+            Self::Vakonomic => vec![stroke(VERMILION, 3.0, "12 7")],
+            Self::Substituted => vec![stroke(PURPLE, 2.2, "9 4 2 4")],
+            Self::RemovedConstraint => vec![Stroke { cap: Cap::Round, ..stroke(GREEN, 3.4, "0.1 7") }],
+            Self::ChetaevVakonomic => vec![stroke(BLUE, 4.8, ""), stroke(VERMILION, 4.8, "14 14")],
+            Self::ChetaevRemovedConstraint => vec![stroke(BLUE, 3.2, ""), stroke(GREEN, 3.2, "8 8")],
+            Self::VakonomicRemovedConstraint => vec![stroke(VERMILION, 1.8, ""), stroke(GREEN, 1.8, "4 4")],
+            Self::Reference => vec![Stroke { opacity: 0.4, ..stroke(INK, 9.0, "") }],
+            Self::ErrorFloor => vec![stroke(INK, 1.6, "1.5 3")],
+            Self::Threshold => vec![stroke(INK, 1.0, "7 4")],
+        }
+    }
+
+    /// Wider lines first, so that the narrower ones stand on them.
+    pub(super) fn depth(self) -> u8 {
+        match self {
+            Self::Reference => 0,
+            Self::Threshold => 1,
+            Self::ErrorFloor => 2,
+            Self::Chetaev => 3,
+            Self::ChetaevVakonomic => 4,
+            Self::Vakonomic => 5,
+            Self::ChetaevRemovedConstraint => 6,
+            Self::Substituted => 7,
+            Self::VakonomicRemovedConstraint => 8,
+            Self::RemovedConstraint => 9,
+        }
+    }
+}
+
+impl Mark {
+    /// The mark of the `nth` label of one style; the first has none, and after the fifth they repeat.
+    pub(super) fn nth(n: usize) -> Option<Self> {
+        const ALL: [Mark; 4] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond];
+        n.checked_sub(1).map(|n| ALL[n % ALL.len()])
+    }
+
+    /// Path of the mark about the origin.
+    pub(super) fn path(self) -> &'static str {
+        match self {
+            Self::Circle => "m-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0z",
+            Self::Square => "m-4.6-4.6h9.2v9.2h-9.2z",
+            Self::Triangle => "m0-6.2l5.8 10h-11.6z",
+            Self::Diamond => "m0-6.4l6.4 6.4l-6.4 6.4l-6.4-6.4z",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast ratio of two colours, after WCAG 2.
+    fn contrast(a: &str, b: &str) -> f64 {
+        let luminance = |colour: &str| -> f64 {
+            [(1, 0.2126), (3, 0.7152), (5, 0.0722)]
+                .iter()
+                .map(|&(at, weight)| {
+                    let c = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap()) / 255.0;
+                    weight * if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+                })
+                .sum()
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn colours_are_legible_on_light_and_dark_pages() {
+        for page in ["#ffffff", "#0d1117"] {
+            for colour in [BLUE, VERMILION, GREEN, PURPLE] {
+                assert!(contrast(colour, page) >= 3.0, "{colour} on {page}");
+            }
+            assert!(contrast(INKS[0], page) >= 4.0, "{} on {page}", INKS[0]);
+        }
+        assert!(contrast(INKS[1], "#ffffff") >= 7.0);
+        assert!(contrast(INKS[2], "#0d1117") >= 7.0);
+        // A viewer may report the scheme of the desktop while the page has the other one.
+        assert!(contrast(INKS[1], "#0d1117") >= 2.0);
+        assert!(contrast(INKS[2], "#ffffff") >= 2.0);
+    }
+
+    #[test]
+    fn marks_start_with_the_second_label() {
+        assert_eq!(Mark::nth(0), None);
+        assert_eq!(Mark::nth(1), Some(Mark::Circle));
+        assert_eq!(Mark::nth(5), Some(Mark::Circle));
+    }
+}

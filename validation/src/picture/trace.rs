@@ -1,0 +1,272 @@
+//! From points to the path that is drawn: clipped, thinned, rounded.
+
+use super::text::{push_tenths, tenths};
+
+/// A place in pixels, from the top left corner of a plot.
+pub(super) type Place = (f64, f64);
+
+/// Width and height of a plot in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
+
+/// How far a drawn line may lie from the true one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Coarseness {
+    /// Points closer than this to the line through their neighbours are left out, in pixels.
+    pub(super) tolerance: f64,
+    /// Where a curve runs from left to right: of the points within a column of this width, the first, the last, the
+    /// highest and the lowest are kept.
+    pub(super) column: f64,
+}
+
+impl Coarseness {
+    /// From what the eye cannot see to what it forgives.
+    pub(super) const STEPS: [Self; 5] = [
+        Self { tolerance: 0.1, column: 0.5 },
+        Self { tolerance: 0.2, column: 1.0 },
+        Self { tolerance: 0.4, column: 2.0 },
+        Self { tolerance: 0.8, column: 4.0 },
+        Self { tolerance: 1.6, column: 8.0 },
+    ];
+}
+
+/// One curve, ready to draw.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Trace {
+    /// Lines of at least two points.
+    pub(super) lines: Vec<Vec<Place>>,
+    /// Points that stand alone.
+    pub(super) dots: Vec<Place>,
+}
+
+impl Trace {
+    /// Clip and thin unbroken runs of points.
+    pub(super) fn new(runs: &[Vec<Place>], extent: Extent, coarseness: Coarseness) -> Self {
+        let mut trace = Self::default();
+        for run in runs {
+            if let [dot] = run.as_slice() {
+                trace.dots.push(*dot);
+            }
+            for piece in clip(run, extent) {
+                let rising = piece.is_sorted_by(|a, b| a.0 <= b.0);
+                let piece = if rising { extremes_by_column(&piece, coarseness.column) } else { piece };
+                let mut line = within_tolerance(&piece, coarseness.tolerance);
+                line.dedup_by_key(|&mut (x, y)| (tenths(x), tenths(y)));
+                match line.as_slice() {
+                    [dot] => trace.dots.push(*dot),
+                    _ => trace.lines.push(line),
+                }
+            }
+        }
+        trace
+    }
+
+    /// The lines as SVG path data.
+    pub(super) fn path(&self) -> String {
+        let mut out = String::new();
+        for line in &self.lines {
+            let mut last = (0, 0);
+            for (i, &(x, y)) in line.iter().enumerate() {
+                let here = (tenths(x), tenths(y));
+                out.push_str(match i {
+                    0 => "M",
+                    1 => "l",
+                    _ if here.0 < last.0 => "",
+                    _ => " ",
+                });
+                push_tenths(&mut out, here.0 - last.0);
+                if here.1 >= last.1 {
+                    out.push(' ');
+                }
+                push_tenths(&mut out, here.1 - last.1);
+                last = here;
+            }
+        }
+        out
+    }
+
+    /// `count` places at equal distances along the curve, moved along by the fraction `phase` of that distance.
+    pub(super) fn marks(&self, count: u32, phase: f64) -> Vec<Place> {
+        let distance = |pair: &[Place]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
+        let segments = || self.lines.iter().flat_map(|line| line.windows(2));
+        let total: f64 = segments().map(distance).sum();
+        let mut wanted = (0..count).map(|i| (f64::from(i) + phase) * total / f64::from(count)).peekable();
+        let mut passed = 0.0;
+        let mut marks = Vec::new();
+        for pair in segments() {
+            let length = distance(pair);
+            while let Some(at) = wanted.next_if(|&at| at <= passed + length) {
+                let part = ((at - passed) / length).clamp(0.0, 1.0);
+                let along = |from: f64, to: f64| from + part * (to - from);
+                marks.push((along(pair[0].0, pair[1].0), along(pair[0].1, pair[1].1)));
+            }
+            passed += length;
+        }
+        marks
+    }
+}
+
+/// The pieces of a line within the plot and as much again on every side.
+fn clip(run: &[Place], extent: Extent) -> Vec<Vec<Place>> {
+    let mut pieces: Vec<Vec<Place>> = Vec::new();
+    let mut joined = false;
+    for pair in run.windows(2) {
+        match clip_segment(pair[0], pair[1], extent) {
+            None => joined = false,
+            Some((from, to, whole)) => {
+                match pieces.last_mut() {
+                    Some(piece) if joined => piece.push(to),
+                    _ => pieces.push(vec![from, to]),
+                }
+                joined = whole;
+            }
+        }
+    }
+    pieces
+}
+
+/// The part of a segment within the clipping frame (Liang and Barsky), and whether it keeps its far end.
+fn clip_segment(from: Place, to: Place, extent: Extent) -> Option<(Place, Place, bool)> {
+    // Far enough out for the direction of what is seen, and finite.
+    let tame = |(x, y): Place| (x.clamp(-1e9, 1e9), y.clamp(-1e9, 1e9));
+    let (from, to) = (tame(from), tame(to));
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for (direction, room) in [
+        (-dx, from.0 + extent.width),
+        (dx, 2.0 * extent.width - from.0),
+        (-dy, from.1 + extent.height),
+        (dy, 2.0 * extent.height - from.1),
+    ] {
+        if direction == 0.0 {
+            if room < 0.0 {
+                return None;
+            }
+        } else if direction < 0.0 {
+            enter = enter.max(room / direction);
+        } else {
+            leave = leave.min(room / direction);
+        }
+    }
+    if enter > leave {
+        return None;
+    }
+    let at = |part: f64| (from.0 + part * dx, from.1 + part * dy);
+    let start = if enter > 0.0 { at(enter) } else { from };
+    let end = if leave < 1.0 { at(leave) } else { to };
+    Some((start, end, leave >= 1.0))
+}
+
+/// Of consecutive points in one column: first, lowest, highest, last, in their order.
+fn extremes_by_column(line: &[Place], column: f64) -> Vec<Place> {
+    let mut kept = Vec::new();
+    let mut rest = line;
+    while let Some(first) = rest.first() {
+        let cell = (first.0 / column).floor();
+        let count = rest.iter().take_while(|point| (point.0 / column).floor() == cell).count();
+        let (run, tail) = rest.split_at(count);
+        let by_height = |&a: &usize, &b: &usize| run[a].1.total_cmp(&run[b].1);
+        let mut indices =
+            [0, (0..count).min_by(by_height).unwrap_or(0), (0..count).max_by(by_height).unwrap_or(0), count - 1];
+        indices.sort_unstable();
+        let mut last = None;
+        for i in indices {
+            if last != Some(i) {
+                kept.push(run[i]);
+            }
+            last = Some(i);
+        }
+        rest = tail;
+    }
+    kept
+}
+
+/// The points that a line within `tolerance` of the given one needs (Ramer, Douglas and Peucker).
+fn within_tolerance(line: &[Place], tolerance: f64) -> Vec<Place> {
+    let Some(end) = line.len().checked_sub(1) else {
+        return Vec::new();
+    };
+    let mut keep = vec![false; line.len()];
+    keep[0] = true;
+    keep[end] = true;
+    let mut open = vec![(0, end)];
+    while let Some((from, to)) = open.pop() {
+        let farthest = (from + 1..to)
+            .map(|i| (i, distance_to_segment(line[i], line[from], line[to])))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((i, distance)) = farthest
+            && distance > tolerance
+        {
+            keep[i] = true;
+            open.push((from, i));
+            open.push((i, to));
+        }
+    }
+    line.iter().zip(keep).filter_map(|(point, keep)| keep.then_some(*point)).collect()
+}
+
+fn distance_to_segment(point: Place, from: Place, to: Place) -> f64 {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (px, py) = (point.0 - from.0, point.1 - from.1);
+    let square = dx * dx + dy * dy;
+    let part = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (px - part * dx).hypot(py - part * dy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EXTENT: Extent = Extent { width: 600.0, height: 300.0 };
+
+    #[test]
+    fn thinning_keeps_the_line_within_tolerance() {
+        let sine: Vec<Place> =
+            (0..5000).map(|i| f64::from(i) * 0.12).map(|x| (x, 150.0 + 100.0 * (x / 60.0).sin())).collect();
+        let trace = Trace::new(std::slice::from_ref(&sine), EXTENT, Coarseness::STEPS[0]);
+        let [line] = trace.lines.as_slice() else { panic!("{} lines", trace.lines.len()) };
+        assert!(line.len() < 300, "{} points", line.len());
+        for &point in &sine {
+            let distance =
+                line.windows(2).map(|pair| distance_to_segment(point, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
+            assert!(distance <= 0.25, "{point:?} is off by {distance}");
+        }
+    }
+
+    #[test]
+    fn fast_oscillations_keep_their_height() {
+        let fast: Vec<Place> =
+            (0..200_000).map(|i| (f64::from(i) * 0.003, 150.0 + 100.0 * f64::from(i).sin())).collect();
+        let trace = Trace::new(&[fast], EXTENT, Coarseness::STEPS[0]);
+        let line = &trace.lines[0];
+        assert!(line.len() < 5000, "{} points", line.len());
+        let top = line.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
+        assert!((top - 50.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn clipping_keeps_the_slope_and_splits_lines() {
+        let far = [(-1e6, -1e6), (1e6, 1e6), (f64::INFINITY, 0.0), (300.0, 1e7), (300.0, 100.0)];
+        let pieces = clip(&far, EXTENT);
+        assert_eq!(pieces.len(), 2);
+        let first = &pieces[0];
+        assert!(first.iter().all(|(x, y)| (x - y).abs() < 1e-6 && x.abs() <= 600.0));
+        assert_eq!(pieces[1].last(), Some(&(300.0, 100.0)));
+    }
+
+    #[test]
+    fn path_data_is_short() {
+        let trace = Trace::new(&[vec![(0.0, 0.0), (10.25, 0.5), (9.75, 20.0)]], EXTENT, Coarseness::STEPS[0]);
+        assert_eq!(trace.path(), "M0 0l10.3 .5-.5 19.5");
+        assert_eq!(trace.marks(5, 0.5).len(), 5);
+    }
+
+    #[test]
+    fn one_point_is_a_dot() {
+        let trace = Trace::new(&[vec![(5.0, 5.0)], vec![(7.0, 7.0), (7.01, 7.0)]], EXTENT, Coarseness::STEPS[0]);
+        assert_eq!((trace.lines.len(), trace.dots.len()), (0, 2));
+    }
+}
