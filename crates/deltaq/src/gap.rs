@@ -60,8 +60,8 @@ pub struct Gap {
     pub largest: f64,
     /// Largest difference of each coordinate.
     pub largest_by_coordinate: Vec<f64>,
-    /// Sum of the two error estimates at the end, kinetic metric.
-    pub estimate: f64,
+    /// Largest error estimate of each of the two motions, kinetic metric.
+    pub estimates: [f64; 2],
     /// Length of the first motion's way, by which estimates are made relative.
     pub scale: f64,
     /// Gap over time.
@@ -76,7 +76,7 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
     let (t0, end) = (first.start(), first.end().min(second.end()));
     let mut points = Vec::new();
     let mut largest_by_coordinate = Vec::new();
-    let (mut estimate, mut scale) = (0.0_f64, 0.0_f64);
+    let (mut estimates, mut scale) = ([0.0_f64; 2], 0.0_f64);
     let origin = first.at(t0)?;
     let mut largest_length = 0.0_f64;
     for t in sample_times(t0, end) {
@@ -89,11 +89,12 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
             *l = l.max(d.abs());
         }
         let errors = [first.difference_of_runs(t)?, second.difference_of_runs(t)?];
-        let sum: f64 = errors.iter().map(|e| metric.length(t, q, v, e)).sum();
-        estimate = estimate.max(sum);
+        for (estimate, error) in estimates.iter_mut().zip(&errors) {
+            *estimate = estimate.max(metric.length(t, q, v, error));
+        }
         scale = scale.max(metric.length(t, q, v, &subtract(q, &origin.coordinates)));
         largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
-        let limit = CERTAINTY * (estimate + ROUND_OFF * largest_length);
+        let limit = CERTAINTY * (estimates[0] + estimates[1] + ROUND_OFF * largest_length);
         points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit });
     }
     let largest = points.iter().fold(0.0_f64, |a, p| a.max(p.gap));
@@ -108,6 +109,7 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
     let passes = THRESHOLDS.map(|threshold| first_passing(&points, &mut gap_at, threshold));
     let certain_from = points.iter().find(|p| p.gap > p.limit).map(|p| p.t);
     let complete = first.is_complete() && second.is_complete();
+    let estimate = estimates[0].max(estimates[1]);
     let relative = if scale > 0.0 { estimate / scale } else { estimate };
     let verdict = if certain_from.is_some() {
         Verdict::Different
@@ -124,7 +126,7 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
             because: format!("relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"),
         }
     };
-    Ok(Gap { verdict, end, certain_from, passes, largest, largest_by_coordinate, estimate, scale, points })
+    Ok(Gap { verdict, end, certain_from, passes, largest, largest_by_coordinate, estimates, scale, points })
 }
 
 pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {

@@ -36,6 +36,14 @@ pub struct LeadingTerm {
     pub length: f64,
 }
 
+impl Growth {
+    /// `|measured − predicted| / |predicted|` of the leading coefficient, Euclidean norm over the coordinates.
+    pub fn deviation_from(&self, predicted: &LeadingTerm) -> f64 {
+        let norm = |x: &[f64]| x.iter().map(|a| a * a).sum::<f64>().sqrt();
+        norm(&subtract(&self.coefficient, &predicted.coefficient)) / norm(&predicted.coefficient)
+    }
+}
+
 /// Fraction of the common time over which the growth is fitted.
 const FIT_FRACTION: f64 = 0.02;
 /// Instants in the fit.

@@ -43,4 +43,14 @@ pub enum RemovalError {
         /// Smallest pivot that is accepted.
         limit: f64,
     },
+    /// A constraint with the parametrization put in has no finite value at any of the points tried.
+    #[error("removal `{removal}`: constraint {constraint} ({text}) is finite at no point tried, so it cannot be checked")]
+    NotCheckable {
+        /// Name of the removal.
+        removal: String,
+        /// Number of the constraint, from 1.
+        constraint: usize,
+        /// The constraint as entered.
+        text: String,
+    },
 }

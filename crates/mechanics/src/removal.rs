@@ -104,7 +104,7 @@ impl Removal {
     ///
     /// # Errors
     /// [`RemovalError::ConstraintRemains`] with the constraint, its residual and the round-off bound;
-    /// [`RemovalError::WrongCount`] where there are not `n − h` parameters.
+    /// [`RemovalError::NotCheckable`] where it is finite at no point tried; [`RemovalError::WrongCount`] where there are not `n − h` parameters.
     pub fn verify(&self, system: &System) -> Result<(), RemovalError> {
         let expected = system.dimension() - system.constraints.len();
         if self.parameters.len() != expected {
@@ -126,6 +126,13 @@ impl Removal {
                         text: system.graph.plain(f),
                         residual: value,
                         limit: bound,
+                    });
+                }
+                _ => {
+                    return Err(RemovalError::NotCheckable {
+                        removal: self.name.clone(),
+                        constraint: index + 1,
+                        text: system.graph.plain(f),
                     });
                 }
             }

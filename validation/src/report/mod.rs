@@ -11,7 +11,7 @@ mod verdicts;
 
 pub use equations::{EquationStyle, equations_text};
 pub use files::{File, write_all};
-pub use overview::overview;
+pub use overview::{Provenance, overview};
 pub use pictures::pictures;
 pub use scene_page::{answer, scene_page};
 pub use verdicts::{difference_of_verdicts, verdicts};

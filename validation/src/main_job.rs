@@ -1,0 +1,133 @@
+//! The main job: every scene in every formulation, reports written; and the check that committed reports are still true.
+
+use std::process::Command;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use deltaq::{Comparison, Settings, compare};
+use indicatif::{ProgressBar, ProgressStyle};
+use mechanics::Scene;
+
+use crate::catalogue;
+use crate::cli::{JobArguments, ReportsArguments};
+use crate::report::{File, Provenance, answer, difference_of_verdicts, overview, pictures, scene_page, verdicts, write_all};
+use crate::substitution;
+
+/// Compares all formulations of a scene, the control among them, and writes its page and pictures.
+///
+/// # Errors
+/// Where the scene cannot be compared.
+pub fn scene_files(scene: Scene, settings: &Settings) -> Result<(Comparison, Vec<File>)> {
+    let name = scene.name.clone();
+    let control = substitution::run(&scene, settings).into_iter().collect();
+    let mut comparison = compare(scene, control, settings).with_context(|| format!("scene `{name}`"))?;
+    let mut files = pictures(&mut comparison).with_context(|| format!("pictures of scene `{name}`"))?;
+    let links: Vec<String> =
+        files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();
+    let page = scene_page(&mut comparison, &links)?;
+    files.push(File { path: format!("scenes/{name}.md").into(), text: page });
+    Ok((comparison, files))
+}
+
+/// Runs the main job.
+///
+/// # Errors
+/// Where a scene is unknown or cannot be compared, or a report cannot be written. Nothing is written then.
+pub fn run(arguments: &JobArguments) -> Result<()> {
+    let clock = Instant::now();
+    let known: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    if let Some(unknown) = arguments.scenes.iter().find(|s| !known.contains(&s.as_str())) {
+        bail!("unknown scene `{unknown}`; known: {}", known.join(", "));
+    }
+    let complete = arguments.scenes.is_empty();
+    let names: Vec<&str> =
+        known.into_iter().filter(|n| complete || arguments.scenes.iter().any(|s| s == n)).collect();
+    let results = compare_all(&names, arguments.quiet)?;
+    let (comparisons, files): (Vec<Comparison>, Vec<Vec<File>>) = results.into_iter().unzip();
+    let mut files: Vec<File> = files.into_iter().flatten().collect();
+    if complete {
+        let provenance = provenance(clock.elapsed().as_secs_f64());
+        files.push(File { path: "README.md".into(), text: overview(&comparisons, &provenance) });
+        let text = serde_json::to_string_pretty(&verdicts(&comparisons))? + "\n";
+        files.push(File { path: "verdicts.json".into(), text });
+    }
+    write_all(&arguments.out, &files)?;
+    for comparison in &comparisons {
+        println!("{:<24} {}", comparison.scene.name, answer(comparison));
+    }
+    println!("\n{} files in {} after {:.1} s", files.len(), arguments.out.display(), clock.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Computes the verdicts again and compares them with the committed ones.
+///
+/// # Errors
+/// Where they differ, with the place and the command that mends it.
+pub fn check(arguments: &ReportsArguments) -> Result<()> {
+    const MEND: &str = "`cargo run --release` writes the reports anew";
+    let path = arguments.out.join("verdicts.json");
+    let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}; {MEND}", path.display()))?;
+    let old: serde_json::Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
+    let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    let results = compare_all(&names, true)?;
+    for file in results.iter().flat_map(|(_, files)| files) {
+        let path = arguments.out.join(&file.path);
+        if !path.exists() {
+            bail!("{} is missing; {MEND}", path.display());
+        }
+    }
+    let comparisons: Vec<Comparison> = results.into_iter().map(|(comparison, _)| comparison).collect();
+    if let Some(difference) = difference_of_verdicts(&old, &verdicts(&comparisons)) {
+        bail!("{} is out of date at {difference}; {MEND}", path.display());
+    }
+    println!("{} agrees with a fresh run", path.display());
+    Ok(())
+}
+
+/// All scenes, over all processors, in the order of `names`.
+fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<(Comparison, Vec<File>)>> {
+    let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(names.len() as u64) };
+    bar.set_style(ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let settings = Settings::default();
+    let next = Mutex::new(0..names.len());
+    let done: Mutex<Vec<(usize, Result<(Comparison, Vec<File>)>)>> = Mutex::new(Vec::new());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(names.len().max(1));
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                loop {
+                    let Some(index) = next.lock().ok().and_then(|mut range| range.next()) else { break };
+                    bar.set_message(names[index].to_string());
+                    let result = catalogue::find(names[index], &[])
+                        .map_err(anyhow::Error::from)
+                        .and_then(|scene| scene_files(scene, &settings));
+                    bar.inc(1);
+                    if let Ok(mut done) = done.lock() {
+                        done.push((index, result));
+                    }
+                }
+            });
+        }
+    });
+    bar.finish_and_clear();
+    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    done.sort_by_key(|(index, _)| *index);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+fn provenance(seconds: f64) -> Provenance {
+    let commit = Command::new("git")
+        .args(["describe", "--always", "--dirty"])
+        .output()
+        .ok()
+        .filter(|output| output.status.success())
+        .map(|output| String::from_utf8_lossy(&output.stdout).trim().to_string());
+    let commit = commit.map_or(String::new(), |c| format!(" at commit {c}"));
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    Provenance {
+        program: format!("deltaq {}{commit}", env!("CARGO_PKG_VERSION")),
+        machine: format!("{} on {}, {processors} processors", std::env::consts::OS, std::env::consts::ARCH),
+        seconds,
+    }
+}

@@ -1,0 +1,209 @@
+//! The first page of the reports.
+
+use std::fmt::Write;
+
+use deltaq::{Comparison, Fit, Verdict};
+
+use crate::report::numbers::{enumerate, short};
+use crate::report::tables::verdict_words;
+use crate::substitution;
+
+/// What produced the reports.
+#[derive(Clone, Debug)]
+pub struct Provenance {
+    /// Version of the program and commit of its source, where known.
+    pub program: String,
+    /// Operating system, processor architecture, number of processors.
+    pub machine: String,
+    /// Seconds of the whole job.
+    pub seconds: f64,
+}
+
+/// One page: the verdict matrix, the findings, how to regenerate.
+pub fn overview(comparisons: &[Comparison], provenance: &Provenance) -> String {
+    let mut page = format!("# Do the formulations give the same motion?\n\n**{}**\n\n", headline(comparisons));
+    page += &matrix(comparisons);
+    page += "\nTimes are those at which the gap in the kinetic metric passes 1e-6. *After best fit*: what the free constants $\\mu_0$ that suit the \
+             Chetaev motion best leave of the gap. *Control*: the deliberately wrong fourth formulation, which puts the constraint into $L$; \
+             the harness has to flag it wherever it is wrong.\n";
+    page += "\n## Findings\n\n";
+    for (i, finding) in findings(comparisons).iter().enumerate() {
+        let _ = writeln!(page, "{}. {finding}", i + 1);
+    }
+    let _ = writeln!(
+        page,
+        "\n## How this was made\n\n`cargo run --release` writes this folder; `deltaq compare SCENE` makes one page for a scene of your own; \
+         [`verdicts.json`](verdicts.json) holds the verdicts for machines.\n\n\
+         Every motion is integrated twice, at tolerances a factor 100 apart; two motions are called different only where their gap is over \
+         ten times the sum of both error estimates.\n\n{}, {}, {} s for everything.",
+        provenance.program,
+        provenance.machine,
+        short(provenance.seconds)
+    );
+    page
+}
+
+fn gap_words(comparison: &Comparison, a: &str, b: &str) -> String {
+    let (Some(a), Some(b)) = (comparison.run(a), comparison.run(b)) else { return "–".into() };
+    match comparison.pair(a, b) {
+        Some(pair) => match &pair.gap.verdict {
+            Verdict::Undecided { .. } => "undecided".into(),
+            _ => verdict_words(&pair.gap),
+        },
+        None => "refused".into(),
+    }
+}
+
+fn verdict_of<'a>(comparison: &'a Comparison, a: &str, b: &str) -> Option<&'a Verdict> {
+    comparison.pair(comparison.run(a)?, comparison.run(b)?).map(|p| &p.gap.verdict)
+}
+
+fn fit_of<'a>(comparison: &'a Comparison, run: &str, target: &str) -> Option<&'a Fit> {
+    let (run, target) = (comparison.run(run)?, comparison.run(target)?);
+    comparison.fits.iter().find(|f| f.run == run && f.target == target)
+}
+
+fn matrix(comparisons: &[Comparison]) -> String {
+    let mut text = String::from(
+        "| scene | constraint | Chetaev – vakonomic | after best fit | Chetaev – removed | vakonomic – removed | control |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    for c in comparisons {
+        let after = match fit_of(c, "vakonomic", "chetaev").map(|f| &f.fitted) {
+            None => "–".into(),
+            Some(None) => "no fit".into(),
+            Some(Some(fitted)) if fitted.gap.verdict == Verdict::Same => "same".to_string(),
+            Some(Some(fitted)) => format!("gap {}", short(fitted.gap.largest)),
+        };
+        let control = match verdict_of(c, "chetaev", substitution::NAME) {
+            Some(Verdict::Same) => "right here",
+            Some(Verdict::Different) => "flagged",
+            Some(Verdict::Undecided { .. }) => "undecided",
+            None => "–",
+        };
+        let constraint = c.integrability.to_string();
+        let constraint = constraint.split([':', '(']).next().unwrap_or("").trim();
+        let _ = writeln!(
+            text,
+            "| [{name}](scenes/{name}.md) | {constraint} | {} | {after} | {} | {} | {control} |",
+            gap_words(c, "chetaev", "vakonomic"),
+            gap_words(c, "chetaev", "removed-constraint"),
+            gap_words(c, "vakonomic", "removed-constraint"),
+            name = c.scene.name
+        );
+    }
+    text
+}
+
+fn all_same(c: &Comparison) -> bool {
+    [("chetaev", "vakonomic"), ("chetaev", "removed-constraint"), ("vakonomic", "removed-constraint")]
+        .iter()
+        .all(|(a, b)| verdict_of(c, a, b) == Some(&Verdict::Same))
+}
+
+fn names<'a>(comparisons: impl Iterator<Item = &'a Comparison>) -> Vec<String> {
+    comparisons.map(|c| format!("`{}`", c.scene.name)).collect()
+}
+
+fn headline(comparisons: &[Comparison]) -> String {
+    let same = comparisons.iter().filter(|c| all_same(c)).count();
+    let apart = names(comparisons.iter().filter(|c| verdict_of(c, "chetaev", "vakonomic") == Some(&Verdict::Different)));
+    let lasting = comparisons
+        .iter()
+        .filter_map(|c| fit_of(c, "vakonomic", "chetaev")?.fitted.as_ref())
+        .filter(|fitted| fitted.gap.verdict == Verdict::Different)
+        .count();
+    format!(
+        "On {same} of {} scenes all three formulations give the same motion. Chetaev's and the vakonomic motion part on {}; \
+         on {lasting} of these no choice of the free multipliers was found that brings them together.",
+        comparisons.len(),
+        apart.len()
+    )
+}
+
+fn findings(comparisons: &[Comparison]) -> Vec<String> {
+    let mut findings = Vec::new();
+    let integrable: Vec<&Comparison> = comparisons.iter().filter(|c| c.integrability.is_integrable()).collect();
+    let agreeing = names(integrable.iter().copied().filter(|c| all_same(c)));
+    findings.push(format!(
+        "**Integrable constraints are beyond dispute.** Frobenius' test finds {} integrable; all formulations agree on {}.",
+        enumerate(&names(integrable.iter().copied())),
+        enumerate(&agreeing)
+    ));
+    let fitted = |verdict: Verdict| {
+        names(comparisons.iter().filter(|c| {
+            fit_of(c, "vakonomic", "chetaev").and_then(|f| f.fitted.as_ref()).is_some_and(|f| f.gap.verdict == verdict)
+        }))
+    };
+    findings.push(format!(
+        "**Vakonomic is a family, Chetaev one motion.** Among the vakonomic motions with the same start the Chetaev motion was found on {}; \
+         on {} even the closest one stays apart.",
+        enumerate(&fitted(Verdict::Same)),
+        enumerate(&fitted(Verdict::Different))
+    ));
+    findings.push(parametrizations(comparisons));
+    findings.push(control(comparisons));
+    findings.extend(predictions(comparisons));
+    findings
+}
+
+fn parametrizations(comparisons: &[Comparison]) -> String {
+    let mut examples = Vec::new();
+    for c in comparisons {
+        let removed = |i: usize| c.runs[i].choice.formulation == "removed-constraint";
+        let widest = c
+            .pairs
+            .iter()
+            .filter(|p| removed(p.first) && removed(p.second) && p.gap.verdict == Verdict::Different)
+            .max_by(|a, b| a.gap.largest.total_cmp(&b.gap.largest));
+        if let Some(p) = widest {
+            let name = |i: usize| c.runs[i].choice.removal.as_ref().map_or(String::new(), |r| r.name.clone());
+            examples.push(format!(
+                "`{}`: {} against {}, gap up to {}",
+                c.scene.name,
+                name(p.first),
+                name(p.second),
+                short(p.gap.largest)
+            ));
+        }
+    }
+    format!(
+        "**The removed-constraint motion depends on the choice of the parameters.** Two removals of one constraint, each with its constants, give \
+         different motions ({}).",
+        if examples.is_empty() { "not seen on these scenes".into() } else { examples.join("; ") }
+    )
+}
+
+fn control(comparisons: &[Comparison]) -> String {
+    let with = |verdict: &Verdict| {
+        names(comparisons.iter().filter(|c| verdict_of(c, "chetaev", substitution::NAME) == Some(verdict)))
+    };
+    format!(
+        "**The control works.** Putting the constraint into $L$ is flagged on {}, and called right on {}.",
+        enumerate(&with(&Verdict::Different)),
+        enumerate(&with(&Verdict::Same))
+    )
+}
+
+fn predictions(comparisons: &[Comparison]) -> Option<String> {
+    let mut worst: Option<(f64, &str)> = None;
+    let mut count = 0;
+    for c in comparisons {
+        for p in &c.pairs {
+            if let (Some(measured), Some(predicted)) = (&p.growth, &p.predicted) {
+                count += 1;
+                let off = measured.deviation_from(predicted);
+                if worst.is_none_or(|w| off > w.0) {
+                    worst = Some((off, &c.scene.name));
+                }
+            }
+        }
+    }
+    worst.map(|(off, name)| {
+        format!(
+            "**The parting is predictable.** On {count} scenes theory gives the leading term of the gap between Chetaev and vakonomic from the start \
+             data alone; the measured one is off by at most {} % (`{name}`).",
+            short(100.0 * off)
+        )
+    })
+}
