@@ -51,7 +51,7 @@ pub fn best_fit(
     }
     let mut prepared = Prepared::new(setting, equations.clone(), settings)?;
     let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
-        let broken = |reason: String| BoundaryError::Evaluation { reason };
+        let broken = |reason: String| BoundaryError::Residual { reason };
         let run = prepared.run(constants, end, settings.tolerance, settings).map_err(|e| broken(e.to_string()))?;
         let reached = run.dense.end();
         if reached < end {
@@ -67,7 +67,7 @@ pub fn best_fit(
         }
         Ok(())
     };
-    let options = ShootOptions::default();
+    let options = ShootOptions::with_tolerance(settings.tolerance);
     let best = guesses
         .iter()
         .filter_map(|guess| fit(&mut residual, INSTANTS * n, guess, &options).ok())

@@ -1,9 +1,12 @@
 //! Free constants from the natural boundary condition at a horizon.
 
-use integrate::{BoundaryError, ShootOptions, Status, shoot};
+use integrate::{BoundaryError, ShootOptions, shoot};
 
 use crate::motion::{Prepared, Settings};
 use crate::{SolveError, TIGHTER};
+
+/// Residual at the horizon that is accepted, over the tolerance of the integration.
+const RESIDUAL: f64 = 1e3;
 
 /// Finds the constants `C` for which every [`mechanics::FreeConstant::natural`] quantity vanishes at `horizon`.
 ///
@@ -18,7 +21,7 @@ pub(crate) fn natural_constants(
     if constants.is_empty() {
         return Ok(Vec::new());
     }
-    let start = prepared.start_time();
+    let start = prepared.t;
     if horizon.is_nan() || horizon <= start {
         return Err(SolveError::Horizon { horizon, start });
     }
@@ -37,21 +40,18 @@ pub(crate) fn natural_constants(
     let mut failure = None;
     let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
         let mut end = vec![0.0; prepared.equations.states.len()];
-        match prepared.run(constants, horizon, tolerance, settings) {
-            Ok(run) if run.status == Status::Completed => run.dense.evaluate(horizon, &mut end),
-            Ok(run) => return Err(BoundaryError::Evaluation { reason: format!("{:?}", run.status) }),
-            Err(error) => {
-                let reason = error.to_string();
-                failure = Some(error);
-                return Err(BoundaryError::Evaluation { reason });
-            }
-        }
+        let run = prepared.run(constants, horizon, tolerance, settings).map_err(|error| {
+            let reason = error.to_string();
+            failure = Some(error);
+            BoundaryError::Residual { reason }
+        })?;
+        run.completed()?.evaluate(horizon, &mut end);
         for (r, &place) in residual.iter_mut().zip(&places) {
             *r = end[place];
         }
         Ok(())
     };
-    let shot = shoot(&mut residual, &guess, &ShootOptions::default());
+    let shot = shoot(&mut residual, &guess, &ShootOptions::with_tolerance(RESIDUAL * tolerance));
     match (shot, failure) {
         (Ok(shot), _) => Ok(shot.unknowns),
         (Err(_), Some(error)) => Err(error),

@@ -159,7 +159,7 @@ pub(crate) struct Prepared {
     pub(crate) compiled: Compiled,
     start_tape: symbolic::Tape,
     start_inputs: Vec<f64>,
-    t: f64,
+    pub(crate) t: f64,
     implicit: bool,
 }
 

@@ -1,6 +1,8 @@
 //! Time integration: `y' = F(t, y)`; dense output, events, projection, work counters. Knows no mechanics.
 
+mod boundary;
 mod dense;
+mod diffsol_methods;
 mod dop853;
 #[cfg(test)]
 mod dop853_order_conditions;
@@ -15,6 +17,7 @@ mod stepper;
 mod system;
 mod time_loop;
 
+pub use boundary::{BoundaryError, Residual, ShootOptions, Shot, fit, shoot};
 pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
 pub use options::{Dense, Method, Options, Projection};
@@ -46,7 +49,9 @@ pub fn integrate(
             let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
             time_loop::run(&system, stepper, start, end, options)
         }
-        _ => unimplemented!(),
+        Method::Tsit45 | Method::Bdf | Method::TrBdf2 | Method::Esdirk34 => {
+            diffsol_methods::run(&system, start, end, options)
+        }
     })
 }
 

@@ -1,5 +1,7 @@
 //! How an integration ended, and what it cost.
 
+use thiserror::Error;
+
 use crate::dense::DenseOutput;
 
 /// What an integration returns.
@@ -30,25 +32,29 @@ pub enum Status {
 }
 
 /// Why an integration stopped before its end.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum StopCause {
     /// An event function changed sign (or reached zero).
+    #[error("event {index}")]
     Event {
         /// Which one, counted from 0.
         index: usize,
     },
     /// F could not be evaluated however small the step.
+    #[error("the rates cannot be evaluated: {reason}")]
     Evaluation {
         /// The problem's own words.
         reason: String,
     },
     /// A rate or a state became NaN or infinite however small the step.
+    #[error("component {component} of the state or of its rates is NaN or infinite")]
     NotFinite {
         /// Which one, counted from 0.
         component: usize,
     },
     /// The error estimate asked for a step that no longer moves the time.
+    #[error("a step of length {step} is asked for, the shortest possible is {limit}")]
     StepTooSmall {
         /// The length of the step asked for.
         step: f64,
@@ -56,11 +62,13 @@ pub enum StopCause {
         limit: f64,
     },
     /// The limit on attempted steps was reached.
+    #[error("more than {limit} steps")]
     TooManySteps {
         /// [`crate::Options::max_steps`].
         limit: usize,
     },
     /// The library behind the method gave up.
+    #[error("the solver gave up: {reason}")]
     Solver {
         /// Its words.
         reason: String,
