@@ -9,6 +9,8 @@ use rustc_hash::FxHashMap;
 const SHARED_LEAVES: usize = 4;
 /// An expression of more printed leaves than this is cut.
 const LONG_LEAVES: usize = 60;
+/// Terms of a long sum are put together up to this many leaves.
+const GROUP_LEAVES: usize = 30;
 
 impl Graph {
     /// Pulls out shared or long subexpressions as named intermediate quantities (names `prefix1`,
@@ -37,41 +39,91 @@ impl Graph {
             *uses.entry(*e).or_default() += 1;
         }
         let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
-        let mut definitions: Vec<(Symbol, Expr)> = Vec::new();
-        let mut number = 0;
+        let mut names = Names {
+            prefix,
+            number: 0,
+            definitions: Vec::new(),
+        };
         for n in order {
-            let new = arena.rebuild(n, &image);
-            let leaves = arena.leaves(new);
-            let whole = es.contains(&n) && uses[&n] == 1;
-            let shared = uses[&n] > 1 && leaves >= SHARED_LEAVES;
-            let long = leaves > LONG_LEAVES;
-            let nameable = matches!(
-                arena.node(n),
-                Node::Sum(..) | Node::Product(_) | Node::Power(..)
-            ) || leaves > SHARED_LEAVES;
-            if whole || !nameable || !(shared || long) {
-                image.insert(n, new);
-                continue;
+            let mut new = arena.rebuild(n, &image);
+            if arena.leaves(new) > LONG_LEAVES {
+                new = arena.split_long(new, &mut names);
             }
-            let symbol = arena.fresh_symbol(prefix, &mut number);
-            definitions.push((symbol, new));
-            image.insert(n, arena.intern(Node::Symbol(symbol)));
+            if uses[&n] > 1 && arena.leaves(new) >= SHARED_LEAVES {
+                new = names.name(&mut arena, new);
+            }
+            image.insert(n, new);
         }
         let rest = es.iter().map(|e| image[e]).collect();
-        drop(arena);
-        (definitions, rest)
+        (names.definitions, rest)
+    }
+}
+
+/// The definitions so far.
+struct Names<'a> {
+    prefix: &'a str,
+    number: usize,
+    definitions: Vec<(Symbol, Expr)>,
+}
+
+impl Names<'_> {
+    /// A new symbol for `e`, with the next number whose name is not taken.
+    fn name(&mut self, arena: &mut Arena, e: Expr) -> Expr {
+        let symbol = loop {
+            self.number += 1;
+            let name = format!("{}{}", self.prefix, self.number);
+            if arena.find_symbol(&name).is_none() {
+                break arena.symbol(&name);
+            }
+        };
+        self.definitions.push((symbol, e));
+        arena.intern(Node::Symbol(symbol))
     }
 }
 
 impl Arena {
-    /// The symbol `prefix` with the next number whose name is not taken.
-    fn fresh_symbol(&mut self, prefix: &str, number: &mut usize) -> Symbol {
-        loop {
-            *number += 1;
-            let name = format!("{prefix}{number}");
-            if self.find_symbol(&name).is_none() {
-                return self.symbol(&name);
+    /// A long sum as a sum of names for groups of its terms; a long product with names for its long
+    /// factors.
+    fn split_long(&mut self, e: Expr, names: &mut Names) -> Expr {
+        match self.node(e).clone() {
+            Node::Sum(constant, terms) if terms.len() > 1 => {
+                let mut groups: Vec<Vec<(Expr, Number)>> = Vec::new();
+                let mut room = 0;
+                for (t, c) in self.sorted_terms(&terms) {
+                    let leaves = self.leaves(t) + usize::from(!c.abs().is_one());
+                    match groups.last_mut() {
+                        Some(group) if leaves <= room => {
+                            group.push((t, c));
+                            room -= leaves;
+                        }
+                        _ => {
+                            groups.push(vec![(t, c)]);
+                            room = GROUP_LEAVES.saturating_sub(leaves);
+                        }
+                    }
+                }
+                let mut parts = Vec::with_capacity(groups.len());
+                for group in groups {
+                    let sum = self.linear(Number::ZERO, group);
+                    parts.push((names.name(self, sum), Number::ONE));
+                }
+                let sum = self.linear(constant, parts);
+                if self.leaves(sum) > LONG_LEAVES {
+                    self.split_long(sum, names)
+                } else {
+                    sum
+                }
             }
+            Node::Product(factors) => {
+                let mut named = Vec::with_capacity(factors.len());
+                for (base, exponent) in factors.iter() {
+                    let long = self.leaves(*base) > GROUP_LEAVES / 2;
+                    let base = if long { names.name(self, *base) } else { *base };
+                    named.push((base, *exponent));
+                }
+                self.power_product(Number::ONE, named)
+            }
+            _ => e,
         }
     }
 

@@ -18,12 +18,14 @@ mod number;
 mod order;
 mod parse;
 mod parse_error;
+mod print;
 mod print_latex;
 mod print_plain;
 mod program;
 mod questions;
 mod scalar;
 mod simplify;
+mod suggest;
 mod tape;
 
 pub use evaluate::CompileError;

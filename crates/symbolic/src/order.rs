@@ -9,19 +9,14 @@ use std::cmp::Ordering;
 const DEPTH: u8 = 5;
 
 impl Arena {
-    /// Terms as they are printed: by symbols in order of their creation; a positive term first if there
-    /// is one.
-    pub(crate) fn terms_in_order(&self, terms: &[(Expr, Number)]) -> Vec<(Expr, Number)> {
+    pub(crate) fn sorted_terms(&self, terms: &[(Expr, Number)]) -> Vec<(Expr, Number)> {
         let mut terms = terms.to_vec();
         terms.sort_by(|(a, _), (b, _)| self.compare(*a, *b, DEPTH));
-        if let Some(first) = terms.iter().position(|(_, c)| !c.is_negative()) {
-            terms[..=first].rotate_right(1);
-        }
         terms
     }
 
-    /// Factors as they are printed: symbols, sums, then functions.
-    pub(crate) fn factors_in_order(&self, factors: &[(Expr, Rational)]) -> Vec<(Expr, Rational)> {
+    /// Symbols, then sums, then functions.
+    pub(crate) fn sorted_factors(&self, factors: &[(Expr, Rational)]) -> Vec<(Expr, Rational)> {
         let mut factors = factors.to_vec();
         factors.sort_by(|a, b| self.compare_factors(*a, *b, DEPTH));
         factors

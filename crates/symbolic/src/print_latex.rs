@@ -2,26 +2,10 @@
 
 use crate::arena::{Arena, Node};
 use crate::latex_names::latex_name;
-use crate::number::{Number, Rational};
+use crate::number::Number;
+use crate::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, SUM, Term, text, write};
 use crate::print_plain::number_text;
 use crate::{Expr, Function, Graph, Symbol};
-
-/// How tightly what is printed binds.
-const SUM: u8 = 1;
-const PRODUCT: u8 = 2;
-const POWER: u8 = 3;
-const ATOM: u8 = 4;
-
-/// A piece of output that is still to be written.
-enum Piece {
-    Text(String),
-    /// The expression, in parentheses if it binds more loosely than the level.
-    Node(Expr, u8),
-}
-
-fn text(s: impl Into<String>) -> Piece {
-    Piece::Text(s.into())
-}
 
 impl Graph {
     /// `e` as LaTeX: primes as dots, Greek names as Greek letters, quotients as fractions.
@@ -33,22 +17,9 @@ impl Graph {
     /// ```
     pub fn latex(&self, e: Expr) -> String {
         let arena = self.arena.borrow();
-        let mut output = String::new();
-        let mut stack = vec![Piece::Node(e, 0)];
-        while let Some(piece) = stack.pop() {
-            match piece {
-                Piece::Text(s) => output.push_str(&s),
-                Piece::Node(e, level) => {
-                    let (pieces, binds) = arena.latex_pieces(e);
-                    if binds < level {
-                        output.push_str(r"\left(");
-                        stack.push(text(r"\right)"));
-                    }
-                    stack.extend(pieces.into_iter().rev());
-                }
-            }
-        }
-        output
+        write(e, (r"\left(", r"\right)"), |e, negated| {
+            arena.latex_pieces(e, negated)
+        })
     }
 
     /// The name of a symbol as LaTeX.
@@ -63,19 +34,12 @@ impl Graph {
 }
 
 impl Arena {
-    fn latex_pieces(&self, e: Expr) -> (Vec<Piece>, u8) {
+    fn latex_pieces(&self, e: Expr, negated: bool) -> Printed {
         match self.node(e) {
-            Node::Number(n) => {
-                let (pieces, binds) = self.latex_term(n.abs(), None);
-                if n.is_negative() {
-                    (prefixed("-", pieces), SUM)
-                } else {
-                    (pieces, binds)
-                }
+            Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
+                self.latex_terms(self.printed_terms(e, negated))
             }
             Node::Symbol(s) => (vec![text(latex_name(self.name(*s)))], ATOM),
-            Node::Sum(constant, terms) => self.latex_sum(*constant, terms),
-            Node::Product(_) => self.latex_term(Number::ONE, Some(e)),
             Node::Power(base, exponent) => {
                 let base = Piece::Node(*base, ATOM);
                 (
@@ -87,7 +51,9 @@ impl Arena {
                 vec![text(r"\mathrm{e}^{"), Piece::Node(*argument, 0), text("}")],
                 POWER,
             ),
-            Node::Call(function, argument) => (self.latex_call(*function, *argument, ""), POWER),
+            Node::Call(function, argument) => {
+                (self.latex_call(*function, *argument, negated, ""), POWER)
+            }
             Node::Atan2(y, x) => {
                 let (y, x) = (Piece::Node(*y, 0), Piece::Node(*x, 0));
                 let open = text(r"\operatorname{atan2}\left(");
@@ -96,164 +62,136 @@ impl Arena {
         }
     }
 
-    fn latex_call(&self, function: Function, argument: Expr, exponent: &str) -> Vec<Piece> {
+    fn latex_call(
+        &self,
+        function: Function,
+        argument: Expr,
+        negated: bool,
+        exponent: &str,
+    ) -> Vec<Piece> {
         let name = format!("{}{exponent}", function_name(function));
+        let inner = if negated {
+            Piece::Negated(argument, 0)
+        } else {
+            Piece::Node(argument, 0)
+        };
         match self.node(argument) {
-            Node::Symbol(_) => vec![text(name + " "), Piece::Node(argument, 0)],
-            _ => vec![
-                text(name + r"\left("),
-                Piece::Node(argument, 0),
-                text(r"\right)"),
-            ],
+            Node::Symbol(_) => vec![text(name + " "), inner],
+            _ => vec![text(name + r"\left("), inner, text(r"\right)")],
         }
     }
 
-    fn latex_sum(&self, constant: Number, terms: &[(Expr, Number)]) -> (Vec<Piece>, u8) {
-        let terms = self.terms_in_order(terms);
-        if let [(t, c)] = terms[..]
-            && constant.is_zero()
-        {
-            let (pieces, binds) = self.latex_term(c.abs(), Some(t));
-            return if c.is_negative() {
-                (prefixed("-", pieces), SUM)
-            } else {
-                (pieces, binds)
-            };
-        }
-        let mut all: Vec<(Number, Option<Expr>)> =
-            terms.into_iter().map(|(t, c)| (c, Some(t))).collect();
-        if !constant.is_zero() {
-            let first =
-                all.first().is_some_and(|(c, _)| c.is_negative()) && !constant.is_negative();
-            all.insert(if first { 0 } else { all.len() }, (constant, None));
-        }
+    fn latex_terms(&self, terms: Vec<Term>) -> Printed {
+        let several = terms.len() > 1;
         let mut pieces = Vec::new();
-        for (i, (c, t)) in all.into_iter().enumerate() {
-            pieces.push(text(match (i, c.is_negative()) {
+        let mut binds = SUM;
+        for (i, term) in terms.into_iter().enumerate() {
+            let sign = match (i, term.negative) {
                 (0, false) => "",
                 (0, true) => "-",
                 (_, false) => " + ",
                 (_, true) => " - ",
-            }));
-            pieces.extend(self.latex_term(c.abs(), t).0);
+            };
+            pieces.push(text(sign));
+            let (inner, inner_binds) = self.latex_term(term.number, term.factors);
+            if !several && sign.is_empty() {
+                binds = inner_binds;
+            }
+            pieces.extend(inner);
         }
-        (pieces, SUM)
+        (pieces, binds)
     }
 
-    /// c·t for c ≥ 0, as a fraction if t has denominators.
-    fn latex_term(&self, c: Number, t: Option<Expr>) -> (Vec<Piece>, u8) {
-        let factors = match t.map(|t| (t, self.node(t))) {
-            None => Vec::new(),
-            Some((_, Node::Product(factors))) => self.factors_in_order(factors),
-            Some((t, _)) => vec![(t, Rational::ONE)],
-        };
-        let (mut below, mut above): (Vec<_>, Vec<_>) =
-            factors.into_iter().partition(|(_, r)| r.is_negative());
-        for (_, exponent) in &mut below {
-            *exponent = exponent.neg();
+    /// number · factors for number ≥ 0, as a fraction if there are denominators
+    fn latex_term(&self, number: Number, factors: Vec<Factor>) -> Printed {
+        let (mut below, above): (Vec<_>, Vec<_>) = factors
+            .into_iter()
+            .partition(|factor| factor.exponent.is_negative());
+        for factor in &mut below {
+            factor.exponent = factor.exponent.neg();
         }
-        let (numerator, denominator) = latex_number(c);
-        if below.is_empty() {
-            let mut front = match denominator {
-                Some(d) => format!(r"\frac{{{numerator}}}{{{d}}}"),
-                None if numerator == "1" && !above.is_empty() => String::new(),
-                None => numerator,
+        let (numerator, denominator) = latex_number(number);
+        if above.is_empty() && below.is_empty() {
+            return match denominator {
+                None => (vec![text(numerator)], ATOM),
+                Some(d) => (vec![text(fraction(&numerator, &d))], PRODUCT),
             };
-            if above.is_empty() {
-                return (
-                    vec![text(front)],
-                    if c == Number::ONE || c.is_zero() {
-                        ATOM
-                    } else {
-                        POWER
-                    },
-                );
-            }
-            if front.is_empty()
-                && let [(base, exponent)] = above[..]
-            {
-                return self.latex_factor(base, exponent, true);
-            }
-            if !front.is_empty() {
-                let number = matches!(self.node(above[0].0), Node::Number(_));
-                let root = above[0].1 == Rational::new(1, 2).unwrap_or(Rational::ONE);
-                front.push_str(if number && !root { r" \cdot " } else { " " });
-            }
-            let mut pieces = vec![text(front)];
-            pieces.extend(self.latex_factors(&mut above, false));
-            return (pieces, PRODUCT);
         }
+        if below.is_empty() {
+            return match denominator {
+                Some(d) => (
+                    self.latex_product(&fraction(&numerator, &d), &above),
+                    PRODUCT,
+                ),
+                None if numerator != "1" => (self.latex_product(&numerator, &above), PRODUCT),
+                None => match above[..] {
+                    [factor] => self.latex_factor(factor, 0),
+                    _ => (self.latex_product("", &above), PRODUCT),
+                },
+            };
+        }
+        let front = if numerator == "1" && !above.is_empty() {
+            String::new()
+        } else {
+            numerator
+        };
         let mut pieces = vec![text(r"\frac{")];
-        if numerator != "1" || above.is_empty() {
-            pieces.push(text(if above.is_empty() {
-                numerator
-            } else {
-                numerator + " "
-            }));
-            pieces.extend(self.latex_factors(&mut above, false));
-        } else {
-            pieces.extend(self.latex_factors(&mut above, true));
-        }
+        pieces.extend(self.latex_product(&front, &above));
         pieces.push(text("}{"));
-        if let Some(d) = denominator {
-            pieces.push(text(d + " "));
-            pieces.extend(self.latex_factors(&mut below, false));
-        } else {
-            pieces.extend(self.latex_factors(&mut below, true));
-        }
+        pieces.extend(self.latex_product(denominator.as_deref().unwrap_or(""), &below));
         pieces.push(text("}"));
         (pieces, PRODUCT)
     }
 
-    fn latex_factors(&self, factors: &mut [(Expr, Rational)], alone: bool) -> Vec<Piece> {
-        let alone = alone && factors.len() == 1;
-        let mut pieces = Vec::new();
-        for (i, (base, exponent)) in factors.iter().enumerate() {
-            if i > 0 {
-                pieces.push(text(" "));
+    /// A number (or nothing) and factors side by side
+    fn latex_product(&self, front: &str, factors: &[Factor]) -> Vec<Piece> {
+        let mut pieces = vec![text(front)];
+        let alone = front.is_empty() && factors.len() == 1;
+        for (i, factor) in factors.iter().enumerate() {
+            let digits = self.starts_with_digit(*factor)
+                && (i > 0 || front.ends_with(|c: char| c.is_ascii_digit()));
+            if i > 0 || !front.is_empty() {
+                pieces.push(text(if digits { r" \cdot " } else { " " }));
             }
-            let (factor, binds) = self.latex_factor(*base, *exponent, alone);
-            let enclose = !alone && binds < POWER;
-            if enclose {
-                pieces.push(text(r"\left("));
-            }
-            pieces.extend(factor);
-            if enclose {
-                pieces.push(text(r"\right)"));
-            }
+            pieces.extend(self.latex_factor(*factor, if alone { 0 } else { POWER }).0);
         }
         pieces
     }
 
-    /// base^exponent for a positive exponent; `alone` where nothing else stands beside it.
-    fn latex_factor(&self, base: Expr, exponent: Rational, alone: bool) -> (Vec<Piece>, u8) {
-        match (exponent.numerator(), exponent.denominator()) {
-            (1, 1) => (
-                vec![Piece::Node(base, if alone { 0 } else { POWER })],
-                POWER,
-            ),
-            (1, 2) => (vec![text(r"\sqrt{"), Piece::Node(base, 0), text("}")], ATOM),
-            (n, 1) => match self.node(base) {
-                Node::Call(function, argument) if raised_at_name(*function) => (
-                    self.latex_call(*function, *argument, &format!("^{{{n}}}")),
-                    POWER,
-                ),
-                _ => (
-                    vec![Piece::Node(base, ATOM), text(format!("^{{{n}}}"))],
-                    POWER,
-                ),
+    fn starts_with_digit(&self, factor: Factor) -> bool {
+        let first = match self.node(factor.base) {
+            Node::Power(base, _) => *base,
+            _ => factor.base,
+        };
+        let root = factor.exponent.denominator() == 2 && factor.exponent.numerator() == 1;
+        matches!(self.node(first), Node::Number(_)) && !root
+    }
+
+    /// base^exponent for a positive exponent, where what binds as tightly as `level` can stand
+    fn latex_factor(&self, factor: Factor, level: u8) -> Printed {
+        match (factor.exponent.numerator(), factor.exponent.denominator()) {
+            (1, 1) => (vec![factor.piece(level)], POWER),
+            (1, 2) => (vec![text(r"\sqrt{"), factor.piece(0), text("}")], ATOM),
+            (n, 1) => match self.node(factor.base) {
+                Node::Call(function, argument) if raised_at_name(*function) => {
+                    let exponent = format!("^{{{n}}}");
+                    (
+                        self.latex_call(*function, *argument, factor.negated, &exponent),
+                        POWER,
+                    )
+                }
+                _ => (vec![factor.piece(ATOM), text(format!("^{{{n}}}"))], POWER),
             },
             (n, d) => (
-                vec![Piece::Node(base, ATOM), text(format!("^{{{n}/{d}}}"))],
+                vec![factor.piece(ATOM), text(format!("^{{{n}/{d}}}"))],
                 POWER,
             ),
         }
     }
 }
 
-fn prefixed(sign: &str, mut pieces: Vec<Piece>) -> Vec<Piece> {
-    pieces.insert(0, text(sign));
-    pieces
+fn fraction(numerator: &str, denominator: &str) -> String {
+    format!(r"\frac{{{numerator}}}{{{denominator}}}")
 }
 
 /// Powers of ten as such: 1.5e-7 is 1.5 · 10⁻⁷.

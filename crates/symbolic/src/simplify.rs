@@ -63,7 +63,7 @@ impl Arena {
     fn pythagoras(&mut self, terms: &mut Vec<(Expr, Number)>) -> Option<Vec<(Expr, Number)>> {
         type Rest = Vec<(Expr, Rational)>;
         let mut partners: FxHashMap<(Function, Expr, Rest), usize> = FxHashMap::default();
-        let mut pairs: Vec<(usize, usize, Rest)> = Vec::new();
+        let mut pairs: Vec<(usize, Rest)> = Vec::new();
         let mut taken = vec![false; terms.len()];
         for (index, (term, coefficient)) in terms.iter().enumerate() {
             let Node::Product(factors) = self.node(*term) else {
@@ -94,15 +94,14 @@ impl Arena {
                     !taken[other] && !taken[index] && terms[other].1 == sign.mul(*coefficient)
                 });
                 if let Some(other) = found {
-                    let positive = if matches!(function, Function::Sinh) {
+                    let positive = if *function == Function::Sinh {
                         other
                     } else {
                         index
                     };
-                    let other = if positive == index { other } else { index };
                     taken[index] = true;
                     taken[other] = true;
-                    pairs.push((positive, other, key.2));
+                    pairs.push((positive, key.2));
                     break;
                 }
                 partners.insert((*function, key.1, key.2), index);
@@ -112,7 +111,7 @@ impl Arena {
             return None;
         }
         let mut found = Vec::with_capacity(pairs.len());
-        for (positive, _, rest) in pairs {
+        for (positive, rest) in pairs {
             let coefficient = terms[positive].1;
             found.push((self.power_product(Number::ONE, rest), coefficient));
         }
