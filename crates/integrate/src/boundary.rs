@@ -233,9 +233,8 @@ fn minimise(
         evaluations: 0,
     };
     search.values(guess)?;
-    let (problem, _report) = LevenbergMarquardt::new()
-        .with_patience(10 * options.max_iterations)
-        .minimize(Target(RefCell::new(search)));
+    let (problem, _report) =
+        LevenbergMarquardt::new().with_patience(10 * options.max_iterations).minimize(Target(RefCell::new(search)));
     let mut search = problem.0.into_inner();
     let best = search.best.clone();
     let condition = condition(search.differences(&best)?);
@@ -249,11 +248,9 @@ fn check(residuals: usize, guess: &[f64], options: &ShootOptions) -> Result<(), 
     }
     let positive = "finite and above 0";
     let in_range = |x: f64| x > 0.0 && x.is_finite();
-    for (name, found) in [
-        ("tolerance", options.tolerance),
-        ("max_iterations", options.max_iterations as f64),
-        ("scale", options.scale),
-    ] {
+    for (name, found) in
+        [("tolerance", options.tolerance), ("max_iterations", options.max_iterations as f64), ("scale", options.scale)]
+    {
         if !in_range(found) {
             return Err(BoundaryError::Option { name, found, needed: positive });
         }

@@ -42,12 +42,7 @@ pub(crate) struct Dop853<'s, 'p> {
 
 impl<'s, 'p> Dop853<'s, 'p> {
     /// Evaluates F at the start.
-    pub(crate) fn new(
-        system: &'s System<'p>,
-        start: &Start,
-        end: f64,
-        options: &Options,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn new(system: &'s System<'p>, start: &Start, end: f64, options: &Options) -> Result<Self, Failure> {
         let n = system.dimension();
         let mut k = vec![0.0; STAGES * n];
         system.rates(start.t, &start.y, &mut k[..n])?;
@@ -67,6 +62,11 @@ impl<'s, 'p> Dop853<'s, 'p> {
             next: 0.0,
             failed: false,
         })
+    }
+
+    #[cfg(test)]
+    pub(crate) fn set_step(&mut self, step: f64) {
+        self.step = step;
     }
 
     /// Hairer's starting step: a hundredth of |y|/|F|, then from an estimate of the second derivative.
@@ -97,8 +97,7 @@ impl<'s, 'p> Dop853<'s, 'p> {
             curvature += ((*g - *f) / scale).powi(2);
         }
         let steepest = (curvature.sqrt() / first).max(rate.sqrt());
-        let second =
-            if steepest <= 1e-15 { (first * 1e-3).max(1e-6) } else { (0.01 / steepest).powf(1.0 / ORDER) };
+        let second = if steepest <= 1e-15 { (first * 1e-3).max(1e-6) } else { (0.01 / steepest).powf(1.0 / ORDER) };
         self.step = sign * (100.0 * first).min(second).min(longest);
     }
 
@@ -151,6 +150,7 @@ impl<'s, 'p> Dop853<'s, 'p> {
 #[inline(always)]
 fn combine<const M: usize>(row: &Row<M>, k: &[f64], n: usize, mut write: impl FnMut(usize, f64)) {
     let stages: [&[f64]; M] = row.from.map(|stage| &k[stage * n..][..n]);
+    #[allow(clippy::needless_range_loop)] // both loops run over slices of known length side by side
     for i in 0..n {
         let mut sum = 0.0;
         for m in 0..M {

@@ -58,8 +58,7 @@ fn trees(order: usize) -> Vec<Tree> {
                 trees.push(Tree { size, density, stages });
                 continue;
             }
-            for index in 0..=largest {
-                let child = &trees[index];
+            for (index, child) in trees.iter().enumerate().take(largest + 1) {
                 if child.size <= left {
                     let mut product = stages;
                     for (i, p) in product.iter_mut().enumerate() {

@@ -24,61 +24,25 @@ pub(crate) const NODES: [f64; STAGES] = [
 ];
 
 /// Stage 1.
-pub(crate) const STAGE_1: Row<1> = Row {
-    from: [0],
-    weight: [
-        0.05260015195876773,
-    ],
-};
+pub(crate) const STAGE_1: Row<1> = Row { from: [0], weight: [0.05260015195876773] };
 
 /// Stage 2.
-pub(crate) const STAGE_2: Row<2> = Row {
-    from: [0, 1],
-    weight: [
-        0.0197250569845379,
-        0.0591751709536137,
-    ],
-};
+pub(crate) const STAGE_2: Row<2> = Row { from: [0, 1], weight: [0.0197250569845379, 0.0591751709536137] };
 
 /// Stage 3.
-pub(crate) const STAGE_3: Row<2> = Row {
-    from: [0, 2],
-    weight: [
-        0.02958758547680685,
-        0.08876275643042054,
-    ],
-};
+pub(crate) const STAGE_3: Row<2> = Row { from: [0, 2], weight: [0.02958758547680685, 0.08876275643042054] };
 
 /// Stage 4.
-pub(crate) const STAGE_4: Row<3> = Row {
-    from: [0, 2, 3],
-    weight: [
-        0.2413651341592667,
-        -0.8845494793282861,
-        0.924834003261792,
-    ],
-};
+pub(crate) const STAGE_4: Row<3> =
+    Row { from: [0, 2, 3], weight: [0.2413651341592667, -0.8845494793282861, 0.924834003261792] };
 
 /// Stage 5.
-pub(crate) const STAGE_5: Row<3> = Row {
-    from: [0, 3, 4],
-    weight: [
-        0.037037037037037035,
-        0.17082860872947386,
-        0.12546768756682242,
-    ],
-};
+pub(crate) const STAGE_5: Row<3> =
+    Row { from: [0, 3, 4], weight: [0.037037037037037035, 0.17082860872947386, 0.12546768756682242] };
 
 /// Stage 6.
-pub(crate) const STAGE_6: Row<4> = Row {
-    from: [0, 3, 4, 5],
-    weight: [
-        0.037109375,
-        0.17025221101954405,
-        0.06021653898045596,
-        -0.017578125,
-    ],
-};
+pub(crate) const STAGE_6: Row<4> =
+    Row { from: [0, 3, 4, 5], weight: [0.037109375, 0.17025221101954405, 0.06021653898045596, -0.017578125] };
 
 /// Stage 7.
 pub(crate) const STAGE_7: Row<5> = Row {
@@ -226,14 +190,8 @@ pub(crate) const ERROR_5: Row<8> = Row {
 };
 
 /// Embedded formula of order 3.
-pub(crate) const EMBEDDED_3: Row<3> = Row {
-    from: [0, 8, 11],
-    weight: [
-        0.2440944881889764,
-        0.7338466882816118,
-        0.022058823529411766,
-    ],
-};
+pub(crate) const EMBEDDED_3: Row<3> =
+    Row { from: [0, 8, 11], weight: [0.2440944881889764, 0.7338466882816118, 0.022058823529411766] };
 
 /// Coefficient 4 of the dense output, in units of the step.
 pub(crate) const DENSE_4: Row<12> = Row {

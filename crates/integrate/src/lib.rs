@@ -1,4 +1,61 @@
-//! Time integration: `y' = F(t, y)`; dense output, events, projection, work counters. Knows no mechanics.
+//! Time integration, knowing no mechanics:
+//!
+//! ```text
+//! y' = F(t, y),   y(t₀) = y₀,        t from t₀ to t₁, forwards or backwards
+//! y ∈ Rⁿ,  F: R × Rⁿ → Rⁿ,           J = ∂F/∂y ∈ Rⁿˣⁿ for the implicit methods
+//! g_k(t, y(t)) = 0                   events: the first one ends the integration
+//! y ∈ M(t)                           an invariant manifold onto which accepted states may be projected
+//! ```
+//!
+//! and boundary values on top of it: constants `c ∈ Rᵏ` in `y₀` such that `r(y(t₁)) = 0`, or `|r|` least.
+//!
+//! - [`Problem`] is what is to be integrated, [`Options`] says how, [`integrate`] does it.
+//! - [`Solution`] has the [`Status`] (how the run ended, which is not an error), the [`DenseOutput`] (the solution as a
+//!   function of time), the [`Work`] (what it cost) and the [`ProjectionReport`].
+//! - [`shoot`] and [`fit`] solve for constants; [`find_root`] finds roots.
+//!
+//! There is one time loop for all methods; a method is a way to attempt a step. A method's order and dense output:
+//!
+//! | method | order | order of the dense output | for |
+//! |---|---|---|---|
+//! | [`Method::Dop853`] | 8 | 7 | non-stiff problems, high accuracy |
+//! | [`Method::Tsit45`] | 5 | 4 | non-stiff problems, low accuracy |
+//! | [`Method::Bdf`] | 1 to 5 | that of the step | stiff problems |
+//! | [`Method::TrBdf2`] | 2 | 2 | stiff problems, low accuracy |
+//! | [`Method::Esdirk34`] | 3 | 3 | stiff problems |
+//!
+//! # What the tolerance means
+//! It bounds the estimated error *of one step* (see [`Options`]). The error at the end is larger by what the problem
+//! makes of it, and the error of DOP853's dense output between the ends of the steps is not estimated at all: usually
+//! it is two to three times the error at the ends of the steps; where those errors happen to cancel, up to 100 times the
+//! tolerance has been seen. An error estimate worth the name is the difference to a second run with a tighter tolerance.
+//!
+//! # Events
+//! Each accepted step is looked at in eight parts of equal length: a function whose signs at two neighbouring points
+//! differ has a root between them, found by Brent's method on the dense output to round-off of θ; the first root of the
+//! step ends the run, and the dense output is cut there. So an event is as accurate as the dense output. What can be
+//! missed is a pair of roots (or a touching one) within an eighth of a step. A function that is exactly zero at the
+//! start is passed over until it has a sign, and so is a root within round-off of the start: a run that goes on from
+//! where an event ended another one does not stop at once.
+//!
+//! # Projection
+//! With [`Projection::EveryStep`], [`Problem::project`] is applied to each accepted state before it is stored. Dop853
+//! evaluates the rates at the projected state instead of the other one, so that projection costs no evaluation, and the
+//! dense output stays continuously differentiable. Tsit45, TrBdf2 and Esdirk34 go on from the projected state, at one
+//! evaluation a step. Bdf remembers several steps and would have to forget them, so that its own solution is left
+//! unprojected until the projection moves the state by more than 100 tolerances; what is stored is always projected.
+//! In each case the order of the method is kept, between the ends of the steps the manifold is met to the accuracy of
+//! the dense output.
+//!
+//! # What never happens
+//! A NaN or an infinity is never part of a solution: a step whose stages, state or rates are not finite is tried again
+//! at half its length, at most 60 times, and then the run stops with [`StopCause::NotFinite`]; likewise for
+//! [`EvaluationError`]s, with [`StopCause::Evaluation`] and the problem's own words.
+//!
+//! # Sources
+//! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993 (DOP853, dense
+//! output, starting step). The other methods are those of the library [`diffsol`](https://docs.rs/diffsol), the least-squares solver that of
+//! [`levenberg-marquardt`](https://docs.rs/levenberg-marquardt).
 
 mod boundary;
 mod dense;
@@ -7,6 +64,8 @@ mod dop853;
 #[cfg(test)]
 mod dop853_order_conditions;
 mod dop853_tableau;
+#[cfg(test)]
+mod dop853_tests;
 mod error;
 mod events;
 mod options;
@@ -35,12 +94,7 @@ use system::System;
 ///
 /// # Errors
 /// See [`CallError`].
-pub fn integrate(
-    problem: &mut dyn Problem,
-    start: &Start,
-    end: f64,
-    options: &Options,
-) -> Result<Solution, CallError> {
+pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &Options) -> Result<Solution, CallError> {
     check_call(problem.dimension(), start, end, options)?;
     let system = System::new(problem);
     Ok(match options.method {

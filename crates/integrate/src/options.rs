@@ -11,7 +11,7 @@ pub enum Method {
     Bdf,
     /// The trapezoidal rule and BDF2 in one step, order 2, L-stable (diffsol); for stiff problems at low accuracy.
     TrBdf2,
-    /// Singly diagonally implicit Runge–Kutta method of order 4(3), L-stable (diffsol); for stiff problems.
+    /// Singly diagonally implicit Runge–Kutta method of order 3(4), L-stable (diffsol); for stiff problems.
     Esdirk34,
 }
 
@@ -46,7 +46,8 @@ pub enum Dense {
 pub struct Options {
     /// The time-stepping method.
     pub method: Method,
-    /// Tolerance relative to each component of the state; > 0. Below 2e-15 it is read as 2e-15.
+    /// Tolerance relative to each component of the state; > 0. [`Method::Dop853`] reads what is below 2e-15, where
+    /// its error estimate measures round-off, as 2e-15.
     pub relative_tolerance: f64,
     /// Tolerance in the state's own units; > 0.
     pub absolute_tolerance: f64,

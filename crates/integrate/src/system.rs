@@ -47,8 +47,10 @@ pub(crate) struct System<'p> {
 struct Inner<'p> {
     problem: &'p mut dyn Problem,
     work: Work,
-    /// The last failure inside a callback that cannot return one.
+    /// The first failure inside a callback that cannot return one; those after it may follow from its NaN.
     failure: Option<Failure>,
+    /// Why there is no Jacobian, as long as there is none.
+    no_jacobian: Option<Failure>,
     /// The point at which `jacobian` was evaluated; empty `y`: nowhere yet.
     jacobian_t: f64,
     jacobian_y: Vec<f64>,
@@ -64,6 +66,7 @@ impl<'p> System<'p> {
                 problem,
                 work: Work::default(),
                 failure: None,
+                no_jacobian: None,
                 jacobian_t: f64::NAN,
                 jacobian_y: Vec::new(),
                 jacobian: Vec::new(),
@@ -102,7 +105,7 @@ impl<'p> System<'p> {
     /// F(t, y) for callers that take no errors: the failure is kept for [`System::take_failure`] and NaN is written.
     pub(crate) fn rates_or_nan(&self, t: f64, y: &[f64], rates: &mut [f64]) {
         if let Err(failure) = check_finite(y).and_then(|()| self.rates(t, y, rates)) {
-            self.inner.borrow_mut().failure = Some(failure);
+            self.inner.borrow_mut().failure.get_or_insert(failure);
             rates.fill(f64::NAN);
         }
     }
@@ -111,18 +114,21 @@ impl<'p> System<'p> {
     pub(crate) fn jacobian_product_or_nan(&self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) {
         let inner = &mut *self.inner.borrow_mut();
         if let Err(failure) = inner.evaluate_jacobian(t, y) {
-            inner.failure = Some(failure);
+            inner.no_jacobian = Some(failure);
             inner.jacobian_y.clear();
             product.fill(f64::NAN);
             return;
         }
+        inner.no_jacobian = None;
         for (row, p) in inner.jacobian.chunks_exact(y.len()).zip(product) {
             *p = row.iter().zip(v).map(|(j, v)| j * v).sum();
         }
     }
 
     pub(crate) fn take_failure(&self) -> Option<Failure> {
-        self.inner.borrow_mut().failure.take()
+        let inner = &mut *self.inner.borrow_mut();
+        let failure = inner.failure.take();
+        inner.no_jacobian.clone().or(failure)
     }
 
     /// Projects `y`; returns the length of the move.

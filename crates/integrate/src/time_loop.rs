@@ -87,12 +87,7 @@ impl Record<'_, '_> {
     }
 
     /// Checks, projects and stores the candidate that ends at `t`; returns the event that cuts it short.
-    fn take(
-        &mut self,
-        stepper: &mut dyn Stepper,
-        watch: &mut EventWatch,
-        t: f64,
-    ) -> Result<Option<usize>, Failure> {
+    fn take(&mut self, stepper: &mut dyn Stepper, watch: &mut EventWatch, t: f64) -> Result<Option<usize>, Failure> {
         let begin = stepper.time();
         let candidate = stepper.candidate();
         check_finite(candidate)?;

@@ -2,7 +2,7 @@
 
 mod problems;
 
-use integrate::{Dense, Options, Solution, Start, Status, integrate};
+use integrate::{Dense, DenseError, Options, Solution, Start, Status, integrate};
 use problems::*;
 
 fn run(case: &mut Case, y: &[f64], end: f64, options: &Options) -> Solution {
@@ -12,7 +12,7 @@ fn run(case: &mut Case, y: &[f64], end: f64, options: &Options) -> Solution {
     solution
 }
 
-/// The largest error of the dense output at 40 points a step, and at the ends of the steps alone.
+/// The largest error at 40 points a step, and at the ends of the steps alone.
 fn errors(solution: &Solution, reference: impl Fn(f64, &mut [f64])) -> (f64, f64) {
     let times = solution.dense.step_times();
     let n = solution.dense.dimension();
@@ -34,17 +34,100 @@ fn errors(solution: &Solution, reference: impl Fn(f64, &mut [f64])) -> (f64, f64
 }
 
 #[test]
-fn print_all() {
-    for e in 4..=14 {
-        let tol = 10f64.powi(-e);
-        let o = Options::with_tolerance(tol);
-        let s = run(&mut oscillator(), &[1.0, 0.0], 20.0, &o);
-        let (a, b) = errors(&s, |t, y| (y[0], y[1]) = (t.cos(), -t.sin()));
-        let s2 = run(&mut nonautonomous(), &[1.0], 20.0, &o);
-        let (c, d) = errors(&s2, |t, y| y[0] = t.sin().exp());
-        let s3 = run(&mut arenstorf(), &ARENSTORF_START, ARENSTORF_PERIOD, &o);
-        let back = distance(s3.dense.end_state(), &ARENSTORF_START);
-        println!("{tol:e} osc {:?} {a:e} {b:e} | nonaut {:?} {c:e} {d:e} | aren {:?} {back:e}", s.work, s2.work, s3.work);
+fn the_oscillator_gives_order_eight() {
+    let points: Vec<(f64, f64)> = [1e-5, 1e-7, 1e-9, 1e-11]
+        .iter()
+        .map(|&tolerance| {
+            let solution = run(&mut oscillator(), &[1.0, 0.0], 50.0, &Options::with_tolerance(tolerance));
+            let (everywhere, ends) = errors(&solution, |t, y| (y[0], y[1]) = (t.cos(), -t.sin()));
+            assert!(everywhere < 3.0 * ends, "{tolerance:e}: {everywhere:e} within the steps, {ends:e} at their ends");
+            (solution.work.steps as f64, ends)
+        })
+        .collect();
+    let order = -slope(&points);
+    println!("{order} {points:?}");
+    assert!((7.6..8.6).contains(&order), "order {order} from {points:?}");
+}
+
+#[test]
+fn a_nonautonomous_problem_gives_order_eight_at_the_steps_and_seven_between() {
+    let (mut at_ends, mut between) = (Vec::new(), Vec::new());
+    for tolerance in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {
+        let solution = run(&mut nonautonomous(), &[1.0], 40.0, &Options::with_tolerance(tolerance));
+        let (everywhere, ends) = errors(&solution, |t, y| y[0] = t.sin().exp());
+        at_ends.push((solution.work.steps as f64, ends));
+        between.push((solution.work.steps as f64, everywhere));
     }
-    let _ = (Dense::EndOnly, slope(&[]));
+    let orders = (-slope(&at_ends), -slope(&between));
+    println!("{orders:?} {at_ends:?} {between:?}");
+    assert!((7.2..9.5).contains(&orders.0), "order {} at the ends of the steps: {at_ends:?}", orders.0);
+    assert!((6.7..8.7).contains(&orders.1), "order {} between: {between:?}", orders.1);
+}
+
+#[test]
+fn the_arenstorf_orbit_closes() {
+    let points: Vec<(f64, f64)> = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12]
+        .iter()
+        .map(|&tolerance| {
+            let options = Options::with_tolerance(tolerance);
+            let solution = run(&mut arenstorf(), &ARENSTORF_START, ARENSTORF_PERIOD, &options);
+            (solution.work.steps as f64, distance(solution.dense.end_state(), &ARENSTORF_START))
+        })
+        .collect();
+    let order = -slope(&points);
+    println!("{order} {points:?}");
+    assert!(order > 7.5, "order {order} from {points:?}");
+    assert!(points[4].1 < 1e-8, "{points:?}");
+}
+
+#[test]
+fn round_off_is_a_plateau_and_no_trap() {
+    for tolerance in [1e-14, 1e-15, 1e-16, 1e-18] {
+        let options = Options::with_tolerance(tolerance);
+        let solution = run(&mut oscillator(), &[1.0, 0.0], 20.0, &options);
+        let (everywhere, _) = errors(&solution, |t, y| (y[0], y[1]) = (t.cos(), -t.sin()));
+        println!("{tolerance:e} {:?} {everywhere:e}", solution.work);
+        assert!(everywhere < 6.0 * tolerance.max(4e-15), "{tolerance:e}: {everywhere:e}");
+        assert!(solution.work.steps < 500 && solution.work.rejected < 20, "{:?}", solution.work);
+        let solution = run(&mut arenstorf(), &ARENSTORF_START, ARENSTORF_PERIOD, &options);
+        println!("{tolerance:e} {:?}", solution.work);
+        assert!(solution.work.steps < 2000 && solution.work.rejected < 200, "{:?}", solution.work);
+    }
+}
+
+#[test]
+fn ends_alone_cost_three_evaluations_a_step_less_and_say_so() {
+    let everywhere = Options::with_tolerance(1e-10);
+    let ends = Options { dense: Dense::EndOnly, ..everywhere.clone() };
+    let (a, b) =
+        (run(&mut oscillator(), &[1.0, 0.0], 10.0, &everywhere), run(&mut oscillator(), &[1.0, 0.0], 10.0, &ends));
+    assert_eq!(a.dense.end_state(), b.dense.end_state());
+    assert_eq!(a.work.evaluations, b.work.evaluations + 3 * a.work.steps);
+    assert_eq!(b.work.evaluations, 2 + 12 * b.work.steps + 11 * b.work.rejected);
+    let mut y = [0.0; 2];
+    b.dense.evaluate(0.0, &mut y);
+    assert_eq!(y, [1.0, 0.0]);
+    b.dense.evaluate(10.0, &mut y);
+    assert_eq!(y, b.dense.end_state());
+    let not_stored = DenseError::NotStored { t: 5.0, start: 0.0, end: 10.0 };
+    assert_eq!(b.dense.try_evaluate(5.0, &mut y), Err(not_stored));
+}
+
+#[test]
+fn slopes_match_where_steps_meet() {
+    let solution = run(&mut oscillator(), &[1.0, 0.0], 10.0, &Options::with_tolerance(1e-6));
+    let times = solution.dense.step_times();
+    let state = |t: f64| {
+        let mut y = [0.0; 2];
+        solution.dense.evaluate(t, &mut y);
+        y
+    };
+    let d = 1e-4;
+    for t in &times[1..times.len() - 1] {
+        let (before, at, after) = (state(t - d), state(*t), state(t + d));
+        for i in 0..2 {
+            let (left, right) = ((at[i] - before[i]) / d, (after[i] - at[i]) / d);
+            assert!((left - right).abs() < 2.0 * d, "slope jumps from {left} to {right} at {t}");
+        }
+    }
 }

@@ -132,3 +132,41 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
     let xx: f64 = logs.iter().map(|p| (p.0 - mx).powi(2)).sum();
     xy / xx
 }
+
+/// Moves onto the unit circle.
+pub fn onto_circle(_t: f64, y: &mut [f64]) -> Result<f64, EvaluationError> {
+    let radius = y[0].hypot(y[1]);
+    y[0] /= radius;
+    y[1] /= radius;
+    Ok((radius - 1.0).abs())
+}
+
+/// Robertson's reactions, from (1, 0, 0).
+pub fn robertson() -> Case {
+    Case::new(
+        3,
+        |_, y, r| {
+            r[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
+            r[2] = 3e7 * y[1] * y[1];
+            r[1] = -r[0] - r[2];
+            Ok(())
+        },
+        |_, y, j| {
+            j[..3].copy_from_slice(&[-0.04, 1e4 * y[2], 1e4 * y[1]]);
+            j[3..6].copy_from_slice(&[0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]]);
+            j[6..].copy_from_slice(&[0.0, 6e7 * y[1], 0.0]);
+        },
+    )
+}
+
+/// Van der Pol's oscillator with μ = 1000, in the time of the slow motion; from (2, 0).
+pub fn van_der_pol() -> Case {
+    Case::new(
+        2,
+        |_, y, r| {
+            (r[0], r[1]) = (y[1], 1e6 * ((1.0 - y[0] * y[0]) * y[1] - y[0]));
+            Ok(())
+        },
+        |_, y, j| j.copy_from_slice(&[0.0, 1.0, 1e6 * (-2.0 * y[0] * y[1] - 1.0), 1e6 * (1.0 - y[0] * y[0])]),
+    )
+}

@@ -1,0 +1,96 @@
+//! The dense output of every method.
+
+mod problems;
+
+use integrate::{DenseError, Method, Options, Projection, Start, Status, integrate};
+use problems::*;
+
+#[test]
+fn it_is_continuous_also_where_states_are_projected() {
+    for method in Method::ALL {
+        for projection in [Projection::EveryStep, Projection::Off] {
+            let options = Options { method, projection, ..Options::with_tolerance(1e-5) };
+            let start = Start { t: 0.0, y: vec![1.0, 0.0] };
+            let mut case = oscillator().with_projection(onto_circle);
+            let solution = integrate(&mut case, &start, 10.0, &options).unwrap();
+            let times = solution.dense.step_times();
+            assert_eq!(times.len(), solution.work.steps + 1);
+            assert_eq!((times[0], times[times.len() - 1]), (0.0, 10.0));
+            for &t in &times[1..] {
+                let (mut before, mut at) = ([0.0; 2], [0.0; 2]);
+                solution.dense.evaluate(t.next_down(), &mut before);
+                solution.dense.evaluate(t, &mut at);
+                assert!(distance(&before, &at) < 1e-14, "{method:?}: jump at {t}: {before:?} {at:?}");
+                if projection == Projection::EveryStep {
+                    assert!((at[0].hypot(at[1]) - 1.0).abs() < 4e-16, "{method:?}: off the circle at {t}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn it_is_as_good_as_the_steps() {
+    // Within a small factor of the error at the ends of the steps, for every method.
+    for method in Method::ALL {
+        let options = Options { method, ..Options::with_tolerance(1e-7) };
+        let start = Start { t: 0.0, y: vec![1.0, 0.0] };
+        let solution = integrate(&mut oscillator(), &start, 10.0, &options).unwrap();
+        let error = |t: f64| {
+            let mut y = [0.0; 2];
+            solution.dense.evaluate(t, &mut y);
+            distance(&y, &[t.cos(), -t.sin()])
+        };
+        let ends = solution.dense.step_times().iter().map(|&t| error(t)).fold(0.0, f64::max);
+        let between = (0..=20_000).map(|i| error(f64::from(i) * 5e-4)).fold(0.0, f64::max);
+        println!("{method:?} {ends:e} {between:e}");
+        assert!(between < 3.0 * ends, "{method:?}: {between:e} between, {ends:e} at the ends of the steps");
+    }
+}
+
+#[test]
+fn questions_it_cannot_answer() {
+    for (from, to) in [(1.0, 3.0), (3.0, 1.0)] {
+        let start = Start { t: from, y: vec![1.0, 0.0] };
+        let solution = integrate(&mut oscillator(), &start, to, &Options::with_tolerance(1e-9)).unwrap();
+        let (dense, mut y) = (&solution.dense, [7.0; 2]);
+        assert_eq!((dense.start(), dense.end(), dense.dimension()), (from, to, 2));
+        for t in [0.9, 3.1, f64::NAN, f64::INFINITY] {
+            let answer = dense.try_evaluate(t, &mut y);
+            assert!(matches!(answer, Err(DenseError::OutsideRange { start, end, .. }) if (start, end) == (from, to)));
+        }
+        assert_eq!(y, [7.0; 2]);
+        let short = dense.try_evaluate(2.0, &mut y[..1]);
+        assert_eq!(short, Err(DenseError::Dimension { expected: 2, found: 1 }));
+        // Round-off outside is clamped.
+        for t in [1.0f64.next_down(), 3.0f64.next_up()] {
+            dense.try_evaluate(t, &mut y).unwrap();
+            let end = if (t < 2.0) == (from < 2.0) { dense.start_state() } else { dense.end_state() };
+            assert_eq!(y, end);
+        }
+    }
+}
+
+#[test]
+fn backward_integration_returns_to_the_start() {
+    for method in Method::ALL {
+        let options = Options { method, ..Options::with_tolerance(1e-9) };
+        let start = Start { t: 0.5, y: vec![1.0] };
+        let there = integrate(&mut nonautonomous(), &start, 4.0, &options).unwrap();
+        assert_eq!((&there.status, there.dense.end()), (&Status::Completed, 4.0));
+        let turn = Start { t: 4.0, y: there.dense.end_state().to_vec() };
+        let back = integrate(&mut nonautonomous(), &turn, 0.5, &options).unwrap();
+        assert_eq!((&back.status, back.dense.end()), (&Status::Completed, 0.5));
+        let missed = (back.dense.end_state()[0] - 1.0).abs();
+        let limit = if method == Method::TrBdf2 { 1e-4 } else { 1e-6 };
+        println!("{method:?} {missed:e} {:?}", back.work);
+        assert!(missed < limit, "{method:?}: misses the start by {missed:e}");
+        let (mut a, mut b) = ([0.0], [0.0]);
+        for i in 0..=35 {
+            let t = 0.5 + 0.1 * f64::from(i);
+            there.dense.evaluate(t, &mut a);
+            back.dense.evaluate(t, &mut b);
+            assert!((a[0] - b[0]).abs() < limit, "{method:?} at {t}");
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The methods of diffsol: orders against cost, stiff problems, projection.
+
+mod problems;
+
+use integrate::{Method, Options, Projection, Solution, Start, Status, integrate};
+use problems::*;
+
+fn run(case: &mut Case, y: &[f64], end: f64, options: &Options) -> Solution {
+    let solution = integrate(case, &Start { t: 0.0, y: y.to_vec() }, end, options).unwrap();
+    assert_eq!(solution.status, Status::Completed, "{options:?}");
+    solution
+}
+
+#[test]
+fn errors_fall_with_the_order_of_the_method() {
+    for (method, order) in [(Method::Tsit45, 5.0), (Method::Bdf, 5.0), (Method::TrBdf2, 2.0), (Method::Esdirk34, 3.0)] {
+        let points: Vec<(f64, f64)> = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10]
+            .iter()
+            .map(|&tolerance| {
+                let options = Options { method, ..Options::with_tolerance(tolerance) };
+                let solution = run(&mut nonautonomous(), &[1.0], 10.0, &options);
+                let dense = &solution.dense;
+                let error = (0..=500).map(|i| {
+                    let mut y = [0.0];
+                    let t = f64::from(i) * 0.02;
+                    dense.evaluate(t, &mut y);
+                    (y[0] - t.sin().exp()).abs()
+                });
+                (solution.work.steps as f64, error.fold(0.0, f64::max))
+            })
+            .collect();
+        let measured = -slope(&points);
+        println!("{method:?} {measured} {points:?}");
+        assert!((measured - order).abs() < 0.6, "{method:?}: order {measured} from {points:?}");
+    }
+}
+
+#[test]
+fn stiff_problems_agree_with_their_references() {
+    // Robertson at t = 40 and van der Pol (μ = 1000) at t = 2: Hairer and Wanner, Solving Ordinary Differential
+    // Equations II, IV.10, and the Test Set for IVP Solvers.
+    let robertson_40 = [0.715_827_068_719_4, 9.185_534_764_557_3e-6, 0.284_163_745_745_8];
+    let van_der_pol_2 = [1.706_167_732_170_483, -0.892_809_701_024_797_5];
+    for (method, limit) in [(Method::Bdf, 2e-6), (Method::TrBdf2, 3e-5), (Method::Esdirk34, 1e-5)] {
+        let options = Options { method, absolute_tolerance: 1e-13, ..Options::with_tolerance(1e-7) };
+        let solution = run(&mut robertson(), &[1.0, 0.0, 0.0], 40.0, &options);
+        let y = solution.dense.end_state();
+        for i in 0..3 {
+            let error = (y[i] / robertson_40[i] - 1.0).abs();
+            println!("{method:?} {error:e} {:?}", solution.work);
+            assert!(error < limit, "{method:?}: Robertson's y{i} has the relative error {error:e}");
+        }
+        assert!(solution.work.steps < 1000, "{method:?} {:?}", solution.work);
+        let options = Options { method, ..Options::with_tolerance(1e-7) };
+        let solution = run(&mut van_der_pol(), &[2.0, 0.0], 2.0, &options);
+        let error = distance(solution.dense.end_state(), &van_der_pol_2);
+        println!("{method:?} {error:e} {:?}", solution.work);
+        assert!(error < limit, "{method:?}: van der Pol has the error {error:e}");
+        assert!(solution.work.steps < 7000, "{method:?} {:?}", solution.work);
+        assert!(solution.work.jacobians < solution.work.steps / 5, "{method:?} {:?}", solution.work);
+    }
+}
+
+#[test]
+fn projection_keeps_the_radius_and_does_no_harm() {
+    for method in Method::ALL {
+        let tolerance = 1e-7;
+        let off = Options { method, projection: Projection::Off, ..Options::with_tolerance(tolerance) };
+        let on = Options { projection: Projection::EveryStep, ..off.clone() };
+        let mut case = oscillator().with_projection(onto_circle);
+        let (free, kept) = (run(&mut case, &[1.0, 0.0], 100.0, &off), run(&mut case, &[1.0, 0.0], 100.0, &on));
+        let error = |solution: &Solution| distance(solution.dense.end_state(), &[100f64.cos(), -100f64.sin()]);
+        let radius = |solution: &Solution| {
+            let error = (0..=10_000).map(|i| {
+                let mut y = [0.0; 2];
+                solution.dense.evaluate(f64::from(i) * 0.01, &mut y);
+                (y[0].hypot(y[1]) - 1.0).abs()
+            });
+            error.fold(0.0, f64::max)
+        };
+        println!(
+            "{method:?} errors {:e} {:e} radii {:e} {:e} {:?} {:?} {:?}",
+            error(&free),
+            error(&kept),
+            radius(&free),
+            radius(&kept),
+            free.work,
+            kept.work,
+            kept.projection
+        );
+        assert!(error(&kept) < 1.05 * error(&free), "{method:?}: {:e} and {:e}", error(&free), error(&kept));
+        assert!(radius(&kept) < radius(&free), "{method:?}: {:e} and {:e}", radius(&free), radius(&kept));
+        // Between the steps the radius is off by the error of the interpolation within one step only.
+        assert!(radius(&kept) < 10.0 * tolerance, "{method:?}: {:e}", radius(&kept));
+        let end = kept.dense.end_state();
+        assert!((end[0].hypot(end[1]) - 1.0).abs() < 4e-16);
+        assert!(kept.work.steps as f64 <= 1.1 * free.work.steps as f64, "{method:?}");
+        let report = kept.projection;
+        assert_eq!(report.projections, kept.work.steps);
+        assert!(report.largest > 0.0 && report.largest <= report.total, "{method:?} {report:?}");
+        assert_eq!(free.projection, Default::default());
+    }
+}
