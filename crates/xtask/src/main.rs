@@ -1,2 +1,45 @@
-//! Chores.
-fn main() {}
+//! Chores of the project: `cargo xtask` lists them, `cargo xtask test` runs every check.
+
+mod checks;
+mod licences;
+mod sources;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let checks = checks::all();
+    let chosen = match arguments.as_slice() {
+        [] | ["help" | "--help" | "-h"] => {
+            list(&checks);
+            return ExitCode::SUCCESS;
+        }
+        ["test"] => checks,
+        [name] => checks.into_iter().filter(|check| check.name == *name).collect(),
+        _ => Vec::new(),
+    };
+    if chosen.is_empty() {
+        eprintln!("no chore is called `{}`; `cargo xtask` lists them", arguments.join(" "));
+        return ExitCode::FAILURE;
+    }
+    if let Err(error) = std::env::set_current_dir(root()) {
+        eprintln!("{}: {error}", root().display());
+        return ExitCode::FAILURE;
+    }
+    checks::run(&chosen)
+}
+
+/// The root of the workspace. Cargo names the directory of this package at run time.
+fn root() -> PathBuf {
+    let package = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| "crates/xtask".into());
+    Path::new(&package).ancestors().nth(2).unwrap_or(Path::new(".")).to_owned()
+}
+
+fn list(checks: &[checks::Check]) {
+    println!("cargo xtask CHORE\n\n  {:<10} every check below, in this order", "test");
+    for check in checks {
+        println!("  {:<10} {}", check.name, check.about);
+    }
+}

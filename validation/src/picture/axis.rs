@@ -132,10 +132,10 @@ pub(super) fn ticks(scale: Scale, interval: Interval, length: f64, direction: Di
 fn room(length: f64, direction: Direction) -> usize {
     let each = match direction {
         Direction::Horizontal => 70.0,
-        Direction::Vertical => 42.0,
+        Direction::Vertical => 34.0,
     };
     let count = (length / each) as usize;
-    count.max(2)
+    count.clamp(2, 8)
 }
 
 /// Do the labels stand apart?

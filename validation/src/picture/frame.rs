@@ -10,6 +10,8 @@ use super::{Aspect, Curve};
 
 /// Font size of the headline, in pixels.
 pub(super) const TITLE_SIZE: f64 = 15.0;
+/// How much wider bold text is.
+const BOLD: f64 = 1.12;
 /// Height of one row of the legend, in pixels.
 pub(super) const LEGEND_ROW: f64 = 20.0;
 
@@ -73,7 +75,7 @@ impl Frame {
             x = x.with_span(unit * box_width);
             y[0] = y[0].with_span(unit * height);
         }
-        let title = wrap(plots.title, TITLE_SIZE, WIDTH - left - 8.0);
+        let title = wrap(plots.title, BOLD * TITLE_SIZE, WIDTH - left - 8.0);
         let legend_top = 8.0 + 20.0 * title.len() as f64;
         let (_, legend_rows) = layout::place_legend(legend, WIDTH - left - 8.0);
         let has_factor = |(&y, panel): (&Interval, &Plot)| {

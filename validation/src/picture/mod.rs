@@ -8,15 +8,16 @@
 //! - A [`Style`] has one colour, one dash and one width, the same everywhere. Styles are nested (wide solid below, narrow
 //!   broken above), so that identical motions show all of themselves.
 //! - The same input gives the same bytes. Coordinates are rounded to 0.1 px, and points that do not move the drawn line
-//!   by more than that are left out. A file that would pass 60 kB is thinned further, to 1.6 px at the coarsest.
+//!   by more than that are left out. A file that would pass 60 kB is thinned further, to 1.6 px at the coarsest; a long curve
+//!   that fills the plane may pass it all the same.
 //! - The ground is transparent. Ink is `currentColor`: a mid-grey that is legible on white and on black, and which a
 //!   viewer that knows `prefers-color-scheme` makes darker or lighter.
 //! - A point that cannot be drawn (not finite, over 1e300 in magnitude, or under 1e-300 on a logarithmic axis) breaks
 //!   the line, and the legend says how many there were.
 //!
-//! The SVG is written here rather than through a plotting crate. Those at hand write each shape with fixed colours and
-//! no `class`, cut dashes into separate lines (which defeats small files), place the legend over the curves, and offer
-//! neither `currentColor` nor `<title>`; what would be left to them is choosing ticks.
+//! The SVG is written here rather than through `plotters` (0.3.7), whose SVG backend has fixed colours only: no `class`, no
+//! `currentColor`, no dashes (a dashed line becomes one element for each dash, which defeats small files), no `<title>`;
+//! and whose legend lies within the plot. What would be left to it is choosing ticks.
 
 mod axis;
 mod draw;

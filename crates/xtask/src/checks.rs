@@ -1,0 +1,184 @@
+//! Every check, and how they are run.
+//!
+//! All that compiles is compiled in the release profile: integration needs the optimisation, the reports are written
+//! by a release build, and so the dependencies are built once.
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+
+use crate::{licences, sources};
+
+/// One thing that must hold.
+pub(crate) struct Check {
+    pub(crate) name: &'static str,
+    pub(crate) about: &'static str,
+    /// What to do when it fails.
+    mend: &'static str,
+    run: fn() -> Result<Outcome>,
+}
+
+/// How a check ended that did not fail.
+pub(crate) enum Outcome {
+    /// It holds; what was looked at, if that needs saying.
+    Passed(String),
+    /// It has nothing to look at, and why.
+    Skipped(&'static str),
+}
+
+/// All checks, cheap ones first.
+pub(crate) fn all() -> Vec<Check> {
+    vec![
+        Check { name: "fmt", about: "sources are formatted", mend: "cargo fmt --all", run: fmt },
+        Check {
+            name: "lengths",
+            about: "no Rust source is over 400 lines",
+            mend: "split the file by what its parts know",
+            run: sources::lengths,
+        },
+        Check {
+            name: "paths",
+            about: "no file names a place on one machine or a private registry",
+            mend: "write the path relative to the root of the project",
+            run: sources::paths,
+        },
+        Check {
+            name: "licences",
+            about: "every dependency has a licence that deny.toml allows",
+            mend: "cargo tree --workspace --all-features --invert PACKAGE, and do without it",
+            run: licences::check,
+        },
+        Check {
+            name: "deny",
+            about: "cargo-deny finds nothing, where it is installed",
+            mend: "cargo deny check, and follow its advice",
+            run: deny,
+        },
+        Check {
+            name: "clippy",
+            about: "clippy finds nothing",
+            mend: "cargo clippy --release --workspace --all-targets --fix, then the rest by hand",
+            run: clippy,
+        },
+        Check {
+            name: "tests",
+            about: "unit, crate, property and verification tests",
+            mend: "cargo test --release --package PACKAGE TEST, with the names from above",
+            run: tests,
+        },
+        Check {
+            name: "doctests",
+            about: "examples in the documentation",
+            mend: "cargo test --release --doc --package PACKAGE, with the name from above",
+            run: doctests,
+        },
+        Check {
+            name: "docs",
+            about: "the documentation builds without a warning",
+            mend: "RUSTDOCFLAGS=\"-D warnings\" cargo doc --release --workspace --no-deps, after mending the comment",
+            run: docs,
+        },
+        Check {
+            name: "reports",
+            about: "the committed reports are those a fresh run writes",
+            mend: "cargo run --release, then look at what changed and commit it",
+            run: reports,
+        },
+    ]
+}
+
+/// Run checks in order up to the first that fails.
+pub(crate) fn run(checks: &[Check]) -> ExitCode {
+    let start = Instant::now();
+    let mut passed = 0;
+    for check in checks {
+        println!("── {}: {}", check.name, check.about);
+        let start = Instant::now();
+        let outcome = (check.run)();
+        let seconds = start.elapsed().as_secs_f64();
+        match outcome {
+            Ok(Outcome::Passed(note)) => {
+                passed += 1;
+                println!("   {} passed in {seconds:.1} s{note}\n", check.name);
+            }
+            Ok(Outcome::Skipped(why)) => println!("   {} skipped: {why}\n", check.name),
+            Err(error) => {
+                println!("   {} FAILED after {seconds:.1} s: {error:#}\n   to mend: {}\n", check.name, check.mend);
+                println!("{passed} passed, 1 failed");
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    println!("all in {:.1} s", start.elapsed().as_secs_f64());
+    println!("{passed} passed, 0 failed");
+    ExitCode::SUCCESS
+}
+
+/// The cargo that runs this.
+pub(crate) fn cargo() -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    // What cargo says of this package is not meant for the ones it is asked about.
+    for (name, _) in std::env::vars_os() {
+        if name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_")) {
+            command.env_remove(name);
+        }
+    }
+    command
+}
+
+fn succeed(command: &mut Command) -> Result<Outcome> {
+    let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let line = format!("cargo {}", arguments.join(" "));
+    let status = command.status().with_context(|| line.clone())?;
+    if !status.success() {
+        bail!("`{line}` ended with {status}");
+    }
+    Ok(Outcome::Passed(String::new()))
+}
+
+fn fmt() -> Result<Outcome> {
+    succeed(cargo().args(["fmt", "--all", "--check"]))
+}
+
+fn deny() -> Result<Outcome> {
+    let installed = cargo().args(["deny", "--version"]).output().is_ok_and(|output| output.status.success());
+    if !installed {
+        return Ok(Outcome::Skipped("cargo-deny is not installed"));
+    }
+    succeed(cargo().args(["deny", "check"]))
+}
+
+fn clippy() -> Result<Outcome> {
+    succeed(cargo().args(["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+}
+
+fn tests() -> Result<Outcome> {
+    succeed(cargo().args(["test", "--release", "--workspace", "--tests", "--examples"]))
+}
+
+fn doctests() -> Result<Outcome> {
+    succeed(cargo().args(["test", "--release", "--workspace", "--doc"]))
+}
+
+fn docs() -> Result<Outcome> {
+    succeed(cargo().env("RUSTDOCFLAGS", "-D warnings").args(["doc", "--release", "--workspace", "--no-deps"]))
+}
+
+fn reports() -> Result<Outcome> {
+    if !Path::new("reports/README.md").exists() {
+        return Ok(Outcome::Skipped("there is no reports/README.md"));
+    }
+    succeed(cargo().args([
+        "run",
+        "--release",
+        "--package",
+        "validation",
+        "--bin",
+        "deltaq",
+        "--",
+        "reports",
+        "--check",
+    ]))
+}

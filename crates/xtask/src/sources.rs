@@ -1,0 +1,114 @@
+//! What must hold of the text of files.
+
+use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::checks::Outcome;
+
+/// Longest Rust source, in lines.
+const LINES: usize = 400;
+/// Sources that may be longer, each with its reason.
+const LONGER: [&str; 0] = [];
+/// Folders at the root of a file system that hold what belongs to one machine.
+const PLACES: [&str; 12] =
+    ["home", "root", "Users", "work", "workspace", "workspaces", "builds", "mnt", "opt", "private", "tmp", "var"];
+/// Words of private package registries. In two halves, so that this file passes.
+const REGISTRIES: [(&str, &str); 3] = [("arti", "factory"), ("jf", "rog.io"), ("replace", "-with =")];
+/// The one registry that a lock file may name.
+const INDEX: &str = "registry+https://github.com/rust-lang/crates.io-index";
+
+/// No Rust source is over [`LINES`].
+pub(crate) fn lengths() -> Result<Outcome> {
+    let mut count = 0;
+    let mut long = Vec::new();
+    for (name, text) in files()?.iter().filter(|(name, _)| name.ends_with(".rs")) {
+        count += 1;
+        let lines = text.lines().count();
+        if lines > LINES && !LONGER.contains(&name.as_str()) {
+            long.push(format!("{name} has {lines} lines"));
+        }
+    }
+    if !long.is_empty() {
+        bail!("{}", long.join("; "));
+    }
+    Ok(Outcome::Passed(format!(", {count} files")))
+}
+
+/// No file names a place on one machine or a private registry.
+pub(crate) fn paths() -> Result<Outcome> {
+    let files = files()?;
+    let mut found = Vec::new();
+    for (name, text) in &files {
+        for (number, line) in (1..).zip(text.lines()) {
+            if let Some(what) = private(name, line) {
+                found.push(format!("{name}:{number} names {what}"));
+            }
+        }
+    }
+    if !found.is_empty() {
+        bail!("{}", found.join("; "));
+    }
+    Ok(Outcome::Passed(format!(", {} files", files.len())))
+}
+
+/// What in this line belongs to one machine or to a private registry.
+fn private(file: &str, line: &str) -> Option<String> {
+    if let Some(place) = PLACES.iter().find(|place| names_place(line, place)) {
+        return Some(format!("a path under `{place}` at the root"));
+    }
+    let lower = line.to_lowercase();
+    let registries = REGISTRIES.map(|(head, tail)| format!("{head}{tail}"));
+    if let Some(word) = registries.into_iter().find(|word| lower.contains(word)) {
+        return Some(format!("`{word}`"));
+    }
+    let source = line.strip_prefix("source = ").filter(|_| file.ends_with("Cargo.lock"))?.trim_matches('"');
+    (source != INDEX).then(|| format!("the source `{source}`"))
+}
+
+/// Does the line hold `/place/` where a path begins?
+fn names_place(line: &str, place: &str) -> bool {
+    let path = format!("/{place}/");
+    line.match_indices(&path).any(|(at, _)| {
+        let before = line[..at].chars().next_back();
+        before.is_none_or(|c| !c.is_alphanumeric() && !".-_~)]}*$<".contains(c))
+    })
+}
+
+/// Name and text of every file that is tracked, or would be. Files that are no text are left out.
+fn files() -> Result<Vec<(String, String)>> {
+    let output = Command::new("git")
+        .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
+        .output()
+        .context("git ls-files")?;
+    ensure!(output.status.success(), "`git ls-files` ended with {}", output.status);
+    let names = String::from_utf8(output.stdout).context("a file name is not UTF-8")?;
+    Ok(names
+        .split_terminator('\0')
+        .filter_map(|name| Some((name.to_owned(), std::fs::read_to_string(name).ok()?)))
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_on_one_machine_are_found() {
+        let path = |place: &str| format!("/{place}/someone/file");
+        for line in [path("home"), format!("see `{}`", path("tmp")), format!("file://{}", path("Users"))] {
+            assert!(private("notes.md", &line).is_some(), "{line}");
+        }
+        for line in ["a/home/b", "../tmp/x", "/usr/bin/env", "m/s", "https://example.org/work/1", "/target"] {
+            assert_eq!(private("notes.md", line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn registries_are_found() {
+        let word = REGISTRIES[0].0.to_owned() + REGISTRIES[0].1;
+        assert!(private("notes.md", &format!("https://{word}.example.org")).is_some());
+        assert_eq!(private("Cargo.lock", &format!("source = \"{INDEX}\"")), None);
+        assert!(private("Cargo.lock", "source = \"registry+https://example.org/index\"").is_some());
+    }
+}

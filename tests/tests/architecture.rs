@@ -1,0 +1,107 @@
+//! The arrows between the crates of the workspace.
+
+use std::collections::BTreeSet;
+
+use cargo_metadata::MetadataCommand;
+
+/// One dependency of a member of the workspace on another: `from` is built on `to`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Arrow {
+    from: String,
+    to: String,
+}
+
+/// What each member may be built on. A member that is not named here may be built on none.
+const ALLOWED: [(&str, &[&str]); 11] = [
+    ("symbolic", &[]),
+    ("mechanics", &["symbolic"]),
+    ("integrate", &[]),
+    ("chetaev", &["symbolic", "mechanics"]),
+    ("vakonomic", &["symbolic", "mechanics"]),
+    ("removed-constraint", &["symbolic", "mechanics"]),
+    ("deltaq", &["symbolic", "mechanics", "integrate", "chetaev", "vakonomic", "removed-constraint"]),
+    ("validation", &["symbolic", "mechanics", "integrate", "deltaq"]),
+    ("tests", &["symbolic", "mechanics", "integrate", "deltaq", "validation"]),
+    ("python", &["symbolic", "mechanics", "integrate", "deltaq"]),
+    ("xtask", &[]),
+];
+
+/// The arrows that the house does not have, each with what its tail may be built on.
+fn offences(arrows: &BTreeSet<Arrow>) -> Vec<String> {
+    let allowed = |from: &str| ALLOWED.iter().find(|(name, _)| *name == from).map_or(&[][..], |(_, to)| *to);
+    arrows
+        .iter()
+        .filter(|arrow| !allowed(&arrow.from).contains(&arrow.to.as_str()))
+        .map(|Arrow { from, to }| match allowed(from) {
+            [] => format!("{from} depends on {to}, but may depend on no member of the workspace"),
+            some => format!("{from} depends on {to}, but may depend only on {}", some.join(", ")),
+        })
+        .collect()
+}
+
+/// Every arrow between members, dependencies for tests and builds included.
+fn arrows() -> BTreeSet<Arrow> {
+    let metadata = MetadataCommand::new().no_deps().exec().expect("cargo metadata runs in the workspace");
+    // A dependency on a member is one with a path: other crates may bear the same name.
+    let member = |path: &cargo_metadata::camino::Utf8Path| {
+        let package = metadata.packages.iter().find(|package| package.manifest_path.parent() == Some(path));
+        package.map(|package| package.name.to_string())
+    };
+    metadata
+        .packages
+        .iter()
+        .flat_map(|package| {
+            let members = package.dependencies.iter().filter_map(|dependency| member(dependency.path.as_deref()?));
+            members.map(|to| Arrow { from: package.name.to_string(), to })
+        })
+        .collect()
+}
+
+fn arrow(from: &str, to: &str) -> Arrow {
+    Arrow { from: from.to_owned(), to: to.to_owned() }
+}
+
+#[test]
+fn members_depend_only_where_arrows_are_drawn() {
+    let arrows = arrows();
+    assert!(arrows.contains(&arrow("chetaev", "mechanics")), "the reading of arrows misses {arrows:?}");
+    let offences = offences(&arrows);
+    assert!(offences.is_empty(), "{}", offences.join("\n"));
+}
+
+#[test]
+fn a_wrong_arrow_is_named() {
+    let sound: BTreeSet<Arrow> = ALLOWED.iter().flat_map(|(from, to)| to.iter().map(|to| arrow(from, to))).collect();
+    assert_eq!(offences(&sound), Vec::<String>::new());
+    for (from, to) in [
+        ("chetaev", "vakonomic"),
+        ("vakonomic", "removed-constraint"),
+        ("removed-constraint", "chetaev"),
+        ("mechanics", "chetaev"),
+        ("symbolic", "mechanics"),
+        ("integrate", "mechanics"),
+        ("chetaev", "integrate"),
+        ("deltaq", "validation"),
+        ("validation", "vakonomic"),
+        ("python", "validation"),
+        ("xtask", "symbolic"),
+        ("newcomer", "symbolic"),
+        ("tests", "tests"),
+    ] {
+        let mut arrows = sound.clone();
+        arrows.insert(arrow(from, to));
+        let offences = offences(&arrows);
+        assert_eq!(offences.len(), 1, "{from} -> {to}");
+        assert!(offences[0].starts_with(&format!("{from} depends on {to}, ")), "{}", offences[0]);
+    }
+}
+
+#[test]
+fn arrows_form_no_circle() {
+    // Every member is built only on members that stand before it in the table, so that the table is one road.
+    for (at, (name, allowed)) in ALLOWED.iter().enumerate() {
+        for to in *allowed {
+            assert!(ALLOWED[..at].iter().any(|(before, _)| before == to), "{name} stands before {to}");
+        }
+    }
+}
