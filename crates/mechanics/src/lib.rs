@@ -8,9 +8,13 @@ mod error;
 mod formulation;
 mod integrability;
 mod linear;
+pub mod newton;
 mod projection;
 mod rank;
 mod removal;
+mod scene;
+mod scene_error;
+mod start;
 mod system;
 
 pub use compiled::{Compiled, EvaluationFailure, Outputs};
@@ -20,4 +24,10 @@ pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, re
 pub use integrability::{Integrability, integrability};
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
+pub use scene::{SIZE_LIMIT, Scene};
+pub use scene_error::{NameFault, SceneError, SceneErrorKind, Unavailable};
+pub use start::{
+    Completion, Quantity, RemovalStart, StartData, StartError, check_regularity, complete_removal_start, complete_start,
+    project_velocity,
+};
 pub use system::{Coordinate, Parameter, State, System};

@@ -1,0 +1,347 @@
+//! Newton's method for `r(x) = 0` with any number of equations and unknowns: the one Newton of the crate.
+//!
+//! Each step is the shortest `s` that minimizes `‖W (r + J s)‖` (Gauss–Newton through a singular value decomposition), damped by
+//! halving until `‖W r‖` falls. `W` scales the rows of `J` to 1, so that the units of the equations do not matter.
+//! Convergence is quadratic at a regular root; a linear system is solved by one step, and every root gets one step more for
+//! the sake of its last digits.
+
+use nalgebra::{DMatrix, DVector, SVD};
+
+/// `r`, `J = ∂r/∂x` and the size of the terms of `r`, at one point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evaluation {
+    /// `r(x)`, length m.
+    pub residual: DVector<f64>,
+    /// `∂r/∂x`, m×n.
+    pub jacobian: DMatrix<f64>,
+    /// Sum of the magnitudes of the terms of each equation, length m: what its residual is compared with.
+    pub magnitude: DVector<f64>,
+}
+
+impl Evaluation {
+    /// Largest `|rᵢ| / (magnitudeᵢ + |rᵢ|)`: between 0 and 1, free of units.
+    pub fn relative_residual(&self) -> f64 {
+        let ratio = |(r, m): (&f64, &f64)| {
+            if *r == 0.0 { 0.0 } else { r.abs() / (m.abs() + r.abs()) }
+        };
+        self.residual.iter().zip(self.magnitude.iter()).map(ratio).fold(0.0, f64::max)
+    }
+
+    fn is_finite(&self) -> bool {
+        let parts = [self.residual.as_slice(), self.jacobian.as_slice(), self.magnitude.as_slice()];
+        parts.iter().all(|part| part.iter().all(|x| x.is_finite()))
+    }
+
+    /// Factors that bring the largest entry of each row of `J` to 1.
+    fn row_weights(&self) -> DVector<f64> {
+        let weight = |row: usize| {
+            let size = self.jacobian.row(row).amax();
+            if size > 0.0 { 1.0 / size } else { 1.0 }
+        };
+        DVector::from_fn(self.residual.len(), |row, _| weight(row))
+    }
+}
+
+/// When to stop, and what counts as zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonOptions {
+    /// Relative residual at which the iteration ends.
+    pub tolerance: f64,
+    /// Largest relative residual that is accepted where round-off, not the method, ends the iteration.
+    pub limit: f64,
+    /// Steps allowed.
+    pub iterations: usize,
+    /// Singular values of the row-scaled `J` under this fraction of the largest count as zero.
+    pub rank_limit: f64,
+}
+
+impl Default for NewtonOptions {
+    fn default() -> Self {
+        NewtonOptions { tolerance: 1e-14, limit: 1e-10, iterations: 100, rank_limit: 1e-12 }
+    }
+}
+
+/// A point where the iteration ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Root {
+    /// `x`, length n.
+    pub x: DVector<f64>,
+    /// [`Evaluation::relative_residual`] at `x`.
+    pub residual: f64,
+    /// Steps taken, the last one for the digits included.
+    pub iterations: usize,
+    /// Rank of `J` at `x`.
+    pub rank: usize,
+    /// Orthonormal basis of the kernel of `J` at `x`, n×(n − rank): the directions that the equations leave open.
+    pub null_space: DMatrix<f64>,
+}
+
+/// Why no root was found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NewtonError {
+    /// The iteration ended where the residual is least nearby, but not zero.
+    #[error("residual {:.3e} (limit {limit:.0e}) after {} steps", .best.residual, .best.iterations)]
+    NotConverged {
+        /// Where the iteration ended: stationary for `‖W r‖` unless the steps ran out.
+        best: Box<Root>,
+        /// Largest residual that is accepted.
+        limit: f64,
+    },
+    /// Residual or Jacobian is not finite.
+    #[error("residual or Jacobian is not finite at step {iteration}")]
+    NotFinite {
+        /// Steps taken before.
+        iteration: usize,
+    },
+    /// The singular value decomposition did not converge.
+    #[error("singular value decomposition not converged after {sweeps} sweeps")]
+    Decomposition {
+        /// Sweeps allowed.
+        sweeps: usize,
+    },
+}
+
+/// Solves `r(x) = 0` from `x0`.
+///
+/// With fewer independent equations than unknowns the root is one near `x0`, for linear equations the nearest.
+///
+/// # Errors
+/// [`NewtonError`]. [`NewtonError::NotConverged`] carries the least-squares point.
+///
+/// ```
+/// use mechanics::newton::{Evaluation, NewtonOptions, solve};
+/// use nalgebra::{dmatrix, dvector};
+/// let square_root_of_two = |x: &nalgebra::DVector<f64>| Evaluation {
+///     residual: dvector![x[0] * x[0] - 2.0],
+///     jacobian: dmatrix![2.0 * x[0]],
+///     magnitude: dvector![x[0] * x[0] + 2.0],
+/// };
+/// let root = solve(square_root_of_two, dvector![1.0], &NewtonOptions::default())?;
+/// assert_eq!(root.x[0], 2.0_f64.sqrt());
+/// assert!(root.iterations <= 7);
+/// # Ok::<(), mechanics::newton::NewtonError>(())
+/// ```
+pub fn solve(
+    mut evaluate: impl FnMut(&DVector<f64>) -> Evaluation,
+    x0: DVector<f64>,
+    options: &NewtonOptions,
+) -> Result<Root, NewtonError> {
+    let mut x = x0;
+    let mut here = evaluate(&x);
+    if !here.is_finite() {
+        return Err(NewtonError::NotFinite { iteration: 0 });
+    }
+    let mut iterations = 0;
+    while iterations < options.iterations {
+        let residual = here.relative_residual();
+        let step = Decomposition::new(&here, options.rank_limit)?.step(&here);
+        let polish = residual <= options.tolerance;
+        let next = if polish {
+            let next = moved(&mut evaluate, &x, &step, 1.0);
+            (next.1.is_finite() && next.1.relative_residual() <= residual).then_some(next)
+        } else {
+            damped(&mut evaluate, &x, &here, &step)
+        };
+        let Some(next) = next else { break };
+        (x, here) = next;
+        iterations += 1;
+        if polish {
+            break;
+        }
+    }
+    let decomposition = Decomposition::new(&here, options.rank_limit)?;
+    let root = Root {
+        residual: here.relative_residual(),
+        iterations,
+        rank: decomposition.leading.len(),
+        null_space: decomposition.null_space(),
+        x,
+    };
+    if root.residual <= options.limit {
+        Ok(root)
+    } else {
+        Err(NewtonError::NotConverged { best: Box::new(root), limit: options.limit })
+    }
+}
+
+fn moved(
+    evaluate: &mut impl FnMut(&DVector<f64>) -> Evaluation,
+    x: &DVector<f64>,
+    step: &DVector<f64>,
+    fraction: f64,
+) -> (DVector<f64>, Evaluation) {
+    let x = x + step * fraction;
+    let evaluation = evaluate(&x);
+    (x, evaluation)
+}
+
+/// The longest of 1, ½, ¼ … of the step that reduces `‖W r‖` enough.
+fn damped(
+    evaluate: &mut impl FnMut(&DVector<f64>) -> Evaluation,
+    x: &DVector<f64>,
+    here: &Evaluation,
+    step: &DVector<f64>,
+) -> Option<(DVector<f64>, Evaluation)> {
+    const HALVINGS: i32 = 40;
+    const SUFFICIENT: f64 = 1e-4;
+    let weights = here.row_weights();
+    let merit = |e: &Evaluation| e.residual.component_mul(&weights).norm();
+    let before = merit(here);
+    for halving in 0..HALVINGS {
+        let fraction = 0.5_f64.powi(halving);
+        let next = moved(evaluate, x, step, fraction);
+        if next.0 == *x {
+            return None;
+        }
+        if next.1.is_finite() && merit(&next.1) < (1.0 - SUFFICIENT * fraction) * before {
+            return Some(next);
+        }
+    }
+    None
+}
+
+/// Singular value decomposition of the row-scaled `J`, padded with zero rows to all n right singular vectors.
+struct Decomposition {
+    weights: DVector<f64>,
+    /// Left singular vectors, transposed right ones, and singular values; empty where there are no unknowns.
+    left: DMatrix<f64>,
+    right: DMatrix<f64>,
+    values: DVector<f64>,
+    /// Places of the singular values that are not zero.
+    leading: Vec<usize>,
+}
+
+impl Decomposition {
+    fn new(e: &Evaluation, rank_limit: f64) -> Result<Self, NewtonError> {
+        let (m, n) = e.jacobian.shape();
+        let weights = e.row_weights();
+        let padded = DMatrix::from_fn(m.max(n), n, |i, j| {
+            if i < m { weights[i] * e.jacobian[(i, j)] } else { 0.0 }
+        });
+        let (left, values, right) = decompose(padded)?;
+        let limit = rank_limit * values.iter().copied().fold(0.0, f64::max);
+        let leading = (0..values.len()).filter(|&k| values[k] > limit).collect();
+        Ok(Decomposition { weights, left, right, values, leading })
+    }
+
+    /// The shortest least-squares solution of `W J s = −W r`.
+    fn step(&self, e: &Evaluation) -> DVector<f64> {
+        let mut step = DVector::zeros(e.jacobian.ncols());
+        let weighted = e.residual.component_mul(&self.weights);
+        for &k in &self.leading {
+            let along: f64 = weighted.iter().zip(self.left.column(k).iter()).map(|(r, u)| r * u).sum();
+            step -= self.right.row(k).transpose() * (along / self.values[k]);
+        }
+        step
+    }
+
+    fn null_space(&self) -> DMatrix<f64> {
+        let rest: Vec<usize> = (0..self.values.len()).filter(|k| !self.leading.contains(k)).collect();
+        self.right.select_rows(&rest).transpose()
+    }
+}
+
+/// Left singular vectors, singular values and transposed right singular vectors of a finite matrix, with a bound on the work.
+pub(crate) fn decompose(
+    matrix: DMatrix<f64>,
+) -> Result<(DMatrix<f64>, DVector<f64>, DMatrix<f64>), NewtonError> {
+    let (m, n) = matrix.shape();
+    if m == 0 || n == 0 {
+        return Ok((DMatrix::zeros(m, 0), DVector::zeros(0), DMatrix::zeros(0, n)));
+    }
+    if !matrix.iter().all(|x| x.is_finite()) {
+        return Err(NewtonError::NotFinite { iteration: 0 });
+    }
+    let sweeps = 1000 + 100 * m.max(n);
+    let svd = SVD::try_new(matrix, true, true, f64::EPSILON, sweeps);
+    match svd.map(|svd| (svd.u, svd.singular_values, svd.v_t)) {
+        Some((Some(u), values, Some(v_t))) => Ok((u, values, v_t)),
+        _ => Err(NewtonError::Decomposition { sweeps }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{dmatrix, dvector};
+
+    fn linear(a: DMatrix<f64>, b: DVector<f64>) -> impl Fn(&DVector<f64>) -> Evaluation {
+        move |x| Evaluation {
+            residual: &a * x - &b,
+            jacobian: a.clone(),
+            magnitude: a.abs() * x.abs() + b.abs(),
+        }
+    }
+
+    #[test]
+    fn underdetermined_linear_equations_give_the_shortest_solution() {
+        let f = linear(dmatrix![1.0, 2.0, 2.0], dvector![9.0]);
+        let root = solve(f, DVector::zeros(3), &NewtonOptions::default()).unwrap();
+        assert!((root.x - dvector![1.0, 2.0, 2.0]).amax() < 1e-15);
+        assert_eq!((root.rank, root.null_space.ncols()), (1, 2));
+        assert!(root.iterations <= 2);
+    }
+
+    #[test]
+    fn consistent_overdetermined_equations_with_bad_units_are_solved() {
+        let a = dmatrix![1e9, 0.0; 1.0, 1.0; 0.0, 1e-9];
+        let root = solve(
+            linear(a.clone(), &a * dvector![3.0, -2.0]),
+            DVector::zeros(2),
+            &NewtonOptions::default(),
+        );
+        assert!((root.unwrap().x - dvector![3.0, -2.0]).amax() < 1e-15);
+    }
+
+    #[test]
+    fn contradiction_ends_at_least_squares() {
+        let f = linear(dmatrix![1.0; 1.0], dvector![1.0, 3.0]);
+        let error = solve(f, DVector::zeros(1), &NewtonOptions::default()).unwrap_err();
+        let NewtonError::NotConverged { best, limit } = error else { panic!("{error}") };
+        assert!((best.x[0] - 2.0).abs() < 1e-15);
+        assert!(best.residual > 0.1 && limit == 1e-10);
+    }
+
+    #[test]
+    fn quadratic_convergence_and_damping() {
+        // arctan: the undamped method diverges from 3
+        let mut errors = Vec::new();
+        let f = |x: &DVector<f64>| {
+            errors.push(x[0].abs());
+            Evaluation {
+                residual: dvector![x[0].atan()],
+                jacobian: dmatrix![1.0 / (1.0 + x[0] * x[0])],
+                magnitude: dvector![1.0],
+            }
+        };
+        let root = solve(f, dvector![3.0], &NewtonOptions::default()).unwrap();
+        assert!(root.x[0].abs() < 1e-15);
+        let small: Vec<f64> = errors.into_iter().filter(|e| (1e-7..0.5).contains(e)).collect();
+        assert!(small.windows(2).all(|w| w[1] <= 2.0 * w[0].powi(2)), "{small:?}");
+    }
+
+    #[test]
+    fn nothing_finite_is_an_error() {
+        let f = |x: &DVector<f64>| Evaluation {
+            residual: dvector![1.0 / x[0]],
+            jacobian: dmatrix![1.0],
+            magnitude: dvector![1.0],
+        };
+        let error = solve(f, dvector![0.0], &NewtonOptions::default()).unwrap_err();
+        assert_eq!(error, NewtonError::NotFinite { iteration: 0 });
+        let too_many = NewtonError::Decomposition { sweeps: 7 };
+        assert!(too_many.to_string().contains("7 sweeps"));
+    }
+
+    #[test]
+    fn no_equations_leave_everything_open() {
+        let f = linear(DMatrix::zeros(0, 2), DVector::zeros(0));
+        let root = solve(f, dvector![1.0, 2.0], &NewtonOptions::default()).unwrap();
+        assert_eq!((root.rank, root.null_space.ncols()), (0, 2));
+        assert_eq!(root.x, dvector![1.0, 2.0]);
+        let f = linear(DMatrix::zeros(0, 0), DVector::zeros(0));
+        assert_eq!(solve(f, DVector::zeros(0), &NewtonOptions::default()).unwrap().rank, 0);
+        let f = linear(DMatrix::zeros(1, 0), dvector![1.0]);
+        assert!(solve(f, DVector::zeros(0), &NewtonOptions::default()).is_err());
+    }
+}

@@ -1,0 +1,137 @@
+//! Why there is no start.
+
+use symbolic::CompileError;
+
+use crate::newton::NewtonError;
+
+/// Something that is evaluated at the start.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// `L`.
+    Lagrangian,
+    /// `f` with this number, from 1.
+    Constraint(usize),
+    /// `Q` of the coordinate with this name.
+    Force(String),
+    /// `A = ∂f/∂v`.
+    ConstraintJacobian,
+    /// `M = ∂²L/∂v²`.
+    MassMatrix,
+}
+
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Quantity::Lagrangian => write!(f, "the Lagrangian"),
+            Quantity::Constraint(number) => write!(f, "constraint {number}"),
+            Quantity::Force(name) => write!(f, "the force along `{name}`"),
+            Quantity::ConstraintJacobian => write!(f, "the constraint Jacobian"),
+            Quantity::MassMatrix => write!(f, "the mass matrix"),
+        }
+    }
+}
+
+/// Why there is no start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The given velocities and the constraints leave some velocities open.
+    #[error("too few start velocities: {} not determined by the given ones and the constraints", listed(.velocities))]
+    Undetermined {
+        /// Velocities of which more have to be given.
+        velocities: Vec<String>,
+    },
+    /// No velocities satisfy the constraints together with the given ones.
+    #[error("start velocities contradict constraint {constraint}: relative residual {residual:.3e}, limit {limit:.0e}; give fewer, or set project = true")]
+    Contradictory {
+        /// Number of the constraint with the largest residual, from 1.
+        constraint: usize,
+        /// Its residual at the least-squares point, relative to the size of its terms.
+        residual: f64,
+        /// Largest residual that is accepted.
+        limit: f64,
+    },
+    /// Constraints nonlinear in the velocities have several solutions.
+    #[error("the constraints leave a choice of {}: {} or {}; choose by a [start.guess]", listed(.velocities), values(.first), values(.second))]
+    Ambiguous {
+        /// Velocities in question.
+        velocities: Vec<String>,
+        /// Their values in one solution.
+        first: Vec<f64>,
+        /// Their values in another.
+        second: Vec<f64>,
+    },
+    /// The equations for the start velocities are finite at none of the points tried.
+    #[error("the equations for the start velocities are not finite at any of {points} points tried")]
+    NotSolved {
+        /// Points from which Newton's method was started.
+        points: usize,
+    },
+    /// `A` has no full row rank.
+    #[error("the constraints are dependent at the start: smallest singular value of the scaled constraint Jacobian {ratio:.1e} of the largest, limit {limit:.0e} (singular values {})", values(.singular_values))]
+    DependentConstraints {
+        /// Singular values of the scaled `A`, falling.
+        singular_values: Vec<f64>,
+        /// Smallest over largest.
+        ratio: f64,
+        /// Smallest ratio that is accepted.
+        limit: f64,
+    },
+    /// `NᵀMN` is singular.
+    #[error("the mass matrix is singular on the velocities that the constraints allow: ratio of singular values {ratio:.1e}, limit {limit:.0e} (singular values {})", values(.singular_values))]
+    SingularMassMatrix {
+        /// Singular values of the scaled `NᵀMN`, falling.
+        singular_values: Vec<f64>,
+        /// Smallest over largest.
+        ratio: f64,
+        /// Smallest ratio that is accepted.
+        limit: f64,
+    },
+    /// Something is not finite at the start.
+    #[error("{quantity} is not finite at the start: {value}")]
+    NotFinite {
+        /// What.
+        quantity: Quantity,
+        /// Its value.
+        value: f64,
+    },
+    /// A parametrization cannot represent the start.
+    #[error("removal `{removal}` cannot represent the start: relative residual {residual:.3e}, limit {limit:.0e}")]
+    RemovalStart {
+        /// Name of the removal.
+        removal: String,
+        /// Smallest residual found, infinite if nothing was finite.
+        residual: f64,
+        /// Largest residual that is accepted.
+        limit: f64,
+    },
+    /// A state of the wrong length.
+    #[error("{found} positions or velocities for a system with {expected} coordinates")]
+    WrongLength {
+        /// Length found.
+        found: usize,
+        /// Number of coordinates.
+        expected: usize,
+    },
+    /// A velocity outside the constraint that cannot be moved onto it.
+    #[error("the velocity cannot be projected onto the constraint: {0}")]
+    Projection(NewtonError),
+    /// A matrix could not be decomposed.
+    #[error(transparent)]
+    Decomposition(#[from] NewtonError),
+    /// An expression could not be evaluated.
+    #[error(transparent)]
+    Evaluation(#[from] CompileError),
+}
+
+fn listed(names: &[String]) -> String {
+    names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+}
+
+fn values(numbers: &[f64]) -> String {
+    const SHOWN: usize = 8;
+    let mut shown: Vec<String> = numbers.iter().take(SHOWN).map(|x| format!("{x:.4e}")).collect();
+    if numbers.len() > SHOWN {
+        shown.push(format!("… {} in all", numbers.len()));
+    }
+    shown.join(", ")
+}

@@ -1,0 +1,171 @@
+//! Expressions of a system as numbers, and equations among them as a problem for Newton's method.
+
+use std::collections::{BTreeSet, HashMap};
+
+use nalgebra::{DMatrix, DVector};
+use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+
+use crate::newton::{Evaluation, NewtonError, NewtonOptions, Root, solve};
+use crate::{State, System};
+
+/// A tape with its registers and outputs, the parameters of a system folded in.
+pub(super) struct Numeric {
+    tape: Tape,
+    registers: Workspace<f64>,
+    values: Vec<f64>,
+}
+
+impl Numeric {
+    pub(super) fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
+        let tape = system.graph.compile(inputs, outputs, &system.parameter_values())?;
+        Ok(Numeric { registers: tape.workspace(), values: vec![0.0; outputs.len()], tape })
+    }
+
+    /// A tape whose inputs are `q, v, t`.
+    pub(super) fn of_state(system: &System, outputs: &[Expr]) -> Result<Self, CompileError> {
+        let inputs = [system.positions(), system.velocities(), vec![system.time]].concat();
+        Numeric::new(system, &inputs, outputs)
+    }
+
+    pub(super) fn run(&mut self, inputs: &[f64]) -> &[f64] {
+        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
+        &self.values
+    }
+
+    pub(super) fn at(&mut self, state: &State) -> &[f64] {
+        let inputs = [&state.q[..], &state.v, &[state.t]].concat();
+        self.run(&inputs)
+    }
+}
+
+/// Values of `q, v, t` by symbol.
+pub(super) fn values_of(system: &System, state: &State) -> HashMap<Symbol, f64> {
+    let q = system.positions().into_iter().zip(state.q.iter().copied());
+    let v = system.velocities().into_iter().zip(state.v.iter().copied());
+    q.chain(v).chain([(system.time, state.t)]).collect()
+}
+
+/// Equations `e(x; known) = 0` in some symbols `x` of a graph.
+pub(super) struct Problem<'a> {
+    pub(super) system: &'a System,
+    pub(super) unknowns: Vec<Symbol>,
+    pub(super) equations: Vec<Expr>,
+    /// Values of the symbols that are neither unknown nor parameters.
+    pub(super) known: HashMap<Symbol, f64>,
+}
+
+impl<'a> Problem<'a> {
+    /// The unknowns are all symbols of `equations` and `outputs` that are not `known` and no parameters.
+    pub(super) fn new(
+        system: &'a System,
+        equations: Vec<Expr>,
+        outputs: &[Expr],
+        known: HashMap<Symbol, f64>,
+    ) -> Self {
+        let parameters = system.parameter_values();
+        let occurring: BTreeSet<Symbol> =
+            equations.iter().chain(outputs).flat_map(|&e| system.graph.symbols_of(e)).collect();
+        let open = |s: &Symbol| !known.contains_key(s) && !parameters.contains_key(s);
+        Problem { system, unknowns: occurring.into_iter().filter(open).collect(), equations, known }
+    }
+
+    /// Whether every equation is linear in the unknowns.
+    pub(super) fn is_linear(&self) -> bool {
+        let g = &self.system.graph;
+        let jacobian = g.jacobian(&self.equations, &self.unknowns);
+        !jacobian.entries().iter().any(|&e| self.unknowns.iter().any(|&s| g.depends_on(e, s)))
+    }
+
+    /// Solves from `guess`; unknowns that are not in it start at `default`.
+    pub(super) fn solve(&self, guess: &HashMap<Symbol, f64>, default: f64) -> Result<Solved, CompileError> {
+        let g = &self.system.graph;
+        let (m, n) = (self.equations.len(), self.unknowns.len());
+        let known: Vec<(Symbol, f64)> = self.known.iter().map(|(&s, &x)| (s, x)).collect();
+        let known_symbols: Vec<Symbol> = known.iter().map(|k| k.0).collect();
+        let mut outputs = self.equations.clone();
+        outputs.extend(g.jacobian(&self.equations, &self.unknowns).entries());
+        outputs.extend(g.jacobian(&self.equations, &known_symbols).entries());
+        let inputs = [&self.unknowns[..], &known_symbols].concat();
+        let mut numeric = Numeric::new(self.system, &inputs, &outputs)?;
+        let given: Vec<f64> = known.iter().map(|k| k.1).collect();
+        let mut point = [vec![0.0; n], given.clone()].concat();
+        let evaluate = |x: &DVector<f64>| {
+            point[..n].copy_from_slice(x.as_slice());
+            let values = numeric.run(&point);
+            let jacobian = &values[m..m + m * n];
+            let by_known = &values[m + m * n..];
+            let magnitude = |i: usize| {
+                size_of_terms(&jacobian[i * n..], x.as_slice()) + size_of_terms(&by_known[i * known.len()..], &given)
+            };
+            Evaluation {
+                magnitude: DVector::from_fn(m, |i, _| magnitude(i)),
+                residual: DVector::from_column_slice(&values[..m]),
+                jacobian: DMatrix::from_row_slice(m, n, jacobian),
+            }
+        };
+        let start = DVector::from_iterator(n, self.unknowns.iter().map(|s| *guess.get(s).unwrap_or(&default)));
+        Ok(match solve(evaluate, start, &NewtonOptions::default()) {
+            Ok(root) => Solved::Root(root),
+            Err(NewtonError::NotConverged { best, limit }) => Solved::LeastSquares(*best, limit),
+            Err(NewtonError::NotFinite { .. } | NewtonError::Decomposition { .. }) => Solved::Nowhere,
+        })
+    }
+
+    /// `|e| / (|e| + size of its terms)` of each equation, all of whose symbols must be known.
+    pub(super) fn relative_residuals(&self) -> Result<Vec<f64>, CompileError> {
+        let symbols: Vec<Symbol> = self.known.keys().copied().collect();
+        let point: Vec<f64> = symbols.iter().map(|s| self.known[s]).collect();
+        let mut outputs = self.equations.clone();
+        outputs.extend(self.system.graph.jacobian(&self.equations, &symbols).entries());
+        let mut numeric = Numeric::new(self.system, &symbols, &outputs)?;
+        let (residuals, derivatives) = numeric.run(&point).split_at(self.equations.len());
+        let single = |(i, &r): (usize, &f64)| Evaluation {
+            residual: DVector::from_element(1, r),
+            jacobian: DMatrix::zeros(1, 0),
+            magnitude: DVector::from_element(1, size_of_terms(&derivatives[i * point.len()..], &point)),
+        };
+        Ok(residuals.iter().enumerate().map(|r| single(r).relative_residual()).collect())
+    }
+
+    /// Known values and those of the unknowns at `root`.
+    pub(super) fn values(&self, root: &Root) -> HashMap<Symbol, f64> {
+        let mut values = self.known.clone();
+        values.extend(self.unknowns.iter().copied().zip(root.x.iter().copied()));
+        values
+    }
+
+    /// Values of `outputs` at `root`, and which of them the equations leave open.
+    pub(super) fn outputs(&self, outputs: &[Expr], root: &Root) -> Result<(Vec<f64>, Vec<bool>), CompileError> {
+        /// Part of a kernel direction that is not round-off.
+        const OPEN: f64 = 1e-8;
+        let (values, n) = (self.values(root), self.unknowns.len());
+        let mut inputs: Vec<Symbol> = values.keys().copied().collect();
+        inputs.sort();
+        let mut all = outputs.to_vec();
+        all.extend(self.system.graph.jacobian(outputs, &self.unknowns).entries());
+        let point: Vec<f64> = inputs.iter().map(|s| values[s]).collect();
+        let mut numeric = Numeric::new(self.system, &inputs, &all)?;
+        let (values, derivatives) = numeric.run(&point).split_at(outputs.len());
+        let mut open = Vec::with_capacity(outputs.len());
+        for i in 0..outputs.len() {
+            let gradient = DVector::from_column_slice(&derivatives[i * n..(i + 1) * n]);
+            let change = root.null_space.tr_mul(&gradient);
+            open.push(change.norm() > OPEN * gradient.norm());
+        }
+        Ok((values.to_vec(), open))
+    }
+}
+
+/// `Σ |∂e/∂xⱼ · xⱼ|`, terms that are not finite left out.
+fn size_of_terms(gradient: &[f64], x: &[f64]) -> f64 {
+    gradient.iter().zip(x).map(|(d, x)| (d * x).abs()).filter(|t| t.is_finite()).sum()
+}
+
+/// How solving a [`Problem`] ended.
+pub(super) enum Solved {
+    Root(Root),
+    /// The equations contradict each other; the relative residual is over the limit.
+    LeastSquares(Root, f64),
+    /// The equations are not finite at the guess.
+    Nowhere,
+}

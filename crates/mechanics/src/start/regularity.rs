@@ -1,0 +1,165 @@
+//! Whether a system has well-posed equations of motion at a point, whatever its units.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::numeric::Numeric;
+use super::{Quantity, StartError};
+use crate::newton::decompose;
+use crate::{State, System};
+
+/// Ratios of singular values under this are taken for zero.
+pub(super) const SINGULAR_LIMIT: f64 = 1e-10;
+
+/// Nearby points at which the usual size of an entry is taken, and their distance relative to `1 + |x|`.
+const POINTS: u64 = 6;
+const DISTANCE: f64 = 1e-2;
+
+/// Checks that `L`, `f` and `Q` are finite at `state`, that `A = ∂f/∂v` has full row rank there and that `NᵀMN` is regular, where
+/// `M = ∂²L/∂v²` and the columns of `N` are a basis of the kernel of `A`. `M` itself may be singular, or indefinite.
+///
+/// Entries are compared with their size at nearby points, row by row and column by column, so that neither units nor
+/// round-off (`sin(pi)`) can feign a rank.
+///
+/// # Errors
+/// [`StartError::NotFinite`], [`StartError::DependentConstraints`], [`StartError::SingularMassMatrix`].
+pub fn check_regularity(system: &System, state: &State) -> Result<(), StartError> {
+    super::check_lengths(system, state)?;
+    check_finite(system, state)?;
+    let scaled = ScaledMatrices::new(system, state)?;
+    scaled.check_constraints()?;
+    scaled.check_mass()
+}
+
+/// Checks the constraint Jacobian alone.
+pub(super) fn check_constraints(system: &System, state: &State) -> Result<(), StartError> {
+    ScaledMatrices::new(system, state)?.check_constraints()
+}
+
+fn check_finite(system: &System, state: &State) -> Result<(), StartError> {
+    let quantities = std::iter::once((Quantity::Lagrangian, system.lagrangian))
+        .chain(system.constraints.iter().enumerate().map(|(i, &f)| (Quantity::Constraint(i + 1), f)))
+        .chain(system.forces.iter().zip(&system.coordinates).map(|(&f, c)| (Quantity::Force(c.name.clone()), f)));
+    for (quantity, e) in quantities {
+        let value = match Numeric::of_state(system, &[e]) {
+            Ok(mut numeric) => numeric.at(state)[0],
+            Err(symbolic::CompileError::NotFinite { .. }) => f64::NAN,
+            Err(error) => return Err(error.into()),
+        };
+        if !value.is_finite() {
+            return Err(StartError::NotFinite { quantity, value });
+        }
+    }
+    Ok(())
+}
+
+/// `A` and `M` in units in which their entries are of order 1 near the start.
+struct ScaledMatrices {
+    constraint_jacobian: DMatrix<f64>,
+    mass: DMatrix<f64>,
+}
+
+impl ScaledMatrices {
+    fn new(system: &System, state: &State) -> Result<Self, StartError> {
+        let (n, h) = (system.dimension(), system.constraints.len());
+        let mut entries = system.constraint_jacobian().entries().to_vec();
+        entries.extend(system.velocity_hessian().entries());
+        let mut numeric = Numeric::of_state(system, &entries)?;
+        let here = numeric.at(state).to_vec();
+        if let Some(place) = here.iter().position(|x| !x.is_finite()) {
+            let quantity = if place < h * n { Quantity::ConstraintJacobian } else { Quantity::MassMatrix };
+            return Err(StartError::NotFinite { quantity, value: here[place] });
+        }
+        let mut usual: Vec<f64> = here.iter().map(|x| x.abs()).collect();
+        for point in 0..POINTS {
+            for (u, x) in usual.iter_mut().zip(numeric.at(&nearby(state, point))) {
+                if x.is_finite() {
+                    *u = u.max(x.abs());
+                }
+            }
+        }
+        let usual_a = DMatrix::from_row_slice(h, n, &usual[..h * n]);
+        let usual_m = DMatrix::from_row_slice(n, n, &usual[h * n..]);
+        let columns = column_scale(&usual_a, &usual_m);
+        let scaled_a = DMatrix::from_fn(h, n, |i, j| usual_a[(i, j)] * columns[j]);
+        let rows = DVector::from_fn(h, |i, _| inverse_or_one(scaled_a.row(i).amax()));
+        let a = DMatrix::from_row_slice(h, n, &here[..h * n]);
+        let m = DMatrix::from_row_slice(n, n, &here[h * n..]);
+        Ok(ScaledMatrices {
+            constraint_jacobian: DMatrix::from_fn(h, n, |i, j| rows[i] * a[(i, j)] * columns[j]),
+            mass: DMatrix::from_fn(n, n, |i, j| columns[i] * m[(i, j)] * columns[j]),
+        })
+    }
+
+    fn check_constraints(&self) -> Result<(), StartError> {
+        if self.constraint_jacobian.nrows() == 0 {
+            return Ok(());
+        }
+        let (_, values, _) = decompose(self.constraint_jacobian.clone())?;
+        let (ratio, singular_values) = ratio(&values);
+        if ratio > SINGULAR_LIMIT {
+            return Ok(());
+        }
+        Err(StartError::DependentConstraints { singular_values, ratio, limit: SINGULAR_LIMIT })
+    }
+
+    fn check_mass(&self) -> Result<(), StartError> {
+        let (h, n) = self.constraint_jacobian.shape();
+        let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
+        let (_, values, v_t) = decompose(padded)?;
+        let mut order: Vec<usize> = (0..values.len()).collect();
+        order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+        let kernel = v_t.select_rows(&order[h..]).transpose();
+        let (_, values, _) = decompose(kernel.tr_mul(&(&self.mass * &kernel)))?;
+        let (_, singular_values) = ratio(&values);
+        // Compared with the size of the scaled entries, 1, as well: one degree of freedom has no ratio of its own.
+        let largest = values.amax().max(1.0);
+        let ratio = values.iter().copied().fold(f64::INFINITY, f64::min) / largest;
+        if ratio > SINGULAR_LIMIT {
+            return Ok(());
+        }
+        Err(StartError::SingularMassMatrix { singular_values, ratio, limit: SINGULAR_LIMIT })
+    }
+}
+
+/// Smallest over largest singular value, the latter at least 1 if all are small; and all of them in falling order.
+fn ratio(values: &DVector<f64>) -> (f64, Vec<f64>) {
+    let mut sorted: Vec<f64> = values.iter().copied().collect();
+    sorted.sort_by(|a, b| b.total_cmp(a));
+    let largest = values.amax().max(1.0);
+    (sorted.last().map_or(0.0, |s| s / largest), sorted)
+}
+
+fn inverse_or_one(x: f64) -> f64 {
+    if x > 0.0 && (1.0 / x).is_finite() { 1.0 / x } else { 1.0 }
+}
+
+/// A unit for each velocity: where `M` knows the coordinate, the one that makes its mass 1; else the one that makes its part
+/// in a constraint as large as that of the others.
+fn column_scale(usual_a: &DMatrix<f64>, usual_m: &DMatrix<f64>) -> DVector<f64> {
+    let n = usual_m.nrows();
+    let mut scale = DVector::from_fn(n, |j, _| {
+        let mass = usual_m[(j, j)];
+        if mass > 0.0 { inverse_or_one(mass.sqrt()) } else { 0.0 }
+    });
+    let rows: Vec<f64> = usual_a.row_iter().map(|row| row.transpose().component_mul(&scale).amax()).collect();
+    for j in (0..n).filter(|&j| usual_m[(j, j)] == 0.0) {
+        let part = |(i, &row): (usize, &f64)| if row > 0.0 { usual_a[(i, j)] / row } else { 0.0 };
+        scale[j] = inverse_or_one(rows.iter().enumerate().map(part).fold(0.0, f64::max));
+    }
+    scale
+}
+
+/// A state a little way off, a pure function of `point`.
+fn nearby(state: &State, point: u64) -> State {
+    let mut seed = point.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mut shift = |x: f64| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        let unit = (seed >> 11) as f64 / (1u64 << 53) as f64;
+        x + DISTANCE * (1.0 + x.abs()) * (2.0 * unit - 1.0)
+    };
+    let q = state.q.iter().map(|&x| shift(x)).collect();
+    let v = state.v.iter().map(|&x| shift(x)).collect();
+    State { t: state.t, q, v }
+}

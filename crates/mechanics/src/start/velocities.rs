@@ -1,0 +1,84 @@
+//! The velocities that were not given.
+
+use symbolic::Expr;
+
+use super::numeric::{Problem, Solved};
+use super::{StartData, StartError, regularity};
+use crate::newton::Root;
+use crate::{State, System};
+
+/// Two velocities closer than this part of the larger are one solution.
+const SAME: f64 = 1e-6;
+
+/// Solves the equations of `problem` and evaluates the velocities `outputs`; of contradictory equations, the least-squares solution.
+pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &StartData) -> Result<Vec<f64>, StartError> {
+    let mut roots: Vec<(Vec<f64>, Root)> = Vec::new();
+    let mut nearest: Option<Root> = None;
+    let guesses = guesses(problem, data);
+    for &guess in &guesses {
+        match problem.solve(&data.guess, guess)? {
+            Solved::Root(root) => {
+                let (v, _) = problem.outputs(outputs, &root)?;
+                if !roots.iter().any(|(other, _)| v.iter().zip(other).all(|(&a, &b)| same(a, b))) {
+                    roots.push((v, root));
+                }
+            }
+            Solved::LeastSquares(root, _) => {
+                if nearest.as_ref().is_none_or(|other| root.residual < other.residual) {
+                    nearest = Some(root);
+                }
+            }
+            Solved::Nowhere => {}
+        }
+    }
+    let root = match (&roots[..], &nearest) {
+        ([(_, root), ..], _) | ([], Some(root)) => root,
+        ([], None) => return Err(StartError::NotSolved { points: guesses.len() }),
+    };
+    let v = check_determined(problem, outputs, root, data)?;
+    if let [(first, _), (second, _), ..] = &roots[..] {
+        let differ: Vec<usize> = (0..v.len()).filter(|&i| !same(first[i], second[i])).collect();
+        return Err(StartError::Ambiguous {
+            velocities: differ.iter().map(|&i| velocity_name(problem.system, i)).collect(),
+            first: differ.iter().map(|&i| first[i]).collect(),
+            second: differ.iter().map(|&i| second[i]).collect(),
+        });
+    }
+    Ok(v)
+}
+
+/// Values at which unknowns without a guess start: nonlinear equations are solved from several, to see whether they have
+/// more than one solution.
+fn guesses(problem: &Problem, data: &StartData) -> Vec<f64> {
+    if problem.is_linear() || !data.guess.is_empty() {
+        return vec![0.0];
+    }
+    let speed = data.given.values().fold(0.0_f64, |a, x| a.max(x.abs()));
+    let speed = if speed > 0.0 { speed } else { 1.0 };
+    vec![0.0, speed, -speed]
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+fn velocity_name(system: &System, i: usize) -> String {
+    system.graph.name(system.coordinates[i].velocity)
+}
+
+/// The velocities at `root`, none of which may be left open. Dependent constraints are the deeper fault and come first.
+fn check_determined(
+    problem: &Problem,
+    outputs: &[Expr],
+    root: &Root,
+    data: &StartData,
+) -> Result<Vec<f64>, StartError> {
+    let (v, open) = problem.outputs(outputs, root)?;
+    if open.contains(&true) {
+        let state = State { t: data.time, q: data.positions.clone(), v };
+        regularity::check_constraints(problem.system, &state)?;
+        let names = (0..open.len()).filter(|&i| open[i]).map(|i| velocity_name(problem.system, i));
+        return Err(StartError::Undetermined { velocities: names.collect() });
+    }
+    Ok(v)
+}
