@@ -1,1 +1,3 @@
 //! Tests between crates.
+
+pub mod closed_forms;
