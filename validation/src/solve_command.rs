@@ -34,6 +34,7 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
         tolerance: arguments.tolerance,
         method: arguments.method.into(),
         projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
+        ..Settings::default()
     };
     let wanted = times(arguments.times.as_deref(), &scene)?;
     let mut motion = solve_choice(&scene, &choice, &settings)?;

@@ -245,6 +245,9 @@ fn fits(
             continue;
         }
         let equations = derive(&scene.system, &runs[run].choice)?;
+        if equations.free_constants.is_empty() {
+            continue;
+        }
         let mut guesses = vec![vec![0.0; equations.free_constants.len()]];
         if let Ok(motion) = &runs[run].outcome
             && motion.constants.len() == equations.free_constants.len()

@@ -4,22 +4,30 @@
 
 use integrate::{BoundaryError, ShootOptions, fit};
 use mechanics::{ConstantsRule, Equations};
+use nalgebra::DVector;
 
-use crate::gap::subtract;
 use crate::metric::Metric;
 use crate::motion::Prepared;
-use crate::{Motion, Setting, Settings, SolveError, solve};
+use crate::{Motion, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the fit compares.
 const INSTANTS: usize = 40;
 
+/// Tolerance of the integrations while the best constants are searched, and the limits on the search.
+const SEARCH_TOLERANCE: f64 = 1e-7;
+const SEARCH_STEPS: usize = 5_000;
+const SEARCH_ITERATIONS: usize = 30;
+
+/// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
+const CLOSE: f64 = 1e-4;
+
 /// Integrates `equations` with the free constants for which the coordinates come closest to those of `target`:
 ///
 /// ```text
-/// minimize Σ_k |q(t_k; C) − q_target(t_k)|²   over C, each coordinate weighted by its kinetic length.
+/// minimize Σ_k Δqᵀ M Δq ,   Δq = q(t_k; C) − q_target(t_k) ,   over C .
 /// ```
 ///
-/// Starts from each of `guesses` and keeps the best. `None` where there is no free constant, or no guess leads to a motion.
+/// Searches from each of `guesses` at a coarse tolerance, keeps the best, and refines it where it comes close: then it may be exact. `None` where there is no free constant, or no guess leads to a motion.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be started or `target` cannot be read off.
@@ -40,38 +48,41 @@ pub fn best_fit(
     for k in 1..=INSTANTS {
         let t = start + (end - start) * k as f64 / INSTANTS as f64;
         let outputs = target.at(t)?;
-        let weights: Vec<f64> = (0..n)
-            .map(|i| {
-                let mut unit = vec![0.0; n];
-                unit[i] = 1.0;
-                metric.length(t, &outputs.coordinates, &outputs.velocities, &unit)
-            })
-            .collect();
-        goal.push((t, outputs.coordinates, weights));
+        let factor = metric.factor(t, &outputs.coordinates, &outputs.velocities);
+        goal.push((t, DVector::from_vec(outputs.coordinates), factor));
     }
+    let origin = DVector::from_vec(target.at(start)?.coordinates);
+    let way = goal.iter().map(|(_, q, factor)| (factor * (q - &origin)).norm_squared()).sum::<f64>().sqrt();
     let mut prepared = Prepared::new(setting, equations.clone(), settings)?;
-    let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
-        let broken = |reason: String| BoundaryError::Residual { reason };
-        let run = prepared.run(constants, end, settings.tolerance, settings).map_err(|e| broken(e.to_string()))?;
-        let reached = run.dense.end();
-        if reached < end {
-            return Err(broken(format!("stops at t = {reached}")));
-        }
-        let mut y = vec![0.0; prepared.equations.states.len()];
-        for ((t, q, weights), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
-            run.dense.evaluate(*t, &mut y);
-            let outputs = prepared.compiled.outputs(*t, &y).map_err(|e| broken(e.to_string()))?;
-            for (i, difference) in subtract(&outputs.coordinates, q).into_iter().enumerate() {
-                residual[i] = weights[i] * difference;
+    let mut search = |tolerance: f64, limits: &Settings, guess: &[f64]| {
+        let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
+            let broken = |reason: String| BoundaryError::Residual { reason };
+            let run = prepared.run(constants, end, tolerance, limits).map_err(|e| broken(e.to_string()))?;
+            let dense = run.completed()?;
+            let mut y = vec![0.0; prepared.equations.states.len()];
+            for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
+                dense.evaluate(*t, &mut y);
+                let outputs = prepared.compiled.outputs(*t, &y).map_err(|e| broken(e.to_string()))?;
+                let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
+                residual.copy_from_slice(difference.as_slice());
             }
-        }
-        Ok(())
+            Ok(())
+        };
+        let mut options = ShootOptions::with_tolerance(tolerance);
+        options.max_iterations = SEARCH_ITERATIONS;
+        fit(&mut residual, INSTANTS * n, guess, &options)
     };
-    let options = ShootOptions::with_tolerance(settings.tolerance);
-    let best = guesses
+    let coarse = Settings { max_steps: SEARCH_STEPS, ..settings.clone() };
+    let mut best = guesses
         .iter()
-        .filter_map(|guess| fit(&mut residual, INSTANTS * n, guess, &options).ok())
+        .filter_map(|guess| search(SEARCH_TOLERANCE, &coarse, guess).ok())
         .min_by(|a, b| a.residual.total_cmp(&b.residual));
+    if let Some(found) = &best
+        && found.residual < CLOSE * way
+        && let Ok(refined) = search(settings.tolerance * TIGHTER, settings, &found.unknowns)
+    {
+        best = Some(refined);
+    }
     let Some(best) = best else { return Ok(None) };
     let rule = ConstantsRule::Given(best.unknowns);
     Ok(Some(solve(Setting { end, ..setting }, equations.clone(), &rule, settings)?))

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use mechanics::System;
+use nalgebra::DMatrix;
 use symbolic::{CompileError, Graph, Matrix, Symbol, Tape, Workspace};
 
 /// The length `sqrt(Δqᵀ M Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
@@ -57,6 +58,16 @@ impl Metric {
         square.abs().sqrt()
     }
 
+    /// Upper triangular `R` with `RᵀR = M` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`; where `M` is not positive
+    /// definite, the square roots of its diagonal instead.
+    pub(crate) fn factor(&mut self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
+        self.load(t, q, v);
+        let n = self.dimension;
+        let mass = DMatrix::from_row_slice(n, n, &self.values[..n * n]);
+        let diagonal = DMatrix::from_diagonal(&mass.diagonal().map(|m| m.abs().sqrt()));
+        mass.cholesky().map_or(diagonal, |c| c.l().transpose())
+    }
+
     /// `max |fᵢ(t, q, v)|`, 0 where there is no constraint.
     pub fn constraint_residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.load(t, q, v);
@@ -70,8 +81,8 @@ pub(crate) fn numbers(
     graph: &Graph,
     matrix: &Matrix,
     values: &HashMap<Symbol, f64>,
-) -> Result<nalgebra::DMatrix<f64>, CompileError> {
+) -> Result<DMatrix<f64>, CompileError> {
     let entries: Result<Vec<f64>, CompileError> =
         matrix.entries().iter().map(|&e| graph.evaluate(e, values)).collect();
-    Ok(nalgebra::DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries?))
+    Ok(DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries?))
 }

@@ -22,11 +22,14 @@ pub struct Settings {
     pub method: Method,
     /// Projection onto the constraint after every step.
     pub projection: Projection,
+    /// Limit on the steps of one run.
+    pub max_steps: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { tolerance: 1e-11, method: Method::Dop853, projection: Projection::EveryStep }
+        let (method, projection) = (Method::Dop853, Projection::EveryStep);
+        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000 }
     }
 }
 
@@ -176,7 +179,7 @@ impl Prepared {
             values.insert(c.velocity, setting.start.v[i]);
         }
         if let Some(removal) = &equations.removal {
-            values.extend(complete_removal_start(setting.system, removal, setting.start)?.values);
+            values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
         }
         let (mut symbols, mut start_inputs): (Vec<Symbol>, Vec<f64>) = values.into_iter().unzip();
         symbols.extend(equations.constant_symbols());
@@ -213,6 +216,7 @@ impl Prepared {
         let mut options = Options::with_tolerance(tolerance);
         options.method = settings.method;
         options.projection = settings.projection;
+        options.max_steps = settings.max_steps;
         self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
         let mut runner = Runner(&mut self.compiled);
         debug_assert!(!self.implicit || matches!(settings.method, Method::Bdf | Method::TrBdf2 | Method::Esdirk34));
