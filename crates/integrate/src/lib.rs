@@ -43,7 +43,7 @@
 //! evaluates the rates at the projected state instead of the other one, so that projection costs no evaluation, and the
 //! dense output stays continuously differentiable. Tsit45, TrBdf2 and Esdirk34 go on from the projected state, at one
 //! evaluation a step. Bdf remembers several steps and would have to forget them, so that its own solution is left
-//! unprojected until the projection moves the state by more than 100 tolerances; what is stored is always projected.
+//! unprojected until the projection moves the state by more than 1000 tolerances; what is stored is always projected.
 //! In each case the order of the method is kept, between the ends of the steps the manifold is met to the accuracy of
 //! the dense output.
 //!
@@ -53,9 +53,9 @@
 //! [`EvaluationError`]s, with [`StopCause::Evaluation`] and the problem's own words.
 //!
 //! # Sources
-//! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993 (DOP853, dense
-//! output, starting step). The other methods are those of the library [`diffsol`](https://docs.rs/diffsol), the least-squares solver that of
-//! [`levenberg-marquardt`](https://docs.rs/levenberg-marquardt).
+//! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993 (DOP853,
+//! dense output, starting step). The other methods are those of the library [`diffsol`](https://docs.rs/diffsol), the
+//! least-squares solver is that of [`levenberg-marquardt`](https://docs.rs/levenberg-marquardt).
 
 mod boundary;
 mod dense;
