@@ -55,6 +55,8 @@ pub struct Shot {
     pub iterations: usize,
     /// Evaluations of r, those for the Jacobians included.
     pub evaluations: usize,
+    /// Whether the limit on iterations ended the search.
+    pub exhausted: bool,
     /// Condition number (Euclidean norm) of `∂r/∂c` at c; infinite where the unknowns are not determined.
     pub condition: f64,
 }
@@ -180,11 +182,11 @@ pub fn shoot(residual: &mut Residual, guess: &[f64], options: &ShootOptions) -> 
 /// Best-fitting constants: minimises `|r(c)|` over `c` near `guess`, `residuals ≥ k` of them.
 ///
 /// Returns the best point found, with the residual norm there, which is not small where the model does not fit; a
-/// `condition` above 1e12 says that the fit does not determine the constants. The minimum is a local one.
+/// `condition` above 1e12 says that the fit does not determine the constants. The minimum is a local one; [`Shot::exhausted`] says
+/// that the limit on iterations was reached on the way to it.
 ///
 /// # Errors
-/// [`BoundaryError::NotConverged`] where the limit on iterations was reached before the minimum (`limit` is then 0), and
-/// the variants for bad calls and for residuals that cannot be evaluated at the guess.
+/// The variants for bad calls and for residuals that cannot be evaluated at the guess.
 ///
 /// # Examples
 /// The best constant for the values 1, 2, 6 is their mean.
@@ -204,12 +206,7 @@ pub fn fit(
     guess: &[f64],
     options: &ShootOptions,
 ) -> Result<Shot, BoundaryError> {
-    let shot = minimise(residual, residuals, guess, options, 0.0)?;
-    if shot.iterations >= options.max_iterations {
-        let Shot { residual, iterations, .. } = shot;
-        return Err(BoundaryError::NotConverged { residual, limit: 0.0, iterations });
-    }
-    Ok(shot)
+    minimise(residual, residuals, guess, options, 0.0)
 }
 
 /// The best point of a minimisation that ends early where `|r| ≤ enough`.
@@ -239,7 +236,8 @@ fn minimise(
     let best = search.best.clone();
     let condition = condition(search.differences(&best)?);
     let Search { smallest, iterations, evaluations, .. } = search;
-    Ok(Shot { unknowns: best, residual: smallest, iterations, evaluations, condition })
+    let exhausted = iterations >= options.max_iterations;
+    Ok(Shot { unknowns: best, residual: smallest, iterations, evaluations, exhausted, condition })
 }
 
 fn check(residuals: usize, guess: &[f64], options: &ShootOptions) -> Result<(), BoundaryError> {

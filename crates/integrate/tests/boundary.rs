@@ -150,7 +150,7 @@ fn every_error() {
     );
     let few = ShootOptions { max_iterations: 1, ..options.clone() };
     assert!(matches!(shoot(&mut rootless, &[2.0], &few), Err(BoundaryError::NotConverged { iterations: 1, .. })));
-    assert!(matches!(fit(&mut rootless, 1, &[2.0], &few), Err(BoundaryError::NotConverged { .. })));
+    assert!(fit(&mut rootless, 1, &[2.0], &few).unwrap().exhausted);
     // The second unknown has no effect, and the residuals contradict each other.
     let mut singular = |c: &[f64], r: &mut [f64]| {
         (r[0], r[1]) = (c[0], c[0] - 1.0);

@@ -230,11 +230,15 @@ pub enum Unavailable {
     /// A derivative of something that is not a coordinate.
     #[error("{0} has no derivative that can be written with primes")]
     NoDerivative(&'static str),
-    /// An acceleration in `L`, `f` or `Q`.
-    #[error("an expression of the system contains coordinates and velocities, no accelerations")]
+    /// A derivative of too high an order.
+    #[error(
+        "derivatives of this order do not enter: a system contains coordinates and velocities, a parametrization the first two rates of its parameters"
+    )]
     Acceleration,
     /// The velocity of a removed coordinate, in the parametrization that is to give it.
-    #[error("it is the velocity of a removed coordinate, which the parametrization is to give; use parameters and their rates")]
+    #[error(
+        "it is the velocity of a removed coordinate, which the parametrization is to give; use parameters and their rates"
+    )]
     RemovedVelocity,
     /// A coordinate that is given directly.
     #[error("this coordinate is given directly by the parametrization; use parameters and memory variables")]

@@ -91,6 +91,7 @@ pub fn complete_start(system: &System, data: &StartData) -> Result<(State, Compl
     if data.project {
         let (projected, length) = project_velocity(system, &state)?;
         state = projected;
+        check_regularity(system, &state)?;
         completion.projected = Some(length);
     }
     let (constraint, residual) = worst_constraint(system, &state)?;
@@ -111,11 +112,9 @@ fn parametrized(system: &System, removal: &Removal, data: &StartData) -> (Vec<Ex
     let g = &system.graph;
     let rates = removal.velocities(system);
     let as_rates: HashMap<Symbol, Expr> = system.velocities().into_iter().zip(rates.iter().copied()).collect();
-    let mut equations: Vec<Expr> = removal_start::start_equations(system, removal)
-        .into_iter()
-        .filter(|(s, _)| !data.given.contains_key(s))
-        .map(|(_, e)| g.substitute(e, &as_rates))
-        .collect();
+    let start = removal.start.iter().filter(|(s, _)| !data.given.contains_key(s));
+    let mut equations: Vec<Expr> = start.map(|(&s, &e)| g.sub(g.variable(s), g.substitute(e, &as_rates))).collect();
+    equations.sort();
     for (i, c) in system.coordinates.iter().enumerate() {
         equations.push(g.sub(removal.coordinates[i], g.variable(c.position)));
         if data.given.contains_key(&c.velocity) {

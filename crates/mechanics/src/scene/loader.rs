@@ -60,13 +60,14 @@ pub(super) fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64
     let (state, completion) = start::complete(&context, &removals)?;
     let multipliers = constants::multipliers(&context)?;
     let duration = run.require("duration", "a positive number")?;
+    let out_of_range = |value| SceneErrorKind::OutOfRange { what: "the duration", value, limit: 0.0 };
+    let given = duration.number()?;
     let value = match context.overrides.get("duration") {
-        Some(value) => value,
-        None => duration.number()?,
+        Some(value) if value > 0.0 => value,
+        Some(value) => return Err(SceneError::outside(file, out_of_range(value))),
+        None if given > 0.0 => given,
+        None => return Err(duration.error(out_of_range(given))),
     };
-    if value <= 0.0 {
-        return Err(duration.error(SceneErrorKind::OutOfRange { what: "the duration", value, limit: 0.0 }));
-    }
     context.overrides.check_used(source)?;
     Ok(Scene {
         name: name.into(),

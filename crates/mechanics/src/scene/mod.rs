@@ -153,8 +153,7 @@ impl fmt::Debug for Scene {
 
 /// The text of a file, its size checked before it is read.
 fn read(file: &str, path: &Path) -> Result<String, SceneError> {
-    let unreadable =
-        |e: std::io::Error| SceneError::outside(file, SceneErrorKind::Unreadable { reason: e.kind() });
+    let unreadable = |e: std::io::Error| SceneError::outside(file, SceneErrorKind::Unreadable { reason: e.kind() });
     let too_large = |size| SceneError::outside(file, SceneErrorKind::TooLarge { size, limit: SIZE_LIMIT });
     let handle = std::fs::File::open(path).map_err(unreadable)?;
     let size = handle.metadata().map_err(unreadable)?.len();

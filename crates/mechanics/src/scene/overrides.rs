@@ -36,7 +36,8 @@ impl Overrides {
             None => Ok(()),
             Some(name) => {
                 let known: Vec<String> = asked.iter().cloned().collect();
-                let expected = "parameter, coordinate, start velocity, time, duration or multiplier (mu1, …) to override";
+                let expected =
+                    "parameter, coordinate, start velocity, time, duration or multiplier (mu1, …) to override";
                 let suggestion = suggestion(name, &known);
                 let kind = SceneErrorKind::UnknownName { name: name.clone(), expected, suggestion };
                 Err(SceneError::outside(source.file, kind))

@@ -6,9 +6,7 @@ use symbolic::Symbol;
 
 use super::loader::Context;
 use super::section::{Section, Value};
-use crate::{
-    Completion, Quantity, Removal, SceneError, SceneErrorKind, StartData, StartError, State, complete_start,
-};
+use crate::{Completion, Quantity, Removal, SceneError, SceneErrorKind, StartData, StartError, State, complete_start};
 
 /// The start state of the scene.
 pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State, Completion), SceneError> {

@@ -19,7 +19,8 @@ pub(super) fn build<'a>(
     let parameters = parameters(source, &root, &overrides, &graph, &mut names)?;
     let coordinates = root.require("coordinates", "a table with one entry a coordinate")?.section()?;
     if coordinates.is_empty() {
-        let (section, expected) = (coordinates.title(), "at least one coordinate, as in x = { unit = \"m\", start = 0 }");
+        let (section, expected) =
+            (coordinates.title(), "at least one coordinate, as in x = { unit = \"m\", start = 0 }");
         return Err(source.error(&coordinates.span, SceneErrorKind::EmptySection { section, expected }));
     }
     let mut units = Vec::new();

@@ -50,7 +50,8 @@ fn write_system(text: &mut Table, system: &System) {
     let g = &system.graph;
     text.header("system");
     text.line("lagrangian", &quoted(&g.plain(system.lagrangian)));
-    let constraints: Vec<String> = system.constraints.iter().map(|&f| format!("  {},\n", quoted(&g.plain(f)))).collect();
+    let constraints: Vec<String> =
+        system.constraints.iter().map(|&f| format!("  {},\n", quoted(&g.plain(f)))).collect();
     if !constraints.is_empty() {
         text.line("constraints", &format!("[\n{}]", constraints.concat()));
     }

@@ -41,7 +41,9 @@ pub enum StartError {
         velocities: Vec<String>,
     },
     /// No velocities satisfy the constraints together with the given ones.
-    #[error("start velocities contradict constraint {constraint}: relative residual {residual:.3e}, limit {limit:.0e}; give fewer, or set project = true")]
+    #[error(
+        "start velocities contradict constraint {constraint}: relative residual {residual:.3e}, limit {limit:.0e}; give fewer, or set project = true"
+    )]
     Contradictory {
         /// Number of the constraint with the largest residual, from 1.
         constraint: usize,

@@ -56,12 +56,7 @@ pub(super) struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     /// The unknowns are all symbols of `equations` and `outputs` that are not `known` and no parameters.
-    pub(super) fn new(
-        system: &'a System,
-        equations: Vec<Expr>,
-        outputs: &[Expr],
-        known: HashMap<Symbol, f64>,
-    ) -> Self {
+    pub(super) fn new(system: &'a System, equations: Vec<Expr>, outputs: &[Expr], known: HashMap<Symbol, f64>) -> Self {
         let parameters = system.parameter_values();
         let occurring: BTreeSet<Symbol> =
             equations.iter().chain(outputs).flat_map(|&e| system.graph.symbols_of(e)).collect();
@@ -106,7 +101,7 @@ impl<'a> Problem<'a> {
         let start = DVector::from_iterator(n, self.unknowns.iter().map(|s| *guess.get(s).unwrap_or(&default)));
         Ok(match solve(evaluate, start, &NewtonOptions::default()) {
             Ok(root) => Solved::Root(root),
-            Err(NewtonError::NotConverged { best, limit }) => Solved::LeastSquares(*best, limit),
+            Err(NewtonError::NotConverged { best, .. }) => Solved::LeastSquares(*best),
             Err(NewtonError::NotFinite { .. } | NewtonError::Decomposition { .. }) => Solved::Nowhere,
         })
     }
@@ -119,12 +114,19 @@ impl<'a> Problem<'a> {
         outputs.extend(self.system.graph.jacobian(&self.equations, &symbols).entries());
         let mut numeric = Numeric::new(self.system, &symbols, &outputs)?;
         let (residuals, derivatives) = numeric.run(&point).split_at(self.equations.len());
-        let single = |(i, &r): (usize, &f64)| Evaluation {
-            residual: DVector::from_element(1, r),
-            jacobian: DMatrix::zeros(1, 0),
-            magnitude: DVector::from_element(1, size_of_terms(&derivatives[i * point.len()..], &point)),
+        let n = point.len();
+        let x = DVector::from_column_slice(&point);
+        let single = |(i, &r): (usize, &f64)| {
+            let gradient = &derivatives[i * n..(i + 1) * n];
+            let finite = gradient.iter().map(|d| if d.is_finite() { *d } else { 0.0 });
+            let evaluation = Evaluation {
+                residual: DVector::from_element(1, r),
+                jacobian: DMatrix::from_iterator(1, n, finite),
+                magnitude: DVector::from_element(1, size_of_terms(gradient, &point)),
+            };
+            evaluation.relative_residual(&x)
         };
-        Ok(residuals.iter().enumerate().map(|r| single(r).relative_residual()).collect())
+        Ok(residuals.iter().enumerate().map(single).collect())
     }
 
     /// Known values and those of the unknowns at `root`.
@@ -165,7 +167,7 @@ fn size_of_terms(gradient: &[f64], x: &[f64]) -> f64 {
 pub(super) enum Solved {
     Root(Root),
     /// The equations contradict each other; the relative residual is over the limit.
-    LeastSquares(Root, f64),
+    LeastSquares(Root),
     /// The equations are not finite at the guess.
     Nowhere,
 }

@@ -94,7 +94,7 @@ impl ScaledMatrices {
         if self.constraint_jacobian.nrows() == 0 {
             return Ok(());
         }
-        let (_, values, _) = decompose(self.constraint_jacobian.clone())?;
+        let values = decompose(self.constraint_jacobian.clone())?.values;
         let (ratio, singular_values) = ratio(&values);
         if ratio > SINGULAR_LIMIT {
             return Ok(());
@@ -105,15 +105,11 @@ impl ScaledMatrices {
     fn check_mass(&self) -> Result<(), StartError> {
         let (h, n) = self.constraint_jacobian.shape();
         let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
-        let (_, values, v_t) = decompose(padded)?;
-        let mut order: Vec<usize> = (0..values.len()).collect();
-        order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-        let kernel = v_t.select_rows(&order[h..]).transpose();
-        let (_, values, _) = decompose(kernel.tr_mul(&(&self.mass * &kernel)))?;
-        let (_, singular_values) = ratio(&values);
-        // Compared with the size of the scaled entries, 1, as well: one degree of freedom has no ratio of its own.
-        let largest = values.amax().max(1.0);
-        let ratio = values.iter().copied().fold(f64::INFINITY, f64::min) / largest;
+        let svd = decompose(padded)?;
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|&a, &b| svd.values[b].total_cmp(&svd.values[a]));
+        let kernel = svd.right.select_rows(&order[h..]).transpose();
+        let (ratio, singular_values) = ratio(&decompose(kernel.tr_mul(&(&self.mass * &kernel)))?.values);
         if ratio > SINGULAR_LIMIT {
             return Ok(());
         }
@@ -121,7 +117,9 @@ impl ScaledMatrices {
     }
 }
 
-/// Smallest over largest singular value, the latter at least 1 if all are small; and all of them in falling order.
+/// Smallest over largest singular value, and all of them in falling order.
+///
+/// The largest counts as at least 1, the size of the scaled entries: one singular value has no ratio of its own.
 fn ratio(values: &DVector<f64>) -> (f64, Vec<f64>) {
     let mut sorted: Vec<f64> = values.iter().copied().collect();
     sorted.sort_by(|a, b| b.total_cmp(a));

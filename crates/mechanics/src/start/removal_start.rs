@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Symbol};
 
-use super::numeric::{Problem, Solved, values_of};
+use super::numeric::{Numeric, Problem, Solved, values_of};
 use super::{StartError, check_lengths};
+use crate::newton::NewtonOptions;
 use crate::{Removal, State, System};
 
 /// Numbers for the variables of a parametrization at the start, with `q(u̇, u, w, t) = q₀` and `q̇ = v₀`.
@@ -45,9 +46,15 @@ impl RemovalStart {
 pub fn complete_removal_start(system: &System, removal: &Removal, state: &State) -> Result<RemovalStart, StartError> {
     check_lengths(system, state)?;
     let g = &system.graph;
-    let known = values_of(system, state);
+    let limit = NewtonOptions::default().limit;
+    let fault = |residual| StartError::RemovalStart { removal: removal.name.clone(), residual, limit };
+    let mut known = values_of(system, state);
+    known.extend(start_values(system, removal, &known)?);
+    if !known.values().all(|x| x.is_finite()) {
+        return Err(fault(f64::INFINITY));
+    }
     let velocities = removal.velocities(system);
-    let mut equations: Vec<Expr> = start_equations(system, removal).into_iter().map(|(_, e)| e).collect();
+    let mut equations = Vec::new();
     for (i, c) in system.coordinates.iter().enumerate() {
         equations.push(g.sub(removal.coordinates[i], g.variable(c.position)));
         equations.push(g.sub(velocities[i], g.variable(c.velocity)));
@@ -61,7 +68,6 @@ pub fn complete_removal_start(system: &System, removal: &Removal, state: &State)
         .collect();
     let problem = Problem::new(system, equations, &g.variables(&variables), known);
     let mut smallest = f64::INFINITY;
-    let mut limit = 0.0;
     for default in [0.0, 1.0, -1.0, 0.1, -0.1] {
         match problem.solve(&HashMap::new(), default)? {
             Solved::Root(root) => {
@@ -77,21 +83,21 @@ pub fn complete_removal_start(system: &System, removal: &Removal, state: &State)
                     residual: root.residual,
                 });
             }
-            Solved::LeastSquares(root, at_most) => {
-                smallest = root.residual.min(smallest);
-                limit = at_most;
-            }
+            Solved::LeastSquares(root) => smallest = root.residual.min(smallest),
             Solved::Nowhere => {}
         }
     }
-    Err(StartError::RemovalStart { removal: removal.name.clone(), residual: smallest, limit })
+    Err(fault(smallest))
 }
 
-/// `symbol − expression(q, v, t)` for each of [`Removal::start`], in the order of the symbols.
-pub(super) fn start_equations(system: &System, removal: &Removal) -> Vec<(Symbol, Expr)> {
-    let g = &system.graph;
-    let mut equations: Vec<(Symbol, Expr)> =
-        removal.start.iter().map(|(&s, &e)| (s, g.sub(g.variable(s), e))).collect();
-    equations.sort();
-    equations
+/// [`Removal::start`] as numbers.
+fn start_values(
+    system: &System,
+    removal: &Removal,
+    known: &HashMap<Symbol, f64>,
+) -> Result<Vec<(Symbol, f64)>, StartError> {
+    let (symbols, expressions): (Vec<Symbol>, Vec<Expr>) = removal.start.iter().map(|(&s, &e)| (s, e)).unzip();
+    let (inputs, point): (Vec<Symbol>, Vec<f64>) = known.iter().map(|(&s, &x)| (s, x)).unzip();
+    let mut numeric = Numeric::new(system, &inputs, &expressions)?;
+    Ok(symbols.into_iter().zip(numeric.run(&point).iter().copied()).collect())
 }

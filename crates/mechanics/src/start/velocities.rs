@@ -23,7 +23,7 @@ pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &Start
                     roots.push((v, root));
                 }
             }
-            Solved::LeastSquares(root, _) => {
+            Solved::LeastSquares(root) => {
                 if nearest.as_ref().is_none_or(|other| root.residual < other.residual) {
                     nearest = Some(root);
                 }
