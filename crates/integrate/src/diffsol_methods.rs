@@ -24,7 +24,8 @@ type States = NalgebraVec<f64>;
 
 /// A multistep solver that is told of a projected state starts again at order 1; so it is told only where the move is
 /// longer than so many tolerances. Measured on the unit circle over 16 turns, tolerances 1e-4 to 1e-10: told above 10
-/// tolerances Bdf takes up to half as many steps again, above 100 up to a fifth, above 1000 none, at a smaller error.
+/// tolerances Bdf takes up to half as many steps again, above 100 up to a fifth, above 1000 none; the error at the end is
+/// then 1.6 to 24 times smaller than without projection.
 const MULTISTEP_MOVE: f64 = 1000.0;
 /// Limits of diffsol on failures; a run that meets them is stuck, the step size being bounded from below.
 const LIBRARY_FAILURES: usize = 100_000;

@@ -101,3 +101,36 @@ fn projection_keeps_the_radius_and_does_no_harm() {
         assert_eq!(free.projection, Default::default());
     }
 }
+
+#[test]
+fn projection_holds_what_would_run_away() {
+    // A turn with radial instability, (r − 1)' = 2 (r − 1): without projection an error grows like exp(2t), e⁴⁰ at t = 20.
+    // Bdf, too, has to be told of the projections then.
+    let case = Case::new(
+        2,
+        |_, y, r| {
+            let push = 2.0 * (1.0 - 1.0 / y[0].hypot(y[1]));
+            (r[0], r[1]) = (y[1] + push * y[0], -y[0] + push * y[1]);
+            Ok(())
+        },
+        |_, y, j| {
+            let radius = y[0].hypot(y[1]);
+            let (push, cubed) = (2.0 * (1.0 - 1.0 / radius), radius.powi(3));
+            j[0] = push + 2.0 * y[0] * y[0] / cubed;
+            j[1] = 1.0 + 2.0 * y[0] * y[1] / cubed;
+            j[2] = -1.0 + 2.0 * y[0] * y[1] / cubed;
+            j[3] = push + 2.0 * y[1] * y[1] / cubed;
+        },
+    )
+    .with_projection(onto_circle);
+    for method in Method::ALL {
+        let options = Options { method, ..Options::with_tolerance(1e-7) };
+        let start = Start { t: 0.0, y: vec![1.0, 0.0] };
+        let solution = integrate(&mut case.clone(), &start, 20.0, &options).unwrap();
+        assert_eq!(solution.status, Status::Completed, "{method:?}");
+        let error = distance(solution.dense.end_state(), &[20f64.cos(), -20f64.sin()]);
+        println!("{method:?} {error:e} {:?} {:?}", solution.work, solution.projection);
+        assert!(error < 1e-3, "{method:?}: {error:e}");
+        assert!(solution.projection.largest < 1e-2, "{method:?} {:?}", solution.projection);
+    }
+}
