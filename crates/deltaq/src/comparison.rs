@@ -201,6 +201,9 @@ pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Com
     let mut pairs = Vec::new();
     for first in 0..runs.len() {
         for second in first + 1..runs.len() {
+            if !worth_comparing(&runs[first], &runs[second]) {
+                continue;
+            }
             let (left, right) = runs.split_at_mut(second);
             let (Ok(one), Ok(two)) = (&mut left[first].outcome, &mut right[0].outcome) else { continue };
             let gap = compare_motions(one, two, &mut metric)?;
@@ -224,7 +227,15 @@ pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Com
     Ok(Comparison { scene, integrability, runs, pairs, fits })
 }
 
-/// Fits: vakonomic to Chetaev, and the first removed-constraint run to Chetaev and to vakonomic, where they differ.
+/// The costate form is the vakonomic motion once more, and compared with nothing else.
+fn worth_comparing(first: &Run, second: &Run) -> bool {
+    let costate = vakonomic::COSTATE_FORM.name;
+    let names = [first.choice.formulation, second.choice.formulation];
+    !names.contains(&costate) || names.contains(&vakonomic::FORMULATION.name)
+}
+
+/// Fits the free constants of one run to another wherever the two differ: vakonomic to Chetaev, the first removed-constraint run to
+/// Chetaev, to vakonomic, and to the removed-constraint runs of other removals.
 fn fits(
     scene: &Scene,
     runs: &mut [Run],
@@ -232,45 +243,58 @@ fn fits(
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Vec<Fit>, SolveError> {
+    let of = |name: &str| -> Vec<usize> {
+        let motion = |r: &Run| r.choice.formulation == name && r.outcome.as_ref().is_ok_and(|m| m.end() > m.start());
+        (0..runs.len()).filter(|&i| motion(&runs[i])).collect()
+    };
+    let (chetaev, vakonomic, removed) = (of("chetaev"), of("vakonomic"), of("removed-constraint"));
+    let mut wanted: Vec<(usize, usize)> = Vec::new();
+    for &target in &chetaev {
+        wanted.extend(vakonomic.iter().chain(removed.first()).map(|&run| (run, target)));
+    }
+    if let [first, others @ ..] = &removed[..] {
+        wanted.extend(vakonomic.iter().chain(others).map(|&target| (*first, target)));
+    }
     let mut fits = Vec::new();
-    for (name, target) in [("vakonomic", "chetaev"), ("removed-constraint", "chetaev"), ("removed-constraint", "vakonomic")] {
-        let find = |name: &str| {
-            runs.iter().position(|r| r.choice.formulation == name && r.outcome.as_ref().is_ok_and(Motion::is_complete))
-        };
-        let (Some(run), Some(target)) = (find(name), find(target)) else { continue };
-        let different = pairs
-            .iter()
-            .any(|p| (p.first, p.second) == (target.min(run), target.max(run)) && p.gap.verdict == Verdict::Different);
-        if !different {
-            continue;
-        }
-        let equations = derive(&scene.system, &runs[run].choice)?;
-        if equations.free_constants.is_empty() {
-            continue;
-        }
-        let mut guesses = vec![vec![0.0; equations.free_constants.len()]];
-        if let Ok(motion) = &runs[run].outcome
-            && motion.constants.len() == equations.free_constants.len()
+    for (run, target) in wanted {
+        let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
+        if pairs.iter().find(pair).is_some_and(|p| p.gap.verdict == Verdict::Different)
+            && let Some(fitted) = fit_run(scene, runs, run, target, metric, settings)?
         {
-            guesses.push(motion.constants.clone());
+            fits.push(Fit { run, target, fitted });
         }
-        if name == "vakonomic" {
-            guesses.extend(costate_free_guess(&scene.system, &scene.start));
-        }
-        guesses.dedup();
-        let Ok(goal) = &mut runs[target].outcome else { continue };
-        let fitted = best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?;
-        let fitted = match fitted {
-            None => None,
-            Some(mut motion) => {
-                let gap = compare_motions(goal, &mut motion, metric)?;
-                let names = crate::constant_names(&motion.equations);
-                Some(FittedMotion { constants: names.into_iter().zip(motion.constants.clone()).collect(), gap })
-            }
-        };
-        fits.push(Fit { run, target, fitted });
     }
     Ok(fits)
+}
+
+/// Outer `None`: there is nothing to fit. Inner `None`: no constants lead to a motion.
+fn fit_run(
+    scene: &Scene,
+    runs: &mut [Run],
+    run: usize,
+    target: usize,
+    metric: &mut Metric,
+    settings: &Settings,
+) -> Result<Option<Option<FittedMotion>>, SolveError> {
+    let Ok(motion) = &runs[run].outcome else { return Ok(None) };
+    let (equations, constants) = (motion.equations.clone(), motion.constants.clone());
+    if constants.is_empty() {
+        return Ok(None);
+    }
+    let mut guesses = vec![vec![0.0; constants.len()]];
+    if constants != guesses[0] {
+        guesses.push(constants);
+    }
+    if runs[run].choice.formulation == "vakonomic" {
+        guesses.extend(costate_free_guess(&scene.system, &scene.start));
+    }
+    let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
+    let Some(mut motion) = best_fit(setting(scene), &equations, goal, &guesses, metric, settings)? else {
+        return Ok(Some(None));
+    };
+    let gap = compare_motions(goal, &mut motion, metric)?;
+    let names = crate::constant_names(&motion.equations);
+    Ok(Some(Some(FittedMotion { constants: names.into_iter().zip(motion.constants.clone()).collect(), gap })))
 }
 
 /// The `μ₀` that makes the costate `L_v + Aᵀ μ₀` smallest: where a vakonomic motion can be a Chetaev one, it often is this.

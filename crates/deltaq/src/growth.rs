@@ -44,12 +44,15 @@ impl Growth {
     }
 }
 
-/// Fraction of the common time over which the growth is fitted.
-const FIT_FRACTION: f64 = 0.02;
+/// The shortest fit range, as a fraction of the common time, and the longest.
+const SHORTEST: f64 = 1e-4;
+const LONGEST: f64 = 0.3;
+/// Where the fit range begins, as a fraction of its end.
+const BEGIN: f64 = 0.15;
 /// Instants in the fit.
 const FIT_POINTS: usize = 24;
-/// A gap has to be this many times its certainty limit to be used in the fit.
-const FIT_CERTAINTY: f64 = 20.0;
+/// The gap at the beginning of the fit range has to be this many times its certainty limit.
+const FIT_CERTAINTY: f64 = 300.0;
 /// A leading term under this fraction of the terms it is made of counts as zero.
 const VANISHES: f64 = 1e-10;
 
@@ -65,29 +68,25 @@ pub fn growth(
 ) -> Result<Option<Growth>, SolveError> {
     let start = first.start();
     let horizon = first.end().min(second.end()) - start;
-    let mut to = horizon * FIT_FRACTION;
     let origin = first.at(start)?;
     let (q0, v0) = (origin.coordinates, origin.velocities);
-    let mut differences: Vec<(f64, Vec<f64>, f64)> = Vec::new();
-    for _ in 0..6 {
-        differences.clear();
-        for i in 0..FIT_POINTS {
-            let s = to * (0.15 + 0.85 * i as f64 / (FIT_POINTS - 1) as f64);
-            let difference = subtract(&first.at(start + s)?.coordinates, &second.at(start + s)?.coordinates);
-            let gap = metric.length(start, &q0, &v0, &difference);
-            if gap > FIT_CERTAINTY * limit_at(start + s) {
-                differences.push((s, difference, gap));
-            }
+    let mut difference_at = |s: f64| -> Result<(f64, Vec<f64>, f64), SolveError> {
+        let difference = subtract(&first.at(start + s)?.coordinates, &second.at(start + s)?.coordinates);
+        let gap = metric.length(start, &q0, &v0, &difference);
+        Ok((s, difference, gap))
+    };
+    // the shortest range over which the gap stands out from the errors
+    let mut to = horizon * SHORTEST;
+    while difference_at(BEGIN * to)?.2 <= FIT_CERTAINTY * limit_at(start + BEGIN * to) {
+        to *= 1.5;
+        if to > LONGEST * horizon {
+            return Ok(None);
         }
-        if differences.len() == FIT_POINTS || to * 2.0 > 0.3 * horizon {
-            break;
-        }
-        to *= 2.0;
     }
-    if differences.len() < FIT_POINTS / 2 {
-        return Ok(None);
-    }
-    let from = differences[0].0;
+    let from = BEGIN * to;
+    let step = (to - from) / (FIT_POINTS - 1) as f64;
+    let differences: Vec<(f64, Vec<f64>, f64)> =
+        (0..FIT_POINTS).map(|i| difference_at(from + step * i as f64)).collect::<Result<_, _>>()?;
     // log gap = log c + k log s + a s + b s²
     let design = |s: f64| [1.0, s.ln(), s / to, (s / to).powi(2)];
     let logarithms: Vec<f64> = differences.iter().map(|d| d.2.ln()).collect();
@@ -124,7 +123,8 @@ fn least_squares(
 /// C = f_qᵀ − Ȧᵀ  (n×h, curvature of the constraint),   Π = M⁻¹ − M⁻¹Aᵀ (A M⁻¹ Aᵀ)⁻¹ A M⁻¹ .
 /// ```
 ///
-/// `None` where a constraint is not linear in `v` or `M` is singular at the start. `reaction` is Chetaev's `λ₀`.
+/// `None` where a constraint is not linear in `v`, or `M` is singular on the kernel of `A` at the start. (`Π` is computed from the saddle-point
+/// system, so `M` itself may be singular.) `reaction` is Chetaev's `λ₀`.
 ///
 /// # Errors
 /// [`CompileError`] where an expression contains an undefined symbol.
@@ -154,14 +154,21 @@ pub fn leading_term(
     let curvature =
         (numbers(g, &g.jacobian(&system.constraints, &q), &values)? - numbers(g, &jacobian_rate, &values)?).transpose();
     let mass = numbers(g, &system.velocity_hessian(), &values)?;
-    let Some(inverse) = mass.clone().try_inverse() else { return Ok(None) };
-    let Some(middle) = (&a * &inverse * a.transpose()).try_inverse() else { return Ok(None) };
-    let projector = &inverse - &inverse * a.transpose() * middle * &a * &inverse;
+    // Π F is the acceleration that the force F gives under the constraint: M α + Aᵀ κ = F, A α = 0
+    let (n, h) = (mass.nrows(), a.nrows());
+    let mut saddle = DMatrix::zeros(n + h, n + h);
+    saddle.view_mut((0, 0), (n, n)).copy_from(&mass);
+    saddle.view_mut((0, n), (n, h)).copy_from(&a.transpose());
+    saddle.view_mut((n, 0), (h, n)).copy_from(&a);
+    let saddle = saddle.lu();
+    if !saddle.is_invertible() {
+        return Ok(None);
+    }
     let term = |weight: f64, multiplier: &[f64]| {
-        let force = &curvature * DVector::from_column_slice(multiplier);
-        let coefficient = &projector * &force * weight;
-        let size = (&inverse * &force).norm() * weight.abs();
-        let vanishes = coefficient.norm() <= VANISHES * size || size == 0.0;
+        let force = &curvature * DVector::from_column_slice(multiplier) * weight;
+        let solution = saddle.solve(&force.resize_vertically(n + h, 0.0)).unwrap_or_else(|| DVector::zeros(n + h));
+        let coefficient = solution.rows(0, n).into_owned();
+        let vanishes = coefficient.norm() <= VANISHES * solution.norm() || force.norm() == 0.0;
         let length = (coefficient.transpose() * &mass * &coefficient)[(0, 0)].abs().sqrt();
         (vanishes, coefficient.as_slice().to_vec(), length)
     };
