@@ -227,11 +227,13 @@ pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Com
     Ok(Comparison { scene, integrability, runs, pairs, fits })
 }
 
-/// The costate form is the vakonomic motion once more, and compared with nothing else.
+/// The costate form is the vakonomic motion once more, and compared with that only; a run from outside the table with Chetaev only.
 fn worth_comparing(first: &Run, second: &Run) -> bool {
-    let costate = vakonomic::COSTATE_FORM.name;
     let names = [first.choice.formulation, second.choice.formulation];
-    !names.contains(&costate) || names.contains(&vakonomic::FORMULATION.name)
+    let only_with = |name: &str, partner: &str| !names.contains(&name) || names.contains(&partner);
+    let outside = names.iter().find(|name| formulation(name).is_none());
+    only_with(vakonomic::COSTATE_FORM.name, vakonomic::FORMULATION.name)
+        && outside.is_none_or(|name| only_with(name, chetaev::FORMULATION.name))
 }
 
 /// Fits the free constants of one run to another wherever the two differ: vakonomic to Chetaev, the first removed-constraint run to

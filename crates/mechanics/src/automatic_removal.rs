@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use symbolic::{Expr, Graph, Matrix, Symbol};
 
 use crate::{
-    ConstantsRule, DisplacementParameter, MemoryVariable, Removal, RemovalError, State, System, fresh_symbol,
+    ConstantsRule, DisplacementParameter, MemoryVariable, Removal, RemovalError, State, System,
 };
 
 /// A pivot may be this much smaller than the largest one if it makes shorter expressions.
@@ -64,11 +64,9 @@ impl Removal {
                 rates.push(g.variable(system.coordinates[i].velocity));
                 continue;
             }
-            let name = format!("u_{}", system.coordinates[i].name);
-            let symbol = fresh_symbol(g, &name);
-            let name = g.name(symbol);
+            let name = parameter_name(system, i);
             let u = DisplacementParameter {
-                symbol,
+                symbol: g.symbol(&name),
                 rate: g.symbol(&format!("{name}'")),
                 second_rate: g.symbol(&format!("{name}''")),
                 coordinate: None,
@@ -95,6 +93,19 @@ impl Removal {
             constants: ConstantsRule::Zero,
         })
     }
+}
+
+/// `u_x` for the coordinate `x`, with underscores until it is no name of the system. Removals may share symbols.
+fn parameter_name(system: &System, i: usize) -> String {
+    let g = &system.graph;
+    let taken = |name: &str| {
+        system.coordinates.iter().any(|c| c.name == name) || system.parameters.iter().any(|p| g.name(p.symbol) == name)
+    };
+    let mut name = format!("u_{}", system.coordinates[i].name);
+    while taken(&name) {
+        name.push('_');
+    }
+    name
 }
 
 fn coordinate_parameter(system: &System, i: usize) -> DisplacementParameter {

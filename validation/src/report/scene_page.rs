@@ -3,58 +3,85 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Comparison, Verdict, removals};
-use mechanics::ConstantsRule;
+use deltaq::{Comparison, Pair, Verdict, removals};
 
 use crate::report::equations::{EquationStyle, equations_text};
-use crate::report::numbers::{precise, short};
+use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables;
 use crate::substitution;
 
-/// The answer in one or two sentences: do the formulations agree, if not from when, by how much.
+/// The answer in a few sentences: do the formulations agree; if not, from when, by how much, and why.
 pub fn answer(comparison: &Comparison) -> String {
-    let mut sentences = Vec::new();
     let main: Vec<usize> =
         ["chetaev", "vakonomic", "removed-constraint"].iter().filter_map(|f| comparison.run(f)).collect();
-    let pair_of = |a: usize, b: usize| comparison.pair(a, b);
     let label = |i: usize| comparison.runs[i].choice.label.clone();
-    let all: Vec<(usize, usize)> =
+    let pairs: Vec<(usize, usize)> =
         (0..main.len()).flat_map(|i| (i + 1..main.len()).map(move |j| (i, j))).map(|(i, j)| (main[i], main[j])).collect();
-    let same = |&(a, b): &(usize, usize)| pair_of(a, b).is_some_and(|p| p.gap.verdict == Verdict::Same);
-    if !all.is_empty() && all.iter().all(same) {
-        sentences.push("All formulations give the same motion.".to_string());
+    let found: Vec<&Pair> = pairs.iter().filter_map(|&(a, b)| comparison.pair(a, b)).collect();
+    let with = |verdict: Verdict| found.iter().filter(|p| p.gap.verdict == verdict).count();
+    if with(Verdict::Same) == pairs.len() && !pairs.is_empty() {
+        return "All formulations give the same motion.".into();
+    }
+    let mut sentences = Vec::new();
+    if with(Verdict::Different) == pairs.len() {
+        let names: Vec<String> = main.iter().map(|&i| label(i)).collect();
+        sentences.push(format!("{} give {} different motions.", enumerate(&names), names.len()));
     } else {
-        for &(a, b) in &all {
-            let words = match pair_of(a, b) {
-                None => {
-                    let refused = [a, b].into_iter().filter_map(|i| comparison.runs[i].outcome.as_ref().err().map(|e| (i, e)));
-                    refused.map(|(i, e)| format!("{} gives no motion ({e})", label(i))).collect::<Vec<_>>().join("; ")
-                }
-                Some(pair) => match &pair.gap.verdict {
-                    Verdict::Same => format!("{} and {} give the same motion", label(a), label(b)),
-                    Verdict::Different => {
-                        let passes = pair.gap.passes[1].map_or(String::new(), |t| format!(", 1e-3 at {} s", short(t)));
-                        let first = pair.gap.passes[0].map_or(String::new(), |t| format!(": gap 1e-6 at {} s{passes}", short(t)));
-                        format!("{} and {} part{first}, at most {}", label(a), label(b), short(pair.gap.largest))
-                    }
-                    Verdict::Undecided { because } => format!("{} and {}: undecided, {because}", label(a), label(b)),
-                },
-            };
-            if !sentences.contains(&words) {
-                sentences.push(words);
-            }
-        }
-        for fit in comparison.fits.iter().take(1) {
-            if let Some(fitted) = &fit.fitted {
-                sentences.push(match fitted.gap.verdict {
-                    Verdict::Same => "the best-fitting vakonomic multipliers make the difference vanish".into(),
-                    _ => format!("the best-fitting vakonomic multipliers leave a gap of {}", short(fitted.gap.largest)),
-                });
-            }
+        for p in found.iter().filter(|p| p.gap.verdict == Verdict::Same) {
+            sentences.push(format!("{} and {} give the same motion.", label(p.first), label(p.second)));
         }
     }
-    let text = sentences.join("; ");
-    if text.ends_with('.') { text } else { text + "." }
+    for p in &found {
+        let names = format!("{} and {}", label(p.first), label(p.second));
+        match &p.gap.verdict {
+            Verdict::Different => sentences.push(format!(
+                "{names}: {} largest gap {}.",
+                p.gap.passes[1].map_or("apart by less than 1e-3,".into(), |t| format!("1e-3 apart after {} s,", short(t))),
+                short(p.gap.largest)
+            )),
+            Verdict::Undecided { because } => sentences.push(format!("{names}: undecided, {because}.")),
+            Verdict::Same => {}
+        }
+    }
+    for &i in &main {
+        if let Err(error) = &comparison.runs[i].outcome {
+            sentences.push(format!("{}: no motion, {error}.", label(i)));
+        }
+    }
+    sentences.extend(best_multipliers(comparison));
+    sentences.join(" ")
+}
+
+/// What the best vakonomic multipliers leave of the gap to Chetaev.
+fn best_multipliers(comparison: &Comparison) -> Option<String> {
+    let (run, target) = (comparison.run("vakonomic")?, comparison.run("chetaev")?);
+    let fitted = comparison.fits.iter().find(|f| f.run == run && f.target == target)?.fitted.as_ref()?;
+    let constants: Vec<String> = fitted.constants.iter().map(|(_, c)| precise(*c)).collect();
+    let constants = constants.join(", ");
+    Some(match fitted.gap.verdict {
+        Verdict::Same => format!("With μ₀ = ({constants}) the vakonomic motion is the Chetaev motion."),
+        _ => format!(
+            "The vakonomic motion closest to Chetaev's that was found, μ₀ = ({constants}), still leaves a gap of {}.",
+            short(fitted.gap.largest)
+        ),
+    })
+}
+
+/// Why the motions part, or do not.
+fn why(comparison: &Comparison) -> String {
+    let mut text = format!("Constraint: {}.", comparison.integrability);
+    let pair = comparison.run("chetaev").zip(comparison.run("vakonomic")).and_then(|(a, b)| comparison.pair(a, b));
+    if let Some((predicted, measured)) = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref())) {
+        let _ = write!(
+            text,
+            " Its curvature at the start predicts that Chetaev and vakonomic part as {} t^{}; measured: {} t^{:.2}.",
+            precise(predicted.length),
+            predicted.exponent,
+            precise(measured.length),
+            measured.exponent
+        );
+    }
+    text
 }
 
 /// The whole page, in Markdown.
@@ -65,7 +92,7 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
     let mut page = String::new();
     let scene = &comparison.scene;
     let _ = writeln!(page, "# {}\n\n**{}**\n", scene.title, answer(comparison));
-    let _ = writeln!(page, "Source: {}. Constraint: {}.", scene.source.trim_end_matches('.'), comparison.integrability);
+    let _ = writeln!(page, "{}\n\nSource: {}.", why(comparison), scene.source.trim_end_matches('.'));
     if !scene.notes.is_empty() {
         let _ = writeln!(page, "\n{}", scene.notes);
     }
@@ -136,12 +163,7 @@ fn system(comparison: &Comparison) -> String {
         for removal in removals {
             let parameters: Vec<String> =
                 removal.parameters.iter().map(|u| format!("${}$", g.latex_symbol(u.symbol))).collect();
-            let constants = match &removal.constants {
-                ConstantsRule::Zero => "$P(t_0) = 0$".to_string(),
-                ConstantsRule::Given(_) => "$P(t_0)$ given".to_string(),
-                ConstantsRule::Natural { horizon } => format!("$P({horizon}) = 0$"),
-            };
-            let _ = writeln!(text, "\nRemoval `{}`: parameters {}; constants {constants}.", removal.name, parameters.join(", "));
+            let _ = writeln!(text, "\nRemoval `{}`: parameters {}.", removal.name, parameters.join(", "));
         }
     }
     text
