@@ -138,7 +138,8 @@ impl Arena {
                 // b^e ( e' log b + e b'/b )
                 let (db, de) = (self.known(base, s), self.known(exponent, s));
                 let mut parts = Vec::new();
-                if de != Self::ZERO {
+                // 0^e is 0 wherever it has a derivative
+                if de != Self::ZERO && base != Self::ZERO {
                     let log = self.call(Function::Log, base);
                     parts.push((self.times(&[e, log, de]), Number::ONE));
                 }

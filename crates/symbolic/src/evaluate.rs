@@ -64,14 +64,17 @@ impl Graph {
         let (mut program, ids) = lower::lower(&arena, inputs, &folded);
         program.fuse(&ids);
         let tape = Tape::assemble(&program, inputs.len(), &ids);
+        // An intermediate power may overflow where its reciprocal is zero: the expressions decide.
         if !tape.workspace::<f64>().is_finite() {
             let constant = |e: Expr| arena.dependencies(e).is_empty();
             let culprit = arena
                 .reachable(&folded, |_| true)
                 .into_iter()
-                .find(|e| constant(*e) && !arena.value(*e, &FxHashMap::default()).is_finite());
-            drop(arena);
-            return Err(self.not_finite(culprit.unwrap_or(folded[0])));
+                .find(|e| constant(*e) && !arena.constant_value(*e).is_finite());
+            if let Some(culprit) = culprit {
+                drop(arena);
+                return Err(self.not_finite(culprit));
+            }
         }
         Ok(tape)
     }

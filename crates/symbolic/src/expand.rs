@@ -59,8 +59,9 @@ impl Arena {
         for (base, exponent) in factors {
             let n = exponent.floor();
             match self.node(*base) {
-                Node::Sum(_, inner) if n >= 1 => {
-                    terms = terms.saturating_mul(power_terms(inner.len() + 1, n));
+                Node::Sum(constant, inner) if n >= 1 => {
+                    let count = inner.len() + usize::from(!constant.is_zero());
+                    terms = terms.saturating_mul(power_terms(count, n));
                     sums.push((*base, n));
                     // (x+y)^(3/2) = (x+y) (x+y)^(1/2)
                     if let Some(fraction) = exponent.add(Rational::integer(-n)) {
@@ -114,14 +115,15 @@ impl Arena {
     }
 }
 
-/// At most this many terms are in the n-th power of a sum of k: (n+k−1 over n).
+/// At most this many terms are in the n-th power of a sum of k: (n+k−1 over n); no more than
+/// [`TERM_LIMIT`] + 1 is counted.
 fn power_terms(k: usize, n: i64) -> usize {
-    let mut count = 1_u128;
-    for i in 1..=n.unsigned_abs() {
-        count = count * (u128::from(i) + k as u128 - 1) / u128::from(i);
-        if count > 1 << 60 {
-            return usize::MAX;
+    let mut count = 1_usize;
+    for i in 1..=usize::try_from(n).unwrap_or(usize::MAX) {
+        count = count * (i + k - 1) / i;
+        if count > TERM_LIMIT {
+            break;
         }
     }
-    count as usize
+    count
 }

@@ -10,21 +10,34 @@ use crate::number::Number;
 /// assert_eq!(Function::Asinh.name(), "asinh");
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[allow(missing_docs)]
 pub enum Function {
+    /// sin u
     Sin,
+    /// cos u
     Cos,
+    /// tan u
     Tan,
+    /// sinh u
     Sinh,
+    /// cosh u
     Cosh,
+    /// tanh u
     Tanh,
+    /// arcsin u, in [−π/2, π/2]
     Asin,
+    /// arccos u, in [0, π]
     Acos,
+    /// arctan u, in (−π/2, π/2)
     Atan,
+    /// arsinh u
     Asinh,
+    /// arcosh u, for u ≥ 1
     Acosh,
+    /// artanh u, for |u| < 1
     Atanh,
+    /// eᵘ
     Exp,
+    /// the natural logarithm of u, for u > 0
     Log,
 }
 

@@ -1,9 +1,38 @@
 //! Expression graphs: build, parse, differentiate, simplify, print, compile. Knows no mechanics.
-#![allow(missing_docs)]
+//!
+//! A [`Graph`] holds expressions in which every value stands once: equal expressions are the same node
+//! ([`Expr`]), and so common subexpressions need no search. Constructors keep a canonical form: like
+//! terms and factors are merged, numbers are exact fractions while they fit, signs come out of odd and
+//! even functions, P sin²u + P cos²u is P. Products of sums are multiplied out by [`Graph::expand`]
+//! only. One source serves every use: [`Graph::latex`] for the reader, [`Graph::derivative`] for the
+//! equations, and [`Graph::compile`] for numbers in any [`Scalar`] type.
+//!
+//! ```
+//! use std::collections::HashMap;
+//! use symbolic::Graph;
+//!
+//! let graph = Graph::new();
+//! let [m, x, v] = ["m", "x", "x'"].map(|name| graph.symbol(name));
+//! let scope = |name: &str| graph.find_symbol(name).map(|s| graph.variable(s));
+//! let lagrangian = graph.parse("m*x'^2/2 - m*cos(x)", &scope, &[])?;
+//!
+//! let momentum = graph.derivative(lagrangian, v);
+//! assert_eq!(graph.plain(momentum), "m*x'");
+//! let force = graph.derivative(lagrangian, x);
+//! assert_eq!(graph.latex(force), r"m \sin x");
+//!
+//! let tape = graph.compile(&[x, v], &[momentum, force], &HashMap::from([(m, 2.0)]))?;
+//! let mut workspace = tape.workspace::<f64>();
+//! let mut values = [0.0; 2];
+//! tape.evaluate(&[0.0, 1.5], &mut workspace, &mut values);
+//! assert_eq!(values, [3.0, 0.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod abbreviate;
 mod arena;
 mod calculus;
+mod content;
 mod evaluate;
 mod expand;
 mod function;

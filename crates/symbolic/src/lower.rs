@@ -30,6 +30,9 @@ pub(crate) fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> (Prog
     (lowering.program, outputs)
 }
 
+/// A value and whether it is to be negated.
+type Signed = (bool, Id);
+
 #[derive(PartialEq, Eq, Hash)]
 enum Leaf {
     Symbol(Symbol),
@@ -116,9 +119,9 @@ impl Lowering<'_> {
 
     /// Σ c·t, terms with the same |c| added up before c is multiplied.
     fn sum(&mut self, constant: Number, terms: &[(Expr, Number)]) -> Id {
-        let mut groups: Vec<(Option<Id>, Vec<(bool, Id)>)> = Vec::new();
+        let mut groups: Vec<(Option<Id>, Vec<Signed>)> = Vec::new();
         let mut places: FxHashMap<Option<Id>, usize> = FxHashMap::default();
-        let mut rest: Vec<(bool, Id)> = Vec::new();
+        let mut rest: Vec<Signed> = Vec::new();
         for (t, c) in terms {
             let parts = self.values[&Leaf::Node(*t)];
             let scale = self.scaled(c.abs(), parts.constant);
@@ -138,7 +141,7 @@ impl Lowering<'_> {
                 self.program.constant(constant.abs()),
             ));
         }
-        let mut total: Vec<(bool, Id)> = Vec::new();
+        let mut total: Vec<Signed> = Vec::new();
         for (scale, members) in groups {
             let (negative, value) = match scale {
                 // Without a factor the terms are just terms of the whole sum.
@@ -163,7 +166,7 @@ impl Lowering<'_> {
     }
 
     /// Σ ±v as (is it to be negated?, value): it starts with a positive term where there is one.
-    fn signed_sum(&mut self, terms: &[(bool, Id)]) -> (bool, Id) {
+    fn signed_sum(&mut self, terms: &[Signed]) -> Signed {
         let first = terms.iter().position(|(negative, _)| !negative);
         let all_negative = first.is_none();
         let first = first.unwrap_or(0);

@@ -11,10 +11,6 @@ const EXACT_IN_F64: i64 = 1 << 53;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Rational(Ratio<i64>);
 
-#[expect(
-    clippy::derived_hash_with_manual_eq,
-    reason = "equality of reduced fractions is by parts"
-)]
 impl Hash for Rational {
     fn hash<H: Hasher>(&self, state: &mut H) {
         (self.numerator(), self.denominator()).hash(state);
@@ -122,6 +118,9 @@ impl Rational {
     pub(crate) fn pow(self, exponent: Self) -> Option<Self> {
         if let Some(n) = exponent.as_integer() {
             return self.powi(n);
+        }
+        if self == Self::ONE {
+            return Some(self);
         }
         if self.numerator() <= 0 {
             return None;
@@ -346,6 +345,8 @@ mod tests {
             Rational::new(7, 10)
         );
         assert_eq!(Rational::integer(2).pow(half), None);
+        let fine = Rational::new(1, 1 << 40).unwrap();
+        assert_eq!(Rational::ONE.pow(fine), Some(Rational::ONE));
         assert_eq!(Rational::integer(-4).pow(half), None);
     }
 }

@@ -24,7 +24,7 @@ impl Arena {
     fn plain_pieces(&self, e: Expr, negated: bool) -> Printed {
         match self.node(e) {
             Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
-                plain_terms(self.printed_terms(e, negated))
+                self.plain_terms(self.printed_terms(e, negated))
             }
             Node::Symbol(s) => (vec![text(self.name(*s))], ATOM),
             Node::Power(base, exponent) => {
@@ -47,65 +47,84 @@ impl Arena {
             }
         }
     }
-}
 
-fn plain_terms(terms: Vec<Term>) -> Printed {
-    let several = terms.len() > 1;
-    let mut pieces = Vec::new();
-    let mut binds = SUM;
-    for (i, term) in terms.into_iter().enumerate() {
-        let sign = match (i, term.negative) {
-            (0, false) => "",
-            (0, true) => "-",
-            (_, false) => " + ",
-            (_, true) => " - ",
-        };
-        pieces.push(text(sign));
-        let (inner, inner_binds) = plain_term(term.number, &term.factors);
-        if !several && sign.is_empty() {
-            binds = inner_binds;
+    fn plain_terms(&self, terms: Vec<Term>) -> Printed {
+        let several = terms.len() > 1;
+        let mut pieces = Vec::new();
+        let mut binds = SUM;
+        for (i, term) in terms.into_iter().enumerate() {
+            let sign = match (i, term.negative) {
+                (0, false) => "",
+                (0, true) => "-",
+                (_, false) => " + ",
+                (_, true) => " - ",
+            };
+            pieces.push(text(sign));
+            let (inner, inner_binds) = self.plain_term(term.number, &term.factors);
+            if !several && sign.is_empty() {
+                binds = inner_binds;
+            }
+            pieces.extend(inner);
         }
-        pieces.extend(inner);
+        (pieces, binds)
     }
-    (pieces, binds)
-}
 
-/// number · factors for number ≥ 0, as numerators over denominators
-fn plain_term(number: Number, factors: &[Factor]) -> Printed {
-    let (numerator, denominator) = number_text(number);
-    let mut above: Vec<Printed> = Vec::new();
-    let mut below: Vec<Printed> = denominator
-        .map(|d| (vec![text(d)], ATOM))
-        .into_iter()
-        .collect();
-    for factor in factors {
-        if factor.exponent.is_negative() {
-            below.push(plain_factor(Factor {
-                exponent: factor.exponent.neg(),
-                ..*factor
-            }));
+    /// number · factors for number ≥ 0, as numerators over denominators
+    fn plain_term(&self, number: Number, factors: &[Factor]) -> Printed {
+        let (numerator, denominator) = number_text(number);
+        let mut above: Vec<Printed> = Vec::new();
+        let mut below: Vec<Printed> = denominator
+            .map(|d| (vec![text(d)], ATOM))
+            .into_iter()
+            .collect();
+        for factor in factors {
+            if factor.exponent.is_negative() {
+                below.push(plain_factor(Factor {
+                    exponent: factor.exponent.neg(),
+                    ..*factor
+                }));
+            } else {
+                above.push(plain_factor(*factor));
+            }
+        }
+        if above.is_empty() || numerator != "1" {
+            above.insert(0, (vec![text(numerator)], ATOM));
+        }
+        let binds = if above.len() == 1 && below.is_empty() {
+            above[0].1
         } else {
-            above.push(plain_factor(*factor));
+            PRODUCT
+        };
+        let mut pieces = joined(above);
+        if below.len() > 1 && !self.scales_exactly(factors, number) {
+            // 1/d/(sum), where d*(sum) would not give back d and the sum
+            pieces.push(text("/"));
+            pieces.extend(below.remove(0).0);
         }
+        let several = below.len() > 1;
+        if !below.is_empty() {
+            pieces.push(text(if several { "/(" } else { "/" }));
+            pieces.extend(joined(below));
+        }
+        if several {
+            pieces.push(text(")"));
+        }
+        (pieces, binds)
     }
-    if above.is_empty() || numerator != "1" {
-        above.insert(0, (vec![text(numerator)], ATOM));
+
+    /// Do the sums among the denominators survive being multiplied by the denominator of `number`?
+    fn scales_exactly(&self, factors: &[Factor], number: Number) -> bool {
+        let Number::Exact(r) = number else {
+            return true;
+        };
+        if r.denominator() == 1 {
+            return true;
+        }
+        factors
+            .iter()
+            .filter(|factor| factor.exponent.is_negative())
+            .all(|factor| self.keeps_content(factor.base, r.denominator()))
     }
-    let binds = if above.len() == 1 && below.is_empty() {
-        above[0].1
-    } else {
-        PRODUCT
-    };
-    let mut pieces = joined(above);
-    let several = below.len() > 1;
-    if !below.is_empty() {
-        pieces.push(text(if several { "/(" } else { "/" }));
-        pieces.extend(joined(below));
-    }
-    if several {
-        pieces.push(text(")"));
-    }
-    (pieces, binds)
 }
 
 fn joined(factors: Vec<Printed>) -> Vec<Piece> {

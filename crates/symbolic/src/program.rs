@@ -108,7 +108,7 @@ impl Program {
         }
         let half = self.powi(v, n / 2);
         let square = self.push(Value::Square(half));
-        if n % 2 == 0 {
+        if n.is_multiple_of(2) {
             square
         } else {
             self.push(Value::Mul(square, v))

@@ -1,6 +1,7 @@
 //! Canonical form: what the constructors of sums, products, powers and calls do.
 
 use crate::arena::{Arena, Node};
+use crate::content::{content, exact_power, sign_is_negative};
 use crate::number::{Number, Rational};
 use crate::{Expr, Function};
 use rustc_hash::FxHashMap;
@@ -208,23 +209,30 @@ impl Arena {
                 }
             }
             Node::Sum(constant, terms) => {
-                let content = content(constant, &terms);
-                let factor = match (whole, content) {
-                    (Some(n), c) => c.powi(n),
-                    (None, c) => match c.abs() {
-                        Number::Exact(r) => r.pow(exponent).map_or(Number::ONE, Number::Exact),
-                        Number::Float(_) => Number::ONE,
-                    },
-                };
-                let content = if whole.is_some() {
-                    content
-                } else {
-                    content.abs()
-                };
-                if content.is_one() || (whole.is_none() && factor.is_one()) {
-                    done.push((base, exponent));
+                let mut content = content(constant, &terms);
+                if let ([(t, _)], Some(n), true) = (&terms[..], whole, constant.is_zero()) {
+                    let power = content.powi(n);
+                    // A power that overflows or underflows stays with its base.
+                    if power.is_finite() && !power.is_zero() {
+                        *coefficient = coefficient.mul(power);
+                        work.push((*t, exponent));
+                    } else {
+                        done.push((base, exponent));
+                    }
                     return;
                 }
+                let mut factor = exact_power(content, exponent);
+                if factor.is_none() && whole.is_none() {
+                    content = content.abs();
+                    factor = exact_power(content, exponent);
+                } else if factor.is_none() && content.is_negative() {
+                    content = Number::MINUS_ONE;
+                    factor = exact_power(content, exponent);
+                }
+                let Some(factor) = factor.filter(|_| !content.is_one()) else {
+                    done.push((base, exponent));
+                    return;
+                };
                 *coefficient = coefficient.mul(factor);
                 let primitive = self.scale(content.recip(), base);
                 match self.node(primitive) {
@@ -259,15 +267,15 @@ impl Arena {
         };
         for (part, exponent) in [(r.numerator(), exponent), (r.denominator(), exponent.neg())] {
             let part = Rational::integer(part);
-            if let Some(exact) = part.pow(exponent) {
-                *coefficient = coefficient.mul(Number::Exact(exact));
-                continue;
-            }
             let whole = exponent.floor();
             let rest = exponent
                 .add(Rational::integer(-whole))
                 .expect("a fraction below 1");
             *coefficient = coefficient.mul(Number::Exact(part).powi(whole));
+            if let Some(exact) = part.pow(rest) {
+                *coefficient = coefficient.mul(Number::Exact(exact));
+                continue;
+            }
             done.push((self.number(Number::Exact(part)), rest));
         }
     }
@@ -281,6 +289,16 @@ impl Arena {
             (None, Some(x)) if !x.is_finite() => self.number(Number::UNDEFINED),
             _ => self.intern(Node::Power(base, exponent)),
         }
+    }
+
+    /// If `e` is a sum: is `factor` what will be taken out of factor·e?
+    pub(crate) fn keeps_content(&self, e: Expr, factor: i64) -> bool {
+        let Node::Sum(constant, terms) = self.node(e) else {
+            return true;
+        };
+        let factor = Number::integer(factor);
+        let terms: Vec<_> = terms.iter().map(|(t, c)| (*t, c.mul(factor))).collect();
+        content(constant.mul(factor), &terms) == factor
     }
 
     /// Is the sign of `e` the one that `f(−u) = ±f(u)` takes out? Exactly one of e, −e is.
@@ -304,7 +322,7 @@ impl Arena {
                     None => {}
                 }
             }
-            if n.is_one() && matches!(function, Function::Log | Function::Acosh) {
+            if n.is_one() && matches!(function, Function::Log | Function::Acos | Function::Acosh) {
                 return Self::ZERO;
             }
         }
@@ -324,53 +342,9 @@ impl Arena {
     pub(crate) fn atan2(&mut self, y: Expr, x: Expr) -> Expr {
         match (self.as_number(y), self.as_number(x)) {
             (Some(y), Some(x)) if y.is_zero() && !x.is_negative() && !x.is_zero() => Self::ZERO,
+            (Some(n), _) | (_, Some(n)) if !n.is_finite() => self.number(Number::UNDEFINED),
             (Some(y), Some(x)) if y.is_zero() && x.is_zero() => self.number(Number::UNDEFINED),
             _ => self.intern(Node::Atan2(y, x)),
         }
     }
-}
-
-/// More negative terms than positive ones; of equally many, the last decides.
-fn sign_is_negative(terms: &[(Expr, Number)]) -> bool {
-    let negative = terms.iter().filter(|(_, c)| c.is_negative()).count();
-    match (2 * negative).cmp(&terms.len()) {
-        std::cmp::Ordering::Less => false,
-        std::cmp::Ordering::Greater => true,
-        std::cmp::Ordering::Equal => terms.last().is_some_and(|(_, c)| c.is_negative()),
-    }
-}
-
-/// The number to take out of a sum: the greatest common divisor of its coefficients, with its sign;
-/// the coefficient itself for a single term.
-fn content(constant: Number, terms: &[(Expr, Number)]) -> Number {
-    if let [(_, c)] = terms
-        && constant.is_zero()
-    {
-        return *c;
-    }
-    let sign = if sign_is_negative(terms) {
-        Number::MINUS_ONE
-    } else {
-        Number::ONE
-    };
-    let mut numerator = 0_i64;
-    let mut denominator = 1_i64;
-    for c in terms.iter().map(|(_, c)| *c).chain([constant]) {
-        let Number::Exact(r) = c else { return sign };
-        numerator = greatest_common_divisor(numerator, r.numerator());
-        let shared = greatest_common_divisor(denominator, r.denominator());
-        match (denominator / shared).checked_mul(r.denominator()) {
-            Some(multiple) => denominator = multiple,
-            None => return sign,
-        }
-    }
-    sign.mul(Number::ratio(numerator, denominator))
-}
-
-fn greatest_common_divisor(a: i64, b: i64) -> i64 {
-    let (mut a, mut b) = (a.abs(), b.abs());
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }

@@ -105,6 +105,26 @@ fn numbers_are_exact_and_overflow_to_floats() {
 }
 
 #[test]
+fn high_powers_of_measured_numbers_do_not_vanish() {
+    let g = Graph::new();
+    let at = HashMap::from([(g.symbol("x"), 0.2)]);
+    for (text, expected) in [
+        (
+            "(x + 0.7842157614637822)^27",
+            0.9842157614637822_f64.powi(27),
+        ),
+        ("(x + 0.0012345678)^60", 0.2012345678_f64.powi(60)),
+        ("(1e-16*x)^27/(1e-16*x)^26", 2e-17),
+    ] {
+        let found = g.evaluate(read(&g, text), &at).unwrap();
+        assert!(
+            (found - expected).abs() < 1e-13 * expected,
+            "{text}: {found}"
+        );
+    }
+}
+
+#[test]
 fn division_by_the_number_zero_is_not_finite_and_spreads() {
     let g = Graph::new();
     let x = read(&g, "x");

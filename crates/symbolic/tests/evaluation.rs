@@ -90,6 +90,16 @@ fn constants_are_folded_before_the_first_evaluation() {
 }
 
 #[test]
+fn a_power_too_large_has_a_reciprocal() {
+    let g = Graph::new();
+    assert_eq!(run(&g, &[("x", 2.0)], &["x + cosh(3)^(-850.5)"]), [2.0]);
+    let error = g
+        .compile(&[], &[read(&g, "cosh(3)^850.5")], &HashMap::new())
+        .unwrap_err();
+    assert!(matches!(error, CompileError::NotFinite { .. }));
+}
+
+#[test]
 fn what_cannot_be_compiled_is_named() {
     let g = Graph::new();
     let (x, k) = (g.symbol("x"), g.symbol("k"));

@@ -181,7 +181,7 @@ fn every_message_says_something() {
     ] {
         let message = parse(&Graph::new(), text).unwrap_err().to_string();
         assert!(
-            message.starts_with("line 1, column 1: ") || text != "",
+            message.starts_with("line 1, column 1: ") || !text.is_empty(),
             "{message}"
         );
         assert!(message.contains('^'), "{message}");
