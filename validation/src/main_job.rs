@@ -11,7 +11,9 @@ use mechanics::Scene;
 
 use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments};
-use crate::report::{File, Provenance, answer, difference_of_verdicts, overview, pictures, scene_page, verdicts, write_all};
+use crate::report::{
+    File, Provenance, answer, difference_of_verdicts, overview, pictures, scene_page, verdicts, write_all,
+};
 use crate::substitution;
 
 /// Compares all formulations of a scene, the control among them, and writes its page and pictures.
@@ -41,8 +43,7 @@ pub fn run(arguments: &JobArguments) -> Result<()> {
         bail!("unknown scene `{unknown}`; known: {}", known.join(", "));
     }
     let complete = arguments.scenes.is_empty();
-    let names: Vec<&str> =
-        known.into_iter().filter(|n| complete || arguments.scenes.iter().any(|s| s == n)).collect();
+    let names: Vec<&str> = known.into_iter().filter(|n| complete || arguments.scenes.iter().any(|s| s == n)).collect();
     let results = compare_all(&names, arguments.quiet)?;
     let (comparisons, files): (Vec<Comparison>, Vec<Vec<File>>) = results.into_iter().unzip();
     let mut files: Vec<File> = files.into_iter().flatten().collect();
@@ -88,7 +89,9 @@ pub fn check(arguments: &ReportsArguments) -> Result<()> {
 /// All scenes, over all processors, in the order of `names`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<(Comparison, Vec<File>)>> {
     let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(names.len() as u64) };
-    bar.set_style(ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_style(
+        ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
     let settings = Settings::default();
     let next = Mutex::new(0..names.len());
     let done: Mutex<Vec<(usize, Result<(Comparison, Vec<File>)>)>> = Mutex::new(Vec::new());

@@ -96,7 +96,9 @@ fn pick_removal(scene: &Scene, name: Option<&str>) -> Result<Removal> {
 
 fn constants_rule(text: &str) -> Result<ConstantsRule> {
     let numbers = |list: &str| -> Result<Vec<f64>> {
-        list.split(',').map(|x| x.trim().parse().with_context(|| format!("`{x}` in `{text}` is not a number"))).collect()
+        list.split(',')
+            .map(|x| x.trim().parse().with_context(|| format!("`{x}` in `{text}` is not a number")))
+            .collect()
     };
     match text.split_once('=') {
         None if text == "zero" => Ok(ConstantsRule::Zero),

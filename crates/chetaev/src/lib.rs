@@ -41,8 +41,8 @@
 //! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
 use mechanics::{
-    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
-    System, fresh_symbol,
+    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable,
+    Statement, System, fresh_symbol,
 };
 use symbolic::{Expr, Symbol, Vanishing};
 
@@ -59,8 +59,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let mut equations = Equations::new(FORMULATION.name, &system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
     let flow = system.flow();
-    let lambda: Vec<Symbol> =
-        (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
+    let lambda: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
 
     // d/dt ∂L/∂v − ∂L/∂q − Q − Aᵀλ = 0
     let jacobian = g.jacobian(&system.constraints, &v);
@@ -74,8 +73,16 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         })
         .collect();
     equations.statements = (0..q.len())
-        .map(|i| Statement { meaning: format!("balance for {}", system.coordinates[i].name), left: residuals[i], right: g.zero() })
-        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), left: f, right: system.graph.zero() }))
+        .map(|i| Statement {
+            meaning: format!("balance for {}", system.coordinates[i].name),
+            left: residuals[i],
+            right: g.zero(),
+        })
+        .chain(system.constraints.iter().map(|&f| Statement {
+            meaning: "constraint".into(),
+            left: f,
+            right: system.graph.zero(),
+        }))
         .collect();
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
@@ -104,8 +111,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     }];
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
-    equations.multipliers =
-        lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
+    equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
     equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {
         velocities: v.clone(),
         constraints: system.constraints.clone(),
@@ -118,7 +124,8 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         equations.invariants.push(Named { name: "energy".into(), expression: energy });
     }
     for i in 0..q.len() {
-        let free = g.is_zero(gradient[i]) && g.is_zero(system.forces[i]) && jacobian.column(i).iter().all(|&e| g.is_zero(e));
+        let free =
+            g.is_zero(gradient[i]) && g.is_zero(system.forces[i]) && jacobian.column(i).iter().all(|&e| g.is_zero(e));
         if free {
             let name = format!("momentum {}", system.coordinates[i].name);
             equations.invariants.push(Named { name, expression: momenta[i] });

@@ -139,8 +139,7 @@ pub fn choices(scene: &Scene) -> Result<Vec<Choice>, RemovalError> {
         };
         if !formulation.needs_removal {
             let free = formulation.name != "chetaev" && !scene.system.constraints.is_empty();
-            let constants =
-                if free { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero };
+            let constants = if free { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero };
             choices.push(plain(constants));
             continue;
         }

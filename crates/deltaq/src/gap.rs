@@ -123,7 +123,9 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
         Verdict::Same
     } else {
         Verdict::Undecided {
-            because: format!("relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"),
+            because: format!(
+                "relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"
+            ),
         }
     };
     Ok(Gap { verdict, end, certain_from, passes, largest, largest_by_coordinate, estimates, scale, points })

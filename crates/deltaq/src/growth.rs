@@ -166,7 +166,8 @@ pub fn leading_term(
     }
     let term = |weight: f64, multiplier: &[f64]| {
         let force = &curvature * DVector::from_column_slice(multiplier) * weight;
-        let solution = saddle.solve(&force.clone().resize_vertically(n + h, 0.0)).unwrap_or_else(|| DVector::zeros(n + h));
+        let solution =
+            saddle.solve(&force.clone().resize_vertically(n + h, 0.0)).unwrap_or_else(|| DVector::zeros(n + h));
         let coefficient = solution.rows(0, n).into_owned();
         let vanishes = coefficient.norm() <= VANISHES * solution.norm() || force.norm() == 0.0;
         let length = (coefficient.transpose() * &mass * &coefficient)[(0, 0)].abs().sqrt();

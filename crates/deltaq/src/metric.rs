@@ -51,10 +51,8 @@ impl Metric {
         self.load(t, q, v);
         let n = self.dimension;
         let rows = self.values[..n * n].chunks_exact(n);
-        let square: f64 = rows
-            .zip(difference)
-            .map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>())
-            .sum();
+        let square: f64 =
+            rows.zip(difference).map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>()).sum();
         square.abs().sqrt()
     }
 
@@ -82,7 +80,6 @@ pub(crate) fn numbers(
     matrix: &Matrix,
     values: &HashMap<Symbol, f64>,
 ) -> Result<DMatrix<f64>, CompileError> {
-    let entries: Result<Vec<f64>, CompileError> =
-        matrix.entries().iter().map(|&e| graph.evaluate(e, values)).collect();
+    let entries: Result<Vec<f64>, CompileError> = matrix.entries().iter().map(|&e| graph.evaluate(e, values)).collect();
     Ok(DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries?))
 }

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 use std::time::Instant;
 
-use integrate::{DenseOutput, Method, Options, Problem, Projection, ProjectionReport, Solution, Start, Status, StopCause, Work};
+use integrate::{
+    DenseOutput, Method, Options, Problem, Projection, ProjectionReport, Solution, Start, Status, StopCause, Work,
+};
 use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System, complete_removal_start};
 use symbolic::Symbol;
 

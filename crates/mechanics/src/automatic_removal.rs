@@ -10,9 +10,7 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Graph, Matrix, Symbol};
 
-use crate::{
-    ConstantsRule, DisplacementParameter, MemoryVariable, Removal, RemovalError, State, System,
-};
+use crate::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, RemovalError, State, System};
 
 /// A pivot may be this much smaller than the largest one if it makes shorter expressions.
 const PIVOT_CHOICE: f64 = 0.2;

@@ -12,7 +12,9 @@ use crate::projection::Projector;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EvaluationFailure {
     /// The equations of the instant are singular.
-    #[error("equations of the instant are singular (relative pivot {reciprocal:.1e}, limit {limit:.0e}); needed: {regular}")]
+    #[error(
+        "equations of the instant are singular (relative pivot {reciprocal:.1e}, limit {limit:.0e}); needed: {regular}"
+    )]
     Singular {
         /// Smallest pivot of the scaled matrix.
         reciprocal: f64,
@@ -22,7 +24,9 @@ pub enum EvaluationFailure {
         regular: &'static str,
     },
     /// Newton's method for equations that are not linear in the unknowns did not converge.
-    #[error("equations of the instant not solved after {iterations} Newton steps (last step {step:.1e}, limit {limit:.0e})")]
+    #[error(
+        "equations of the instant not solved after {iterations} Newton steps (last step {step:.1e}, limit {limit:.0e})"
+    )]
     NotConverged {
         /// Steps taken.
         iterations: usize,
@@ -231,12 +235,7 @@ impl Compiled {
         let (v, rest) = rest.split_at(n);
         let (m, i) = rest.split_at(multipliers);
         debug_assert_eq!(i.len(), invariants);
-        Ok(Outputs {
-            coordinates: q.to_vec(),
-            velocities: v.to_vec(),
-            multipliers: m.to_vec(),
-            invariants: i.to_vec(),
-        })
+        Ok(Outputs { coordinates: q.to_vec(), velocities: v.to_vec(), multipliers: m.to_vec(), invariants: i.to_vec() })
     }
 
     /// Number of guards.
@@ -366,7 +365,11 @@ impl CompiledBlock {
                 return Ok(());
             }
             if !relative.is_finite() {
-                return Err(EvaluationFailure::NotConverged { iterations: iteration + 1, step: relative, limit: NEWTON_LIMIT });
+                return Err(EvaluationFailure::NotConverged {
+                    iterations: iteration + 1,
+                    step: relative,
+                    limit: NEWTON_LIMIT,
+                });
             }
             previous = relative;
         }

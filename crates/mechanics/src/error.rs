@@ -14,7 +14,9 @@ pub enum RemovalError {
         expected: usize,
     },
     /// A constraint does not vanish identically.
-    #[error("removal `{removal}` does not satisfy constraint {constraint} ({text}): residual {residual:.3e} where round-off allows {limit:.1e}")]
+    #[error(
+        "removal `{removal}` does not satisfy constraint {constraint} ({text}): residual {residual:.3e} where round-off allows {limit:.1e}"
+    )]
     ConstraintRemains {
         /// Name of the removal.
         removal: String,
@@ -28,7 +30,9 @@ pub enum RemovalError {
         limit: f64,
     },
     /// Automatic removal needs constraints linear in the velocities.
-    #[error("constraint {constraint} ({text}) is not linear in the velocities; it can only be removed by a parametrization written by hand")]
+    #[error(
+        "constraint {constraint} ({text}) is not linear in the velocities; it can only be removed by a parametrization written by hand"
+    )]
     NotLinear {
         /// Number of the constraint, from 1.
         constraint: usize,
@@ -44,7 +48,9 @@ pub enum RemovalError {
         limit: f64,
     },
     /// A constraint with the parametrization put in has no finite value at any of the points tried.
-    #[error("removal `{removal}`: constraint {constraint} ({text}) is finite at no point tried, so it cannot be checked")]
+    #[error(
+        "removal `{removal}`: constraint {constraint} ({text}) is finite at no point tried, so it cannot be checked"
+    )]
     NotCheckable {
         /// Name of the removal.
         removal: String,

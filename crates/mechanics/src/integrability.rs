@@ -78,17 +78,16 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
     }
     let g = &system.graph;
     let split = Split::new(system, state)?;
-    let with_time = split.offset.iter().any(|&e| !g.is_zero(e))
-        || system.constraints.iter().any(|&f| g.depends_on(f, system.time));
+    let with_time =
+        split.offset.iter().any(|&e| !g.is_zero(e)) || system.constraints.iter().any(|&f| g.depends_on(f, system.time));
     let mut space: Vec<Symbol> = system.positions();
     if with_time {
         space.push(system.time);
     }
     let admissible = split.fields(system, with_time);
     let constants: HashMap<Symbol, f64> = system.parameter_values();
-    let rank_of = |fields: &[Vec<Expr>]| {
-        generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &constants)
-    };
+    let rank_of =
+        |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &constants);
     let bracket = |x: &[Expr], y: &[Expr]| -> Vec<Expr> {
         let along = |field: &[Expr], by: &[Expr], i: usize| g.dot(&g.gradient(field[i], &space), by);
         (0..space.len()).map(|i| g.sub(along(y, x, i), along(x, y, i))).collect()

@@ -43,12 +43,7 @@ pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, 
 }
 
 /// Values in ±[0.3, 1.3] for every symbol of `matrix` that is not a constant, a pure function of `(symbol, point)`.
-fn random_values(
-    graph: &Graph,
-    matrix: &Matrix,
-    constants: &HashMap<Symbol, f64>,
-    point: u64,
-) -> HashMap<Symbol, f64> {
+fn random_values(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, f64>, point: u64) -> HashMap<Symbol, f64> {
     let mut values = constants.clone();
     let symbols: std::collections::BTreeSet<Symbol> =
         matrix.entries().iter().flat_map(|&e| graph.symbols_of(e)).collect();

@@ -50,8 +50,8 @@ mod costates;
 
 use costates::Costates;
 use mechanics::{
-    Block, Derivation, DerivationError, DisplacementParameter, Equations, Formulation, FreeConstant, Named,
-    Removal, Role, StateVariable, Statement, System, fresh_symbol, generic_rank, refuse_forces,
+    Block, Derivation, DerivationError, DisplacementParameter, Equations, Formulation, FreeConstant, Named, Removal,
+    Role, StateVariable, Statement, System, fresh_symbol, generic_rank, refuse_forces,
 };
 use symbolic::{Expr, Graph, Symbol};
 
@@ -103,14 +103,24 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
             // d/dt ∂G/∂ü − ∂G/∂u̇ + p = 0,  ṗ = ∂G/∂u
             Some(Momentum { state: momentum, start }) => {
                 let second = g.total_derivative(g.derivative(generating, u.second_rate), &flow);
-                equations.states.push(state(g, u.second_rate, Role::ParameterSecondRate, g.variable(p.unknown), u.second_rate));
+                equations.states.push(state(
+                    g,
+                    u.second_rate,
+                    Role::ParameterSecondRate,
+                    g.variable(p.unknown),
+                    u.second_rate,
+                ));
                 equations.states.push(state(g, momentum, Role::ParameterMomentum, gradient, start));
                 (g.sum(&[second, g.neg(first), g.variable(momentum)]), g.variable(momentum))
             }
         };
         equations.states.push(state(g, u.rate, Role::ParameterRate, g.variable(u.second_rate), u.rate));
         let name = g.name(u.symbol);
-        equations.statements.push(Statement { meaning: format!("balance for {name}"), left: residual, right: g.zero() });
+        equations.statements.push(Statement {
+            meaning: format!("balance for {name}"),
+            left: residual,
+            right: g.zero(),
+        });
         equations.multipliers.push(Named { name: format!("p_{name}"), expression: conserved });
         if g.is_zero(gradient) {
             equations.invariants.push(Named { name: format!("momentum {name}"), expression: conserved });

@@ -24,9 +24,7 @@ impl Graph {
 
     pub(crate) fn symbols_of_all(&self, es: &[Expr]) -> BTreeSet<Symbol> {
         let arena = self.arena.borrow();
-        es.iter()
-            .flat_map(|e| arena.dependencies(*e).iter().copied())
-            .collect()
+        es.iter().flat_map(|e| arena.dependencies(*e).iter().copied()).collect()
     }
 
     /// Every distinct base that stands in `es` under a negative power, and is not a number: where one
@@ -43,12 +41,7 @@ impl Graph {
         for e in arena.reachable(es, |_| true) {
             match arena.node(e) {
                 Node::Product(factors) => {
-                    bases.extend(
-                        factors
-                            .iter()
-                            .filter(|(_, r)| r.is_negative())
-                            .map(|(b, _)| *b),
-                    );
+                    bases.extend(factors.iter().filter(|(_, r)| r.is_negative()).map(|(b, _)| *b));
                 }
                 Node::Power(base, exponent) if arena.leads_negative(*exponent) => {
                     bases.insert(*base);
@@ -56,10 +49,7 @@ impl Graph {
                 _ => {}
             }
         }
-        bases
-            .into_iter()
-            .filter(|b| arena.as_number(*b).is_none())
-            .collect()
+        bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
     }
 
     /// Number of distinct nodes reachable from `es`.

@@ -107,9 +107,8 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     flow.extend(augmented.multipliers.iter().zip(&rates).map(|(&mu, &rate)| (mu, g.variable(rate))));
 
     // d/dt ∂𝓛/∂v − ∂𝓛/∂q = 0
-    let mut residuals: Vec<Expr> = (0..q.len())
-        .map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.gradient[i]))
-        .collect();
+    let mut residuals: Vec<Expr> =
+        (0..q.len()).map(|i| g.sub(g.total_derivative(augmented.momenta[i], &flow), augmented.gradient[i])).collect();
     equations.statements = statements(&system, &residuals);
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
@@ -155,12 +154,10 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     let augmented = augment(&system);
     let (q, v) = (system.positions(), system.velocities());
     let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
-    let costates: Vec<Symbol> =
-        system.coordinates.iter().map(|c| fresh_symbol(g, &format!("p_{}", c.name))).collect();
+    let costates: Vec<Symbol> = system.coordinates.iter().map(|c| fresh_symbol(g, &format!("p_{}", c.name))).collect();
 
     // p − ∂𝓛/∂v = 0,  f = 0
-    let mut residuals: Vec<Expr> =
-        (0..q.len()).map(|i| g.sub(g.variable(costates[i]), augmented.momenta[i])).collect();
+    let mut residuals: Vec<Expr> = (0..q.len()).map(|i| g.sub(g.variable(costates[i]), augmented.momenta[i])).collect();
     residuals.extend(&system.constraints);
     equations.statements = statements(&system, &residuals[..q.len()]);
 
@@ -195,7 +192,11 @@ fn statements(system: &System, balances: &[Expr]) -> Vec<Statement> {
     let balances = balances.iter().zip(&system.coordinates);
     balances
         .map(|(&e, c)| Statement { meaning: format!("balance for {}", c.name), left: e, right: system.graph.zero() })
-        .chain(system.constraints.iter().map(|&f| Statement { meaning: "constraint".into(), left: f, right: system.graph.zero() }))
+        .chain(system.constraints.iter().map(|&f| Statement {
+            meaning: "constraint".into(),
+            left: f,
+            right: system.graph.zero(),
+        }))
         .collect()
 }
 

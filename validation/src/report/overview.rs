@@ -107,7 +107,8 @@ fn names<'a>(comparisons: impl Iterator<Item = &'a Comparison>) -> Vec<String> {
 
 fn headline(comparisons: &[Comparison]) -> String {
     let same = comparisons.iter().filter(|c| all_same(c)).count();
-    let apart = names(comparisons.iter().filter(|c| verdict_of(c, "chetaev", "vakonomic") == Some(&Verdict::Different)));
+    let apart =
+        names(comparisons.iter().filter(|c| verdict_of(c, "chetaev", "vakonomic") == Some(&Verdict::Different)));
     let lasting = comparisons
         .iter()
         .filter_map(|c| fit_of(c, "vakonomic", "chetaev")?.fitted.as_ref())

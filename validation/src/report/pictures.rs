@@ -44,11 +44,8 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
     let motions = sample(comparison)?;
     let coordinates = &comparison.scene.system.coordinates;
     let curves = |value: &dyn Fn(&(f64, Vec<f64>)) -> (f64, f64)| -> Vec<Curve> {
-        let curve = |m: &Drawn| Curve {
-            label: m.label.clone(),
-            style: m.style,
-            points: m.points.iter().map(value).collect(),
-        };
+        let curve =
+            |m: &Drawn| Curve { label: m.label.clone(), style: m.style, points: m.points.iter().map(value).collect() };
         motions.iter().map(curve).collect()
     };
     let panels = coordinates.iter().enumerate().map(|(i, c)| Panel {

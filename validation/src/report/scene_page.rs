@@ -15,8 +15,10 @@ pub fn answer(comparison: &Comparison) -> String {
     let main: Vec<usize> =
         ["chetaev", "vakonomic", "removed-constraint"].iter().filter_map(|f| comparison.run(f)).collect();
     let label = |i: usize| comparison.runs[i].choice.label.clone();
-    let pairs: Vec<(usize, usize)> =
-        (0..main.len()).flat_map(|i| (i + 1..main.len()).map(move |j| (i, j))).map(|(i, j)| (main[i], main[j])).collect();
+    let pairs: Vec<(usize, usize)> = (0..main.len())
+        .flat_map(|i| (i + 1..main.len()).map(move |j| (i, j)))
+        .map(|(i, j)| (main[i], main[j]))
+        .collect();
     let found: Vec<&Pair> = pairs.iter().filter_map(|&(a, b)| comparison.pair(a, b)).collect();
     let with = |verdict: Verdict| found.iter().filter(|p| p.gap.verdict == verdict).count();
     if with(Verdict::Same) == pairs.len() && !pairs.is_empty() {
@@ -36,7 +38,8 @@ pub fn answer(comparison: &Comparison) -> String {
         match &p.gap.verdict {
             Verdict::Different => sentences.push(format!(
                 "{names}: {} largest gap {}.",
-                p.gap.passes[1].map_or("apart by less than 1e-3,".into(), |t| format!("1e-3 apart after {} s,", short(t))),
+                p.gap.passes[1]
+                    .map_or("apart by less than 1e-3,".into(), |t| format!("1e-3 apart after {} s,", short(t))),
                 short(p.gap.largest)
             )),
             Verdict::Undecided { because } => sentences.push(format!("{names}: undecided, {because}.")),
@@ -106,16 +109,21 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
             format!("| ${q}$ | {} | {} | ${v}$ | {} |", c.unit, precise(scene.start.q[i]), precise(scene.start.v[i]))
         })
         .collect();
-    let _ = writeln!(page, "| coordinate | unit | start | velocity | start |\n|---|---|---|---|---|\n{}", start.join("\n"));
+    let _ =
+        writeln!(page, "| coordinate | unit | start | velocity | start |\n|---|---|---|---|---|\n{}", start.join("\n"));
     let _ = writeln!(
         page,
         "\nGiven: {}. Supplied by the constraints: {}.{}\n",
         list(&scene.completion.given),
         list(&scene.completion.supplied),
-        scene.completion.projected.map_or(String::new(), |d| format!(" Projection moved the velocity by {}.", short(d)))
+        scene
+            .completion
+            .projected
+            .map_or(String::new(), |d| format!(" Projection moved the velocity by {}.", short(d)))
     );
     page += &tables::runs(comparison);
-    page += "\nError estimate: largest difference, in the kinetic metric, to a run at a hundred times larger tolerance.\n";
+    page +=
+        "\nError estimate: largest difference, in the kinetic metric, to a run at a hundred times larger tolerance.\n";
     page += "\n## Motions\n";
     for path in pictures {
         let _ = writeln!(page, "\n![{path}]({path})");
@@ -140,7 +148,11 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
 }
 
 fn list(names: &[String]) -> String {
-    if names.is_empty() { "nothing".into() } else { names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ") }
+    if names.is_empty() {
+        "nothing".into()
+    } else {
+        names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+    }
 }
 
 fn system(comparison: &Comparison) -> String {

@@ -29,7 +29,9 @@ pub(crate) fn verdict_words(gap: &deltaq::Gap) -> String {
 
 /// One line a run: how it was started and how it ended.
 pub(crate) fn runs(comparison: &Comparison) -> String {
-    let mut text = String::from("| motion | free constants | ended | error estimate | steps | evaluations |\n|---|---|---|---|---|---|\n");
+    let mut text = String::from(
+        "| motion | free constants | ended | error estimate | steps | evaluations |\n|---|---|---|---|---|---|\n",
+    );
     for (i, run) in comparison.runs.iter().enumerate() {
         let _ = match &run.outcome {
             Err(error) => writeln!(text, "| {} | | refused: {} | | | |", run.choice.label, cell(&error.to_string())),
@@ -39,8 +41,11 @@ pub(crate) fn runs(comparison: &Comparison) -> String {
                     let g = &motion.equations.graph;
                     g.find_symbol(name).map_or(name.clone(), |s| format!("${}$", g.latex_symbol(s)))
                 };
-                let constants: Vec<String> =
-                    names.iter().zip(&motion.constants).map(|(n, c)| format!("{} = {}", symbol(n), precise(*c))).collect();
+                let constants: Vec<String> = names
+                    .iter()
+                    .zip(&motion.constants)
+                    .map(|(n, c)| format!("{} = {}", symbol(n), precise(*c)))
+                    .collect();
                 let rule = match &run.choice.constants {
                     mechanics::ConstantsRule::Natural { horizon } if !constants.is_empty() => {
                         format!("; natural at $t_1 = {horizon}$ s")
