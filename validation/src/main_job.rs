@@ -55,7 +55,8 @@ pub fn run(arguments: &JobArguments) -> Result<()> {
     }
     write_all(&arguments.out, &files)?;
     for comparison in &comparisons {
-        println!("{:<24} {}", comparison.scene.name, answer(comparison));
+        let answer = answer(comparison);
+        println!("{:<24} {}", comparison.scene.name, answer.split_inclusive(". ").next().unwrap_or_default());
     }
     println!("\n{} files in {} after {:.1} s", files.len(), arguments.out.display(), clock.elapsed().as_secs_f64());
     Ok(())

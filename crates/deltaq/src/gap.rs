@@ -56,9 +56,9 @@ pub struct Gap {
     pub certain_from: Option<f64>,
     /// First times at which the gap passes [`THRESHOLDS`].
     pub passes: [Option<f64>; 3],
-    /// Largest gap.
+    /// Largest gap, among the certain ones where there are any.
     pub largest: f64,
-    /// Largest difference of each coordinate.
+    /// Largest difference of each coordinate, at the same instants.
     pub largest_by_coordinate: Vec<f64>,
     /// Largest error estimate of each of the two motions, kinetic metric.
     pub estimates: [f64; 2],
@@ -75,7 +75,7 @@ pub struct Gap {
 pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Metric) -> Result<Gap, SolveError> {
     let (t0, end) = (first.start(), first.end().min(second.end()));
     let mut points = Vec::new();
-    let mut largest_by_coordinate = Vec::new();
+    let mut differences: Vec<Vec<f64>> = Vec::new();
     let (mut estimates, mut scale) = ([0.0_f64; 2], 0.0_f64);
     let origin = first.at(t0)?;
     let mut largest_length = 0.0_f64;
@@ -84,10 +84,6 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
         let two = second.at(t)?;
         let (q, v) = (&one.coordinates, &one.velocities);
         let difference = subtract(q, &two.coordinates);
-        largest_by_coordinate.resize(difference.len(), 0.0_f64);
-        for (l, d) in largest_by_coordinate.iter_mut().zip(&difference) {
-            *l = l.max(d.abs());
-        }
         let errors = [first.difference_of_runs(t)?, second.difference_of_runs(t)?];
         for (estimate, error) in estimates.iter_mut().zip(&errors) {
             *estimate = estimate.max(metric.length(t, q, v, error));
@@ -96,8 +92,21 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
         largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
         let limit = CERTAINTY * (estimates[0] + estimates[1] + ROUND_OFF * largest_length);
         points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit });
+        differences.push(difference);
     }
-    let largest = points.iter().fold(0.0_f64, |a, p| a.max(p.gap));
+    // where a difference is certain, only certain gaps count; otherwise all of them
+    let certain = points.iter().any(|p| p.gap > p.limit);
+    let counts = |p: &GapPoint| !certain || p.gap > p.limit;
+    let mut largest = 0.0_f64;
+    let mut largest_by_coordinate = vec![0.0_f64; origin.coordinates.len()];
+    for (_, difference) in points.iter().zip(&differences).filter(|(p, _)| counts(p)) {
+        for (l, d) in largest_by_coordinate.iter_mut().zip(difference) {
+            *l = l.max(d.abs());
+        }
+    }
+    for p in points.iter().filter(|p| counts(p)) {
+        largest = largest.max(p.gap);
+    }
     let mut gap_at = |t: f64| -> f64 {
         match (first.at(t), second.at(t)) {
             (Ok(one), Ok(two)) => {

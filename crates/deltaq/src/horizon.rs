@@ -2,8 +2,8 @@
 
 use integrate::{BoundaryError, ShootOptions, shoot};
 
-use crate::motion::{Prepared, Settings};
-use crate::{SolveError, TIGHTER};
+use crate::motion::{Prepared, Settings, ending};
+use crate::{Ending, SolveError, TIGHTER};
 
 /// Residual at the horizon that is accepted, over the tolerance of the integration.
 const RESIDUAL: f64 = 1e3;
@@ -45,7 +45,10 @@ pub(crate) fn natural_constants(
             failure = Some(error);
             BoundaryError::Residual { reason }
         })?;
-        run.completed()?.evaluate(horizon, &mut end);
+        if let Ending::Stopped { t, cause } = ending(&prepared.equations, &run.status) {
+            return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
+        }
+        run.dense.evaluate(horizon, &mut end);
         for (r, &place) in residual.iter_mut().zip(&places) {
             *r = end[place];
         }

@@ -75,6 +75,7 @@ pub struct Motion {
     pub projection: ProjectionReport,
     /// Time spent.
     pub seconds: Seconds,
+    end: f64,
     compiled: Compiled,
     kept: DenseOutput,
     looser: DenseOutput,
@@ -88,10 +89,9 @@ impl Motion {
         self.kept.start()
     }
 
-    /// Last time that both runs reached.
+    /// Last time that both runs reached and at which both can be read off: where a motion stops at a singularity, a little before it.
     pub fn end(&self) -> f64 {
-        let (a, b) = (self.kept.end(), self.looser.end());
-        if self.kept.start() <= a { a.min(b) } else { a.max(b) }
+        self.end
     }
 
     /// Whether the motion reached the time asked for.
@@ -246,7 +246,9 @@ pub fn solve(
     let integrate = clock.elapsed().as_secs_f64();
     let ending = ending(&prepared.equations, &kept.status);
     let size = prepared.equations.states.len();
+    let end = readable_end(&mut prepared.compiled, &kept.dense, &looser.dense);
     Ok(Motion {
+        end,
         ending,
         constants,
         work: kept.work,
@@ -259,6 +261,24 @@ pub fn solve(
         equations: prepared.equations,
         compiled: prepared.compiled,
     })
+}
+
+/// How far before a singularity a motion is read off, as fractions of its length.
+const BEFORE_A_STOP: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
+
+fn readable_end(compiled: &mut Compiled, kept: &DenseOutput, looser: &DenseOutput) -> f64 {
+    let start = kept.start();
+    let length = (kept.end() - start).abs().min((looser.end() - start).abs());
+    let direction = (kept.end() - start).signum();
+    let mut y = vec![0.0; kept.dimension()];
+    let mut readable = |t: f64| {
+        [kept, looser].iter().all(|dense| {
+            dense.evaluate(t, &mut y);
+            compiled.outputs(t, &y).is_ok()
+        })
+    };
+    let ends = BEFORE_A_STOP.map(|fraction| start + direction * length * (1.0 - fraction));
+    ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
 }
 
 fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -> Result<Vec<f64>, SolveError> {
@@ -295,7 +315,7 @@ pub fn constant_names(equations: &Equations) -> Vec<String> {
     equations.free_constants.iter().map(|c| equations.graph.name(c.symbol)).collect()
 }
 
-fn ending(equations: &Equations, status: &Status) -> Ending {
+pub(crate) fn ending(equations: &Equations, status: &Status) -> Ending {
     let Status::Stopped { t, cause } = status else { return Ending::Completed };
     let cause = match cause {
         StopCause::Event { index } => {

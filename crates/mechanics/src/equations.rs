@@ -80,6 +80,15 @@ pub struct Named {
     pub expression: Expr,
 }
 
+/// Something that the equations did not need.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// The variables concerned; empty where it is not about variables.
+    pub variables: Vec<Symbol>,
+    /// What about them, and why.
+    pub words: String,
+}
+
 /// An equation for the reader: `left = right`.
 #[derive(Clone, Debug)]
 pub struct Statement {
@@ -136,7 +145,7 @@ pub struct Equations {
     /// The derived equations, for the reader.
     pub statements: Vec<Statement>,
     /// What this system did not need.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<LeftOut>,
     /// The removal behind the equations, whose parameters and memory variables have to be started.
     pub removal: Option<Removal>,
 }
@@ -289,8 +298,10 @@ impl Equations {
                 }
             }
         }
-        for y in self.states.iter().filter(|y| !needed.contains(&y.symbol)) {
-            self.left_out.push(format!("${}$: nothing that is asked for depends on it", g.latex_symbol(y.symbol)));
+        let unneeded: Vec<Symbol> = self.states.iter().map(|y| y.symbol).filter(|s| !needed.contains(s)).collect();
+        if !unneeded.is_empty() {
+            let words = "nothing that is asked for depends on it".into();
+            self.left_out.push(LeftOut { variables: unneeded, words });
         }
         let dropped: HashSet<Symbol> =
             self.states.iter().map(|y| y.symbol).chain(self.unknowns()).filter(|s| !needed.contains(s)).collect();
@@ -302,22 +313,19 @@ impl Equations {
 
     fn name_quadratures(&mut self) {
         let g = &self.graph;
-        let quadratures: Vec<String> = self
+        let quadratures: Vec<Symbol> = self
             .states
             .iter()
             .filter(|y| matches!(y.role, Role::Position | Role::Memory | Role::DisplacementParameter))
-            .filter(|y| {
-                !self.states.iter().any(|other| g.depends_on(other.rate, y.symbol))
-                    && !self.blocks.iter().any(|b| b.residuals.iter().any(|&r| g.depends_on(r, y.symbol)))
+            .map(|y| y.symbol)
+            .filter(|&symbol| {
+                !self.states.iter().any(|other| g.depends_on(other.rate, symbol))
+                    && !self.blocks.iter().any(|b| b.residuals.iter().any(|&r| g.depends_on(r, symbol)))
             })
-            .map(|y| format!("${}$", g.latex_symbol(y.symbol)))
             .collect();
         if !quadratures.is_empty() {
-            self.left_out.push(format!(
-                "{}: no equation of motion contains {}; found by quadrature along the way",
-                quadratures.join(", "),
-                if quadratures.len() == 1 { "it" } else { "them" }
-            ));
+            let words = "in no equation of motion; found by quadrature along the way".into();
+            self.left_out.push(LeftOut { variables: quadratures, words });
         }
     }
 }

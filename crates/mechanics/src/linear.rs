@@ -115,8 +115,8 @@ impl Factors {
             }
             self.work[i] = x / self.lu[i * n + i];
         }
-        for i in 0..n {
-            b[i] = self.work[i] * self.column_scale[i];
+        for (x, (z, scale)) in b.iter_mut().zip(self.work.iter().zip(&self.column_scale)) {
+            *x = z * scale;
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use symbolic::{CompileError, Symbol};
 
-use crate::compiled::{EvaluationFailure, Program};
 use crate::equations::{ConstraintProjection, Equations};
+use crate::instant::{EvaluationFailure, Program};
 use crate::linear::{Factors, PIVOT_LIMIT, Singular};
 
 /// Newton steps allowed; a step under this length relative to the velocity ends the iteration.

@@ -1,6 +1,6 @@
 //! Costates of the memory variables: which move, and which are zero throughout.
 
-use mechanics::{Equations, FreeConstant, Named, Removal, Role, StateVariable, Statement, fresh_symbol};
+use mechanics::{Equations, FreeConstant, LeftOut, Named, Removal, Role, StateVariable, Statement, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
 
 pub(crate) struct Costates {
@@ -64,9 +64,8 @@ impl Costates {
         }
         for (i, p) in self.costates.iter().enumerate() {
             let Some(rate) = p.rate else {
-                let (costate, w) = (g.latex_symbol(p.symbol), g.latex_symbol(removal.memory[i].symbol));
-                let why = format!("neither $L$ nor a rate with a costate contains ${w}$");
-                equations.left_out.push(format!("${costate}$: identically zero, because {why}"));
+                let words = "costate identically zero: neither L nor a rate with a costate contains the variable".into();
+                equations.left_out.push(LeftOut { variables: vec![p.symbol], words });
                 continue;
             };
             let costate = g.variable(p.symbol);
@@ -79,7 +78,8 @@ impl Costates {
         }
         let second = removal.parameters.iter().any(|u| g.depends_on(self.generating_function, u.second_rate));
         if !second && !removal.parameters.is_empty() {
-            equations.left_out.push("second rates: $G$ is of first order in the parameters".into());
+            let words = "second rates of the parameters: G is of first order".into();
+            equations.left_out.push(LeftOut { variables: Vec::new(), words });
         }
     }
 }

@@ -164,14 +164,9 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     for i in 0..q.len() {
         equations.states.push(state(g, q[i], Role::Position, g.variable(v[i]), q[i]));
     }
-    for i in 0..q.len() {
+    for (i, &symbol) in costates.iter().enumerate() {
         let start = g.substitute(augmented.momenta[i], &at_start);
-        equations.states.push(StateVariable {
-            symbol: costates[i],
-            role: Role::Costate,
-            rate: augmented.gradient[i],
-            start,
-        });
+        equations.states.push(StateVariable { symbol, role: Role::Costate, rate: augmented.gradient[i], start });
     }
     equations.blocks = vec![Block {
         unknowns: v.iter().chain(&augmented.multipliers).copied().collect(),

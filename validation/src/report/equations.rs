@@ -37,8 +37,14 @@ pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     }
     if !equations.left_out.is_empty() {
         text += "\nLeft out, because this scene does not need it:\n\n";
-        for words in &equations.left_out {
-            let _ = writeln!(text, "- {words}");
+        for left_out in &equations.left_out {
+            let name = |&symbol: &symbolic::Symbol| match style {
+                EquationStyle::Plain => g.name(symbol),
+                EquationStyle::Latex => format!("${}$", g.latex_symbol(symbol)),
+            };
+            let names: Vec<String> = left_out.variables.iter().map(name).collect();
+            let colon = if names.is_empty() { "" } else { ": " };
+            let _ = writeln!(text, "- {}{colon}{}", names.join(", "), left_out.words);
         }
     }
     text
