@@ -1,3 +1,4 @@
 //! Tests between crates.
 
 pub mod closed_forms;
+pub mod references;
