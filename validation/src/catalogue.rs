@@ -24,10 +24,31 @@ pub const SCENES: &[(&str, &str)] = &[
 /// The built-in scene of that name, or else the scene file at that path; `overrides` replace parameters and start values.
 ///
 /// # Errors
-/// [`SceneError`] with the place in the file.
-pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
-    match SCENES.iter().find(|(name, _)| *name == name_or_path) {
-        Some((name, text)) => Scene::parse_with(name, text, overrides),
-        None => Scene::load_with(Path::new(name_or_path), overrides),
+/// [`NotFound`], with the place in the file where there is one.
+pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, NotFound> {
+    if let Some((name, text)) = SCENES.iter().find(|(name, _)| *name == name_or_path) {
+        return Ok(Scene::parse_with(name, text, overrides)?);
     }
+    let path = Path::new(name_or_path);
+    if !path.exists() {
+        let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
+        return Err(NotFound::Nothing { name: name_or_path.into(), known: known.join(", ") });
+    }
+    Ok(Scene::load_with(path, overrides)?)
+}
+
+/// There is no such scene, or there is something wrong with it.
+#[derive(Debug, thiserror::Error)]
+pub enum NotFound {
+    /// Neither a built-in name nor a file.
+    #[error("`{name}` is neither a file nor one of the built-in scenes: {known}")]
+    Nothing {
+        /// What was asked for.
+        name: String,
+        /// Built-in names.
+        known: String,
+    },
+    /// The scene has a fault.
+    #[error(transparent)]
+    Fault(#[from] SceneError),
 }

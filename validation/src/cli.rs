@@ -80,7 +80,7 @@ pub struct SolveArguments {
     #[arg(long, value_enum, default_value_t = MethodName::Dop853)]
     pub method: MethodName,
     /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
-    #[arg(long, default_value_t = 1e-10)]
+    #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
     pub tolerance: f64,
     /// Times to print: `a,b,c` or `from:to:count`. 101 equidistant ones if left out.
     #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
@@ -109,7 +109,7 @@ pub struct CompareArguments {
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub overrides: Vec<(String, f64)>,
     /// Tolerance of the looser of the two runs of every motion.
-    #[arg(long, default_value_t = 1e-11)]
+    #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
     pub tolerance: f64,
 }
 

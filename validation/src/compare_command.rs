@@ -8,11 +8,11 @@ use crate::cli::CompareArguments;
 use crate::main_job::scene_files;
 use crate::report::write_all;
 
-/// Runs the command: pages to the terminal, or pages and pictures to a folder.
+/// Runs the command: returns the pages, or writes pages and pictures to a folder and says so.
 ///
 /// # Errors
 /// Bad input, with its place; then nothing is written.
-pub fn run(arguments: &CompareArguments) -> Result<()> {
+pub fn run(arguments: &CompareArguments) -> Result<String> {
     if !(arguments.tolerance > 0.0 && arguments.tolerance < 1.0) {
         bail!("--tolerance is {}; it must be above 0 and below 1", arguments.tolerance);
     }
@@ -20,19 +20,16 @@ pub fn run(arguments: &CompareArguments) -> Result<()> {
     let mut all = Vec::new();
     for name in &arguments.scenes {
         let scene = catalogue::find(name, &arguments.overrides)?;
-        let (_, files) = scene_files(scene, &settings)?;
-        all.extend(files);
+        all.extend(scene_files(scene, &settings)?.files);
     }
     match &arguments.out {
         Some(folder) => {
             write_all(folder, &all)?;
-            println!("{} files in {}", all.len(), folder.display());
+            Ok(format!("{} files in {}\n", all.len(), folder.display()))
         }
         None => {
-            for page in all.iter().filter(|f| f.path.extension().is_some_and(|e| e == "md")) {
-                println!("{}", page.text);
-            }
+            let pages = all.into_iter().filter(|f| f.path.extension().is_some_and(|e| e == "md"));
+            Ok(pages.map(|page| page.text + "\n").collect())
         }
     }
-    Ok(())
 }

@@ -1,40 +1,44 @@
-//! The `deltaq` command. Exit code 0 only where every trajectory can be trusted, 2 for bad input, 3 where an integration had to stop.
+//! The `deltaq` command. Exit code 2 for bad input; `solve` ends with 0 only where its trajectory can be trusted, and with 3 where the
+//! integration had to stop or its error estimate is too large.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::Parser;
 use validation::cli::{Cli, Command};
+use validation::solve_command::Answer;
 use validation::{compare_command, main_job, show_command, solve_command};
 
 fn main() -> ExitCode {
-    match run(Cli::parse()) {
-        Ok(code) => code,
+    let answer = match run(Cli::parse()) {
+        Ok(answer) => answer,
         Err(error) => {
-            eprintln!("deltaq: {error}");
-            for cause in error.chain().skip(1) {
-                eprintln!("  {cause}");
-            }
-            ExitCode::from(2)
+            let mut causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+            causes.dedup();
+            eprintln!("deltaq: {}", causes.join("\n  "));
+            return ExitCode::from(2);
+        }
+    };
+    // a reader that has seen enough closes the pipe; that is no error
+    let _ = std::io::stdout().write_all(answer.text.as_bytes());
+    match answer.complaint {
+        None => ExitCode::SUCCESS,
+        Some(complaint) => {
+            eprintln!("deltaq: {complaint}");
+            ExitCode::from(3)
         }
     }
 }
 
-fn run(cli: Cli) -> Result<ExitCode> {
-    match cli.command {
+fn run(cli: Cli) -> Result<Answer> {
+    let text = match cli.command {
         None => main_job::run(&cli.job)?,
-        Some(Command::List) => print!("{}", show_command::list()),
-        Some(Command::Show(arguments)) => print!("{}", show_command::run(&arguments)?),
+        Some(Command::List) => show_command::list(),
+        Some(Command::Show(arguments)) => show_command::run(&arguments)?,
         Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
-        Some(Command::Solve(arguments)) => {
-            let answer = solve_command::run(&arguments)?;
-            print!("{}", answer.text);
-            if let Some(complaint) = answer.complaint {
-                eprintln!("deltaq: {complaint}");
-                return Ok(ExitCode::from(3));
-            }
-        }
-    }
-    Ok(ExitCode::SUCCESS)
+        Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
+    };
+    Ok(Answer { text, complaint: None })
 }

@@ -1,5 +1,6 @@
 //! The main job: every scene in every formulation, reports written; and the check that committed reports are still true.
 
+use std::fmt::Write;
 use std::process::Command;
 use std::sync::Mutex;
 use std::time::Instant;
@@ -16,11 +17,19 @@ use crate::report::{
 };
 use crate::substitution;
 
+/// A compared scene with its page and pictures.
+pub struct SceneReport {
+    /// What was found.
+    pub comparison: Comparison,
+    /// Page and pictures.
+    pub files: Vec<File>,
+}
+
 /// Compares all formulations of a scene, the control among them, and writes its page and pictures.
 ///
 /// # Errors
 /// Where the scene cannot be compared.
-pub fn scene_files(scene: Scene, settings: &Settings) -> Result<(Comparison, Vec<File>)> {
+pub fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
     let name = scene.name.clone();
     let control = substitution::run(&scene, settings).into_iter().collect();
     let mut comparison = compare(scene, control, settings).with_context(|| format!("scene `{name}`"))?;
@@ -29,14 +38,14 @@ pub fn scene_files(scene: Scene, settings: &Settings) -> Result<(Comparison, Vec
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();
     let page = scene_page(&mut comparison, &links)?;
     files.push(File { path: format!("scenes/{name}.md").into(), text: page });
-    Ok((comparison, files))
+    Ok(SceneReport { comparison, files })
 }
 
-/// Runs the main job.
+/// Runs the main job and returns what to tell the user.
 ///
 /// # Errors
 /// Where a scene is unknown or cannot be compared, or a report cannot be written. Nothing is written then.
-pub fn run(arguments: &JobArguments) -> Result<()> {
+pub fn run(arguments: &JobArguments) -> Result<String> {
     let clock = Instant::now();
     let known: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     if let Some(unknown) = arguments.scenes.iter().find(|s| !known.contains(&s.as_str())) {
@@ -45,8 +54,8 @@ pub fn run(arguments: &JobArguments) -> Result<()> {
     let complete = arguments.scenes.is_empty();
     let names: Vec<&str> = known.into_iter().filter(|n| complete || arguments.scenes.iter().any(|s| s == n)).collect();
     let results = compare_all(&names, arguments.quiet)?;
-    let (comparisons, files): (Vec<Comparison>, Vec<Vec<File>>) = results.into_iter().unzip();
-    let mut files: Vec<File> = files.into_iter().flatten().collect();
+    let mut files: Vec<File> = results.iter().flat_map(|report| report.files.clone()).collect();
+    let comparisons: Vec<Comparison> = results.into_iter().map(|report| report.comparison).collect();
     if complete {
         let provenance = provenance(clock.elapsed().as_secs_f64());
         files.push(File { path: "README.md".into(), text: overview(&comparisons, &provenance) });
@@ -54,58 +63,58 @@ pub fn run(arguments: &JobArguments) -> Result<()> {
         files.push(File { path: "verdicts.json".into(), text });
     }
     write_all(&arguments.out, &files)?;
+    let mut told = String::new();
     for comparison in &comparisons {
         let answer = answer(comparison);
-        println!("{:<24} {}", comparison.scene.name, answer.split_inclusive(". ").next().unwrap_or_default());
+        let first = answer.split_inclusive(". ").next().unwrap_or_default();
+        let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
     }
-    println!("\n{} files in {} after {:.1} s", files.len(), arguments.out.display(), clock.elapsed().as_secs_f64());
-    Ok(())
+    let seconds = clock.elapsed().as_secs_f64();
+    let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), arguments.out.display());
+    Ok(told)
 }
 
 /// Computes the verdicts again and compares them with the committed ones.
 ///
 /// # Errors
 /// Where they differ, with the place and the command that mends it.
-pub fn check(arguments: &ReportsArguments) -> Result<()> {
+pub fn check(arguments: &ReportsArguments) -> Result<String> {
     const MEND: &str = "`cargo run --release` writes the reports anew";
     let path = arguments.out.join("verdicts.json");
     let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}; {MEND}", path.display()))?;
     let old: serde_json::Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
     let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let results = compare_all(&names, true)?;
-    for file in results.iter().flat_map(|(_, files)| files) {
+    for file in results.iter().flat_map(|report| &report.files) {
         let path = arguments.out.join(&file.path);
         if !path.exists() {
             bail!("{} is missing; {MEND}", path.display());
         }
     }
-    let comparisons: Vec<Comparison> = results.into_iter().map(|(comparison, _)| comparison).collect();
+    let comparisons: Vec<Comparison> = results.into_iter().map(|report| report.comparison).collect();
     if let Some(difference) = difference_of_verdicts(&old, &verdicts(&comparisons)) {
         bail!("{} is out of date at {difference}; {MEND}", path.display());
     }
-    println!("{} agrees with a fresh run", path.display());
-    Ok(())
+    Ok(format!("{} agrees with a fresh run\n", path.display()))
 }
 
 /// All scenes, over all processors, in the order of `names`.
-fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<(Comparison, Vec<File>)>> {
+fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(names.len() as u64) };
     bar.set_style(
         ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
     let settings = Settings::default();
     let next = Mutex::new(0..names.len());
-    let done: Mutex<Vec<(usize, Result<(Comparison, Vec<File>)>)>> = Mutex::new(Vec::new());
+    let done: Mutex<Vec<(usize, Result<SceneReport>)>> = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(names.len().max(1));
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
-                loop {
-                    let Some(index) = next.lock().ok().and_then(|mut range| range.next()) else { break };
+                while let Some(index) = next.lock().ok().and_then(|mut range| range.next()) {
                     bar.set_message(names[index].to_string());
-                    let result = catalogue::find(names[index], &[])
-                        .map_err(anyhow::Error::from)
-                        .and_then(|scene| scene_files(scene, &settings));
+                    let scene = catalogue::find(names[index], &[]).map_err(anyhow::Error::from);
+                    let result = scene.and_then(|scene| scene_files(scene, &settings));
                     bar.inc(1);
                     if let Ok(mut done) = done.lock() {
                         done.push((index, result));

@@ -26,7 +26,8 @@ pub fn list() -> String {
 pub fn run(arguments: &ShowArguments) -> Result<String> {
     let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
-    let mut text = format!("{}\n{}\n\n", scene.title, scene.source);
+    let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
+    let mut text = format!("{}\n{source}\n", scene.title);
     let g = &scene.system.graph;
     let print = |e| if arguments.latex { g.latex(e) } else { g.plain(e) };
     let _ = writeln!(text, "L = {}", print(scene.system.lagrangian));

@@ -28,6 +28,9 @@ pub struct Answer {
 /// # Errors
 /// Bad input: the scene, the formulation, the removal, the constants, the times.
 pub fn run(arguments: &SolveArguments) -> Result<Answer> {
+    if !(arguments.tolerance > 0.0 && arguments.tolerance < 1.0) {
+        bail!("--tolerance is {}; it must be above 0 and below 1", arguments.tolerance);
+    }
     let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
     let choice = choice(&scene, arguments)?;
     let settings = Settings {
@@ -200,7 +203,11 @@ fn json_text(
         "scene": scene.name,
         "formulation": choice.formulation,
         "removal": choice.removal.as_ref().map(|r| &r.name),
-        "status": if complaint.is_none() { "completed" } else { "stopped" },
+        "status": match (&motion.ending, complaint) {
+            (Ending::Stopped { .. }, _) => "stopped",
+            (Ending::Completed, Some(_)) => "untrusted",
+            (Ending::Completed, None) => "completed",
+        },
         "cause": complaint,
         "end": motion.end(),
         "free_constants": constants,

@@ -325,6 +325,9 @@ pub(crate) fn ending(equations: &Equations, status: &Status) -> Ending {
             let symbol = equations.states.get(*component).map(|y| equations.graph.name(y.symbol));
             format!("{} is no longer finite", symbol.unwrap_or_default())
         }
+        StopCause::StepTooSmall { step, .. } => {
+            format!("the error asks for steps of {step:.1e}, which no longer move time: a singularity is near")
+        }
         other => other.to_string(),
     };
     Ending::Stopped { t: *t, cause }

@@ -19,7 +19,9 @@ mod start;
 mod system;
 
 pub use compiled::{Compiled, Outputs};
-pub use equations::{Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement};
+pub use equations::{
+    Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
+};
 pub use error::RemovalError;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
 pub use instant::EvaluationFailure;

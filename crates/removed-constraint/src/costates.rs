@@ -64,7 +64,8 @@ impl Costates {
         }
         for (i, p) in self.costates.iter().enumerate() {
             let Some(rate) = p.rate else {
-                let words = "costate identically zero: neither L nor a rate with a costate contains the variable".into();
+                let words =
+                    "costate identically zero: neither L nor a rate with a costate contains the variable".into();
                 equations.left_out.push(LeftOut { variables: vec![p.symbol], words });
                 continue;
             };

@@ -1,7 +1,7 @@
 //! What an expression is made of.
 
 use crate::arena::Node;
-use crate::{Expr, Graph, Symbol};
+use crate::{Expr, Function, Graph, Symbol};
 use std::collections::BTreeSet;
 
 impl Graph {
@@ -28,16 +28,19 @@ impl Graph {
     }
 
     /// Every distinct base that stands in `es` under a negative power, and is not a number: where one
-    /// of them is zero, the expressions are singular.
+    /// of them is zero, the expressions are singular. For every `tan a` also `cos a`.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
     /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
     /// assert_eq!(g.denominators(&[g.div(x, y), g.powi(y, -2)]), [y]);
+    /// let tangent = g.call(symbolic::Function::Tan, x);
+    /// assert_eq!(g.denominators(&[tangent]), [g.call(symbolic::Function::Cos, x)]);
     /// ```
     pub fn denominators(&self, es: &[Expr]) -> Vec<Expr> {
+        let tangents = self.arguments_of(Function::Tan, es).into_iter().map(|e| self.call(Function::Cos, e));
+        let mut bases: BTreeSet<Expr> = tangents.collect();
         let arena = self.arena.borrow();
-        let mut bases = BTreeSet::new();
         for e in arena.reachable(es, |_| true) {
             match arena.node(e) {
                 Node::Product(factors) => {
@@ -50,6 +53,16 @@ impl Graph {
             }
         }
         bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
+    }
+
+    /// Arguments of every call of `function` in `es`.
+    fn arguments_of(&self, function: Function, es: &[Expr]) -> BTreeSet<Expr> {
+        let arena = self.arena.borrow();
+        let argument = |e| match arena.node(e) {
+            Node::Call(f, argument) if *f == function => Some(*argument),
+            _ => None,
+        };
+        arena.reachable(es, |_| true).into_iter().filter_map(argument).collect()
     }
 
     /// Number of distinct nodes reachable from `es`.

@@ -9,7 +9,9 @@ use crate::checks::Outcome;
 /// Longest Rust source, in lines.
 const LINES: usize = 400;
 /// Sources that may be longer, each with its reason.
-const LONGER: [&str; 0] = [];
+const LONGER: [&str; 1] = [
+    "tests/src/references.rs", // numbers, written by validation/referees/references.py
+];
 /// Folders at the root of a file system that hold what belongs to one machine.
 const PLACES: [&str; 12] =
     ["home", "root", "Users", "work", "workspace", "workspaces", "builds", "mnt", "opt", "private", "tmp", "var"];

@@ -43,14 +43,14 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
     };
     let motions = sample(comparison)?;
     let coordinates = &comparison.scene.system.coordinates;
-    let curves = |value: &dyn Fn(&(f64, Vec<f64>)) -> (f64, f64)| -> Vec<Curve> {
+    let curves = |value: &dyn Fn(&Instant) -> (f64, f64)| -> Vec<Curve> {
         let curve =
             |m: &Drawn| Curve { label: m.label.clone(), style: m.style, points: m.points.iter().map(value).collect() };
         motions.iter().map(curve).collect()
     };
     let panels = coordinates.iter().enumerate().map(|(i, c)| Panel {
         y: Axis::linear(format!("{} ({})", c.name, c.unit)),
-        curves: curves(&|(t, q)| (*t, q[i])),
+        curves: curves(&|now| (now.t, now.q[i])),
     });
     let multiples = SmallMultiples {
         title: format!("{}: coordinates over time", comparison.scene.title),
@@ -66,7 +66,7 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
             title: format!("{}: path in the plane", comparison.scene.title),
             x: Axis::linear(format!("x ({})", coordinates[x].unit)),
             y: Axis::linear(format!("y ({})", coordinates[y].unit)),
-            curves: curves(&|(_, q)| (q[x], q[y])),
+            curves: curves(&|now| (now.q[x], now.q[y])),
             aspect: Aspect::Equal,
         };
         add("path", picture.to_svg()?);
@@ -88,7 +88,13 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
 struct Drawn {
     label: String,
     style: Style,
-    points: Vec<(f64, Vec<f64>)>,
+    points: Vec<Instant>,
+}
+
+/// Where a motion is at one time.
+struct Instant {
+    t: f64,
+    q: Vec<f64>,
 }
 
 fn sample(comparison: &mut Comparison) -> Result<Vec<Drawn>> {
@@ -99,7 +105,7 @@ fn sample(comparison: &mut Comparison) -> Result<Vec<Drawn>> {
         let Ok(motion) = &mut run.outcome else { continue };
         let mut points = Vec::new();
         for t in motion.grid(INSTANTS) {
-            points.push((t, motion.at(t)?.coordinates));
+            points.push(Instant { t, q: motion.at(t)?.coordinates });
         }
         motions.push(Drawn { label, style, points });
     }

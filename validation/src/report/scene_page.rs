@@ -48,7 +48,7 @@ pub fn answer(comparison: &Comparison) -> String {
     }
     for &i in &main {
         if let Err(error) = &comparison.runs[i].outcome {
-            sentences.push(format!("{}: no motion, {error}.", label(i)));
+            sentences.push(format!("No motion: {error}."));
         }
     }
     sentences.extend(best_multipliers(comparison));
@@ -95,7 +95,10 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
     let mut page = String::new();
     let scene = &comparison.scene;
     let _ = writeln!(page, "# {}\n\n**{}**\n", scene.title, answer(comparison));
-    let _ = writeln!(page, "{}\n\nSource: {}.", why(comparison), scene.source.trim_end_matches('.'));
+    let _ = writeln!(page, "{}", why(comparison));
+    if !scene.source.is_empty() {
+        let _ = writeln!(page, "\nSource: {}.", scene.source.trim_end_matches('.'));
+    }
     if !scene.notes.is_empty() {
         let _ = writeln!(page, "\n{}", scene.notes);
     }
