@@ -39,11 +39,7 @@ impl Graph {
             *uses.entry(*e).or_default() += 1;
         }
         let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
-        let mut names = Names {
-            prefix,
-            number: 0,
-            definitions: Vec::new(),
-        };
+        let mut names = Names { prefix, number: 0, definitions: Vec::new() };
         for n in order {
             let mut new = arena.rebuild(n, &image);
             if arena.leaves(new) > LONG_LEAVES {
@@ -108,11 +104,7 @@ impl Arena {
                     parts.push((names.name(self, sum), Number::ONE));
                 }
                 let sum = self.linear(constant, parts);
-                if self.leaves(sum) > LONG_LEAVES {
-                    self.split_long(sum, names)
-                } else {
-                    sum
-                }
+                if self.leaves(sum) > LONG_LEAVES { self.split_long(sum, names) } else { sum }
             }
             Node::Product(factors) => {
                 let mut named = Vec::with_capacity(factors.len());

@@ -131,20 +131,13 @@ impl Arena {
         if let Node::Symbol(s) = node {
             return self.intern_set(vec![*s]);
         }
-        let mut sets: Vec<u32> = node
-            .children()
-            .iter()
-            .map(|c| self.dependencies[c.0 as usize])
-            .collect();
+        let mut sets: Vec<u32> = node.children().iter().map(|c| self.dependencies[c.0 as usize]).collect();
         sets.sort_unstable();
         sets.dedup();
         if let [only] = sets[..] {
             return only;
         }
-        let mut symbols: Vec<Symbol> = sets
-            .iter()
-            .flat_map(|&s| self.sets[s as usize].iter().copied())
-            .collect();
+        let mut symbols: Vec<Symbol> = sets.iter().flat_map(|&s| self.sets[s as usize].iter().copied()).collect();
         symbols.sort_unstable();
         symbols.dedup();
         self.intern_set(symbols)
@@ -168,11 +161,7 @@ impl Arena {
         while let Some(e) = stack.pop() {
             if seen.insert(e) {
                 let children = self.node(e).children();
-                stack.extend(
-                    children
-                        .into_iter()
-                        .filter(|c| enter(*c) && !seen.contains(c)),
-                );
+                stack.extend(children.into_iter().filter(|c| enter(*c) && !seen.contains(c)));
             }
         }
         let mut order: Vec<Expr> = seen.into_iter().collect();

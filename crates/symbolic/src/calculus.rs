@@ -28,9 +28,7 @@ impl Graph {
 
     /// The matrix ∂eᵢ/∂sⱼ: a row for each expression, a column for each symbol.
     pub fn jacobian(&self, es: &[Expr], symbols: &[Symbol]) -> Matrix {
-        Matrix::from_fn(es.len(), symbols.len(), |i, j| {
-            self.derivative(es[i], symbols[j])
-        })
+        Matrix::from_fn(es.len(), symbols.len(), |i, j| self.derivative(es[i], symbols[j]))
     }
 
     /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs. Explicit time has to be among
@@ -70,9 +68,7 @@ impl Graph {
     pub fn substitute_all(&self, es: &[Expr], map: &HashMap<Symbol, Expr>) -> Vec<Expr> {
         let mut arena = self.arena.borrow_mut();
         let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
-        let touched = arena.reachable(es, |e| {
-            arena.dependencies(e).iter().any(|s| map.contains_key(s))
-        });
+        let touched = arena.reachable(es, |e| arena.dependencies(e).iter().any(|s| map.contains_key(s)));
         for e in touched {
             let new = match arena.node(e) {
                 Node::Symbol(s) => map[s],
@@ -80,9 +76,7 @@ impl Graph {
             };
             image.insert(e, new);
         }
-        es.iter()
-            .map(|e| image.get(e).copied().unwrap_or(*e))
-            .collect()
+        es.iter().map(|e| image.get(e).copied().unwrap_or(*e)).collect()
     }
 }
 
@@ -94,9 +88,7 @@ impl Arena {
         if let Some(d) = self.derivatives.get(&(e, s)) {
             return *d;
         }
-        let open = self.reachable(&[e], |n| {
-            self.depends_on(n, s) && !self.derivatives.contains_key(&(n, s))
-        });
+        let open = self.reachable(&[e], |n| self.depends_on(n, s) && !self.derivatives.contains_key(&(n, s)));
         for n in open {
             let d = self.derivative_of_node(n, s);
             self.derivatives.insert((n, s), d);
@@ -127,10 +119,7 @@ impl Arena {
                         None => rest.push((*base, Rational::integer(-1))),
                     }
                     rest.push((inner, Rational::ONE));
-                    parts.push((
-                        self.power_product(Number::Exact(*exponent), rest),
-                        Number::ONE,
-                    ));
+                    parts.push((self.power_product(Number::Exact(*exponent), rest), Number::ONE));
                 }
                 self.linear(Number::ZERO, parts)
             }
@@ -169,11 +158,7 @@ impl Arena {
     }
 
     fn known(&self, e: Expr, s: Symbol) -> Expr {
-        if self.depends_on(e, s) {
-            self.derivatives[&(e, s)]
-        } else {
-            Self::ZERO
-        }
+        if self.depends_on(e, s) { self.derivatives[&(e, s)] } else { Self::ZERO }
     }
 
     pub(crate) fn times(&mut self, factors: &[Expr]) -> Expr {
@@ -188,10 +173,7 @@ impl Arena {
         // constant + c·square, to a power
         let mut inverse = |constant: i64, c: i64, of: Expr, exponent: Rational, sign: i64| {
             let squared = square(self, of);
-            let inner = self.linear(
-                Number::integer(constant),
-                vec![(squared, Number::integer(c))],
-            );
+            let inner = self.linear(Number::integer(constant), vec![(squared, Number::integer(c))]);
             self.power_product(Number::integer(sign), vec![(inner, exponent)])
         };
         let minus_one = Rational::integer(-1);

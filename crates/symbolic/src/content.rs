@@ -32,11 +32,7 @@ pub(crate) fn content(constant: Number, terms: &[(Expr, Number)]) -> Number {
     {
         return *c;
     }
-    let sign = if sign_is_negative(terms) {
-        Number::MINUS_ONE
-    } else {
-        Number::ONE
-    };
+    let sign = if sign_is_negative(terms) { Number::MINUS_ONE } else { Number::ONE };
     let mut numerator = 0_i64;
     let mut denominator = 1_i64;
     let numbers = || terms.iter().map(|(_, c)| *c).chain([constant]);

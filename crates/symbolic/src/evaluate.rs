@@ -45,11 +45,8 @@ impl Graph {
         outputs: &[Expr],
         constants: &HashMap<Symbol, f64>,
     ) -> Result<Tape, CompileError> {
-        let values: HashMap<Symbol, Expr> = constants
-            .iter()
-            .filter(|(s, _)| !inputs.contains(s))
-            .map(|(s, x)| (*s, self.number(*x)))
-            .collect();
+        let values: HashMap<Symbol, Expr> =
+            constants.iter().filter(|(s, _)| !inputs.contains(s)).map(|(s, x)| (*s, self.number(*x))).collect();
         let folded = self.substitute_all(outputs, &values);
         self.check_bound(&folded, |s| inputs.contains(&s))?;
         let arena = self.arena.borrow();
@@ -118,11 +115,7 @@ impl Graph {
     }
 
     fn not_finite(&self, e: Expr) -> CompileError {
-        let mut expression = if self.size(&[e]) > 50 {
-            "…".to_owned()
-        } else {
-            self.plain(e)
-        };
+        let mut expression = if self.size(&[e]) > 50 { "…".to_owned() } else { self.plain(e) };
         if let Some((end, _)) = expression.char_indices().nth(100) {
             expression.truncate(end);
             expression.push('…');
@@ -146,12 +139,10 @@ impl Arena {
             }
             Node::Product(factors) => factors
                 .iter()
-                .map(
-                    |(b, r)| match r.as_integer().and_then(|n| i32::try_from(n).ok()) {
-                        Some(n) => of(b).powi(n),
-                        None => of(b).powf(r.to_f64()),
-                    },
-                )
+                .map(|(b, r)| match r.as_integer().and_then(|n| i32::try_from(n).ok()) {
+                    Some(n) => of(b).powi(n),
+                    None => of(b).powf(r.to_f64()),
+                })
                 .product(),
             Node::Power(base, exponent) => of(base).powf(of(exponent)),
             Node::Call(function, argument) => function.apply(of(argument)),

@@ -104,9 +104,7 @@ impl Graph {
     /// assert_eq!(g.ratio(2, 4), g.number(0.5));
     /// ```
     pub fn ratio(&self, numerator: i64, denominator: i64) -> Expr {
-        self.arena
-            .borrow_mut()
-            .number(Number::ratio(numerator, denominator))
+        self.arena.borrow_mut().number(Number::ratio(numerator, denominator))
     }
 
     /// The number x; exactly the fraction of its shortest decimal where that fits, so that
@@ -212,11 +210,7 @@ impl Graph {
     /// # Panics
     /// If the two differ in length.
     pub fn dot(&self, a: &[Expr], b: &[Expr]) -> Expr {
-        assert_eq!(
-            a.len(),
-            b.len(),
-            "the dot product needs two vectors of the same length"
-        );
+        assert_eq!(a.len(), b.len(), "the dot product needs two vectors of the same length");
         let terms: Vec<Expr> = a.iter().zip(b).map(|(a, b)| self.mul(*a, *b)).collect();
         self.sum(&terms)
     }
@@ -226,11 +220,7 @@ impl Graph {
     /// # Panics
     /// If `v` does not have as many entries as `m` has columns.
     pub fn mat_vec(&self, m: &Matrix, v: &[Expr]) -> Vec<Expr> {
-        assert_eq!(
-            m.columns(),
-            v.len(),
-            "a matrix times a vector of another length"
-        );
+        assert_eq!(m.columns(), v.len(), "a matrix times a vector of another length");
         (0..m.rows()).map(|i| self.dot(m.row(i), v)).collect()
     }
 
@@ -239,14 +229,8 @@ impl Graph {
     /// # Panics
     /// If `v` does not have as many entries as `m` has rows.
     pub fn transpose_vec(&self, m: &Matrix, v: &[Expr]) -> Vec<Expr> {
-        assert_eq!(
-            m.rows(),
-            v.len(),
-            "a transposed matrix times a vector of another length"
-        );
-        (0..m.columns())
-            .map(|j| self.dot(&m.column(j), v))
-            .collect()
+        assert_eq!(m.rows(), v.len(), "a transposed matrix times a vector of another length");
+        (0..m.columns()).map(|j| self.dot(&m.column(j), v)).collect()
     }
 
     /// a b
@@ -254,14 +238,8 @@ impl Graph {
     /// # Panics
     /// If `b` does not have as many rows as `a` has columns.
     pub fn mat_mul(&self, a: &Matrix, b: &Matrix) -> Matrix {
-        assert_eq!(
-            a.columns(),
-            b.rows(),
-            "the product of two matrices that do not fit"
-        );
+        assert_eq!(a.columns(), b.rows(), "the product of two matrices that do not fit");
         let columns: Vec<Vec<Expr>> = (0..b.columns()).map(|j| b.column(j)).collect();
-        Matrix::from_fn(a.rows(), b.columns(), |i, j| {
-            self.dot(a.row(i), &columns[j])
-        })
+        Matrix::from_fn(a.rows(), b.columns(), |i, j| self.dot(a.row(i), &columns[j]))
     }
 }

@@ -64,10 +64,7 @@ impl Graph {
     /// assert_eq!(g.vanishes(rest, &HashMap::new()), Vanishing::Exactly);
     /// ```
     pub fn vanishes(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        let values = constants
-            .iter()
-            .map(|(s, x)| (*s, self.number(*x)))
-            .collect();
+        let values = constants.iter().map(|(s, x)| (*s, self.number(*x))).collect();
         let e = self.substitute(e, &values);
         if self.is_zero(e) {
             return Vanishing::Exactly;
@@ -77,11 +74,7 @@ impl Graph {
             return sampled;
         }
         let normal = self.arena.borrow_mut().normal_numerator(e, TERM_LIMIT);
-        if normal.is_some_and(|n| self.is_zero(n)) {
-            Vanishing::Exactly
-        } else {
-            sampled
-        }
+        if normal.is_some_and(|n| self.is_zero(n)) { Vanishing::Exactly } else { sampled }
     }
 
     /// The numerical test.
@@ -114,11 +107,7 @@ impl Graph {
             }
             points += 1;
         }
-        if points == 0 {
-            Vanishing::Undecided { tried }
-        } else {
-            Vanishing::Numerically { points }
-        }
+        if points == 0 { Vanishing::Undecided { tried } } else { Vanishing::Numerically { points } }
     }
 }
 
@@ -155,30 +144,21 @@ struct Bounded {
 impl Bounded {
     /// f(x), where `slope` is f'(x)
     fn mapped(self, value: f64, slope: f64) -> Self {
-        Self {
-            value,
-            magnitude: value.abs() + slope.abs() * self.magnitude,
-        }
+        Self { value, magnitude: value.abs() + slope.abs() * self.magnitude }
     }
 }
 
 impl Add for Bounded {
     type Output = Self;
     fn add(self, b: Self) -> Self {
-        Self {
-            value: self.value + b.value,
-            magnitude: self.magnitude + b.magnitude,
-        }
+        Self { value: self.value + b.value, magnitude: self.magnitude + b.magnitude }
     }
 }
 
 impl Sub for Bounded {
     type Output = Self;
     fn sub(self, b: Self) -> Self {
-        Self {
-            value: self.value - b.value,
-            magnitude: self.magnitude + b.magnitude,
-        }
+        Self { value: self.value - b.value, magnitude: self.magnitude + b.magnitude }
     }
 }
 
@@ -186,10 +166,7 @@ impl Mul for Bounded {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
         let magnitude = self.magnitude * b.value.abs() + self.value.abs() * b.magnitude;
-        Self {
-            value: self.value * b.value,
-            magnitude,
-        }
+        Self { value: self.value * b.value, magnitude }
     }
 }
 
@@ -205,19 +182,13 @@ impl Div for Bounded {
 impl Neg for Bounded {
     type Output = Self;
     fn neg(self) -> Self {
-        Self {
-            value: -self.value,
-            magnitude: self.magnitude,
-        }
+        Self { value: -self.value, magnitude: self.magnitude }
     }
 }
 
 impl Scalar for Bounded {
     fn from_f64(x: f64) -> Self {
-        Self {
-            value: x,
-            magnitude: x.abs(),
-        }
+        Self { value: x, magnitude: x.abs() }
     }
     fn from_ratio(numerator: i64, denominator: i64) -> Self {
         Self::from_f64(numerator as f64 / denominator as f64)
@@ -247,31 +218,19 @@ impl Scalar for Bounded {
         self.mapped(tangent, 1.0 - tangent * tangent)
     }
     fn asin(self) -> Self {
-        self.mapped(
-            self.value.asin(),
-            1.0 / (1.0 - self.value * self.value).sqrt(),
-        )
+        self.mapped(self.value.asin(), 1.0 / (1.0 - self.value * self.value).sqrt())
     }
     fn acos(self) -> Self {
-        self.mapped(
-            self.value.acos(),
-            1.0 / (1.0 - self.value * self.value).sqrt(),
-        )
+        self.mapped(self.value.acos(), 1.0 / (1.0 - self.value * self.value).sqrt())
     }
     fn atan(self) -> Self {
         self.mapped(self.value.atan(), 1.0 / (1.0 + self.value * self.value))
     }
     fn asinh(self) -> Self {
-        self.mapped(
-            self.value.asinh(),
-            1.0 / (1.0 + self.value * self.value).sqrt(),
-        )
+        self.mapped(self.value.asinh(), 1.0 / (1.0 + self.value * self.value).sqrt())
     }
     fn acosh(self) -> Self {
-        self.mapped(
-            self.value.acosh(),
-            1.0 / (self.value * self.value - 1.0).sqrt(),
-        )
+        self.mapped(self.value.acosh(), 1.0 / (self.value * self.value - 1.0).sqrt())
     }
     fn atanh(self) -> Self {
         self.mapped(self.value.atanh(), 1.0 / (1.0 - self.value * self.value))
@@ -287,23 +246,13 @@ impl Scalar for Bounded {
         let value = self.value.powf(exponent.value);
         let by_base = self.magnitude * (exponent.value * value / self.value).abs();
         let by_exponent = exponent.magnitude * (value * self.value.ln()).abs();
-        let by_exponent = if by_exponent.is_nan() {
-            0.0
-        } else {
-            by_exponent
-        };
-        Self {
-            value,
-            magnitude: value.abs() + by_base + by_exponent,
-        }
+        let by_exponent = if by_exponent.is_nan() { 0.0 } else { by_exponent };
+        Self { value, magnitude: value.abs() + by_base + by_exponent }
     }
     fn atan2(self, x: Self) -> Self {
         let value = self.value.atan2(x.value);
         let square = x.value * x.value + self.value * self.value;
         let slopes = x.value.abs() * self.magnitude + self.value.abs() * x.magnitude;
-        Self {
-            value,
-            magnitude: value.abs() + slopes / square,
-        }
+        Self { value, magnitude: value.abs() + slopes / square }
     }
 }

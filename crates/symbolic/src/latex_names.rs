@@ -14,16 +14,8 @@ pub(crate) fn latex_name(name: &str) -> String {
         3 => format!(r"\dddot{{{letter}}}"),
         n => format!(r"{{{letter}}}^{{({n})}}"),
     };
-    let parts: Vec<String> = subscript
-        .split('_')
-        .filter(|part| !part.is_empty())
-        .map(word)
-        .collect();
-    if parts.is_empty() {
-        dotted
-    } else {
-        format!("{dotted}_{{{}}}", parts.join(", "))
-    }
+    let parts: Vec<String> = subscript.split('_').filter(|part| !part.is_empty()).map(word).collect();
+    if parts.is_empty() { dotted } else { format!("{dotted}_{{{}}}", parts.join(", ")) }
 }
 
 /// Base and subscript.
@@ -38,11 +30,7 @@ fn split(stem: &str) -> (&str, &str) {
         };
     }
     let base = stem.trim_end_matches(|c: char| c.is_ascii_digit());
-    if base.is_empty() {
-        (stem, "")
-    } else {
-        stem.split_at(base.len())
-    }
+    if base.is_empty() { (stem, "") } else { stem.split_at(base.len()) }
 }
 
 fn word(word: &str) -> String {
@@ -63,10 +51,9 @@ fn word(word: &str) -> String {
 
 fn greek(word: &str) -> Option<String> {
     const LETTERS: [&str; 34] = [
-        "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu",
-        "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "chi", "psi", "omega", "Gamma",
-        "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi", "Omega",
-        "vartheta", "varphi",
+        "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi", "pi",
+        "rho", "sigma", "tau", "upsilon", "chi", "psi", "omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi",
+        "Sigma", "Upsilon", "Phi", "Psi", "Omega", "vartheta", "varphi",
     ];
     match word {
         "phi" => Some(r"\varphi".to_owned()),

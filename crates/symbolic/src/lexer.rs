@@ -42,19 +42,9 @@ pub(crate) fn token_at(text: &str, at: usize) -> Result<Spanned, Fault> {
         start += 1;
     }
     let Some(&first) = bytes.get(start) else {
-        return Ok(Spanned {
-            token: Token::End,
-            start: text.len(),
-            end: text.len(),
-        });
+        return Ok(Spanned { token: Token::End, start: text.len(), end: text.len() });
     };
-    let symbol = |token, length| {
-        Ok(Spanned {
-            token,
-            start,
-            end: start + length,
-        })
-    };
+    let symbol = |token, length| Ok(Spanned { token, start, end: start + length });
     match first {
         b'+' => symbol(Token::Plus, 1),
         b'-' => symbol(Token::Minus, 1),
@@ -79,15 +69,8 @@ pub(crate) fn token_at(text: &str, at: usize) -> Result<Spanned, Fault> {
         }
         _ => {
             let found = text[start..].chars().next().unwrap_or('\0');
-            let kind = ParseErrorKind::UnexpectedCharacter {
-                found,
-                hint: hint(found),
-            };
-            Err(Fault {
-                kind,
-                start,
-                end: start + found.len_utf8(),
-            })
+            let kind = ParseErrorKind::UnexpectedCharacter { found, hint: hint(found) };
+            Err(Fault { kind, start, end: start + found.len_utf8() })
         }
     }
 }
@@ -114,15 +97,9 @@ fn number(text: &str, start: usize) -> Result<Spanned, Fault> {
     }
     let literal = &text[start..end];
     match Number::from_decimal(literal) {
-        Some(n) => Ok(Spanned {
-            token: Token::Number(n),
-            start,
-            end,
-        }),
+        Some(n) => Ok(Spanned { token: Token::Number(n), start, end }),
         None => {
-            let kind = ParseErrorKind::NumberOutOfRange {
-                literal: literal.to_owned(),
-            };
+            let kind = ParseErrorKind::NumberOutOfRange { literal: literal.to_owned() };
             Err(Fault { kind, start, end })
         }
     }

@@ -9,18 +9,11 @@ use rustc_hash::FxHashMap;
 
 /// The program that computes `outputs`, and the value of each.
 pub(crate) fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> (Program, Vec<Id>) {
-    let mut lowering = Lowering {
-        arena,
-        program: Program::default(),
-        values: FxHashMap::default(),
-    };
+    let mut lowering = Lowering { arena, program: Program::default(), values: FxHashMap::default() };
     for (i, s) in inputs.iter().enumerate() {
         let index = u32::try_from(i).expect("fewer than 2^32 inputs");
         let input = lowering.program.push(Value::Input(index));
-        lowering
-            .values
-            .entry(Leaf::Symbol(*s))
-            .or_insert(Parts::of(input));
+        lowering.values.entry(Leaf::Symbol(*s)).or_insert(Parts::of(input));
     }
     for e in arena.reachable(outputs, |_| true) {
         let parts = lowering.node(e);
@@ -48,10 +41,7 @@ struct Parts {
 
 impl Parts {
     fn of(varying: Id) -> Self {
-        Self {
-            constant: None,
-            varying: Some(varying),
-        }
+        Self { constant: None, varying: Some(varying) }
     }
 }
 
@@ -64,34 +54,14 @@ struct Lowering<'a> {
 impl Lowering<'_> {
     fn whole(&mut self, e: Expr) -> Id {
         match self.values[&Leaf::Node(e)] {
-            Parts {
-                constant: None,
-                varying: None,
-            } => self.program.constant(Number::ONE),
-            Parts {
-                constant: Some(v),
-                varying: None,
-            }
-            | Parts {
-                constant: None,
-                varying: Some(v),
-            } => v,
-            Parts {
-                constant: Some(a),
-                varying: Some(b),
-            } => self.program.push(Value::Mul(a, b)),
+            Parts { constant: None, varying: None } => self.program.constant(Number::ONE),
+            Parts { constant: Some(v), varying: None } | Parts { constant: None, varying: Some(v) } => v,
+            Parts { constant: Some(a), varying: Some(b) } => self.program.push(Value::Mul(a, b)),
         }
     }
 
     fn parts(&self, v: Id) -> Parts {
-        if self.program.is_constant(v) {
-            Parts {
-                constant: Some(v),
-                varying: None,
-            }
-        } else {
-            Parts::of(v)
-        }
+        if self.program.is_constant(v) { Parts { constant: Some(v), varying: None } } else { Parts::of(v) }
     }
 
     fn node(&mut self, e: Expr) -> Parts {
@@ -136,10 +106,7 @@ impl Lowering<'_> {
             groups[place].1.push((c.is_negative(), varying));
         }
         if !constant.is_zero() {
-            rest.push((
-                constant.is_negative(),
-                self.program.constant(constant.abs()),
-            ));
+            rest.push((constant.is_negative(), self.program.constant(constant.abs())));
         }
         let mut total: Vec<Signed> = Vec::new();
         for (scale, members) in groups {
@@ -202,25 +169,16 @@ impl Lowering<'_> {
         let mut sides = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
         for (base, exponent) in factors {
             let v = self.whole(*base);
-            let side =
-                2 * usize::from(self.program.is_constant(v)) + usize::from(exponent.is_negative());
+            let side = 2 * usize::from(self.program.is_constant(v)) + usize::from(exponent.is_negative());
             let power = self.positive_power(v, *exponent);
             sides[side].push(power);
         }
         let [above, below, constant_above, constant_below] = sides;
-        Parts {
-            constant: self.quotient(&constant_above, &constant_below),
-            varying: self.quotient(&above, &below),
-        }
+        Parts { constant: self.quotient(&constant_above, &constant_below), varying: self.quotient(&above, &below) }
     }
 
     fn quotient(&mut self, above: &[Id], below: &[Id]) -> Option<Id> {
-        let mut multiply = |factors: &[Id]| {
-            factors
-                .iter()
-                .copied()
-                .reduce(|a, b| self.program.push(Value::Mul(a, b)))
-        };
+        let mut multiply = |factors: &[Id]| factors.iter().copied().reduce(|a, b| self.program.push(Value::Mul(a, b)));
         match (multiply(above), multiply(below)) {
             (above, None) => above,
             (None, Some(b)) => Some(self.program.push(Value::Recip(b))),
@@ -242,11 +200,7 @@ impl Lowering<'_> {
                 self.program.push(Value::Mul(whole, root))
             }
             _ => {
-                let exponent = if exponent.is_negative() {
-                    exponent.neg()
-                } else {
-                    exponent
-                };
+                let exponent = if exponent.is_negative() { exponent.neg() } else { exponent };
                 let exponent = self.program.constant(Number::Exact(exponent));
                 self.program.push(Value::Pow(v, exponent))
             }

@@ -25,35 +25,19 @@ impl Matrix {
     /// If there are not exactly `rows · columns` entries.
     pub fn new(rows: usize, columns: usize, entries: Vec<Expr>) -> Self {
         let count = entries.len();
-        assert_eq!(
-            rows * columns,
-            count,
-            "a {rows}×{columns} matrix was given {count} entries"
-        );
-        Self {
-            rows,
-            columns,
-            entries,
-        }
+        assert_eq!(rows * columns, count, "a {rows}×{columns} matrix was given {count} entries");
+        Self { rows, columns, entries }
     }
 
     /// The matrix with `entry(i, j)` in row i, column j.
-    pub fn from_fn(
-        rows: usize,
-        columns: usize,
-        mut entry: impl FnMut(usize, usize) -> Expr,
-    ) -> Self {
+    pub fn from_fn(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> Expr) -> Self {
         let mut entries = Vec::with_capacity(rows * columns);
         for i in 0..rows {
             for j in 0..columns {
                 entries.push(entry(i, j));
             }
         }
-        Self {
-            rows,
-            columns,
-            entries,
-        }
+        Self { rows, columns, entries }
     }
 
     /// Number of rows.
@@ -98,11 +82,7 @@ impl std::ops::Index<(usize, usize)> for Matrix {
     type Output = Expr;
 
     fn index(&self, (i, j): (usize, usize)) -> &Expr {
-        assert!(
-            j < self.columns,
-            "column {j} of a matrix with {} columns",
-            self.columns
-        );
+        assert!(j < self.columns, "column {j} of a matrix with {} columns", self.columns);
         &self.row(i)[j]
     }
 }

@@ -65,10 +65,7 @@ impl Arena {
         Some(match function {
             Function::Sin | Function::Sinh => sine,
             Function::Cos | Function::Cosh => cosine,
-            _ => self.power_product(
-                Number::ONE,
-                vec![(sine, Rational::ONE), (cosine, Rational::integer(-1))],
-            ),
+            _ => self.power_product(Number::ONE, vec![(sine, Rational::ONE), (cosine, Rational::integer(-1))]),
         })
     }
 
@@ -96,11 +93,7 @@ impl Arena {
             let unit = self.scale(unit, *t);
             let single = self.plain_pair(unit, hyperbolic);
             for _ in 0..times.abs() {
-                let part = if times < 0 {
-                    (self.scale(Number::MINUS_ONE, single.0), single.1)
-                } else {
-                    single
-                };
+                let part = if times < 0 { (self.scale(Number::MINUS_ONE, single.0), single.1) } else { single };
                 total = self.added_angles(total, part, hyperbolic);
             }
         }
@@ -117,11 +110,7 @@ impl Arena {
 
     /// sin(a+b) = sin a cos b + cos a sin b, cos(a+b) = cos a cos b ∓ sin a sin b
     fn added_angles(&mut self, a: (Expr, Expr), b: (Expr, Expr), hyperbolic: bool) -> (Expr, Expr) {
-        let sign = if hyperbolic {
-            Number::ONE
-        } else {
-            Number::MINUS_ONE
-        };
+        let sign = if hyperbolic { Number::ONE } else { Number::MINUS_ONE };
         let (sc, cs) = (self.multiply_out(a.0, b.1), self.multiply_out(a.1, b.0));
         let (cc, ss) = (self.multiply_out(a.1, b.1), self.multiply_out(a.0, b.0));
         let sine = self.linear(Number::ZERO, vec![(sc, Number::ONE), (cs, Number::ONE)]);
@@ -148,12 +137,7 @@ impl Arena {
         image.get(&e).copied().unwrap_or(e)
     }
 
-    fn replace_even_sine(
-        &mut self,
-        base: Expr,
-        exponent: Rational,
-        factors: &mut Vec<(Expr, Rational)>,
-    ) {
+    fn replace_even_sine(&mut self, base: Expr, exponent: Rational, factors: &mut Vec<(Expr, Rational)>) {
         let (function, argument, sign) = match *self.node(base) {
             Node::Call(Function::Sin, u) => (Function::Cos, u, 1),
             Node::Call(Function::Sinh, u) => (Function::Cosh, u, -1),
@@ -164,10 +148,7 @@ impl Arena {
         };
         let cosine = self.call(function, argument);
         let square = self.times(&[cosine, cosine]);
-        let replacement = self.linear(
-            Number::integer(sign),
-            vec![(square, Number::integer(-sign))],
-        );
+        let replacement = self.linear(Number::integer(sign), vec![(square, Number::integer(-sign))]);
         factors.push((replacement, Rational::integer(n / 2)));
         factors.push((base, Rational::integer(n % 2)));
     }

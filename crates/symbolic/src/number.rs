@@ -98,10 +98,7 @@ impl Rational {
             _ => {}
         }
         let n = n?;
-        Self::new(
-            base.numerator().checked_pow(n)?,
-            base.denominator().checked_pow(n)?,
-        )
+        Self::new(base.numerator().checked_pow(n)?, base.denominator().checked_pow(n)?)
     }
 
     /// The exact `root`-th root of a positive fraction, if it is rational.
@@ -125,8 +122,7 @@ impl Rational {
         if self.numerator() <= 0 {
             return None;
         }
-        self.root(exponent.denominator())?
-            .powi(exponent.numerator())
+        self.root(exponent.denominator())?.powi(exponent.numerator())
     }
 
     pub(crate) fn to_f64(self) -> f64 {
@@ -293,11 +289,8 @@ fn exact_decimal(literal: &str) -> Option<Rational> {
     };
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let fraction = fraction.trim_end_matches('0');
-    let digits: i64 = if fraction.is_empty() {
-        whole.parse().ok()?
-    } else {
-        format!("{whole}{fraction}").parse().ok()?
-    };
+    let digits: i64 =
+        if fraction.is_empty() { whole.parse().ok()? } else { format!("{whole}{fraction}").parse().ok()? };
     let scale = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
     if scale >= 0 {
         if digits == 0 {
@@ -340,10 +333,7 @@ mod tests {
     #[test]
     fn rational_roots_are_found() {
         let half = Rational::new(1, 2).unwrap();
-        assert_eq!(
-            Rational::new(49, 100).unwrap().pow(half),
-            Rational::new(7, 10)
-        );
+        assert_eq!(Rational::new(49, 100).unwrap().pow(half), Rational::new(7, 10));
         assert_eq!(Rational::integer(2).pow(half), None);
         let fine = Rational::new(1, 1 << 40).unwrap();
         assert_eq!(Rational::ONE.pow(fine), Some(Rational::ONE));

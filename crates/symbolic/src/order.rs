@@ -67,13 +67,11 @@ impl Arena {
         if a.0 == b.0 {
             return b.1.cmp(&a.1);
         }
-        self.class(a.0)
-            .cmp(&self.class(b.0))
-            .then_with(|| match (self.node(a.0), self.node(b.0)) {
-                (Node::Call(f, x), Node::Call(h, y)) if depth > 0 => self
-                    .compare(*x, *y, depth - 1)
-                    .then((*f as u8).cmp(&(*h as u8))),
-                _ => a.0.cmp(&b.0),
-            })
+        self.class(a.0).cmp(&self.class(b.0)).then_with(|| match (self.node(a.0), self.node(b.0)) {
+            (Node::Call(f, x), Node::Call(h, y)) if depth > 0 => {
+                self.compare(*x, *y, depth - 1).then((*f as u8).cmp(&(*h as u8)))
+            }
+            _ => a.0.cmp(&b.0),
+        })
     }
 }

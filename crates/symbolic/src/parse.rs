@@ -29,20 +29,8 @@ impl Graph {
         scope: &dyn Fn(&str) -> Option<Expr>,
         known: &[String],
     ) -> Result<Expr, ParseError> {
-        let start = Spanned {
-            token: Token::End,
-            start: 0,
-            end: 0,
-        };
-        let mut parser = Parser {
-            graph: self,
-            text,
-            scope,
-            known,
-            next: start,
-            last: 0,
-            depth: 0,
-        };
+        let start = Spanned { token: Token::End, start: 0, end: 0 };
+        let mut parser = Parser { graph: self, text, scope, known, next: start, last: 0, depth: 0 };
         parser.formula().map_err(|fault| ParseError {
             kind: fault.kind,
             text: text.to_owned(),
@@ -75,11 +63,7 @@ impl<'a> Parser<'a> {
     }
 
     fn fault(&self, kind: ParseErrorKind, at: Spanned) -> Fault {
-        Fault {
-            kind,
-            start: at.start,
-            end: at.end,
-        }
+        Fault { kind, start: at.start, end: at.end }
     }
 
     fn unexpected(&self, expected: &'static str) -> Fault {
@@ -96,11 +80,7 @@ impl<'a> Parser<'a> {
 
     fn finite(&self, e: Expr, start: usize) -> Result<Expr, Fault> {
         match self.graph.as_number(e) {
-            Some(x) if !x.is_finite() => Err(Fault {
-                kind: ParseErrorKind::NotFinite,
-                start,
-                end: self.last,
-            }),
+            Some(x) if !x.is_finite() => Err(Fault { kind: ParseErrorKind::NotFinite, start, end: self.last }),
             _ => Ok(e),
         }
     }
@@ -108,11 +88,7 @@ impl<'a> Parser<'a> {
     fn formula(&mut self) -> Result<Expr, Fault> {
         self.advance()?;
         if self.next.token == Token::End {
-            return Err(Fault {
-                kind: ParseErrorKind::Empty,
-                start: 0,
-                end: self.text.len(),
-            });
+            return Err(Fault { kind: ParseErrorKind::Empty, start: 0, end: self.text.len() });
         }
         let e = self.sum()?;
         match self.next.token {
@@ -154,17 +130,9 @@ impl<'a> Parser<'a> {
             let factor = self.signed()?;
             if divide && self.graph.is_zero(factor) {
                 let kind = ParseErrorKind::DivisionByZero;
-                return Err(Fault {
-                    kind,
-                    start: place,
-                    end: self.last,
-                });
+                return Err(Fault { kind, start: place, end: self.last });
             }
-            factors.push(if divide {
-                self.graph.powi(factor, -1)
-            } else {
-                factor
-            });
+            factors.push(if divide { self.graph.powi(factor, -1) } else { factor });
         }
         if let [only] = factors[..] {
             return Ok(only);
@@ -195,20 +163,12 @@ impl<'a> Parser<'a> {
         let exponent = self.nested(operator, Self::signed)?;
         let negative = self.graph.as_number(exponent).is_some_and(|x| x < 0.0);
         if negative && self.graph.is_zero(base) {
-            return Err(Fault {
-                kind: ParseErrorKind::DivisionByZero,
-                start,
-                end: self.last,
-            });
+            return Err(Fault { kind: ParseErrorKind::DivisionByZero, start, end: self.last });
         }
         self.finite(self.graph.pow(base, exponent), start)
     }
 
-    fn nested<T>(
-        &mut self,
-        at: Spanned,
-        read: impl FnOnce(&mut Self) -> Result<T, Fault>,
-    ) -> Result<T, Fault> {
+    fn nested<T>(&mut self, at: Spanned, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
         if self.depth == DEPTH_LIMIT {
             return Err(self.fault(ParseErrorKind::TooDeep { limit: DEPTH_LIMIT }, at));
         }
@@ -227,11 +187,7 @@ impl<'a> Parser<'a> {
             }
             Token::Name => {
                 self.advance()?;
-                if self.next.token == Token::Open {
-                    self.call(token)?
-                } else {
-                    self.variable(token)?
-                }
+                if self.next.token == Token::Open { self.call(token)? } else { self.variable(token)? }
             }
             Token::Open => {
                 self.advance()?;
@@ -241,14 +197,8 @@ impl<'a> Parser<'a> {
             }
             _ => return Err(self.unexpected("a number, a name or `(`")),
         };
-        if matches!(
-            self.next.token,
-            Token::Number(_) | Token::Name | Token::Open
-        ) {
-            let left = self.slice(Spanned {
-                end: self.last,
-                ..token
-            });
+        if matches!(self.next.token, Token::Number(_) | Token::Name | Token::Open) {
+            let left = self.slice(Spanned { end: self.last, ..token });
             let left = if left.len() <= 20 { left } else { "…" }.to_owned();
             let right = match self.next.token {
                 Token::Open => "(…)".to_owned(),
@@ -276,9 +226,7 @@ impl<'a> Parser<'a> {
         let kind = if name == "pi" {
             return Ok(self.graph.number(std::f64::consts::PI));
         } else if arity(name).is_some() {
-            ParseErrorKind::FunctionWithoutArgument {
-                name: name.to_owned(),
-            }
+            ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() }
         } else {
             let known = self.known.iter().map(String::as_str).chain(["pi"]);
             ParseErrorKind::Undefined {
@@ -294,20 +242,12 @@ impl<'a> Parser<'a> {
         let open = self.next;
         let Some(expected) = arity(name) else {
             let kind = if let Some(instead) = smooth_substitute(name) {
-                ParseErrorKind::NotSmooth {
-                    name: name.to_owned(),
-                    instead,
-                }
+                ParseErrorKind::NotSmooth { name: name.to_owned(), instead }
             } else if (self.scope)(name).is_some() || name == "pi" {
-                ParseErrorKind::VariableCalled {
-                    name: name.to_owned(),
-                }
+                ParseErrorKind::VariableCalled { name: name.to_owned() }
             } else {
                 let suggestion = nearest(name, FUNCTIONS);
-                ParseErrorKind::UnknownFunction {
-                    name: name.to_owned(),
-                    suggestion,
-                }
+                ParseErrorKind::UnknownFunction { name: name.to_owned(), suggestion }
             };
             return Err(self.fault(kind, token));
         };
@@ -317,27 +257,15 @@ impl<'a> Parser<'a> {
         if arguments.len() != expected {
             let found = arguments.len();
             let function = name.to_owned();
-            let kind = ParseErrorKind::WrongArgumentCount {
-                function,
-                expected,
-                found,
-            };
-            return Err(Fault {
-                kind,
-                start: token.start,
-                end: self.last,
-            });
+            let kind = ParseErrorKind::WrongArgumentCount { function, expected, found };
+            return Err(Fault { kind, start: token.start, end: self.last });
         }
         let e = self.graph.apply(name, &arguments);
         let divides = matches!(name, "sec" | "csc" | "cot" | "pow");
         match self.graph.as_number(e) {
             Some(x) if divides && x.is_infinite() => {
                 let kind = ParseErrorKind::DivisionByZero;
-                Err(Fault {
-                    kind,
-                    start: token.start,
-                    end: self.last,
-                })
+                Err(Fault { kind, start: token.start, end: self.last })
             }
             _ => self.finite(e, token.start),
         }

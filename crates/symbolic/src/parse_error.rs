@@ -77,9 +77,7 @@ pub enum ParseErrorKind {
         suggestion: Option<String>,
     },
     /// A function that has no derivative everywhere.
-    #[error(
-        "`{name}` is not differentiable, and equations of motion need two derivatives; {instead}"
-    )]
+    #[error("`{name}` is not differentiable, and equations of motion need two derivatives; {instead}")]
     NotSmooth {
         /// The function.
         name: String,
@@ -179,36 +177,20 @@ impl ParseError {
         let before = &self.text[self.line_start()..self.offset];
         let after = &self.text[self.offset..];
         let after = &after[..after.find('\n').unwrap_or(after.len())];
-        let cut_before = before
-            .char_indices()
-            .rev()
-            .nth(WINDOW - 1)
-            .map_or(0, |(i, _)| i);
-        let cut_after = after
-            .char_indices()
-            .nth(WINDOW)
-            .map_or(after.len(), |(i, _)| i);
+        let cut_before = before.char_indices().rev().nth(WINDOW - 1).map_or(0, |(i, _)| i);
+        let cut_after = after.char_indices().nth(WINDOW).map_or(after.len(), |(i, _)| i);
         let mut line = String::new();
         if cut_before > 0 {
             line.push('…');
         }
         line.extend(before[cut_before..].chars().map(printable));
         let margin = line.chars().count();
-        line.extend(
-            after[..cut_after]
-                .trim_end_matches('\r')
-                .chars()
-                .map(printable),
-        );
+        line.extend(after[..cut_after].trim_end_matches('\r').chars().map(printable));
         if cut_after < after.len() {
             line.push('…');
         }
         let end = self.length.min(cut_after);
-        let carets = after
-            .char_indices()
-            .take_while(|(i, _)| *i < end)
-            .count()
-            .max(1);
+        let carets = after.char_indices().take_while(|(i, _)| *i < end).count().max(1);
         (line, " ".repeat(margin) + &"^".repeat(carets))
     }
 }
@@ -221,13 +203,7 @@ fn printable(c: char) -> char {
 impl fmt::Display for ParseError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (line, carets) = self.excerpt();
-        write!(
-            f,
-            "line {}, column {}: {}",
-            self.line(),
-            self.column(),
-            self.kind
-        )?;
+        write!(f, "line {}, column {}: {}", self.line(), self.column(), self.kind)?;
         write!(f, "\n  {line}\n  {carets}")
     }
 }

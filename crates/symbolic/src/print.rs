@@ -28,11 +28,7 @@ pub(crate) fn text(s: impl Into<String>) -> Piece {
 }
 
 /// Writes `e`, given how a node (to be negated or not) falls into pieces.
-pub(crate) fn write(
-    e: Expr,
-    parentheses: (&str, &str),
-    pieces: impl Fn(Expr, bool) -> Printed,
-) -> String {
+pub(crate) fn write(e: Expr, parentheses: (&str, &str), pieces: impl Fn(Expr, bool) -> Printed) -> String {
     let mut output = String::new();
     let mut stack = vec![Piece::Node(e, 0)];
     while let Some(piece) = stack.pop() {
@@ -65,11 +61,7 @@ pub(crate) struct Factor {
 impl Factor {
     /// The base where nothing, or `level`, needs no parentheses.
     pub(crate) fn piece(self, level: u8) -> Piece {
-        if self.negated {
-            Piece::Negated(self.base, level)
-        } else {
-            Piece::Node(self.base, level)
-        }
+        if self.negated { Piece::Negated(self.base, level) } else { Piece::Node(self.base, level) }
     }
 }
 
@@ -92,11 +84,7 @@ impl Arena {
         if !constant.is_zero() {
             let constant = signed(*constant);
             let negative = constant.is_negative();
-            let last = Term {
-                negative,
-                number: constant.abs(),
-                factors: Vec::new(),
-            };
+            let last = Term { negative, number: constant.abs(), factors: Vec::new() };
             let first = printed.first().is_some_and(|t| t.negative) && !negative;
             printed.insert(if first { 0 } else { printed.len() }, last);
         }
@@ -119,34 +107,19 @@ impl Arena {
             Node::Number(n) => {
                 let number = c.mul(*n);
                 let negative = number.is_negative();
-                return Term {
-                    negative,
-                    number: number.abs(),
-                    factors: Vec::new(),
-                };
+                return Term { negative, number: number.abs(), factors: Vec::new() };
             }
             Node::Product(factors) => self.sorted_factors(factors),
             _ => vec![(t, Rational::ONE)],
         };
-        let mut factors: Vec<Factor> = factors
-            .into_iter()
-            .map(|(base, exponent)| Factor {
-                base,
-                exponent,
-                negated: false,
-            })
-            .collect();
+        let mut factors: Vec<Factor> =
+            factors.into_iter().map(|(base, exponent)| Factor { base, exponent, negated: false }).collect();
         let mut negative = c.is_negative();
-        if negative && let Some(factor) = factors.iter_mut().find(|factor| self.takes_minus(factor))
-        {
+        if negative && let Some(factor) = factors.iter_mut().find(|factor| self.takes_minus(factor)) {
             factor.negated = true;
             negative = false;
         }
-        Term {
-            negative,
-            number: c.abs(),
-            factors,
-        }
+        Term { negative, number: c.abs(), factors }
     }
 
     fn takes_minus(&self, factor: &Factor) -> bool {
@@ -158,8 +131,7 @@ impl Arena {
         let Node::Sum(constant, terms) = self.node(sum) else {
             return false;
         };
-        let negative = terms.iter().filter(|(_, c)| c.is_negative()).count()
-            + usize::from(constant.is_negative());
+        let negative = terms.iter().filter(|(_, c)| c.is_negative()).count() + usize::from(constant.is_negative());
         let count = terms.len() + usize::from(!constant.is_zero());
         odd && 2 * negative == count
     }

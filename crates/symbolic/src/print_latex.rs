@@ -17,9 +17,7 @@ impl Graph {
     /// ```
     pub fn latex(&self, e: Expr) -> String {
         let arena = self.arena.borrow();
-        write(e, (r"\left(", r"\right)"), |e, negated| {
-            arena.latex_pieces(e, negated)
-        })
+        write(e, (r"\left(", r"\right)"), |e, negated| arena.latex_pieces(e, negated))
     }
 
     /// The name of a symbol as LaTeX.
@@ -36,24 +34,16 @@ impl Graph {
 impl Arena {
     fn latex_pieces(&self, e: Expr, negated: bool) -> Printed {
         match self.node(e) {
-            Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
-                self.latex_terms(self.printed_terms(e, negated))
-            }
+            Node::Number(_) | Node::Product(_) | Node::Sum(..) => self.latex_terms(self.printed_terms(e, negated)),
             Node::Symbol(s) => (vec![text(latex_name(self.name(*s)))], ATOM),
             Node::Power(base, exponent) => {
                 let base = Piece::Node(*base, ATOM);
-                (
-                    vec![base, text("^{"), Piece::Node(*exponent, 0), text("}")],
-                    POWER,
-                )
+                (vec![base, text("^{"), Piece::Node(*exponent, 0), text("}")], POWER)
             }
-            Node::Call(Function::Exp, argument) => (
-                vec![text(r"\mathrm{e}^{"), Piece::Node(*argument, 0), text("}")],
-                POWER,
-            ),
-            Node::Call(function, argument) => {
-                (self.latex_call(*function, *argument, negated, ""), POWER)
+            Node::Call(Function::Exp, argument) => {
+                (vec![text(r"\mathrm{e}^{"), Piece::Node(*argument, 0), text("}")], POWER)
             }
+            Node::Call(function, argument) => (self.latex_call(*function, *argument, negated, ""), POWER),
             Node::Atan2(y, x) => {
                 let (y, x) = (Piece::Node(*y, 0), Piece::Node(*x, 0));
                 let open = text(r"\operatorname{atan2}\left(");
@@ -62,19 +52,9 @@ impl Arena {
         }
     }
 
-    fn latex_call(
-        &self,
-        function: Function,
-        argument: Expr,
-        negated: bool,
-        exponent: &str,
-    ) -> Vec<Piece> {
+    fn latex_call(&self, function: Function, argument: Expr, negated: bool, exponent: &str) -> Vec<Piece> {
         let name = format!("{}{exponent}", function_name(function));
-        let inner = if negated {
-            Piece::Negated(argument, 0)
-        } else {
-            Piece::Node(argument, 0)
-        };
+        let inner = if negated { Piece::Negated(argument, 0) } else { Piece::Node(argument, 0) };
         match self.node(argument) {
             Node::Symbol(_) => vec![text(name + " "), inner],
             _ => vec![text(name + r"\left("), inner, text(r"\right)")],
@@ -104,9 +84,8 @@ impl Arena {
 
     /// number · factors for number ≥ 0, as a fraction if there are denominators
     fn latex_term(&self, number: Number, factors: Vec<Factor>) -> Printed {
-        let (mut below, above): (Vec<_>, Vec<_>) = factors
-            .into_iter()
-            .partition(|factor| factor.exponent.is_negative());
+        let (mut below, above): (Vec<_>, Vec<_>) =
+            factors.into_iter().partition(|factor| factor.exponent.is_negative());
         for factor in &mut below {
             factor.exponent = factor.exponent.neg();
         }
@@ -119,10 +98,7 @@ impl Arena {
         }
         if below.is_empty() {
             return match denominator {
-                Some(d) => (
-                    self.latex_product(&fraction(&numerator, &d), &above),
-                    PRODUCT,
-                ),
+                Some(d) => (self.latex_product(&fraction(&numerator, &d), &above), PRODUCT),
                 None if numerator != "1" => (self.latex_product(&numerator, &above), PRODUCT),
                 None => match above[..] {
                     [factor] => self.latex_factor(factor, 0),
@@ -130,11 +106,7 @@ impl Arena {
                 },
             };
         }
-        let front = if numerator == "1" && !above.is_empty() {
-            String::new()
-        } else {
-            numerator
-        };
+        let front = if numerator == "1" && !above.is_empty() { String::new() } else { numerator };
         let mut pieces = vec![text(r"\frac{")];
         pieces.extend(self.latex_product(&front, &above));
         pieces.push(text("}{"));
@@ -148,8 +120,7 @@ impl Arena {
         let mut pieces = vec![text(front)];
         let alone = front.is_empty() && factors.len() == 1;
         for (i, factor) in factors.iter().enumerate() {
-            let digits = self.starts_with_digit(*factor)
-                && (i > 0 || front.ends_with(|c: char| c.is_ascii_digit()));
+            let digits = self.starts_with_digit(*factor) && (i > 0 || front.ends_with(|c: char| c.is_ascii_digit()));
             if i > 0 || !front.is_empty() {
                 pieces.push(text(if digits { r" \cdot " } else { " " }));
             }
@@ -175,17 +146,11 @@ impl Arena {
             (n, 1) => match self.node(factor.base) {
                 Node::Call(function, argument) if raised_at_name(*function) => {
                     let exponent = format!("^{{{n}}}");
-                    (
-                        self.latex_call(*function, *argument, factor.negated, &exponent),
-                        POWER,
-                    )
+                    (self.latex_call(*function, *argument, factor.negated, &exponent), POWER)
                 }
                 _ => (vec![factor.piece(ATOM), text(format!("^{{{n}}}"))], POWER),
             },
-            (n, d) => (
-                vec![factor.piece(ATOM), text(format!("^{{{n}/{d}}}"))],
-                POWER,
-            ),
+            (n, d) => (vec![factor.piece(ATOM), text(format!("^{{{n}/{d}}}"))], POWER),
         }
     }
 }

@@ -23,9 +23,7 @@ impl Graph {
 impl Arena {
     fn plain_pieces(&self, e: Expr, negated: bool) -> Printed {
         match self.node(e) {
-            Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
-                self.plain_terms(self.printed_terms(e, negated))
-            }
+            Node::Number(_) | Node::Product(_) | Node::Sum(..) => self.plain_terms(self.printed_terms(e, negated)),
             Node::Symbol(s) => (vec![text(self.name(*s))], ATOM),
             Node::Power(base, exponent) => {
                 let (base, exponent) = (Piece::Node(*base, ATOM), Piece::Node(*exponent, ATOM));
@@ -36,10 +34,7 @@ impl Arena {
                     true => Piece::Negated(*argument, 0),
                     false => Piece::Node(*argument, 0),
                 };
-                (
-                    vec![text(function.name()), text("("), argument, text(")")],
-                    ATOM,
-                )
+                (vec![text(function.name()), text("("), argument, text(")")], ATOM)
             }
             Node::Atan2(y, x) => {
                 let (y, x) = (Piece::Node(*y, 0), Piece::Node(*x, 0));
@@ -73,16 +68,10 @@ impl Arena {
     fn plain_term(&self, number: Number, factors: &[Factor]) -> Printed {
         let (numerator, denominator) = number_text(number);
         let mut above: Vec<Printed> = Vec::new();
-        let mut below: Vec<Printed> = denominator
-            .map(|d| (vec![text(d)], ATOM))
-            .into_iter()
-            .collect();
+        let mut below: Vec<Printed> = denominator.map(|d| (vec![text(d)], ATOM)).into_iter().collect();
         for factor in factors {
             if factor.exponent.is_negative() {
-                below.push(plain_factor(Factor {
-                    exponent: factor.exponent.neg(),
-                    ..*factor
-                }));
+                below.push(plain_factor(Factor { exponent: factor.exponent.neg(), ..*factor }));
             } else {
                 above.push(plain_factor(*factor));
             }
@@ -90,11 +79,7 @@ impl Arena {
         if above.is_empty() || numerator != "1" {
             above.insert(0, (vec![text(numerator)], ATOM));
         }
-        let binds = if above.len() == 1 && below.is_empty() {
-            above[0].1
-        } else {
-            PRODUCT
-        };
+        let binds = if above.len() == 1 && below.is_empty() { above[0].1 } else { PRODUCT };
         let mut pieces = joined(above);
         if below.len() > 1 && !self.scales_exactly(factors, number) {
             // 1/d/(sum), where d*(sum) would not give back d and the sum
@@ -166,9 +151,5 @@ pub(crate) fn number_text(n: Number) -> (String, Option<String>) {
 
 /// The shortest decimal that converts back to x
 fn float_text(x: f64) -> String {
-    if x.is_finite() && (x.abs() >= 1e16 || x.abs() < 1e-4) {
-        format!("{x:e}")
-    } else {
-        format!("{x}")
-    }
+    if x.is_finite() && (x.abs() >= 1e16 || x.abs() < 1e-4) { format!("{x:e}") } else { format!("{x}") }
 }

@@ -37,21 +37,16 @@ impl Value {
     pub(crate) fn operands(self) -> ([Id; 3], usize) {
         match self {
             Value::Input(_) | Value::Constant(_) => ([0; 3], 0),
-            Value::Neg(a)
-            | Value::Square(a)
-            | Value::Recip(a)
-            | Value::Sqrt(a)
-            | Value::Call(_, a) => ([a, 0, 0], 1),
+            Value::Neg(a) | Value::Square(a) | Value::Recip(a) | Value::Sqrt(a) | Value::Call(_, a) => ([a, 0, 0], 1),
             Value::Add(a, b)
             | Value::Sub(a, b)
             | Value::Mul(a, b)
             | Value::Div(a, b)
             | Value::Pow(a, b)
             | Value::Atan2(a, b) => ([a, b, 0], 2),
-            Value::MulAdd(a, b, c)
-            | Value::MulSub(a, b, c)
-            | Value::NegMulAdd(a, b, c)
-            | Value::Mul3(a, b, c) => ([a, b, c], 3),
+            Value::MulAdd(a, b, c) | Value::MulSub(a, b, c) | Value::NegMulAdd(a, b, c) | Value::Mul3(a, b, c) => {
+                ([a, b, c], 3)
+            }
         }
     }
 }
@@ -89,8 +84,8 @@ impl Program {
         }
         let id = Id::try_from(self.values.len()).expect("fewer than 2^32 values");
         let (operands, count) = value.operands();
-        let constant = !matches!(value, Value::Input(_))
-            && operands[..count].iter().all(|o| self.constant[*o as usize]);
+        let constant =
+            !matches!(value, Value::Input(_)) && operands[..count].iter().all(|o| self.constant[*o as usize]);
         self.values.push(value);
         self.constant.push(constant);
         self.ids.insert(value, id);
@@ -108,11 +103,7 @@ impl Program {
         }
         let half = self.powi(v, n / 2);
         let square = self.push(Value::Square(half));
-        if n.is_multiple_of(2) {
-            square
-        } else {
-            self.push(Value::Mul(square, v))
-        }
+        if n.is_multiple_of(2) { square } else { self.push(Value::Mul(square, v)) }
     }
 
     /// Puts products that are used once into the sum or product that uses them.
@@ -129,12 +120,8 @@ impl Program {
         }
         for i in 0..self.values.len() {
             let single = |id: Id| match self.values[id as usize] {
-                Value::Mul(a, b) if uses[id as usize] == 1 && !self.constant[id as usize] => {
-                    Some((a, b))
-                }
-                Value::Square(a) if uses[id as usize] == 1 && !self.constant[id as usize] => {
-                    Some((a, a))
-                }
+                Value::Mul(a, b) if uses[id as usize] == 1 && !self.constant[id as usize] => Some((a, b)),
+                Value::Square(a) if uses[id as usize] == 1 && !self.constant[id as usize] => Some((a, a)),
                 _ => None,
             };
             let fused = match self.values[i] {

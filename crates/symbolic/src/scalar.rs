@@ -11,12 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// assert_eq!(<f64 as Scalar>::from_ratio(981, 100), 9.81);
 /// ```
 pub trait Scalar:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The number nearest to `x`.
     fn from_f64(x: f64) -> Self;

@@ -91,15 +91,12 @@ impl Arena {
                     rest[place].1 = Rational::integer(n - 2);
                 }
                 let key = (partner, *argument, rest);
-                let found = partners.get(&key).copied().filter(|&other| {
-                    !taken[other] && !taken[index] && terms[other].1 == sign.mul(*coefficient)
-                });
+                let found = partners
+                    .get(&key)
+                    .copied()
+                    .filter(|&other| !taken[other] && !taken[index] && terms[other].1 == sign.mul(*coefficient));
                 if let Some(other) = found {
-                    let positive = if *function == Function::Sinh {
-                        other
-                    } else {
-                        index
-                    };
+                    let positive = if *function == Function::Sinh { other } else { index };
                     taken[index] = true;
                     taken[other] = true;
                     pairs.push((positive, key.2));
@@ -129,11 +126,7 @@ impl Arena {
     }
 
     /// coefficient · Π base^exponent, flattened, with equal bases merged.
-    pub(crate) fn power_product(
-        &mut self,
-        coefficient: Number,
-        factors: Vec<(Expr, Rational)>,
-    ) -> Expr {
+    pub(crate) fn power_product(&mut self, coefficient: Number, factors: Vec<(Expr, Rational)>) -> Expr {
         let mut coefficient = coefficient;
         let mut work = factors;
         let mut done: Vec<(Expr, Rational)> = Vec::with_capacity(work.len());
@@ -166,11 +159,7 @@ impl Arena {
 
     fn finished_product(&mut self, coefficient: Number, factors: Vec<(Expr, Rational)>) -> Expr {
         if !coefficient.is_finite() {
-            let undefined = if factors.is_empty() {
-                coefficient
-            } else {
-                Number::UNDEFINED
-            };
+            let undefined = if factors.is_empty() { coefficient } else { Number::UNDEFINED };
             return self.number(undefined);
         }
         let product = match &factors[..] {
@@ -178,11 +167,7 @@ impl Arena {
             [(base, exponent)] if *exponent == Rational::ONE => *base,
             _ => self.intern(Node::Product(factors.into())),
         };
-        if coefficient.is_one() {
-            product
-        } else {
-            self.scale(coefficient, product)
-        }
+        if coefficient.is_one() { product } else { self.scale(coefficient, product) }
     }
 
     /// One factor base^exponent: numbers go to the coefficient, nested products to `work`, and what
@@ -199,10 +184,8 @@ impl Arena {
         match self.node(base).clone() {
             Node::Number(n) => self.split_number(n, exponent, coefficient, done),
             Node::Product(factors) if let Some(n) = whole => {
-                let scaled: Option<Vec<_>> = factors
-                    .iter()
-                    .map(|(b, r)| r.mul(Rational::integer(n)).map(|r| (*b, r)))
-                    .collect();
+                let scaled: Option<Vec<_>> =
+                    factors.iter().map(|(b, r)| r.mul(Rational::integer(n)).map(|r| (*b, r))).collect();
                 match scaled {
                     Some(scaled) => work.extend(scaled),
                     None => done.push((base, exponent)),
@@ -260,25 +243,19 @@ impl Arena {
         let r = match n {
             Number::Exact(r) if !r.is_zero() && !r.is_negative() => r,
             _ => {
-                *coefficient =
-                    coefficient.mul(Number::from_f64(n.to_f64().powf(exponent.to_f64())));
+                *coefficient = coefficient.mul(Number::from_f64(n.to_f64().powf(exponent.to_f64())));
                 return;
             }
         };
         let parts = [(r.numerator(), exponent), (r.denominator(), exponent.neg())];
-        if parts
-            .iter()
-            .any(|(part, e)| Rational::integer(*part).powi(e.floor()).is_none())
-        {
+        if parts.iter().any(|(part, e)| Rational::integer(*part).powi(e.floor()).is_none()) {
             *coefficient = coefficient.mul(Number::from_f64(r.to_f64().powf(exponent.to_f64())));
             return;
         }
         for (part, exponent) in parts {
             let part = Rational::integer(part);
             let whole = exponent.floor();
-            let rest = exponent
-                .add(Rational::integer(-whole))
-                .expect("a fraction below 1");
+            let rest = exponent.add(Rational::integer(-whole)).expect("a fraction below 1");
             *coefficient = coefficient.mul(Number::Exact(part).powi(whole));
             if let Some(exact) = part.pow(rest) {
                 *coefficient = coefficient.mul(Number::Exact(exact));
@@ -338,11 +315,7 @@ impl Arena {
         if parity != 0 && self.leads_negative(argument) {
             let argument = self.scale(Number::MINUS_ONE, argument);
             let call = self.intern(Node::Call(function, argument));
-            return if parity < 0 {
-                self.scale(Number::MINUS_ONE, call)
-            } else {
-                call
-            };
+            return if parity < 0 { self.scale(Number::MINUS_ONE, call) } else { call };
         }
         self.intern(Node::Call(function, argument))
     }

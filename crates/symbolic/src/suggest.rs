@@ -2,8 +2,8 @@
 
 /// The names that can be called.
 pub(crate) const FUNCTIONS: [&str; 21] = [
-    "sin", "cos", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "asinh", "acosh", "atanh",
-    "exp", "log", "ln", "sqrt", "sec", "csc", "cot", "atan2", "pow",
+    "sin", "cos", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "asinh", "acosh", "atanh", "exp", "log", "ln",
+    "sqrt", "sec", "csc", "cot", "atan2", "pow",
 ];
 
 /// How many arguments a function takes.
@@ -22,9 +22,7 @@ pub(crate) fn smooth_substitute(name: &str) -> Option<&'static str> {
         "heaviside" | "step" => Some("a smooth substitute is (1 + tanh(x/eps))/2"),
         "min" => Some("a smooth substitute is (a + b - sqrt((a - b)^2 + eps^2))/2"),
         "max" => Some("a smooth substitute is (a + b + sqrt((a - b)^2 + eps^2))/2"),
-        "floor" | "ceil" | "round" | "mod" => {
-            Some("it jumps, and nothing smooth stands in its place")
-        }
+        "floor" | "ceil" | "round" | "mod" => Some("it jumps, and nothing smooth stands in its place"),
         _ => None,
     }
 }
@@ -50,10 +48,7 @@ fn primes(name: &str) -> usize {
 /// Insertions, deletions, replacements and swaps of neighbours; letters that differ in case only are
 /// equal.
 fn edit_distance(a: &str, b: &str) -> usize {
-    let (a, b) = (
-        a.to_ascii_lowercase().into_bytes(),
-        b.to_ascii_lowercase().into_bytes(),
-    );
+    let (a, b) = (a.to_ascii_lowercase().into_bytes(), b.to_ascii_lowercase().into_bytes());
     let mut before = vec![0; b.len() + 1];
     let mut previous: Vec<usize> = (0..=b.len()).collect();
     for i in 1..=a.len() {

@@ -104,20 +104,11 @@ impl Tape {
     /// # Panics
     /// If the slices do not have as many entries as there are inputs and outputs, or the workspace is
     /// of another size than this tape's.
-    pub fn evaluate<T: Scalar>(
-        &self,
-        inputs: &[T],
-        workspace: &mut Workspace<T>,
-        outputs: &mut [T],
-    ) {
+    pub fn evaluate<T: Scalar>(&self, inputs: &[T], workspace: &mut Workspace<T>, outputs: &mut [T]) {
         let registers = &mut workspace.registers[..];
         assert_eq!(inputs.len(), self.inputs, "inputs of a tape");
         assert_eq!(outputs.len(), self.outputs, "outputs of a tape");
-        assert_eq!(
-            registers.len(),
-            self.registers,
-            "the workspace of another tape"
-        );
+        assert_eq!(registers.len(), self.registers, "the workspace of another tape");
         registers[..self.inputs].copy_from_slice(inputs);
         run(&self.body, registers);
         outputs.copy_from_slice(&registers[self.inputs..self.inputs + self.outputs]);
@@ -201,8 +192,7 @@ impl Assembly<'_> {
                 home.entry(*id).or_insert(register(self.tape.inputs + slot));
             }
         }
-        let needed: FxHashMap<Value, Id> =
-            order.iter().map(|id| (program.value(*id), *id)).collect();
+        let needed: FxHashMap<Value, Id> = order.iter().map(|id| (program.value(*id), *id)).collect();
         let mut busy: Vec<Id> = Vec::new();
         for (step, id) in order.iter().copied().enumerate() {
             if self.place[id as usize].is_some() {
@@ -229,9 +219,7 @@ impl Assembly<'_> {
             if let Some((sine, cosine, angle)) = self.sine_and_cosine(value, &needed) {
                 let angle = self.at(angle);
                 let to = [sine, cosine].map(|v| self.take(v, &home));
-                self.tape
-                    .body
-                    .push(Instruction::SinCos(to[0], to[1], angle));
+                self.tape.body.push(Instruction::SinCos(to[0], to[1], angle));
                 self.release(&mut busy, id, step, &last_use);
                 for v in [sine, cosine] {
                     if !home.contains_key(&v) {
@@ -257,11 +245,7 @@ impl Assembly<'_> {
             let from = self.at(*id);
             if from != to {
                 let constant = program.is_constant(*id);
-                let part = if constant {
-                    &mut self.tape.setup
-                } else {
-                    &mut self.tape.body
-                };
+                let part = if constant { &mut self.tape.setup } else { &mut self.tape.body };
                 part.push(Instruction::Copy(to, from));
             }
         }

@@ -4,8 +4,7 @@ use std::collections::HashMap;
 use symbolic::{Expr, Function, Graph, Matrix};
 
 fn read(g: &Graph, text: &str) -> Expr {
-    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[])
-        .expect(text)
+    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).expect(text)
 }
 
 /// Both sides are the same node.
@@ -57,9 +56,7 @@ fn powers_merge_only_where_that_is_an_identity() {
 
 #[test]
 fn signs_come_out_of_odd_and_even_functions() {
-    for f in [
-        "sin", "tan", "sinh", "tanh", "asin", "atan", "asinh", "atanh",
-    ] {
+    for f in ["sin", "tan", "sinh", "tanh", "asin", "atan", "asinh", "atanh"] {
         same(&format!("{f}(-x)"), &format!("-{f}(x)"));
         same(&format!("{f}(y - x)"), &format!("-{f}(x - y)"));
         same(&format!("{f}(0)"), "0");
@@ -80,10 +77,7 @@ fn squares_of_sine_and_cosine_add_up() {
     same("m*r^2*sin(x)^2 + z + m*r^2*cos(x)^2", "m*r^2 + z");
     same("sin(x)^3*y + sin(x)*cos(x)^2*y", "sin(x)*y");
     same("2*cosh(x)^2 - 2*sinh(x)^2", "2");
-    same(
-        "a*sin(x)^2*sin(y)^2 + a*sin(x)^2*cos(y)^2 + a*cos(x)^2",
-        "a",
-    );
+    same("a*sin(x)^2*sin(y)^2 + a*sin(x)^2*cos(y)^2 + a*cos(x)^2", "a");
     same("(x + y)*sin(z)^2 + (x + y)*cos(z)^2 - x", "y");
     different("sin(x)^2 - cos(x)^2", "1");
     different("sin(x)^2 + cos(y)^2", "1");
@@ -109,19 +103,13 @@ fn high_powers_of_measured_numbers_do_not_vanish() {
     let g = Graph::new();
     let at = HashMap::from([(g.symbol("x"), 0.2)]);
     for (text, expected) in [
-        (
-            "(x + 0.7842157614637822)^27",
-            0.9842157614637822_f64.powi(27),
-        ),
+        ("(x + 0.7842157614637822)^27", 0.9842157614637822_f64.powi(27)),
         ("(x + 0.0012345678)^60", 0.2012345678_f64.powi(60)),
         ("(1e-16*x)^27/(1e-16*x)^26", 2e-17),
         ("0.8917040938762298^23.5", 0.8917040938762298_f64.powf(23.5)),
     ] {
         let found = g.evaluate(read(&g, text), &at).unwrap();
-        assert!(
-            (found - expected).abs() < 1e-13 * expected,
-            "{text}: {found}"
-        );
+        assert!((found - expected).abs() < 1e-13 * expected, "{text}: {found}");
     }
 }
 
@@ -133,19 +121,10 @@ fn division_by_the_number_zero_is_not_finite_and_spreads() {
     assert!(!g.as_number(infinite).unwrap().is_finite());
     assert!(!g.as_number(g.powi(g.zero(), -1)).unwrap().is_finite());
     assert!(g.as_number(g.ratio(0, 0)).unwrap().is_nan());
-    for spread in [
-        g.mul(infinite, x),
-        g.add(infinite, x),
-        g.div(x, g.zero()),
-        g.pow(infinite, x),
-    ] {
+    for spread in [g.mul(infinite, x), g.add(infinite, x), g.div(x, g.zero()), g.pow(infinite, x)] {
         assert!(!g.as_number(spread).unwrap().is_finite());
     }
-    assert!(
-        !g.as_number(g.call(Function::Sin, infinite))
-            .unwrap()
-            .is_finite()
-    );
+    assert!(!g.as_number(g.call(Function::Sin, infinite)).unwrap().is_finite());
 }
 
 #[test]
@@ -194,16 +173,10 @@ fn jacobians_total_derivatives_and_matrices_fit_together() {
     let rates: Vec<(_, _)> = q.iter().copied().zip(velocities.iter().copied()).collect();
     let by_chain_rule: Vec<Expr> = es.iter().map(|e| g.total_derivative(*e, &rates)).collect();
     assert_eq!(g.mat_vec(&jacobian, &velocities), by_chain_rule);
-    assert_eq!(
-        g.transpose_vec(&jacobian, &velocities),
-        g.mat_vec(&jacobian.transpose(), &velocities)
-    );
+    assert_eq!(g.transpose_vec(&jacobian, &velocities), g.mat_vec(&jacobian.transpose(), &velocities));
     let identity = Matrix::new(2, 2, vec![g.one(), g.zero(), g.zero(), g.one()]);
     assert_eq!(g.mat_mul(&jacobian, &identity), jacobian);
-    assert_eq!(
-        g.mat_mul(&jacobian, &jacobian)[(0, 0)],
-        g.dot(jacobian.row(0), &jacobian.column(0))
-    );
+    assert_eq!(g.mat_mul(&jacobian, &jacobian)[(0, 0)], g.dot(jacobian.row(0), &jacobian.column(0)));
     assert_eq!(jacobian.entries().len(), 4);
 }
 
@@ -219,16 +192,10 @@ fn substitution_is_simultaneous_and_simplifies() {
     let g = Graph::new();
     let (x, y) = (g.symbol("x"), g.symbol("y"));
     let map = HashMap::from([(x, read(&g, "y")), (y, read(&g, "-x"))]);
-    assert_eq!(
-        g.substitute(read(&g, "x*y + sin(y)"), &map),
-        read(&g, "-x*y - sin(x)")
-    );
+    assert_eq!(g.substitute(read(&g, "x*y + sin(y)"), &map), read(&g, "-x*y - sin(x)"));
     assert_eq!(g.substitute(read(&g, "z^2"), &map), read(&g, "z^2"));
     let zero = HashMap::from([(x, g.zero())]);
-    assert_eq!(
-        g.substitute(read(&g, "cos(x)*y + x*z"), &zero),
-        read(&g, "y")
-    );
+    assert_eq!(g.substitute(read(&g, "cos(x)*y + x*z"), &zero), read(&g, "y"));
 }
 
 #[test]
@@ -253,10 +220,7 @@ fn expansion_multiplies_out_everywhere() {
     let g = Graph::new();
     for (e, expanded) in [
         ("(x + y)^3", "x^3 + 3*x^2*y + 3*x*y^2 + y^3"),
-        (
-            "(x + 1)*(x - 1)*sin((x + 1)*y)",
-            "x^2*sin(x*y + y) - sin(x*y + y)",
-        ),
+        ("(x + 1)*(x - 1)*sin((x + 1)*y)", "x^2*sin(x*y + y) - sin(x*y + y)"),
         ("(x + y)^(3/2)", "x*sqrt(x + y) + y*sqrt(x + y)"),
         ("(x + 1)/(x + 2)", "x/(x + 2) + 1/(x + 2)"),
         ("(1 + (1 + x)^2)^2", "4 + 8*x + 8*x^2 + 4*x^3 + x^4"),

@@ -86,13 +86,8 @@ impl Value {
         // What round-off in x does, not f'(x): near x = 1 arcsin turns 1e-12 into 1e-6.
         let h = ROUND_OFF * self.error;
         let value = f(self.value);
-        let change = (f(self.value + h) - value)
-            .abs()
-            .max((f(self.value - h) - value).abs());
-        Value {
-            value,
-            error: value.abs() + change / ROUND_OFF,
-        }
+        let change = (f(self.value + h) - value).abs().max((f(self.value - h) - value).abs());
+        Value { value, error: value.abs() + change / ROUND_OFF }
     }
 }
 
@@ -102,49 +97,30 @@ fn value(tree: &Tree, at: &[f64; 3]) -> Value {
     if found.value.is_finite() && found.error.is_finite() {
         return found;
     }
-    Value {
-        value: f64::NAN,
-        error: f64::NAN,
-    }
+    Value { value: f64::NAN, error: f64::NAN }
 }
 
 fn unchecked_value(tree: &Tree, at: &[f64; 3]) -> Value {
     let of = |tree: &Tree| value(tree, at);
-    let exact = |value: f64| Value {
-        value,
-        error: value.abs(),
-    };
+    let exact = |value: f64| Value { value, error: value.abs() };
     match tree {
         Tree::Variable(i) => exact(at[*i]),
         Tree::Number(n, d) => exact(*n as f64 / *d as f64),
         Tree::Float(x) => exact(*x),
         Tree::Add(a, b) | Tree::Sub(a, b) => {
             let (a, b) = (of(a), of(b));
-            let sign = if matches!(tree, Tree::Add(..)) {
-                1.0
-            } else {
-                -1.0
-            };
-            Value {
-                value: a.value + sign * b.value,
-                error: a.error + b.error,
-            }
+            let sign = if matches!(tree, Tree::Add(..)) { 1.0 } else { -1.0 };
+            Value { value: a.value + sign * b.value, error: a.error + b.error }
         }
         Tree::Mul(a, b) => {
             let (a, b) = (of(a), of(b));
             let error = a.error * b.value.abs() + a.value.abs() * b.error;
-            Value {
-                value: a.value * b.value,
-                error,
-            }
+            Value { value: a.value * b.value, error }
         }
         Tree::Div(a, b) => {
             let (a, b) = (of(a), of(b));
             let value = a.value / b.value;
-            Value {
-                value,
-                error: (a.error + value.abs() * b.error) / b.value.abs(),
-            }
+            Value { value, error: (a.error + value.abs() * b.error) / b.value.abs() }
         }
         Tree::Power(a, n) => of(a).mapped(|x| x.powi(*n)),
         Tree::Root(a, n) => of(a).mapped(|x| x.powf(1.0 / *n as f64)),
@@ -155,10 +131,7 @@ fn unchecked_value(tree: &Tree, at: &[f64; 3]) -> Value {
             }
             let by_base = a.mapped(|x| x.powf(b.value));
             let by_exponent = b.mapped(|y| a.value.powf(y));
-            Value {
-                value: by_base.value,
-                error: by_base.error + by_exponent.error,
-            }
+            Value { value: by_base.value, error: by_base.error + by_exponent.error }
         }
         Tree::Call(f, a) => of(a).mapped(function(*f)),
         Tree::Atan2(a, b) => {
@@ -169,10 +142,7 @@ fn unchecked_value(tree: &Tree, at: &[f64; 3]) -> Value {
             }
             let by_y = a.mapped(|y| y.atan2(b.value));
             let by_x = b.mapped(|x| a.value.atan2(x));
-            Value {
-                value: by_y.value,
-                error: by_y.error + by_x.error,
-            }
+            Value { value: by_y.value, error: by_y.error + by_x.error }
         }
     }
 }

@@ -1,0 +1,155 @@
+//! Formulations that must agree: two forms of one, all of them on integrable constraints, and rewritten constraints (T1, T4).
+
+use mechanics::{Removal, Scene};
+use symbolic::Matrix;
+
+use crate::support::{
+    chetaev, complete, equations, gap, index, known_gap, linear_scenes, matrix, motion_of, must, must_exceed, removal,
+    removed, scene, scenes, some_multipliers, tight, vakonomic, values,
+};
+use nalgebra::DVector;
+
+#[test]
+fn multiplier_form_and_costate_form_agree_on_every_scene() {
+    for scene in scenes() {
+        let h = scene.system.constraints.len();
+        for mu0 in [vec![0.0; h], some_multipliers(&scene)] {
+            let mut one = motion_of(&scene, equations(&scene.system, "vakonomic", None), &mu0, &tight());
+            let mut two = motion_of(&scene, equations(&scene.system, "vakonomic-costate", None), &mu0, &tight());
+            let (distance, end) = known_gap(&mut one, &mut two);
+            assert!(end > 0.2 * scene.duration, "{}: {:?}, {:?}", scene.name, one.ending, two.ending);
+            let zero = if mu0[0] == 0.0 { "μ₀ = 0" } else { "μ₀ ≠ 0" };
+            must(
+                &format!("{}, {zero}: multiplier form against costate form, to {end:.2} s", scene.name),
+                distance,
+                1e-9,
+            );
+        }
+    }
+}
+
+#[test]
+fn integrable_constraints_leave_nothing_to_dispute() {
+    for name in ["velocity-pendulum", "bowl"] {
+        let scene = scene(name, &[]);
+        let mut reference = chetaev(&scene);
+        for mu in [0.0, 0.7, -2.0] {
+            let distance = gap(&mut vakonomic(&scene, &[mu]), &mut reference).0;
+            must(&format!("{name}: vakonomic with μ₀ = {mu} against Chetaev"), distance, 1e-9);
+        }
+        let by_coordinates = Removal::by_coordinates(&scene.system, &scene.start).expect("a removal");
+        for removal in scene.removals.iter().chain([&by_coordinates]) {
+            let count = equations(&scene.system, "removed-constraint", Some(removal)).free_constants.len();
+            for constant in [0.0, 0.9, -0.4] {
+                let mut motion = complete(&scene, removed(&scene, removal, &vec![constant; count]));
+                let distance = gap(&mut motion, &mut reference).0;
+                let what =
+                    format!("{name}: removal {} with P(t₀) = {constant} ({count}) against Chetaev", removal.name);
+                must(&what, distance, 1e-9);
+            }
+        }
+    }
+}
+
+/// A matrix of functions of `q`, regular at every `q`: `(2 + sin(q₁ + 0.3)) I` plus a constant strictly lower triangle.
+fn mixing(scene: &Scene) -> Matrix {
+    let g = &scene.system.graph;
+    let first = g.variable(scene.system.coordinates[0].position);
+    let factor = g.add(g.integer(2), g.call(symbolic::Function::Sin, g.add(first, g.ratio(3, 10))));
+    let h = scene.system.constraints.len();
+    Matrix::from_fn(h, h, |i, j| match i.cmp(&j) {
+        std::cmp::Ordering::Equal => factor,
+        std::cmp::Ordering::Greater => g.ratio(1 + i as i64 - 2 * j as i64, 3),
+        std::cmp::Ordering::Less => g.zero(),
+    })
+}
+
+#[test]
+fn chetaev_and_vakonomic_do_not_depend_on_how_constraints_are_written() {
+    for scene in scenes() {
+        let mix = mixing(&scene);
+        let mut rewritten = scene.clone();
+        let g = rewritten.system.graph.clone();
+        rewritten.system.constraints = g.mat_vec(&mix, &scene.system.constraints);
+        rewritten.system.graph = g;
+        let motion = |scene: &Scene, name: &str, mu0: &[f64]| {
+            motion_of(scene, equations(&scene.system, name, None), mu0, &tight())
+        };
+        let (distance, end) = known_gap(&mut motion(&scene, "chetaev", &[]), &mut motion(&rewritten, "chetaev", &[]));
+        assert!(end > 0.5 * scene.duration, "{}: only up to {end}", scene.name);
+        must(&format!("{}: Chetaev, constraints rewritten, to {end:.2} s", scene.name), distance, 1e-9);
+
+        // μ·f = μ'·(G f): μ' = G⁻ᵀ μ
+        let mu0 = some_multipliers(&scene);
+        let at_start = matrix(&scene.system.graph, &mix, &values(&scene.system, &scene.start));
+        let transformed = at_start.transpose().lu().solve(&DVector::from_vec(mu0.clone())).expect("regular");
+        let mut two = motion(&rewritten, "vakonomic", transformed.as_slice());
+        let (distance, end) = known_gap(&mut motion(&scene, "vakonomic", &mu0), &mut two);
+        assert!(end > 0.2 * scene.duration, "{}: only up to {end}", scene.name);
+        must(&format!("{}: vakonomic, constraints rewritten, to {end:.2} s", scene.name), distance, 1e-9);
+    }
+}
+
+#[test]
+fn removed_constraint_depends_on_the_choice_of_parameter() {
+    let scene = scene("sledge", &[("duration", 1.0)]);
+    let (arc, along) = (removal(&scene, "arc-length"), removal(&scene, "along-x"));
+    // not by a choice of the constant either
+    let mut nearest = f64::INFINITY;
+    for constant in -40..=40 {
+        let count = equations(&scene.system, "removed-constraint", Some(along)).free_constants.len();
+        let mut by_length = complete(&scene, removed(&scene, arc, &[0.0]));
+        let constants = vec![0.25 * f64::from(constant); count];
+        nearest = nearest.min(gap(&mut complete(&scene, removed(&scene, along, &constants)), &mut by_length).0);
+    }
+    must_exceed("sledge: arc length (P = 0) against along-x, nearest of 81 constants, 1 s", nearest, 1e-3);
+}
+
+#[test]
+fn chetaev_motion_runs_back_the_way_it_came() {
+    for scene in linear_scenes().into_iter().chain([scene("appell-hamel", &[])]) {
+        let mut forth = chetaev(&scene);
+        let end = crate::support::state_at(&mut forth, scene.start.t + scene.duration);
+        let mut returning = scene.clone();
+        returning.start.q = end.q;
+        returning.start.v = end.v.iter().map(|v| -v).collect();
+        if scene.name == "turntable" {
+            // the reversed motion is one on a table that turns the other way
+            for p in returning.system.parameters.iter_mut().filter(|p| scene.system.graph.name(p.symbol) == "Omega") {
+                p.value = -p.value;
+            }
+        }
+        let mut back = chetaev(&returning);
+        let home = crate::support::state_at(&mut back, scene.start.t + scene.duration);
+        let position = crate::support::largest_difference(&home.q, &scene.start.q);
+        let velocities: Vec<f64> = home.v.iter().map(|v| -v).collect();
+        let velocity = crate::support::largest_difference(&velocities, &scene.start.v);
+        must(&format!("{}: there and back, {} s", scene.name, scene.duration), position.max(velocity), 1e-9);
+    }
+}
+
+#[test]
+fn units_do_not_matter() {
+    // lengths in centimetres instead of metres; L and μ·f scale by 10⁴, f by 10²
+    let metres = scene("sledge", &[]);
+    let speed = 0.5 * metres.start.q[2].cos();
+    let centimetres = scene("sledge", &[("g", 981.0), ("k", 70.0), ("x'", 100.0 * speed)]);
+    let scaled = |mut motion: deltaq::Motion, factor: f64| {
+        let now = crate::support::at(&mut motion, 10.0);
+        let (x, phi) = (index(&metres, "x"), index(&metres, "phi"));
+        [now.coordinates[x] / factor, now.coordinates[phi]]
+    };
+    let runs = [
+        ("Chetaev", chetaev(&metres), chetaev(&centimetres)),
+        ("vakonomic", vakonomic(&metres, &[0.3]), vakonomic(&centimetres, &[30.0])),
+        (
+            "removed constraint",
+            removed(&metres, removal(&metres, "arc-length"), &[2.0]),
+            removed(&centimetres, removal(&centimetres, "arc-length"), &[200.0]),
+        ),
+    ];
+    for (name, one, two) in runs {
+        let distance = crate::support::largest_difference(&scaled(one, 1.0), &scaled(two, 100.0));
+        must(&format!("sledge, {name}: metres against centimetres at t = 10"), distance, 1e-9);
+    }
+}

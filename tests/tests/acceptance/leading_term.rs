@@ -1,0 +1,58 @@
+//! How vakonomic and Chetaev motions part: exponent and leading coefficient, measured and predicted (T5).
+
+use deltaq::{Metric, compare_motions, growth, leading_term};
+
+use crate::support::{at, chetaev, must, scene, vakonomic};
+
+#[test]
+fn leading_term_is_the_predicted_one() {
+    for name in ["sledge", "disc", "ball-in-cone"] {
+        let scene = scene(name, &[]);
+        let h = scene.system.constraints.len();
+        // 0.05: the terms of second and third order are of one size within the first tenth of a second
+        for (mu0, exponent) in [(vec![0.0; h], 3), (vec![1.0; h], 2), (vec![0.05; h], 2)] {
+            let mut reference = chetaev(&scene);
+            let reaction = at(&mut reference, scene.start.t).multipliers;
+            let predicted = leading_term(&scene.system, &scene.start, &mu0, &reaction).expect("compiles");
+            let predicted = predicted.unwrap_or_else(|| panic!("{name}: nothing predicted"));
+            assert_eq!(predicted.exponent, exponent, "{name}, μ₀ = {mu0:?}");
+            let mut other = vakonomic(&scene, &mu0);
+            let mut metric = Metric::new(&scene.system).expect("compiles");
+            let gap = compare_motions(&mut reference, &mut other, &mut metric).expect("readable");
+            let limit = |t: f64| gap.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+            let measured = growth(&mut other, &mut reference, &mut metric, &limit).expect("readable");
+            let measured = measured.unwrap_or_else(|| panic!("{name}, μ₀ = {mu0:?}: no growth measured"));
+            println!(
+                "{name}, μ₀ = {mu0:?}: exponent {:.4}, length {:.6e}, predicted {:.6e}, fitted over {:.1e} to {:.1e} s",
+                measured.exponent, measured.length, predicted.length, measured.from, measured.to
+            );
+            must(&format!("{name}, exponent − {exponent}"), (measured.exponent - f64::from(exponent)).abs(), 0.02);
+            must(&format!("{name}, leading coefficient of t^{exponent}"), measured.deviation_from(&predicted), 0.01);
+        }
+    }
+}
+
+/// The same coefficient from three points of the motion only, without the fit.
+#[test]
+fn leading_term_shows_without_a_fit() {
+    let scene = scene("sledge", &[("duration", 0.1)]);
+    for (mu0, exponent) in [(0.0, 3), (0.05, 2)] {
+        let (mut one, mut two) = (chetaev(&scene), vakonomic(&scene, &[mu0]));
+        let reaction = at(&mut one, 0.0).multipliers;
+        let predicted = leading_term(&scene.system, &scene.start, &[mu0], &reaction).expect("compiles").expect("there");
+        let mut ratio = |t: f64| -> Vec<f64> {
+            let (a, b) = (at(&mut one, t).coordinates, at(&mut two, t).coordinates);
+            b.iter().zip(&a).map(|(b, a)| (b - a) / t.powi(exponent)).collect()
+        };
+        // c + c₁ t + c₂ t² from t, 2t and 4t
+        let (near, middle, far) = (ratio(0.005), ratio(0.01), ratio(0.02));
+        let size = predicted.coefficient.iter().fold(0.0_f64, |a, c| a.max(c.abs()));
+        for (i, c) in predicted.coefficient.iter().enumerate() {
+            must(
+                &format!("sledge, μ₀ = {mu0}: coefficient {i} of t^{exponent}, three points"),
+                ((8.0 * near[i] - 6.0 * middle[i] + far[i]) / 3.0 - c).abs() / size,
+                0.01,
+            );
+        }
+    }
+}

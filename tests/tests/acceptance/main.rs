@@ -1,0 +1,11 @@
+//! What the formulations must do, scene by scene: each test can fail, and prints the figure that it measured.
+
+mod closed_forms;
+mod control;
+mod formulations_agree;
+mod invariants;
+mod leading_term;
+mod matching;
+mod numerics;
+mod planar_body;
+mod support;

@@ -1,0 +1,133 @@
+//! Removed-constraint motions inside the vakonomic family, and outside of it (T2, T3).
+
+use deltaq::{Metric, best_fit, setting};
+use mechanics::Removal;
+
+use crate::support::{
+    at, common_times, equations, gap, known_gap, linear_scenes, matching_multipliers, matrix, must, must_exceed,
+    number, parameter, removal, removed, scene, state_at, tight, vakonomic, values,
+};
+
+/// `t₁ = −u̇₀/(g sin α cos φ₀)` and `g sin α`: the horizon for which `p_u = 0`.
+fn sledge_horizon(scene: &mechanics::Scene) -> (f64, f64) {
+    let gravity = parameter(scene, "g") * parameter(scene, "alpha").sin();
+    let (v, phi) = (&scene.start.v, scene.start.q[2]);
+    let speed = v[0] * phi.cos() + v[1] * phi.sin();
+    (-speed / (gravity * phi.cos()), gravity)
+}
+
+#[test]
+fn sledge_with_the_matching_horizon_is_vakonomic() {
+    let scene = scene("sledge", &[("duration", 3.0)]);
+    let arc = removal(&scene, "arc-length");
+    let (t1, gravity) = sledge_horizon(&scene);
+    let phi = scene.start.q[2];
+    // P_x = g sin α (t₁ − t)
+    let mut gao = removed(&scene, arc, &[gravity * t1]);
+    let start = at(&mut gao, 0.0);
+    let name = |n: &str| gao.equations.multipliers.iter().position(|m| m.name == n).expect(n);
+    let (p_u, p_x) = (start.multipliers[name("p_u")], start.multipliers[name("P_x")]);
+    must("sledge, matching t₁: |p_u|", p_u.abs(), 1e-14);
+
+    // Aᵀ μ₀ = p_q − L_v with p_q = (−P_x, 0, p_φ), A = (−sin φ, cos φ, 0)
+    let mu0 = gravity * t1 * phi.sin();
+    let v = &scene.start.v;
+    let along_x = -p_x - v[0] + mu0 * phi.sin();
+    let along_y = -v[1] - mu0 * phi.cos();
+    must(
+        "sledge, matching t₁: μ₀ = g t₁ sin α sin φ₀ solves Aᵀμ₀ = p_q − L_v",
+        along_x.abs().max(along_y.abs()),
+        1e-14,
+    );
+    let (distance, end) = gap(&mut gao, &mut vakonomic(&scene, &[mu0]));
+    assert_eq!(end, 3.0);
+    must("sledge, matching t₁: removed constraint against vakonomic, 3 s", distance, 1e-10);
+    must_exceed("sledge, the other sign of μ₀", gap(&mut gao, &mut vakonomic(&scene, &[-mu0])).0, 1e-3);
+}
+
+#[test]
+fn sledge_with_another_horizon_is_on_no_vakonomic_motion() {
+    let scene = scene("sledge", &[("duration", 3.0)]);
+    let arc = removal(&scene, "arc-length");
+    let vakonomic_equations = equations(&scene.system, "vakonomic", None);
+    let mut metric = Metric::new(&scene.system).expect("compiles");
+    let (matching, gravity) = sledge_horizon(&scene);
+    for (t1, there_is_one) in [(matching, true), (matching + 1.0, false), (0.0, false), (10.0, false)] {
+        let mut gao = removed(&scene, arc, &[gravity * t1]);
+        let guesses: Vec<Vec<f64>> = [0.0, 1.0, -1.0, 5.0, -5.0, 12.0].map(|mu| vec![mu]).to_vec();
+        let fitted = best_fit(setting(&scene), &vakonomic_equations, &mut gao, &guesses, &mut metric, &tight());
+        let mut fitted = fitted.expect("a fit").expect("a motion");
+        let what = format!("sledge, t₁ = {t1:.3}: gap to the best vakonomic (μ₀ = {:.4})", fitted.constants[0]);
+        let left = gap(&mut gao, &mut fitted).0;
+        if there_is_one {
+            must(&what, left, 1e-9);
+        } else {
+            must_exceed(&what, left, 1e-2);
+        }
+    }
+}
+
+#[test]
+fn three_cylinders_by_turn_is_vakonomic_and_keeps_its_constraints() {
+    let scene = scene("three-cylinders", &[]);
+    let by_turn = removal(&scene, "by-turn");
+    // the scene's own constants: P of φ₁, φ₂, s at the start
+    let constants = match &by_turn.constants {
+        mechanics::ConstantsRule::Given(values) => values.clone(),
+        other => panic!("{other:?}"),
+    };
+    let mut given: Vec<f64> = constants.iter().copied().filter(|&c| c != 0.0).collect();
+    given.sort_by(f64::total_cmp);
+    assert_eq!(given, [-0.03, 0.05, 0.08]);
+    let mut gao = removed(&scene, by_turn, &constants);
+    let (mu0, residual) = matching_multipliers(&scene, by_turn, &mut gao);
+    must("three-cylinders: residual of Aᵀμ₀ = p_q − L_v, 6 equations for 4", residual, 1e-12);
+    let (distance, end) = gap(&mut gao, &mut vakonomic(&scene, &mu0));
+    assert_eq!(end, 1.0);
+    must("three-cylinders: removed constraint against vakonomic, 1 s", distance, 1e-10);
+    let (mut worst, g) = (0.0_f64, &scene.system.graph);
+    for t in common_times(&[&gao]) {
+        let values = values(&scene.system, &state_at(&mut gao, t));
+        worst = scene.system.constraints.iter().map(|&f| number(g, f, &values).abs()).fold(worst, f64::max);
+    }
+    must("three-cylinders: constraints (14)-(17) along the motion", worst, 1e-10);
+}
+
+/// `P(t₀)` with no zero in it.
+fn some_constants(count: usize) -> Vec<f64> {
+    (0..count).map(|i| [0.11, -0.07, 0.05, -0.13][i % 4]).collect()
+}
+
+#[test]
+fn coordinate_removal_is_vakonomic_on_every_scene() {
+    for scene in linear_scenes() {
+        let by_coordinates = Removal::by_coordinates(&scene.system, &scene.start).expect("a removal");
+        let count = equations(&scene.system, "removed-constraint", Some(&by_coordinates)).free_constants.len();
+        for constants in [vec![0.0; count], some_constants(count)] {
+            let mut motion = removed(&scene, &by_coordinates, &constants);
+            let (mu0, residual) = matching_multipliers(&scene, &by_coordinates, &mut motion);
+            let zero = if constants.iter().all(|&c| c == 0.0) { "P(t₀) = 0" } else { "P(t₀) ≠ 0" };
+            must(&format!("{}, {zero}: residual of Aᵀμ₀ = p_q − L_v", scene.name), residual, 1e-12);
+            let mut vakonomic =
+                crate::support::motion_of(&scene, equations(&scene.system, "vakonomic", None), &mu0, &tight());
+            let (distance, end) = known_gap(&mut motion, &mut vakonomic);
+            // the chart of the removal may end, or the motion come so close to it that steps run out
+            let ending = format!("{:?}", motion.ending);
+            let chart_ends = ending.contains("by which the equations divide")
+                || scene.name == "ball-in-cone-as-printed" && ending.contains("steps");
+            assert!(motion.is_complete() || chart_ends, "{}: {:?}", scene.name, motion.ending);
+            assert!(end > 0.05 * scene.duration, "{}: only up to {end}: {:?}", scene.name, motion.ending);
+            let what = format!("{}, {zero}: coordinate removal against vakonomic, to {end:.2} s", scene.name);
+            must(&what, distance, 1e-9);
+        }
+    }
+}
+
+#[test]
+fn mass_matrix_is_needed_only_on_the_kernel() {
+    // Heisenberg: M is singular, and still everything above held; make sure that it is the case it claims to be
+    let scene = scene("heisenberg", &[]);
+    let system = scene.system.clone();
+    let mass = matrix(&system.graph, &system.velocity_hessian(), &values(&system, &scene.start));
+    assert_eq!(mass.determinant(), 0.0);
+}

@@ -1,0 +1,231 @@
+//! Scenes, motions and gaps, in the words of the tests.
+
+use std::collections::HashMap;
+
+use deltaq::{Choice, Motion, Settings, derive, formulation, setting, solve};
+use mechanics::{ConstantsRule, Equations, Outputs, Removal, Scene, State, System, complete_removal_start};
+use nalgebra::{DMatrix, DVector};
+use symbolic::{Expr, Graph, Matrix, Symbol};
+
+/// The tolerance of the looser of the two runs of every motion; what is measured has a hundredth of it.
+pub const TIGHT: f64 = 1e-12;
+
+/// Instants at which motions are compared.
+pub const INSTANTS: usize = 200;
+
+/// Scenes whose constraints are linear (or affine) in the velocities.
+pub fn linear_scenes() -> Vec<Scene> {
+    scenes().into_iter().filter(|s| s.system.constraints_linear_in_velocity()).collect()
+}
+
+/// All built-in scenes.
+pub fn scenes() -> Vec<Scene> {
+    validation::catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
+}
+
+/// A built-in scene with other numbers.
+pub fn scene(name: &str, overrides: &[(&str, f64)]) -> Scene {
+    let overrides: Vec<(String, f64)> = overrides.iter().map(|&(n, x)| (n.to_string(), x)).collect();
+    validation::catalogue::find(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
+}
+
+pub fn tight() -> Settings {
+    Settings { tolerance: TIGHT, max_steps: 40_000, ..Settings::default() }
+}
+
+/// Index of a coordinate.
+pub fn index(scene: &Scene, coordinate: &str) -> usize {
+    let found = scene.system.coordinates.iter().position(|c| c.name == coordinate);
+    found.unwrap_or_else(|| panic!("{} has no coordinate {coordinate}", scene.name))
+}
+
+/// Value of a parameter.
+pub fn parameter(scene: &Scene, name: &str) -> f64 {
+    let found = scene.system.parameters.iter().find(|p| scene.system.graph.name(p.symbol) == name);
+    found.unwrap_or_else(|| panic!("{} has no parameter {name}", scene.name)).value
+}
+
+fn choice(name: &str, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
+    let entry = formulation(name).unwrap_or_else(|| panic!("no formulation {name}"));
+    Choice { label: entry.title.into(), formulation: entry.name, removal: removal.cloned(), constants }
+}
+
+/// The equations of a formulation.
+pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Equations {
+    let derived = derive(system, &choice(name, removal, ConstantsRule::Zero));
+    derived.unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// A motion that must come about; it may stop early.
+pub fn motion_of(scene: &Scene, equations: Equations, constants: &[f64], settings: &Settings) -> Motion {
+    let rule = ConstantsRule::Given(constants.to_vec());
+    let solved = solve(setting(scene), equations, &rule, settings);
+    solved.unwrap_or_else(|e| panic!("{}: {e}", scene.name))
+}
+
+/// The Chetaev motion, which must reach the end.
+pub fn chetaev(scene: &Scene) -> Motion {
+    complete(scene, motion_of(scene, equations(&scene.system, "chetaev", None), &[], &tight()))
+}
+
+/// The vakonomic motion with multipliers `mu0`, which must reach the end.
+pub fn vakonomic(scene: &Scene, mu0: &[f64]) -> Motion {
+    complete(scene, motion_of(scene, equations(&scene.system, "vakonomic", None), mu0, &tight()))
+}
+
+/// The removed-constraint motion with `P(t₀)`; it may stop where the removal's chart ends.
+pub fn removed(scene: &Scene, removal: &Removal, constants: &[f64]) -> Motion {
+    motion_of(scene, equations(&scene.system, "removed-constraint", Some(removal)), constants, &tight())
+}
+
+/// A removal of the scene by name.
+pub fn removal<'a>(scene: &'a Scene, name: &str) -> &'a Removal {
+    let found = scene.removals.iter().find(|r| r.name == name);
+    found.unwrap_or_else(|| panic!("{} has no removal {name}", scene.name))
+}
+
+pub fn complete(scene: &Scene, motion: Motion) -> Motion {
+    assert!(motion.is_complete(), "{}: {:?}", scene.name, motion.ending);
+    motion
+}
+
+/// Everything at one instant.
+pub fn at(motion: &mut Motion, t: f64) -> Outputs {
+    motion.at(t).unwrap_or_else(|e| panic!("at t = {t}: {e}"))
+}
+
+/// Equidistant times from start to the last one that both motions reached; where a motion stopped at a singularity, a tenth of the
+/// way before it is left out.
+pub fn common_times(motions: &[&Motion]) -> Vec<f64> {
+    let start = motions[0].start();
+    let end = |m: &&Motion| if m.is_complete() { m.end() } else { start + 0.9 * (m.end() - start) };
+    let end = motions.iter().map(end).fold(f64::INFINITY, f64::min);
+    (0..=INSTANTS).map(|i| start + (end - start) * i as f64 / INSTANTS as f64).collect()
+}
+
+/// Largest difference of any coordinate between two motions, and the last time looked at.
+pub fn gap(one: &mut Motion, two: &mut Motion) -> (f64, f64) {
+    let times = common_times(&[one, two]);
+    let end = times[times.len() - 1];
+    let gaps = times.iter().map(|&t| largest_difference(&at(one, t).coordinates, &at(two, t).coordinates));
+    (gaps.fold(0.0, f64::max), end)
+}
+
+/// What two runs of one motion may differ by for it to count as known.
+const KNOWN: f64 = 3e-10;
+
+/// As [`gap`], up to the time at which one of the motions is itself no longer known to that: some scenes multiply every error a
+/// thousandfold each second. Also says up to when.
+pub fn known_gap(one: &mut Motion, two: &mut Motion) -> (f64, f64) {
+    let (mut largest, mut end) = (0.0_f64, one.start());
+    for t in common_times(&[one, two]) {
+        let error =
+            |m: &mut Motion| m.difference_of_runs(t).expect("readable").iter().fold(0.0_f64, |a, d| a.max(d.abs()));
+        if error(one).max(error(two)) > KNOWN {
+            break;
+        }
+        largest = largest.max(largest_difference(&at(one, t).coordinates, &at(two, t).coordinates));
+        end = t;
+    }
+    (largest, end)
+}
+
+/// Multipliers of the size that the momenta of the scene suggest, `|L_v|/|A|`, with no zero among them.
+pub fn some_multipliers(scene: &Scene) -> Vec<f64> {
+    let system = scene.system.clone();
+    let g = &system.graph;
+    let values = values(&system, &scene.start);
+    let momenta = DVector::from_vec(numbers(g, &g.gradient(system.lagrangian, &system.velocities()), &values));
+    let size = momenta.norm() / matrix(g, &system.constraint_jacobian(), &values).norm();
+    (0..system.constraints.len()).map(|i| size * [0.4, -0.3, 0.2, -0.1][i % 4]).collect()
+}
+
+/// Largest difference of any coordinate between a motion and its closed form.
+pub fn error(motion: &mut Motion, exact: &dyn Fn(f64) -> Vec<f64>) -> f64 {
+    let times = common_times(&[motion]);
+    times.iter().map(|&t| largest_difference(&at(motion, t).coordinates, &exact(t))).fold(0.0, f64::max)
+}
+
+/// `max |aᵢ − bᵢ|`; NaN counts as infinite.
+pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, |m, d| if d.is_nan() { f64::INFINITY } else { m.max(d) })
+}
+
+/// Fails with the figure where it is not under the limit, prints it otherwise.
+#[track_caller]
+pub fn must(what: &str, figure: f64, limit: f64) {
+    println!("{what:<76} {figure:9.2e}  (limit {limit:.0e})");
+    assert!(figure <= limit, "{what}: {figure:.3e} is over {limit:.0e}");
+}
+
+/// Fails with the figure where it is not over the limit, prints it otherwise.
+#[track_caller]
+pub fn must_exceed(what: &str, figure: f64, limit: f64) {
+    println!("{what:<76} {figure:9.2e}  (at least {limit:.0e})");
+    assert!(figure >= limit, "{what}: {figure:.3e} is under {limit:.0e}");
+}
+
+/// Values of parameters, time, positions and velocities.
+pub fn values(system: &System, state: &State) -> HashMap<Symbol, f64> {
+    let mut values = system.parameter_values();
+    values.insert(system.time, state.t);
+    for (i, c) in system.coordinates.iter().enumerate() {
+        values.extend([(c.position, state.q[i]), (c.velocity, state.v[i])]);
+    }
+    values
+}
+
+/// The state of a motion at one instant.
+pub fn state_at(motion: &mut Motion, t: f64) -> State {
+    let Outputs { coordinates: q, velocities: v, .. } = at(motion, t);
+    State { t, q, v }
+}
+
+pub fn number(g: &Graph, e: Expr, values: &HashMap<Symbol, f64>) -> f64 {
+    g.evaluate(e, values).unwrap_or_else(|e| panic!("{e}"))
+}
+
+pub fn numbers(g: &Graph, es: &[Expr], values: &HashMap<Symbol, f64>) -> Vec<f64> {
+    es.iter().map(|&e| number(g, e, values)).collect()
+}
+
+pub fn matrix(g: &Graph, m: &Matrix, values: &HashMap<Symbol, f64>) -> DMatrix<f64> {
+    DMatrix::from_row_slice(m.rows(), m.columns(), &numbers(g, m.entries(), values))
+}
+
+/// Values of `(q, v, t)`, parameters, and `(ü, u̇, u, w)` at the start of a removal.
+pub fn removal_values(system: &System, removal: &Removal, state: &State) -> HashMap<Symbol, f64> {
+    let mut values = values(system, state);
+    let start = complete_removal_start(system, removal, state).unwrap_or_else(|e| panic!("{e}"));
+    values.extend(start.values());
+    values
+}
+
+/// The `μ₀` whose vakonomic motion should be the removed-constraint motion `motion`, and the largest residual of the equations for it (T2).
+///
+/// In the coordinates `Q = (u, w)` the motion has `p_Q = (G_u̇, −P)`. In the coordinates `q` of the system that is
+/// `p_q` with `p_Q = (∂q/∂Q)ᵀ p_q`, and `μ₀` solves `Aᵀ μ₀ = p_q − L_v`.
+pub fn matching_multipliers(scene: &Scene, removal: &Removal, motion: &mut Motion) -> (Vec<f64>, f64) {
+    let system = scene.system.clone();
+    let g = &system.graph;
+    let outputs = at(motion, scene.start.t).multipliers;
+    let named: HashMap<String, f64> =
+        motion.equations.multipliers.iter().map(|m| m.name.clone()).zip(outputs).collect();
+    let symbols: Vec<Symbol> =
+        removal.parameters.iter().map(|u| u.symbol).chain(removal.memory.iter().map(|w| w.symbol)).collect();
+    assert_eq!(symbols.len(), system.dimension(), "(u, w) are no coordinates");
+    let momenta = removal.parameters.iter().map(|u| named[&format!("p_{}", g.name(u.symbol))]);
+    let costates =
+        removal.memory.iter().map(|w| -named.get(&format!("P_{}", g.name(w.symbol))).copied().unwrap_or(0.0));
+    let p = DVector::from_iterator(symbols.len(), momenta.chain(costates));
+    let values = removal_values(&system, removal, &scene.start);
+    let chart = matrix(g, &g.jacobian(&removal.coordinates, &symbols), &values);
+    let p = chart.transpose().lu().solve(&p).expect("(u, w) are coordinates near the start");
+    let velocity = numbers(g, &g.gradient(system.lagrangian, &system.velocities()), &values);
+    let right = p - DVector::from_vec(velocity);
+    let a = matrix(g, &system.constraint_jacobian(), &values).transpose();
+    let mu = a.clone().svd(true, true).solve(&right, 1e-12).expect("least squares");
+    let residual = (a * &mu - right).amax();
+    (mu.as_slice().to_vec(), residual)
+}
