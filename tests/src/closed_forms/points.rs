@@ -1,5 +1,7 @@
 //! Motions of points: particle, Appell-Hamel, Heisenberg, pendulum.
 
+use super::{sinc, sine_defect};
+
 /// Particle with `ż = y ẋ`, Chetaev.
 ///
 /// `L = ½(ẋ² + ẏ² + ż²)`. `ẏ = v` and `ẋ√(1 + y²) = c` are constant:

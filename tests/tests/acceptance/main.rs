@@ -8,4 +8,5 @@ mod leading_term;
 mod matching;
 mod numerics;
 mod planar_body;
+mod references;
 mod support;
