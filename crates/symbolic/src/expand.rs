@@ -6,11 +6,11 @@ use crate::{Expr, Graph};
 use rustc_hash::FxHashMap;
 
 /// Terms beyond which [`Graph::expand`] leaves a product as it is.
-const TERM_LIMIT: usize = 100_000;
+const TERM_LIMIT: usize = 10_000;
 
 impl Graph {
     /// `e` with products of sums and positive integer powers of sums multiplied out, inside functions
-    /// as well. A product that would have more than 100 000 terms stays as it is.
+    /// as well. A product that would have more than 10 000 terms stays as it is.
     ///
     /// ```
     /// let g = symbolic::Graph::new();

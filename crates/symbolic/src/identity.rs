@@ -13,6 +13,9 @@ const TRIES: usize = 20 * POINTS;
 /// A value below this part of what was added up to it is round-off.
 const RELATIVE_BOUND: f64 = 1e-11;
 
+/// Added in every product, so that what underflows counts as round-off.
+const UNDERFLOW: f64 = 1e-300;
+
 /// The answer to the question whether an expression is identically zero.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
@@ -175,7 +178,7 @@ impl Div for Bounded {
     fn div(self, b: Self) -> Self {
         let value = self.value / b.value;
         let magnitude = (self.magnitude + value.abs() * b.magnitude) / b.value.abs();
-        Self { value, magnitude }
+        Self { value, magnitude: magnitude + UNDERFLOW }
     }
 }
 
@@ -251,6 +254,11 @@ impl Scalar for Bounded {
     }
     fn atan2(self, x: Self) -> Self {
         let value = self.value.atan2(x.value);
+        let uncertain = |b: Bounded| b.value.abs() <= RELATIVE_BOUND * b.magnitude;
+        // Round-off decides on which side of the cut the angle is: the point says nothing.
+        if uncertain(self) && (x.value < 0.0 || uncertain(x)) {
+            return Self { value, magnitude: f64::INFINITY };
+        }
         let square = x.value * x.value + self.value * self.value;
         let slopes = x.value.abs() * self.magnitude + self.value.abs() * x.magnitude;
         Self { value, magnitude: value.abs() + slopes / square }

@@ -162,6 +162,18 @@ fn what_is_not_zero_is_found_out() {
 }
 
 #[test]
+fn underflow_and_the_cut_of_the_angle_are_not_taken_for_values() {
+    let g = Graph::new();
+    for text in ["(-4*x)^(477 + 1/3)", "atan2((x + y)*atan2(0, x), x - 1)", "atan2((x - 1)^27, y)"] {
+        let e = read(&g, text);
+        let found = g.vanishes(g.sub(g.expand(e), e), &HashMap::new());
+        assert!(!matches!(found, Vanishing::No { .. }), "{text}: {found:?}");
+    }
+    let turned = read(&g, "atan2(-x, -y) - atan2(x, y)");
+    assert!(matches!(g.vanishes(turned, &HashMap::new()), Vanishing::No { .. }));
+}
+
+#[test]
 fn without_a_finite_value_nothing_is_decided() {
     assert!(matches!(vanishing("log(-1 - x^2)"), Vanishing::Undecided { .. }));
 }
