@@ -7,10 +7,13 @@ use rustc_hash::FxHashMap;
 
 /// Terms beyond which [`Graph::expand`] leaves a product as it is.
 const TERM_LIMIT: usize = 10_000;
+/// Powers above this stay as they are: their coefficients would leave the range of numbers.
+const POWER_LIMIT: i64 = 64;
 
 impl Graph {
     /// `e` with products of sums and positive integer powers of sums multiplied out, inside functions
-    /// as well. A product that would have more than 10 000 terms stays as it is.
+    /// as well. A power above 64 and a product that
+    /// would have more than 10 000 terms stay as they are.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -59,7 +62,7 @@ impl Arena {
         for (base, exponent) in factors {
             let n = exponent.floor();
             match self.node(*base) {
-                Node::Sum(constant, inner) if n >= 1 => {
+                Node::Sum(constant, inner) if (1..=POWER_LIMIT).contains(&n) => {
                     let count = inner.len() + usize::from(!constant.is_zero());
                     terms = terms.saturating_mul(power_terms(count, n));
                     sums.push((*base, n));

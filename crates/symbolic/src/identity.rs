@@ -147,7 +147,7 @@ struct Bounded {
 impl Bounded {
     /// f(x), where `slope` is f'(x)
     fn mapped(self, value: f64, slope: f64) -> Self {
-        Self { value, magnitude: value.abs() + slope.abs() * self.magnitude }
+        Self { value, magnitude: value.abs() + slope.abs() * self.magnitude + UNDERFLOW }
     }
 }
 
@@ -169,7 +169,7 @@ impl Mul for Bounded {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
         let magnitude = self.magnitude * b.value.abs() + self.value.abs() * b.magnitude;
-        Self { value: self.value * b.value, magnitude }
+        Self { value: self.value * b.value, magnitude: magnitude + UNDERFLOW }
     }
 }
 
@@ -250,7 +250,7 @@ impl Scalar for Bounded {
         let by_base = self.magnitude * (exponent.value * value / self.value).abs();
         let by_exponent = exponent.magnitude * (value * self.value.ln()).abs();
         let by_exponent = if by_exponent.is_nan() { 0.0 } else { by_exponent };
-        Self { value, magnitude: value.abs() + by_base + by_exponent }
+        Self { value, magnitude: value.abs() + by_base + by_exponent + UNDERFLOW }
     }
     fn atan2(self, x: Self) -> Self {
         let value = self.value.atan2(x.value);

@@ -169,6 +169,10 @@ fn underflow_and_the_cut_of_the_angle_are_not_taken_for_values() {
         let found = g.vanishes(g.sub(g.expand(e), e), &HashMap::new());
         assert!(!matches!(found, Vanishing::No { .. }), "{text}: {found:?}");
     }
+    // x^477 underflows where (4 x)^477 does not.
+    let power = read(&g, "(4*x)^(477 + 1/3) - 4^477*x^477*(4*x)^(1/3)");
+    let found = g.vanishes(power, &HashMap::new());
+    assert!(!matches!(found, Vanishing::No { .. }), "{found:?}");
     let turned = read(&g, "atan2(-x, -y) - atan2(x, y)");
     assert!(matches!(g.vanishes(turned, &HashMap::new()), Vanishing::No { .. }));
 }
