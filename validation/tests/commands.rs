@@ -1,0 +1,304 @@
+//! The command line, run as a user runs it: fields, options, exit codes, files whole or not at all.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn deltaq(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_deltaq")).args(arguments).output().expect("the command runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+#[track_caller]
+fn exit(output: &Output, code: i32) {
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "stderr: {stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+}
+
+/// What `deltaq solve … --format json` prints.
+#[track_caller]
+fn json(arguments: &[&str]) -> Value {
+    let output = deltaq(&[&["solve"], arguments, &["--format", "json"]].concat());
+    exit(&output, 0);
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+fn column(value: &Value, group: &str, name: &str) -> Vec<f64> {
+    let column = value[group][name].as_array().unwrap_or_else(|| panic!("no {group}.{name} in {value}"));
+    column.iter().map(|x| x.as_f64().expect("a number")).collect()
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().expect("an object").keys().map(String::as_str).collect()
+}
+
+#[track_caller]
+fn refused(arguments: &[&str], words: &[&str]) {
+    let output = deltaq(arguments);
+    let stderr = text(&output.stderr);
+    println!("{arguments:?}\n    {}", stderr.trim().replace('\n', "\n    "));
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty(), "{arguments:?}: a partial answer: {}", text(&output.stdout));
+    for word in words {
+        assert!(stderr.contains(word), "{arguments:?}: `{word}` is not in {stderr}");
+    }
+}
+
+#[test]
+fn json_has_every_field() {
+    let value = json(&["sledge", "-f", "chetaev"]);
+    assert_eq!(value["scene"], "sledge");
+    assert_eq!(value["formulation"], "chetaev");
+    assert_eq!(value["status"], "completed");
+    let times = value["times"].as_array().expect("times");
+    assert_eq!(times.len(), 101);
+    for group in ["coordinates", "velocities"] {
+        assert_eq!(keys(&value[group]).len(), 3);
+        for name in ["x", "y", "phi"] {
+            assert_eq!(column(&value, group, name).len(), times.len());
+        }
+    }
+    assert_eq!(column(&value, "multipliers", "lambda_1").len(), times.len());
+    let estimate = value["error_estimate"].as_f64().expect("a number");
+    assert!(estimate > 0.0 && estimate < 1e-8, "{estimate}");
+    let energy = &value["invariants"]["energy"];
+    assert!(energy["start"].is_f64() && energy["drift"].as_f64().is_some_and(|d| d < 1e-10), "{energy}");
+    for field in ["steps", "rejected", "evaluations"] {
+        assert!(value["work"][field].is_u64(), "work.{field}");
+    }
+    assert!(value["work"]["evaluations"].as_u64() > value["work"]["steps"].as_u64());
+    for field in ["derive", "compile", "integrate"] {
+        assert!(value["seconds"][field].as_f64().is_some_and(|s| s >= 0.0), "seconds.{field}");
+    }
+}
+
+#[test]
+fn csv_has_the_same_numbers() {
+    let arguments = ["sledge", "-f", "chetaev", "--times", "0,2.5,10"];
+    let value = json(&arguments);
+    let output = deltaq(&[&["solve"], &arguments[..]].concat());
+    exit(&output, 0);
+    let text = text(&output.stdout);
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("t,x,y,phi,x',y',phi',lambda_1"));
+    let rows: Vec<Vec<f64>> = lines.map(|l| l.split(',').map(|x| x.parse().expect("a number")).collect()).collect();
+    assert_eq!(rows.iter().map(|r| r[0]).collect::<Vec<_>>(), [0.0, 2.5, 10.0]);
+    assert_eq!(rows.iter().map(|r| r[2]).collect::<Vec<_>>(), column(&value, "coordinates", "y"));
+    assert_eq!(rows.iter().map(|r| r[7]).collect::<Vec<_>>(), column(&value, "multipliers", "lambda_1"));
+}
+
+#[test]
+fn times_are_a_list_or_a_range() {
+    let times = |text: &str| -> Vec<f64> {
+        let value = json(&["disc", "-f", "chetaev", "--times", text]);
+        value["times"].as_array().expect("times").iter().map(|t| t.as_f64().expect("a number")).collect()
+    };
+    assert_eq!(times("0,1.5,10"), [0.0, 1.5, 10.0]);
+    assert_eq!(times("1:3:5"), [1.0, 1.5, 2.0, 2.5, 3.0]);
+    assert_eq!(times("4"), [4.0]);
+    for bad in ["1:2", "a,b", "0:1:-3", "0:1:0", "0:1:1e9", "11", "-1", "nan", ""] {
+        refused(&["solve", "disc", "-f", "chetaev", "--times", bad], &["--times"]);
+    }
+}
+
+#[test]
+fn multipliers_and_constants_choose_the_motion() {
+    let end = |arguments: &[&str]| column(&json(&[arguments, &["--times", "3"]].concat()), "coordinates", "x")[0];
+    let vakonomic = ["sledge", "-f", "vakonomic"];
+    let zero = end(&vakonomic);
+    assert_eq!(end(&[&vakonomic[..], &["--mu0", "0"]].concat()), zero);
+    let negative = end(&[&vakonomic[..], &["--mu0", "-0.2"]].concat());
+    assert!((negative - zero).abs() > 1e-3);
+    assert_eq!(end(&[&vakonomic[..], &["--set", "mu1=-0.2"]].concat()), negative);
+    let start = column(&json(&["sledge", "-f", "vakonomic", "--mu0", "-0.2", "--times", "0"]), "multipliers", "mu_1");
+    assert_eq!(start, [-0.2]);
+    // the costate form is another way to the same motion
+    assert!((end(&["sledge", "-f", "vakonomic-costate", "--mu0", "-0.2"]) - negative).abs() < 1e-8);
+
+    let removed = ["sledge", "-f", "removed-constraint", "--removal", "arc-length"];
+    let with = |rule: &str| end(&[&removed[..], &["--constants", rule]].concat());
+    let horizon = with("horizon=10");
+    assert_eq!(end(&removed), horizon, "the scene's own constants");
+    // P_x = g sin(alpha) (10 - t)
+    let start = 9.81 * 0.4_f64.sin() * 10.0;
+    assert!((with(&format!("start={start},0")) - horizon).abs() < 1e-7);
+    assert!((with(&format!("start={start}")) - horizon).abs() < 1e-7);
+    assert!((with("zero") - with("start=0")).abs() < 1e-12);
+    assert!((with("zero") - horizon).abs() > 1e-3);
+    assert!((with("start=-1") - with("start=1")).abs() > 1e-3);
+    let natural = json(&[&removed[..], &["--constants", "horizon=10", "--times", "10"]].concat());
+    let at_horizon = column(&natural, "multipliers", "P_x")[0];
+    assert!(at_horizon.abs() < 1e-7, "P_x = {at_horizon} at the horizon");
+    for name in ["coordinates", "quasi-velocities"] {
+        let value = json(&["disc", "-f", "removed-constraint", "--removal", name, "--times", "0"]);
+        assert_eq!(value["removal"], name);
+    }
+}
+
+#[test]
+fn options_of_the_integration_are_heard() {
+    let reference = column(&json(&["sledge", "-f", "chetaev", "--times", "10"]), "coordinates", "y")[0];
+    let methods = [("dop853", "1e-8"), ("tsit45", "1e-8"), ("bdf", "1e-7"), ("tr-bdf2", "1e-6"), ("esdirk34", "1e-7")];
+    for (method, tolerance) in methods {
+        let value = json(&["sledge", "-f", "chetaev", "--times", "10", "--method", method, "--tolerance", tolerance]);
+        let error = (column(&value, "coordinates", "y")[0] - reference).abs();
+        let estimate = value["error_estimate"].as_f64().expect("a number");
+        println!("sledge, {method} at {tolerance}: error {error:.1e}, estimate {estimate:.1e}, {}", value["work"]);
+        assert!(error < 1e3 * tolerance.parse::<f64>().expect("a number"), "{method}: {error:e}");
+        assert!(error < 10.0 * estimate + 1e-11, "{method}: error {error:e}, estimate {estimate:e}");
+    }
+    let steps = |tolerance: &str| {
+        json(&["sledge", "-f", "chetaev", "--tolerance", tolerance])["work"]["steps"].as_u64().expect("a number")
+    };
+    assert!(steps("1e-12") > steps("1e-5"));
+    let set = ["--set", "g=1.62", "--set", "x=2", "--set", "duration=20"];
+    let moon = json(&[&["sledge", "-f", "chetaev", "--times", "0,20"], &set[..]].concat());
+    assert_eq!(column(&moon, "coordinates", "x")[0], 2.0);
+    let free = json(&["sledge", "-f", "chetaev", "--no-projection"]);
+    assert_eq!(free["projection"]["count"], 0);
+}
+
+#[test]
+fn a_chart_that_ends_is_a_stop_with_time_and_cause() {
+    let arguments = ["solve", "sledge", "-f", "removed-constraint", "--removal", "along-x", "--constants", "zero"];
+    let output = deltaq(&[&arguments[..], &["--format", "json"]].concat());
+    exit(&output, 3);
+    let stderr = text(&output.stderr);
+    println!("{stderr}");
+    assert!(stderr.contains("stopped at t = ") && stderr.contains("cos(phi)"), "{stderr}");
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(value["status"], "stopped");
+    assert!(value["cause"].as_str().is_some_and(|c| c.contains("cos(phi)")), "{}", value["cause"]);
+    let end = value["end"].as_f64().expect("a number");
+    // and that is where the blade points across the slope
+    let times = format!("0,{}", end * (1.0 - 1e-9));
+    let last = deltaq(&[&arguments[..], &["--format", "json", "--times", &times]].concat());
+    let value: Value = serde_json::from_slice(&last.stdout).expect("JSON");
+    let phi = column(&value, "coordinates", "phi")[1];
+    assert!((phi.abs() - std::f64::consts::FRAC_PI_2).abs() < 1e-5, "stopped at phi = {phi}");
+}
+
+#[test]
+fn the_scenes_own_horizon_beyond_the_chart_is_no_success() {
+    let output = deltaq(&["solve", "sledge", "-f", "removed-constraint", "--removal", "along-x"]);
+    let (code, stderr) = (output.status.code(), text(&output.stderr));
+    println!("sledge --removal along-x: {code:?}, {stderr}");
+    assert!(matches!(code, Some(2 | 3)), "{code:?}: {stderr}");
+    assert!(!stderr.contains("panicked") && !stderr.is_empty(), "{stderr}");
+}
+
+#[test]
+fn bad_options_are_bad_input() {
+    refused(&["solve", "sledge", "-f", "newton"], &["newton", "chetaev", "vakonomic"]);
+    refused(&["solve", "sledgge", "-f", "chetaev"], &["sledgge"]);
+    refused(&["solve", "sledge"], &["--formulation"]);
+    refused(&["solve", "sledge", "-f", "chetaev", "--mu0", "1"], &["--mu0"]);
+    refused(&["solve", "sledge", "-f", "chetaev", "--removal", "along-x"], &["--removal"]);
+    refused(&["solve", "sledge", "-f", "vakonomic", "--mu0", "1,2"], &["1 free constant", "2"]);
+    refused(&["solve", "sledge", "-f", "removed-constraint", "--removal", "along-z"], &["along-z", "arc-length"]);
+    refused(&["solve", "sledge", "-f", "removed-constraint", "--constants", "some"], &["some", "horizon"]);
+    refused(&["solve", "sledge", "-f", "removed-constraint", "--constants", "start=1,2,3"], &["3"]);
+    refused(&["solve", "sledge", "-f", "removed-constraint", "--constants", "horizon=-1"], &["-1"]);
+    refused(&["solve", "sledge", "-f", "chetaev", "--method", "euler"], &["euler"]);
+    refused(&["solve", "sledge", "-f", "chetaev", "--set", "gg=1"], &["gg"]);
+    refused(&["solve", "sledge", "-f", "chetaev", "--set", "g"], &["NAME=VALUE"]);
+    refused(&["solve", "sledge", "-f", "chetaev", "--set", "g=nan"], &["finite"]);
+    refused(&["solve", "sledge", "-f", "chetaev", "--set", "duration=0"], &["duration"]);
+}
+
+#[test]
+fn constants_that_are_no_numbers_are_bad_input() {
+    for bad in ["nan", "inf"] {
+        refused(&["solve", "sledge", "-f", "vakonomic", "--mu0", bad], &[]);
+        refused(&["solve", "sledge", "-f", "vakonomic-costate", "--mu0", bad], &[]);
+        refused(&["solve", "sledge", "-f", "removed-constraint", "--constants", &format!("start={bad}")], &[]);
+        refused(&["solve", "sledge", "-f", "removed-constraint", "--constants", &format!("horizon={bad}")], &[]);
+    }
+}
+
+#[test]
+fn tolerances_out_of_range_are_bad_input() {
+    for tolerance in ["0", "-1e-9", "nan", "inf", "2", "x"] {
+        refused(&["solve", "sledge", "-f", "chetaev", &format!("--tolerance={tolerance}")], &["olerance"]);
+    }
+}
+
+/// All files under a folder, with their sizes.
+fn files(folder: &Path) -> Vec<(String, u64)> {
+    let mut found = Vec::new();
+    let mut pending = vec![folder.to_path_buf()];
+    while let Some(folder) = pending.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let entry = entry.expect("an entry");
+            let kind = entry.metadata().expect("metadata");
+            if kind.is_dir() {
+                pending.push(entry.path());
+            } else {
+                found.push((entry.path().display().to_string(), kind.len()));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn compare_writes_whole_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("new");
+    let output = deltaq(&["compare", "bowl", "--out", out.to_str().expect("UTF-8"), "--set", "duration=1"]);
+    exit(&output, 0);
+    let found = files(&out);
+    println!("{found:?}");
+    assert!(found.iter().any(|(name, _)| name.ends_with("scenes/bowl.md")), "{found:?}");
+    assert!(found.iter().filter(|(name, _)| name.ends_with(".svg")).count() >= 1, "{found:?}");
+    let whole = |(name, size): &(String, u64)| *size > 100 && (name.ends_with(".md") || name.ends_with(".svg"));
+    assert!(found.iter().all(whole), "{found:?}");
+    for (name, _) in found.iter().filter(|(name, _)| name.ends_with(".svg")) {
+        let text = std::fs::read_to_string(name).expect("readable");
+        roxmltree::Document::parse(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+}
+
+#[test]
+fn a_compare_that_fails_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("new");
+    let to = out.to_str().expect("UTF-8");
+    // the second scene is the bad one: the first is already computed
+    for bad in [&["bowl", "no-such-scene"][..], &["bowl", "disc", "--set", "kx=1"]] {
+        let output = deltaq(&[&["compare"], bad, &["--out", to]].concat());
+        exit(&output, 2);
+        assert!(!out.exists() || files(&out).is_empty(), "{:?}", files(&out));
+    }
+    // what was there stays as it was
+    std::fs::create_dir_all(out.join("scenes")).expect("a folder");
+    std::fs::write(out.join("scenes/bowl.md"), "mine").expect("written");
+    let output = deltaq(&["compare", "bowl", "no-such-scene", "--out", to]);
+    exit(&output, 2);
+    assert_eq!(std::fs::read_to_string(out.join("scenes/bowl.md")).expect("readable"), "mine");
+    assert_eq!(files(&out).len(), 1);
+    // a folder that cannot be one
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").expect("written");
+    let output = deltaq(&["compare", "bowl", "--set", "duration=1", "--out", file.to_str().expect("UTF-8")]);
+    exit(&output, 2);
+}
+
+#[test]
+fn list_and_show_answer() {
+    let output = deltaq(&["list"]);
+    exit(&output, 0);
+    assert!(text(&output.stdout).lines().count() >= 13);
+    let output = deltaq(&["show", "sledge"]);
+    exit(&output, 0);
+    let shown = text(&output.stdout);
+    for word in ["Chetaev", "vakonomic", "arc-length", "L ="] {
+        assert!(shown.contains(word), "{word} is not in {shown}");
+    }
+}
