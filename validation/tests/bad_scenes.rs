@@ -105,6 +105,7 @@ fn misspelt_and_undefined_names_are_pointed_at() {
 #[test]
 fn starts_that_are_missing_or_contradictory_are_refused() {
     refused("start = 0 }\ny", "strt = 0 }\ny", "7:", &["strt"]);
+    refused(", start = -1", "", "8:1", &["`start` is missing in [coordinates.y]"]);
     refused("\"y'\" = 0.5\n", "", "15:", &["y'"]);
     refused("\"y'\" = 0.5", "\"y'\" = 0.5\n\"z'\" = 4.0", "15:", &["constraint"]);
     refused("start = -1", "start = \"x'\"", "8:", &[]);

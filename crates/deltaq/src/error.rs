@@ -23,7 +23,10 @@ pub enum SolveError {
     #[error("at the start: {0}")]
     AtStart(#[from] EvaluationFailure),
     /// A wrong number of free constants.
-    #[error("{formulation} has {expected} free constants ({names}); {found} were given")]
+    #[error(
+        "{formulation} has {expected} free constants ({names}); {found} were given (the costate of a memory variable that L does not \
+         need is zero, and no free constant)"
+    )]
     ConstantCount {
         /// Name of the formulation.
         formulation: String,
@@ -33,6 +36,14 @@ pub enum SolveError {
         names: String,
         /// Number given.
         found: usize,
+    },
+    /// A free constant is NaN or infinite.
+    #[error("{formulation}: a free constant is {value}; it must be finite")]
+    ConstantNotFinite {
+        /// Name of the formulation.
+        formulation: String,
+        /// Its value.
+        value: f64,
     },
     /// A natural boundary condition where the formulation has none.
     #[error("{formulation} has no natural boundary condition for its free constants")]

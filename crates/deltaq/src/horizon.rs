@@ -45,7 +45,7 @@ pub(crate) fn natural_constants(
             failure = Some(error);
             BoundaryError::Residual { reason }
         })?;
-        if let Ending::Stopped { t, cause } = ending(&prepared.equations, &run.status) {
+        if let Ending::Stopped { t, cause } = ending(prepared, &run) {
             return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
         }
         run.dense.evaluate(horizon, &mut end);

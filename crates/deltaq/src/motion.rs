@@ -244,7 +244,7 @@ pub fn solve(
     let looser = prepared.run(&constants, setting.end, settings.tolerance, settings)?;
     let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
-    let ending = ending(&prepared.equations, &kept.status);
+    let ending = ending(&mut prepared, &kept);
     let size = prepared.equations.states.len();
     let end = readable_end(&mut prepared.compiled, &kept.dense, &looser.dense);
     Ok(Motion {
@@ -293,6 +293,9 @@ fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -
 /// Values given one a free constant, or one a memory variable (then those without a costate have to be zero).
 fn given_constants(equations: &Equations, values: &[f64]) -> Result<Vec<f64>, SolveError> {
     let constants = &equations.free_constants;
+    if let Some(&value) = values.iter().find(|x| !x.is_finite()) {
+        return Err(SolveError::ConstantNotFinite { formulation: equations.formulation.into(), value });
+    }
     if values.len() == constants.len() {
         return Ok(values.to_vec());
     }
@@ -315,11 +318,13 @@ pub fn constant_names(equations: &Equations) -> Vec<String> {
     equations.free_constants.iter().map(|c| equations.graph.name(c.symbol)).collect()
 }
 
-pub(crate) fn ending(equations: &Equations, status: &Status) -> Ending {
-    let Status::Stopped { t, cause } = status else { return Ending::Completed };
+pub(crate) fn ending(prepared: &mut Prepared, run: &Solution) -> Ending {
+    let Status::Stopped { t, cause } = &run.status else { return Ending::Completed };
+    let equations = &prepared.equations;
     let cause = match cause {
         StopCause::Event { index } => {
-            format!("{} vanishes, by which the equations divide", equations.graph.plain(equations.guards[*index]))
+            let guard = equations.graph.plain(equations.guards[*index]);
+            return Ending::Stopped { t: *t, cause: format!("{guard} vanishes, by which the equations divide") };
         }
         StopCause::NotFinite { component } => {
             let symbol = equations.states.get(*component).map(|y| equations.graph.name(y.symbol));
@@ -330,7 +335,23 @@ pub(crate) fn ending(equations: &Equations, status: &Status) -> Ending {
         }
         other => other.to_string(),
     };
-    Ending::Stopped { t: *t, cause }
+    let near = nearly_zero_guard(prepared, &run.dense).map_or(String::new(), |words| format!("; {words}"));
+    Ending::Stopped { t: *t, cause: cause + &near }
+}
+
+/// A guard is nearly zero when it is under this fraction of its value at the start.
+const NEARLY_ZERO: f64 = 1e-2;
+
+/// The guard that has shrunk most over the run, if it is nearly zero at its end.
+fn nearly_zero_guard(prepared: &mut Prepared, dense: &DenseOutput) -> Option<String> {
+    let count = prepared.compiled.guards();
+    let (mut start, mut end) = (vec![0.0; count], vec![0.0; count]);
+    prepared.compiled.guard_values(dense.start(), dense.start_state(), &mut start);
+    prepared.compiled.guard_values(dense.end(), dense.end_state(), &mut end);
+    let ratios = start.iter().zip(&end).map(|(a, b)| (b / a).abs());
+    let (index, ratio) = ratios.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let guard = prepared.equations.graph.plain(prepared.equations.guards[index]);
+    (ratio < NEARLY_ZERO).then(|| format!("{guard}, by which the equations divide, is down to {:.1e}", end[index]))
 }
 
 /// Compiled equations as the time integrator sees them.
