@@ -41,7 +41,7 @@
 //! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
 use mechanics::{
-    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable,
+    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named,
     Statement, System, fresh_symbol,
 };
 use symbolic::{Expr, Symbol, Vanishing};
@@ -87,22 +87,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
 
-    for i in 0..q.len() {
-        equations.states.push(StateVariable {
-            symbol: q[i],
-            role: Role::Position,
-            rate: g.variable(v[i]),
-            start: g.variable(q[i]),
-        });
-    }
-    for i in 0..q.len() {
-        equations.states.push(StateVariable {
-            symbol: v[i],
-            role: Role::Velocity,
-            rate: g.variable(a[i]),
-            start: g.variable(v[i]),
-        });
-    }
+    equations.add_positions_and_velocities(&system);
     equations.blocks = vec![Block {
         unknowns: a.iter().chain(&lambda).copied().collect(),
         residuals,

@@ -5,7 +5,7 @@
 //! into one table, integrates them with one time loop, and says whether two motions are the same.
 //!
 //! - [`FORMULATIONS`]: the table.
-//! - [`derive`], [`solve`]: one motion, with its global error estimate.
+//! - [`derive()`], [`solve`]: one motion, with its global error estimate.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
 mod comparison;

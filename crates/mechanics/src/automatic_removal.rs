@@ -6,7 +6,7 @@
 //! v_d = K v_i + c ,      K = −A_d⁻¹ A_i ,   c = −A_d⁻¹ b .
 //! ```
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use symbolic::{Expr, Graph, Matrix, Symbol};
 
@@ -36,7 +36,7 @@ impl Removal {
             parameters: split.independent.iter().map(|&i| coordinate_parameter(system, i)).collect(),
             memory: memory.collect(),
             coordinates: system.graph.variables(&system.positions()),
-            start: HashMap::new(),
+            start: BTreeMap::new(),
             constants: ConstantsRule::Zero,
         })
     }
@@ -53,7 +53,7 @@ impl Removal {
         let split = Split::new(system, state)?;
         let mut parameters = Vec::new();
         let mut memory = Vec::new();
-        let mut start = HashMap::new();
+        let mut start = BTreeMap::new();
         let mut rates = Vec::new();
         for (column, &i) in split.independent.iter().enumerate() {
             let entries = split.solution.column(column);

@@ -173,6 +173,21 @@ impl Equations {
         }
     }
 
+    /// Adds the states `q` with rate `v` and `v` with rate `a`, started at `(q₀, v₀)`.
+    pub fn add_positions_and_velocities(&mut self, system: &System) {
+        let g = &system.graph;
+        let mut add = |symbol, role, rate| {
+            let (rate, start) = (g.variable(rate), g.variable(symbol));
+            self.states.push(StateVariable { symbol, role, rate, start });
+        };
+        for c in &system.coordinates {
+            add(c.position, Role::Position, c.velocity);
+        }
+        for c in &system.coordinates {
+            add(c.velocity, Role::Velocity, c.acceleration);
+        }
+    }
+
     /// Symbols of `y`.
     pub fn state_symbols(&self) -> Vec<Symbol> {
         self.states.iter().map(|s| s.symbol).collect()

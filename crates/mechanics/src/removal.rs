@@ -1,6 +1,6 @@
 //! Removal of constraints: new displacement parameters `u` and memory variables `w` such that `f` holds identically.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use symbolic::{Expr, Symbol, Vanishing};
 
@@ -60,7 +60,7 @@ pub struct Removal {
     pub coordinates: Vec<Expr>,
     /// Start values of parameters, their rates and memory variables that are not coordinates, as expressions in `(q₀, v₀, t₀)`.
     /// What is left out is solved from `(q₀, v₀)`, nearest to zero.
-    pub start: HashMap<Symbol, Expr>,
+    pub start: BTreeMap<Symbol, Expr>,
     /// The constants that a run uses unless told otherwise.
     pub constants: ConstantsRule,
 }

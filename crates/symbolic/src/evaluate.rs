@@ -45,8 +45,8 @@ impl Graph {
         outputs: &[Expr],
         constants: &HashMap<Symbol, f64>,
     ) -> Result<Tape, CompileError> {
-        let values: HashMap<Symbol, Expr> =
-            constants.iter().filter(|(s, _)| !inputs.contains(s)).map(|(s, x)| (*s, self.number(*x))).collect();
+        let mut values = self.as_numbers(constants);
+        values.retain(|s, _| !inputs.contains(s));
         let folded = self.substitute_all(outputs, &values);
         self.check_bound(&folded, |s| inputs.contains(&s))?;
         let arena = self.arena.borrow();
@@ -74,6 +74,13 @@ impl Graph {
             }
         }
         Ok(tape)
+    }
+
+    /// The constants as expressions, made in the order of their symbols: the same nodes in the same order in every run.
+    pub(crate) fn as_numbers(&self, constants: &HashMap<Symbol, f64>) -> HashMap<Symbol, Expr> {
+        let mut ordered: Vec<(Symbol, f64)> = constants.iter().map(|(&s, &x)| (s, x)).collect();
+        ordered.sort_by_key(|(s, _)| *s);
+        ordered.into_iter().map(|(s, x)| (s, self.number(x))).collect()
     }
 
     /// The value of `e`. Slow: for single values.

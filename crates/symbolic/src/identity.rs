@@ -67,7 +67,7 @@ impl Graph {
     /// assert_eq!(g.vanishes(rest, &HashMap::new()), Vanishing::Exactly);
     /// ```
     pub fn vanishes(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        let values = constants.iter().map(|(s, x)| (*s, self.number(*x))).collect();
+        let values = self.as_numbers(constants);
         let e = self.substitute(e, &values);
         if self.is_zero(e) {
             return Vanishing::Exactly;

@@ -20,7 +20,7 @@
 //! *curvature* `f_qᵀ − Ȧᵀ` of the constraint, and `−μ̇` is what corresponds to `λ`. For integrable constraints the curvature vanishes and
 //! the two formulations agree. `μᵢ` has the unit of action over that of `∫ fᵢ dt`.
 //!
-//! **One instant, multiplier form** ([`derive`]). With the state `(q, v, μ)` the equations are linear in `(a, μ̇)`:
+//! **One instant, multiplier form** ([`derive()`]). With the state `(q, v, μ)` the equations are linear in `(a, μ̇)`:
 //!
 //! ```text
 //! [ 𝓛_vv  Aᵀ ] [ a  ]   [ 𝓛_q − 𝓛_vq v − 𝓛_vt ]
@@ -113,12 +113,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     // d/dt f = 0
     residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
 
-    for i in 0..q.len() {
-        equations.states.push(state(g, q[i], Role::Position, g.variable(v[i]), q[i]));
-    }
-    for i in 0..q.len() {
-        equations.states.push(state(g, v[i], Role::Velocity, g.variable(a[i]), v[i]));
-    }
+    equations.add_positions_and_velocities(&system);
     for (i, &mu) in augmented.multipliers.iter().enumerate() {
         equations.states.push(state(g, mu, Role::Multiplier, g.variable(rates[i]), augmented.starts[i]));
     }

@@ -1,6 +1,6 @@
 //! Hand-written parametrizations.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use symbolic::{Expr, Symbol};
 
@@ -184,9 +184,9 @@ impl<'a> Reader<'a, '_> {
         &self,
         parameters: &[DisplacementParameter],
         memory: &[MemoryVariable],
-    ) -> Result<HashMap<Symbol, Expr>, SceneError> {
+    ) -> Result<BTreeMap<Symbol, Expr>, SceneError> {
         let g = &self.context.system.graph;
-        let mut start = HashMap::new();
+        let mut start = BTreeMap::new();
         let Some(section) = self.section.section("start")? else { return Ok(start) };
         let own = parameters.iter().filter(|u| u.coordinate.is_none()).flat_map(|u| [u.symbol, u.rate]);
         let extra = memory.iter().filter(|w| w.coordinate.is_none()).map(|w| w.symbol);

@@ -64,6 +64,13 @@ impl<'a> Problem<'a> {
         Problem { system, unknowns: occurring.into_iter().filter(open).collect(), equations, known }
     }
 
+    /// Known values in the order of their symbols, so that every run builds the same graph.
+    fn known_in_order(&self) -> Vec<(Symbol, f64)> {
+        let mut known: Vec<(Symbol, f64)> = self.known.iter().map(|(&s, &x)| (s, x)).collect();
+        known.sort_by_key(|(s, _)| *s);
+        known
+    }
+
     /// Whether every equation is linear in the unknowns.
     pub(super) fn is_linear(&self) -> bool {
         let g = &self.system.graph;
@@ -75,7 +82,7 @@ impl<'a> Problem<'a> {
     pub(super) fn solve(&self, guess: &HashMap<Symbol, f64>, default: f64) -> Result<Solved, CompileError> {
         let g = &self.system.graph;
         let (m, n) = (self.equations.len(), self.unknowns.len());
-        let known: Vec<(Symbol, f64)> = self.known.iter().map(|(&s, &x)| (s, x)).collect();
+        let known = self.known_in_order();
         let known_symbols: Vec<Symbol> = known.iter().map(|k| k.0).collect();
         let mut outputs = self.equations.clone();
         outputs.extend(g.jacobian(&self.equations, &self.unknowns).entries());
@@ -108,8 +115,7 @@ impl<'a> Problem<'a> {
 
     /// `|e| / (|e| + size of its terms)` of each equation, all of whose symbols must be known.
     pub(super) fn relative_residuals(&self) -> Result<Vec<f64>, CompileError> {
-        let symbols: Vec<Symbol> = self.known.keys().copied().collect();
-        let point: Vec<f64> = symbols.iter().map(|s| self.known[s]).collect();
+        let (symbols, point): (Vec<Symbol>, Vec<f64>) = self.known_in_order().into_iter().unzip();
         let mut outputs = self.equations.clone();
         outputs.extend(self.system.graph.jacobian(&self.equations, &symbols).entries());
         let mut numeric = Numeric::new(self.system, &symbols, &outputs)?;
