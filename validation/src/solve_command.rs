@@ -193,7 +193,7 @@ fn json_text(
     };
     let multipliers: Vec<String> = motion.equations.multipliers.iter().map(|m| m.name.clone()).collect();
     let invariants: Map<String, Value> = motion
-        .invariant_drift(SAMPLES)?
+        .invariant_drift(&motion.grid(SAMPLES))?
         .into_iter()
         .map(|(name, start, drift)| (name, json!({ "start": start, "drift": drift })))
         .collect();

@@ -41,8 +41,8 @@
 //! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
 use mechanics::{
-    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named,
-    Statement, System, fresh_symbol,
+    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement, System,
+    fresh_symbol,
 };
 use symbolic::{Expr, Symbol, Vanishing};
 

@@ -124,14 +124,14 @@ impl Motion {
         Ok(kept.iter().zip(&looser).map(|(a, b)| a - b).collect())
     }
 
-    /// Largest deviation of each invariant from its value at the start, over `samples` times.
+    /// Name, value at the start and largest deviation from it at `times`, of each invariant.
     ///
     /// # Errors
     /// As [`Motion::at`].
-    pub fn invariant_drift(&mut self, samples: usize) -> Result<Vec<(String, f64, f64)>, SolveError> {
+    pub fn invariant_drift(&mut self, times: &[f64]) -> Result<Vec<(String, f64, f64)>, SolveError> {
         let start = self.at(self.start())?.invariants;
         let mut drift = vec![0.0_f64; start.len()];
-        for t in self.grid(samples) {
+        for &t in times {
             for (d, (now, then)) in drift.iter_mut().zip(self.at(t)?.invariants.iter().zip(&start)) {
                 *d = d.max((now - then).abs());
             }

@@ -35,10 +35,8 @@ pub fn overview(comparisons: &[Comparison], provenance: &Provenance) -> String {
         "\n## How this was made\n\n`cargo run --release` writes this folder; `deltaq compare SCENE` makes one page for a scene of your own; \
          [`verdicts.json`](verdicts.json) holds the verdicts for machines.\n\n\
          Every motion is integrated twice, at tolerances a factor 100 apart; two motions are called different only where their gap is over \
-         ten times the sum of both error estimates.\n\n{}, {}, {} s for everything.",
-        provenance.program,
-        provenance.machine,
-        short(provenance.seconds)
+         ten times the sum of both error estimates.\n\n{}, {}, {:.0} s for everything.",
+        provenance.program, provenance.machine, provenance.seconds
     );
     page
 }
