@@ -9,4 +9,5 @@ mod matching;
 mod numerics;
 mod planar_body;
 mod references;
+mod second_rates;
 mod support;

@@ -1,0 +1,117 @@
+//! Frobenius' verdict on constraints whose integrability is known by construction.
+
+use mechanics::{Integrability, RemovalError, integrability};
+
+mod systems;
+
+#[track_caller]
+fn verdict(coordinates: &[&str], constraints: &[&str]) -> Integrability {
+    let (system, state) = systems::kinetic(coordinates, &[("a", 0.7), ("Omega", 1.3)], constraints);
+    let verdict = integrability(&system, &state).unwrap_or_else(|e| panic!("{constraints:?}: {e}"));
+    println!("{constraints:?}: {verdict}");
+    verdict
+}
+
+#[track_caller]
+fn must_be_integrable(coordinates: &[&str], constraints: &[&str]) {
+    let verdict = verdict(coordinates, constraints);
+    assert!(matches!(verdict, Integrability::Integrable { .. }), "{constraints:?}: {verdict}");
+    assert!(verdict.is_integrable());
+}
+
+#[track_caller]
+fn must_be_nonintegrable(coordinates: &[&str], constraints: &[&str], depth: usize) {
+    let verdict = verdict(coordinates, constraints);
+    assert_eq!(verdict, Integrability::Nonintegrable { depth }, "{constraints:?}: {verdict}");
+    assert!(!verdict.is_integrable());
+}
+
+#[test]
+fn no_constraint() {
+    assert_eq!(verdict(&["x", "y"], &[]), Integrability::Unconstrained);
+    assert!(Integrability::Unconstrained.is_integrable());
+}
+
+#[test]
+fn nonintegrable_constraints_with_the_depth_of_their_brackets() {
+    must_be_nonintegrable(&["x", "y", "phi"], &["y'*cos(phi) - x'*sin(phi)"], 1);
+    must_be_nonintegrable(&["x", "y", "z"], &["z' - (x*y' - y*x')/2"], 1);
+    // the dimension grows 2, 3, 4
+    must_be_nonintegrable(&["x", "y", "psi", "phi"], &["x' - a*psi'*cos(phi)", "y' - a*psi'*sin(phi)"], 2);
+    // a chain: 2, 3, 4, 5
+    must_be_nonintegrable(&["x", "y", "z", "w", "s"], &["y' - z*x'", "z' - w*x'", "w' - s*x'"], 3);
+    // Martinet: the first bracket vanishes only where x = 0
+    must_be_nonintegrable(&["x", "y", "z"], &["z' - x^2*y'"], 1);
+}
+
+#[test]
+fn total_derivatives_are_integrable() {
+    must_be_integrable(&["x", "y"], &["2*x*x' + 2*y*y'"]);
+    must_be_integrable(&["x", "y", "z"], &["x*x' + y*y' + z*z'"]);
+    must_be_integrable(&["x", "y", "z"], &["z' - cos(x)*x'*exp(y) - sin(x)*exp(y)*y'"]);
+    // with an integrating factor
+    must_be_integrable(&["x", "y", "z"], &["y*z*x' + x*z*y' + 2*x*y*z'"]);
+    must_be_integrable(&["x", "y", "z"], &["(1 + x^2)*(z' - y*x' - x*y')"]);
+}
+
+/// `d/dt(xy + z)` and `d/dt(w − x²)`.
+const FIRST: &str = "(x'*y + x*y' + z')";
+const SECOND: &str = "(w' - 2*x*x')";
+
+#[test]
+fn integrable_constraints_are_found_behind_a_recombination() {
+    let coordinates = ["x", "y", "z", "w"];
+    must_be_integrable(&coordinates, &[FIRST, SECOND]);
+    let one = format!("cos(y)*{FIRST} + (1 + x^2)*{SECOND}");
+    let two = format!("exp(x)*{SECOND} - z*{FIRST}");
+    must_be_integrable(&coordinates, &[&one, &two]);
+}
+
+#[test]
+fn one_integrable_combination_of_two() {
+    let coordinates = ["x", "y", "z", "w"];
+    let partly = Integrability::PartlyIntegrable { integrals: 1, constraints: 2 };
+    assert_eq!(verdict(&coordinates, &["w' - x*x'", "z' - y*x'"]), partly);
+    let hidden = ["cos(y)*(w' - x*x') + x*(z' - y*x')", "2*(z' - y*x') - w*(w' - x*x')"];
+    assert_eq!(verdict(&coordinates, &hidden), partly);
+    assert!(!partly.is_integrable());
+}
+
+#[test]
+fn affine_constraints_are_judged_in_space_and_time() {
+    // d/dt(z − xy − sin t)
+    must_be_integrable(&["x", "y", "z"], &["z' - x'*y - x*y' - cos(t)"]);
+    must_be_integrable(&["x", "y"], &["x*x' + y*y' - t"]);
+    // linear part integrable, the whole not
+    must_be_nonintegrable(&["x", "y", "z"], &["z' - a*y"], 1);
+    must_be_nonintegrable(&["x", "y"], &["y' - x*t"], 1);
+    // a turning table under a ball, Euler angles z-x-z
+    let table = [
+        "x' - a*(theta'*sin(psi) - phi'*sin(theta)*cos(psi)) + Omega*y",
+        "y' + a*(theta'*cos(psi) + phi'*sin(theta)*sin(psi)) - Omega*x",
+    ];
+    must_be_nonintegrable(&["x", "y", "psi", "theta", "phi"], &table, 1);
+}
+
+#[test]
+fn one_direction_left_is_always_integrable() {
+    must_be_integrable(&["x", "y"], &["y' - x*y*x'"]);
+    must_be_integrable(&["x", "y", "z"], &["z' - y*x'", "y' - (x + z^2)*x'"]);
+    // but not where time drives it as well
+    let verdict = verdict(&["x", "y"], &["y' - sin(x)"]);
+    assert_eq!(verdict, Integrability::Nonintegrable { depth: 1 });
+}
+
+#[test]
+fn the_test_does_not_apply_to_nonlinear_constraints() {
+    let found = verdict(&["x", "y", "z"], &["z'^2 - a^2*(x'^2 + y'^2)"]);
+    assert_eq!(found, Integrability::NonlinearInVelocity);
+    assert!(!found.is_integrable());
+}
+
+#[test]
+fn dependent_constraints_are_refused() {
+    let (system, state) = systems::kinetic(&["x", "y", "z"], &[], &["z' - y*x'", "2*z' - 2*y*x'"]);
+    let error = integrability(&system, &state).unwrap_err();
+    assert!(matches!(error, RemovalError::Dependent { pivot, limit } if pivot < limit), "{error}");
+}

@@ -1,0 +1,115 @@
+//! Removals: every fault is refused with its figures, automatic ones satisfy the constraints.
+
+use mechanics::{ConstantsRule, Removal, RemovalError, System, complete_removal_start, project_velocity};
+use symbolic::Expr;
+
+mod systems;
+
+const KNIFE_EDGE: &str = "y'*cos(phi) - x'*sin(phi)";
+
+fn parse(system: &System, text: &str) -> Expr {
+    let g = &system.graph;
+    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).unwrap_or_else(|e| panic!("{text}: {e}"))
+}
+
+#[test]
+fn a_wrong_number_of_parameters() {
+    let (system, state) = systems::kinetic(&["x", "y", "phi"], &[], &[KNIFE_EDGE]);
+    let mut removal = Removal::by_coordinates(&system, &state).unwrap();
+    removal.parameters.pop();
+    removal.name = "short".into();
+    let expected = RemovalError::WrongCount { removal: "short".into(), found: 1, expected: 2 };
+    assert_eq!(removal.verify(&system), Err(expected));
+}
+
+#[test]
+fn a_constraint_that_remains_is_shown_with_its_residual() {
+    let (system, state) = systems::kinetic(&["x", "y", "z", "w"], &[], &["w' - x*x'", "z' - y*x'"]);
+    let mut removal = Removal::by_coordinates(&system, &state).unwrap();
+    removal.verify(&system).unwrap();
+    let z = removal.memory.iter().position(|w| system.graph.name(w.symbol) == "z").expect("z depends on x");
+    removal.memory[z].rate = parse(&system, "y*x' + 1e-3*x'");
+    let error = removal.verify(&system).unwrap_err();
+    let RemovalError::ConstraintRemains { constraint, text, residual, limit, .. } = error else { panic!("{error}") };
+    assert_eq!((constraint, text), (2, system.graph.plain(system.constraints[1])));
+    assert!(residual.abs() > 100.0 * limit, "{residual} {limit}");
+}
+
+#[test]
+fn a_constraint_that_is_nowhere_finite_cannot_be_checked() {
+    let (system, state) = systems::kinetic(&["x", "y", "phi"], &[], &[KNIFE_EDGE]);
+    let mut removal = Removal::by_coordinates(&system, &state).unwrap();
+    removal.memory[0].rate = parse(&system, "sqrt(-1 - phi^2)*x'");
+    let error = removal.verify(&system).unwrap_err();
+    assert!(matches!(&error, RemovalError::NotCheckable { constraint: 1, .. }), "{error}");
+}
+
+#[test]
+fn automatic_removals_need_linear_independent_constraints() {
+    let automatic = [Removal::by_coordinates, Removal::by_quasi_velocities];
+    let (cone, state) = systems::kinetic(&["x", "y", "z"], &[], &["x' - y'", "z'^2 - x'^2 - y'^2"]);
+    for removal in automatic {
+        let error = removal(&cone, &state).unwrap_err();
+        assert!(matches!(&error, RemovalError::NotLinear { constraint: 2, text } if text.contains("z'")), "{error}");
+    }
+    let (twice, state) = systems::kinetic(&["x", "y", "z"], &[], &["z' - y*x'", "exp(x)*(z' - y*x')"]);
+    for removal in automatic {
+        let error = removal(&twice, &state).unwrap_err();
+        assert!(matches!(error, RemovalError::Dependent { pivot, limit } if pivot < limit), "{error}");
+    }
+}
+
+#[test]
+fn automatic_removals_satisfy_the_constraints() {
+    let four = ["x", "y", "psi", "phi"];
+    let cases: [(&[&str], &[&str]); 8] = [
+        (&["x", "y"], &[]),
+        (&["x", "y", "phi"], &[KNIFE_EDGE]),
+        (&["x", "y", "phi"], &["y'*cos(phi) - x'*sin(phi) - a*t"]),
+        (&["x", "y"], &["2*x*x' + 2*y*y'"]),
+        (&["x", "y", "z"], &["z' - (x*y' - y*x')/2"]),
+        (&four, &["x' - a*psi'*cos(phi)", "y' - a*psi'*sin(phi)"]),
+        (&four, &["x'*cos(y) + y'*(1 + phi^2) - psi'", "x' - exp(phi)*phi' + x*psi'"]),
+        (&["x", "y", "z", "w", "s"], &["y' - z*x'", "z' - w*x'", "w' - s*x' + Omega*y"]),
+    ];
+    for (coordinates, constraints) in cases {
+        let (system, state) = systems::kinetic(coordinates, &[("a", 0.7), ("Omega", 1.3)], constraints);
+        let (state, _) = project_velocity(&system, &state).unwrap();
+        for automatic in [Removal::by_coordinates, Removal::by_quasi_velocities] {
+            let removal = automatic(&system, &state).unwrap();
+            removal.verify(&system).unwrap_or_else(|e| panic!("{constraints:?}: {e}"));
+            assert_eq!(removal.parameters.len(), coordinates.len() - constraints.len());
+            assert_eq!(removal.constants, ConstantsRule::Zero);
+            // velocities at the start come back
+            let start = complete_removal_start(&system, &removal, &state).unwrap_or_else(|e| panic!("{e}"));
+            let mut values = system.parameter_values();
+            values.insert(system.time, state.t);
+            values.extend(start.values());
+            for (rate, v) in removal.velocities(&system).into_iter().zip(&state.v) {
+                let found = system.graph.evaluate(rate, &values).unwrap();
+                assert!((found - v).abs() < 1e-12, "{}, {constraints:?}: {found} for {v}", removal.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn quasi_velocity_of_the_knife_edge_is_the_arc_length() {
+    let (system, state) = systems::kinetic(&["x", "y", "phi"], &[], &[KNIFE_EDGE]);
+    let (state, _) = project_velocity(&system, &state).unwrap();
+    let removal = Removal::by_quasi_velocities(&system, &state).unwrap();
+    let g = &system.graph;
+    let blade = removal.parameters.iter().find(|u| u.coordinate.is_none()).expect("one parameter is no coordinate");
+    let velocities = removal.velocities(&system);
+    let along = [parse(&system, "cos(phi)"), parse(&system, "sin(phi)")].map(|e| g.mul(e, g.variable(blade.rate)));
+    for (found, expected) in velocities.iter().zip(along) {
+        let difference = g.vanishes(g.sub(*found, expected), &system.parameter_values());
+        assert!(difference.is_zero(), "{} for {}", g.plain(*found), g.plain(expected));
+    }
+    let turning = removal.parameters.iter().find_map(|u| u.coordinate);
+    assert_eq!(turning, Some(2));
+    let start = complete_removal_start(&system, &removal, &state).unwrap().values();
+    let speed = state.v[0] * state.q[2].cos() + state.v[1] * state.q[2].sin();
+    assert!((start[&blade.rate] - speed).abs() < 1e-14);
+    assert_eq!(start[&blade.symbol], 0.0);
+}
