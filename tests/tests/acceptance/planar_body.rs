@@ -1,6 +1,6 @@
 //! A body without any constraint, its velocities written along a turning frame: removal itself put to the test (T14).
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use mechanics::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, Scene, State, System};
 use symbolic::{Expr, Graph};
@@ -55,7 +55,7 @@ fn turning_frame(system: &System) -> Removal {
             coordinate: Some(1),
         },
     ];
-    let zero = HashMap::from([(parameters[0].symbol, g.zero()), (parameters[1].symbol, g.zero())]);
+    let zero = BTreeMap::from([(parameters[0].symbol, g.zero()), (parameters[1].symbol, g.zero())]);
     Removal {
         name: "turning-frame".into(),
         parameters,
