@@ -35,7 +35,7 @@ pub fn run(arguments: &ShowArguments) -> Result<String> {
         let _ = writeln!(text, "0 = {}", print(f));
     }
     let _ = writeln!(text, "\nConstraint: {}", integrability(&scene.system, &scene.start)?);
-    for choice in choices(&scene)? {
+    for choice in choices(&scene) {
         let _ = writeln!(text, "\n## {}\n", choice.label);
         match derive(&scene.system, &choice) {
             Ok(equations) => text += &equations_text(&equations, style),

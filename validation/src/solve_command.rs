@@ -1,7 +1,9 @@
 //! `deltaq solve`: one scene, one formulation, one trajectory.
 
 use anyhow::{Context, Result, bail};
-use deltaq::{Choice, Ending, FORMULATIONS, Metric, Motion, Settings, formulation, removals, solve_choice};
+use deltaq::{
+    Choice, Ending, FORMULATIONS, Metric, Motion, Settings, default_constants, formulation, removals, solve_choice,
+};
 use integrate::Projection;
 use mechanics::{ConstantsRule, Removal, Scene};
 use serde_json::{Map, Value, json};
@@ -67,15 +69,14 @@ fn choice(scene: &Scene, arguments: &SolveArguments) -> Result<Choice> {
     if removal.is_none() && (arguments.removal.is_some() || arguments.constants.is_some()) {
         bail!("--removal and --constants belong to the removed-constraint formulation, not to {}", entry.name);
     }
-    if arguments.mu0.is_some() && !entry.name.starts_with("vakonomic") {
+    if arguments.mu0.is_some() && !entry.starts_multipliers {
         bail!("--mu0 belongs to the vakonomic formulation, not to {}", entry.name);
     }
     let constants = match (&removal, &arguments.constants, &arguments.mu0) {
         (Some(_), Some(text), _) => constants_rule(text)?,
         (Some(removal), None, _) => removal.constants.clone(),
         (None, _, Some(mu0)) => ConstantsRule::Given(mu0.clone()),
-        (None, _, None) if entry.name.starts_with("vakonomic") => ConstantsRule::Given(scene.multipliers.clone()),
-        (None, _, None) => ConstantsRule::Zero,
+        (None, _, None) => default_constants(entry, scene),
     };
     Ok(Choice { label: entry.title.into(), formulation: entry.name, removal, constants })
 }

@@ -47,7 +47,8 @@ use mechanics::{
 use symbolic::{Expr, Symbol, Vanishing};
 
 /// Entry of the table of formulations.
-pub const FORMULATION: Formulation = Formulation { name: "chetaev", title: "Chetaev", needs_removal: false, derive };
+pub const FORMULATION: Formulation =
+    Formulation { name: "chetaev", title: "Chetaev", needs_removal: false, starts_multipliers: false, derive };
 
 /// Derives the Chetaev equations with states `(q, v)` and unknowns `(a, λ)`.
 ///

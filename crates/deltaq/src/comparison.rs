@@ -124,26 +124,21 @@ fn same_parameters(system: &System, a: &Removal, b: &Removal) -> bool {
     coordinates(a).is_some() && coordinates(a) == coordinates(b) && plain(a) && plain(b)
 }
 
-/// Every choice that a comparison of `scene` makes.
-///
-/// # Errors
-/// As [`removals`].
-pub fn choices(scene: &Scene) -> Result<Vec<Choice>, RemovalError> {
+/// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need one get a choice
+/// without, which [`solve_choice`] refuses with the reason.
+pub fn choices(scene: &Scene) -> Vec<Choice> {
     let mut choices = Vec::new();
     for formulation in FORMULATIONS {
-        let plain = |constants| Choice {
-            label: formulation.title.into(),
-            formulation: formulation.name,
-            removal: None,
-            constants,
-        };
-        if !formulation.needs_removal {
-            let free = formulation.name != "chetaev" && !scene.system.constraints.is_empty();
-            let constants = if free { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero };
-            choices.push(plain(constants));
-            continue;
+        let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
+        if removals.is_empty() {
+            choices.push(Choice {
+                label: formulation.title.into(),
+                formulation: formulation.name,
+                removal: None,
+                constants: default_constants(formulation, scene),
+            });
         }
-        for removal in removals(scene)? {
+        for removal in removals {
             choices.push(Choice {
                 label: format!("{} ({})", formulation.title, removal.name),
                 formulation: formulation.name,
@@ -152,7 +147,12 @@ pub fn choices(scene: &Scene) -> Result<Vec<Choice>, RemovalError> {
             });
         }
     }
-    Ok(choices)
+    choices
+}
+
+/// The free constants of a formulation without a removal: the scene's multipliers where it starts from multipliers, else zero.
+pub fn default_constants(formulation: &Formulation, scene: &Scene) -> ConstantsRule {
+    if formulation.starts_multipliers { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero }
 }
 
 /// Derives the equations of a choice, without what they do not need.
@@ -171,6 +171,9 @@ pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError>
 /// # Errors
 /// [`SolveError`] where there is no motion.
 pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
+    if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
+        removals(scene)?;
+    }
     let clock = Instant::now();
     let equations = derive(&scene.system, choice)?;
     let derive = clock.elapsed().as_secs_f64();
@@ -191,7 +194,7 @@ pub fn setting(scene: &Scene) -> Setting<'_> {
 pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Comparison, SolveError> {
     let integrability = integrability(&scene.system, &scene.start)?;
     let mut metric = Metric::new(&scene.system)?;
-    let mut runs: Vec<Run> = choices(&scene)?
+    let mut runs: Vec<Run> = choices(&scene)
         .into_iter()
         .map(|choice| Run { outcome: solve_choice(&scene, &choice, settings), choice })
         .collect();

@@ -19,7 +19,8 @@ mod motion;
 mod table;
 
 pub use comparison::{
-    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, derive, removals, setting, solve_choice,
+    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, removals, setting,
+    solve_choice,
 };
 pub use error::SolveError;
 pub use fit::best_fit;

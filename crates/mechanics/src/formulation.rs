@@ -59,6 +59,8 @@ pub struct Formulation {
     pub title: &'static str,
     /// Whether [`Derivation::removal`] is needed.
     pub needs_removal: bool,
+    /// Whether its free constants are multipliers `μ₀` at the start, one a constraint.
+    pub starts_multipliers: bool,
     /// The derivation.
     pub derive: fn(&System, &Derivation) -> Result<Equations, DerivationError>,
 }

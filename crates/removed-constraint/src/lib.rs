@@ -56,8 +56,13 @@ use mechanics::{
 use symbolic::{Expr, Graph, Symbol};
 
 /// Entry of the table of formulations.
-pub const FORMULATION: Formulation =
-    Formulation { name: "removed-constraint", title: "removed constraint", needs_removal: true, derive };
+pub const FORMULATION: Formulation = Formulation {
+    name: "removed-constraint",
+    title: "removed constraint",
+    needs_removal: true,
+    starts_multipliers: false,
+    derive,
+};
 
 /// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the order of the memory
 /// variables, then `p(t₀)` of parameters whose second rate `L` contains.

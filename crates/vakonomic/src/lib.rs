@@ -55,13 +55,14 @@ use symbolic::{Expr, Graph, Symbol};
 
 /// Entry of the table of formulations: the multiplier form.
 pub const FORMULATION: Formulation =
-    Formulation { name: "vakonomic", title: "vakonomic", needs_removal: false, derive };
+    Formulation { name: "vakonomic", title: "vakonomic", needs_removal: false, starts_multipliers: true, derive };
 
 /// The same motion in costate (Hamiltonian) form.
 pub const COSTATE_FORM: Formulation = Formulation {
     name: "vakonomic-costate",
     title: "vakonomic, costate form",
     needs_removal: false,
+    starts_multipliers: true,
     derive: derive_costate_form,
 };
 
