@@ -170,6 +170,31 @@ pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError>
 ///
 /// # Errors
 /// [`SolveError`] where there is no motion.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// use deltaq::{Settings, choices, solve_choice};
+/// // the ice sledge turns at a constant rate: phi = 0.3 + t
+/// let chetaev = choices(&scene)?.into_iter().find(|c| c.formulation == "chetaev").unwrap();
+/// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
+/// assert!(motion.is_complete());
+/// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
     if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
         removals(scene)?;
@@ -191,6 +216,32 @@ pub fn setting(scene: &Scene) -> Setting<'_> {
 ///
 /// # Errors
 /// [`RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// use deltaq::{Settings, Verdict, compare};
+/// // the ice sledge, with multipliers that are zero at the start
+/// let comparison = compare(scene, Vec::new(), &Settings::default())?;
+/// let runs = (comparison.run("chetaev").unwrap(), comparison.run("vakonomic").unwrap());
+/// let pair = comparison.pair(runs.0, runs.1).unwrap();
+/// assert_eq!(pair.gap.verdict, Verdict::Different);
+/// assert_eq!(pair.predicted.as_ref().unwrap().exponent, 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Comparison, SolveError> {
     let integrability = integrability(&scene.system, &scene.start)?;
     let mut metric = Metric::new(&scene.system)?;

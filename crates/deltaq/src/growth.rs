@@ -128,6 +128,31 @@ fn least_squares(
 ///
 /// # Errors
 /// [`CompileError`] where an expression contains an undefined symbol.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge: where mu0 is not zero, it turns differently from the start
+/// let term = deltaq::leading_term(&scene.system, &scene.start, &[2.0], &[0.0])?.unwrap();
+/// assert_eq!(term.exponent, 2);
+/// // f_phi = -y'*sin(phi) - x'*cos(phi) is minus the speed along the blade; phi - phi_chetaev = f_phi*mu0/2 t²
+/// let speed = scene.start.v[0] / 0.3_f64.cos();
+/// assert!((term.coefficient[2] + speed).abs() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn leading_term(
     system: &System,
     state: &State,

@@ -299,10 +299,10 @@ fn given_constants(equations: &Equations, values: &[f64]) -> Result<Vec<f64>, So
     if values.len() == constants.len() {
         return Ok(values.to_vec());
     }
-    let memory = equations.removal.as_ref().map_or(0, |r| r.memory.len());
+    let memory = equations.removal.as_ref().map(|r| r.memory.len());
     let used: Vec<Option<usize>> = constants.iter().map(|c| c.memory).collect();
     let unused_are_zero = values.iter().enumerate().all(|(i, &x)| x == 0.0 || used.contains(&Some(i)));
-    if values.len() == memory && unused_are_zero {
+    if Some(values.len()) == memory && unused_are_zero {
         return Ok(used.into_iter().map(|i| i.map_or(0.0, |i| values[i])).collect());
     }
     Err(SolveError::ConstantCount {

@@ -24,6 +24,31 @@ impl Removal {
     /// # Errors
     /// [`RemovalError::NotLinear`] where a constraint is not linear in `v`; [`RemovalError::Dependent`] where `A` at `state` has
     /// no full row rank.
+    ///
+    /// ```
+    /// # let scene = mechanics::Scene::parse("sledge", r#"
+    /// # title = "Ice sledge on an incline"
+    /// # [coordinates]
+    /// # x   = { start = 0 }
+    /// # y   = { start = 0 }
+    /// # phi = { start = 0.3 }
+    /// # [system]
+    /// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+    /// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+    /// # [start.velocities]
+    /// # "phi'" = 1
+    /// # "x'" = 0.5
+    /// # [run]
+    /// # duration = 1
+    /// # "#)?;
+    /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
+    /// let removal = mechanics::Removal::by_coordinates(&scene.system, &scene.start)?;
+    /// let names: Vec<String> = removal.parameters.iter().map(|u| scene.system.graph.name(u.symbol)).collect();
+    /// assert_eq!(names, ["x", "phi"]);
+    /// assert_eq!(scene.system.graph.plain(removal.memory[0].rate), "x'*sin(phi)/cos(phi)");
+    /// removal.verify(&scene.system)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn by_coordinates(system: &System, state: &State) -> Result<Removal, RemovalError> {
         let split = Split::new(system, state)?;
         let memory = split.dependent.iter().enumerate().map(|(row, &i)| MemoryVariable {
@@ -48,6 +73,30 @@ impl Removal {
     ///
     /// # Errors
     /// As [`Removal::by_coordinates`].
+    ///
+    /// ```
+    /// # let scene = mechanics::Scene::parse("sledge", r#"
+    /// # title = "Ice sledge on an incline"
+    /// # [coordinates]
+    /// # x   = { start = 0 }
+    /// # y   = { start = 0 }
+    /// # phi = { start = 0.3 }
+    /// # [system]
+    /// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+    /// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+    /// # [start.velocities]
+    /// # "phi'" = 1
+    /// # "x'" = 0.5
+    /// # [run]
+    /// # duration = 1
+    /// # "#)?;
+    /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
+    /// let removal = mechanics::Removal::by_quasi_velocities(&scene.system, &scene.start)?;
+    /// let rates: Vec<String> = removal.memory.iter().map(|w| scene.system.graph.plain(w.rate)).collect();
+    /// assert_eq!(rates, ["u_x'*cos(phi)", "u_x'*sin(phi)"]);
+    /// removal.verify(&scene.system)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn by_quasi_velocities(system: &System, state: &State) -> Result<Removal, RemovalError> {
         let g = &system.graph;
         let split = Split::new(system, state)?;

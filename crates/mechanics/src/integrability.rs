@@ -68,6 +68,28 @@ impl std::fmt::Display for Integrability {
 ///
 /// # Errors
 /// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// use mechanics::{Integrability, integrability};
+/// // the ice sledge: y'*cos(phi) - x'*sin(phi)
+/// assert_eq!(integrability(&scene.system, &scene.start)?, Integrability::Nonintegrable { depth: 1 });
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn integrability(system: &System, state: &State) -> Result<Integrability, RemovalError> {
     let h = system.constraints.len();
     if h == 0 {

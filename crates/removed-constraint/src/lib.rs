@@ -70,6 +70,39 @@ pub const FORMULATION: Formulation = Formulation {
 /// # Errors
 /// [`DerivationError::RemovalMissing`], [`DerivationError::ForceInVariationalPrinciple`],
 /// [`DerivationError::SingularHighestHessian`].
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [removal.arc-length]
+/// # parameters = ["u", "phi"]
+/// # rates = { x = "u'*cos(phi)", y = "u'*sin(phi)" }
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u'*cos(phi), y' = u'*sin(phi)
+/// let derivation = mechanics::Derivation { removal: Some(&scene.removals[0]) };
+/// let equations = removed_constraint::derive(&scene.system, &derivation)?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// assert_eq!(line(0), "u'' - phi'*P_x*sin(phi) - cos(phi)");
+/// assert_eq!(line(1), "phi'' + u'*P_x*sin(phi)");
+/// // P_x' = -∂G/∂x; y has no costate
+/// let costate = equations.statements.iter().find(|s| s.meaning == "costate").unwrap();
+/// assert_eq!(equations.graph.plain(costate.left), "P_x'");
+/// assert_eq!(equations.graph.plain(costate.right), "-1");
+/// assert_eq!(equations.free_constants.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
     refuse_forces(system, FORMULATION.name)?;
     let removal = derivation.removal.ok_or(DerivationError::RemovalMissing { formulation: FORMULATION.name })?;

@@ -95,6 +95,31 @@ fn augment(system: &System) -> Augmented {
 ///
 /// # Errors
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
+/// let equations = vakonomic::derive(&scene.system, &mechanics::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// assert_eq!(line(0), "x'' - phi'*mu_1*cos(phi) - mu_1'*sin(phi) - 1");
+/// assert_eq!(line(2), "phi'' + mu_1*(x'*cos(phi) + y'*sin(phi))");
+/// assert_eq!(equations.free_constants.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
     let system = system.clone();
     let g = &system.graph;
@@ -142,6 +167,32 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 ///
 /// # Errors
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
+/// let equations = vakonomic::derive_costate_form(&scene.system, &mechanics::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// assert_eq!(line(0), "mu_1*sin(phi) - x' + p_x");
+/// // p_phi' = ∂𝓛/∂phi
+/// let p_phi = equations.states.iter().find(|y| equations.graph.name(y.symbol) == "p_phi").unwrap();
+/// assert_eq!(equations.graph.plain(p_phi.rate), "-mu_1*(x'*cos(phi) + y'*sin(phi))");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
     let system = system.clone();
     let g = &system.graph;

@@ -1,0 +1,222 @@
+//! Everything that can keep a motion from starting, provoked.
+
+use std::collections::HashMap;
+
+use deltaq::{Choice, Motion, Settings, SolveError, compare, formulation, removals, solve_choice};
+use integrate::{BoundaryError, CallError};
+use mechanics::{
+    ConstantsRule, DerivationError, EvaluationFailure, Removal, RemovalError, Scene, SceneErrorKind, StartError,
+};
+
+const SLEDGE: &str = r#"
+title = "Ice sledge on an incline"
+[coordinates]
+x   = { start = 0 }
+y   = { start = 0 }
+phi = { start = 0.3 }
+[system]
+lagrangian  = "(x'^2 + y'^2)/2 + phi'^2/4 + 4*x"
+constraints = ["y'*cos(phi) - x'*sin(phi)"]
+[start.velocities]
+"phi'" = 1.1
+"x'"   = 0.5
+[removal.arc-length]
+parameters = ["u", "phi"]
+rates = { x = "u'*cos(phi)", y = "u'*sin(phi)" }
+[removal.along-x]
+parameters = ["x", "phi"]
+rates = { y = "x'*tan(phi)" }
+[run]
+duration = 1
+"#;
+
+fn sledge() -> Scene {
+    Scene::parse("sledge", SLEDGE).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn choice(name: &str, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
+    let entry = formulation(name).expect("in the table");
+    Choice { label: entry.title.into(), formulation: entry.name, removal: removal.cloned(), constants }
+}
+
+fn solve(scene: &Scene, name: &str, constants: ConstantsRule) -> Result<Motion, SolveError> {
+    let removal = formulation(name).expect("in the table").needs_removal.then(|| &scene.removals[0]);
+    solve_choice(scene, &choice(name, removal, constants), &Settings::default())
+}
+
+#[track_caller]
+fn refused(outcome: Result<Motion, SolveError>) -> SolveError {
+    let error = outcome.err().expect("not refused");
+    println!("{error}");
+    error
+}
+
+#[test]
+fn a_wrong_number_of_constants_names_those_that_there_are() {
+    let scene = sledge();
+    for (name, found, names) in [
+        ("vakonomic", vec![1.0, 2.0], "mu0_1"),
+        ("vakonomic-costate", vec![], "mu0_1"),
+        ("removed-constraint", vec![], "P0_x"),
+        ("removed-constraint", vec![1.0, 2.0, 3.0], "P0_x"),
+        // y has no costate: only zero may be given for it
+        ("removed-constraint", vec![1.0, 2.0], "P0_x"),
+    ] {
+        let expected = SolveError::ConstantCount {
+            formulation: name.into(),
+            expected: 1,
+            names: names.into(),
+            found: found.len(),
+        };
+        assert_eq!(refused(solve(&scene, name, ConstantsRule::Given(found))), expected);
+    }
+    let error = refused(solve(&scene, "chetaev", ConstantsRule::Given(vec![1.0])));
+    assert!(matches!(error, SolveError::ConstantCount { expected: 0, found: 1, .. }), "{error}");
+    let given = solve(&scene, "removed-constraint", ConstantsRule::Given(vec![1.0, 0.0])).expect("zero for y");
+    assert_eq!(given.constants, [1.0]);
+}
+
+#[test]
+fn only_removed_constraints_have_a_natural_boundary_condition() {
+    let scene = sledge();
+    for name in ["vakonomic", "vakonomic-costate"] {
+        let error = refused(solve(&scene, name, ConstantsRule::Natural { horizon: 1.0 }));
+        assert_eq!(error, SolveError::NoNaturalCondition { formulation: name.into() });
+    }
+    // nothing to choose
+    let motion = solve(&scene, "chetaev", ConstantsRule::Natural { horizon: 1.0 }).expect("no constants");
+    assert!(motion.constants.is_empty());
+    // P_x' = −∂L/∂x = −4
+    let motion = solve(&scene, "removed-constraint", ConstantsRule::Natural { horizon: 1.0 }).expect("a horizon");
+    assert!((motion.constants[0] - 4.0).abs() < 1e-8, "{:?}", motion.constants);
+}
+
+#[test]
+fn the_horizon_is_after_the_start() {
+    let scene = sledge();
+    for horizon in [0.0, -1.0, f64::NAN] {
+        let error = refused(solve(&scene, "removed-constraint", ConstantsRule::Natural { horizon }));
+        assert!(matches!(error, SolveError::Horizon { start: 0.0, .. }), "{error}");
+    }
+}
+
+#[test]
+fn a_horizon_beyond_a_singularity_has_no_constants() {
+    // without constants φ runs into π/2, where the chart of this removal ends
+    let scene = Scene::parse("sledge", &SLEDGE.replace("4*x\"", "4*x + y\"")).unwrap_or_else(|e| panic!("{e}"));
+    let along_x = choice("removed-constraint", Some(&scene.removals[1]), ConstantsRule::Natural { horizon: 30.0 });
+    let error = refused(solve_choice(&scene, &along_x, &Settings::default()));
+    let SolveError::Boundary { horizon: 30.0, error: BoundaryError::Residual { reason } } = error else {
+        panic!("{error}")
+    };
+    assert!(reason.contains("the motion stops at t = "), "{reason}");
+}
+
+#[test]
+fn forces_are_for_chetaev_only() {
+    let text = SLEDGE.replace("[start.velocities]", "forces = { phi = 0.2, y = 0 }\n[start.velocities]");
+    let scene = Scene::parse("sledge", &text).unwrap_or_else(|e| panic!("{e}"));
+    for name in ["vakonomic", "vakonomic-costate", "removed-constraint"] {
+        let error = refused(solve(&scene, name, ConstantsRule::Zero));
+        let formulation = formulation(name).expect("in the table").name;
+        let derivation = DerivationError::ForceInVariationalPrinciple { formulation, coordinate: "phi".into() };
+        assert_eq!(error, SolveError::Derivation(derivation));
+    }
+    // φ'' = 0.2/0.5
+    let mut motion = solve(&scene, "chetaev", ConstantsRule::Zero).expect("Chetaev takes forces");
+    let phi = motion.at(1.0).expect("readable").coordinates[2];
+    assert!((phi - (0.3 + 1.1 + 0.2)).abs() < 1e-10, "{phi}");
+}
+
+#[test]
+fn a_removal_is_needed_and_has_to_be_of_first_order_or_regular() {
+    let scene = sledge();
+    let none = choice("removed-constraint", None, ConstantsRule::Zero);
+    let error = refused(solve_choice(&scene, &none, &Settings::default()));
+    let missing = DerivationError::RemovalMissing { formulation: "removed-constraint" };
+    assert_eq!(error, SolveError::Derivation(missing));
+    // φ = u'/w' and a speed u' along the blade: φ' is the only place of second rates, so they come in one combination
+    let removal = "[removal.second]\nparameters = [\"u\", \"w\"]\ndirect = { phi = \"u'/w'\" }\n\
+                   rates = { x = \"u'*cos(u'/w')\", y = \"u'*sin(u'/w')\" }\n[run]";
+    let scene = Scene::parse("sledge", &SLEDGE.replace("[run]", removal)).unwrap_or_else(|e| panic!("{e}"));
+    let second = choice("removed-constraint", scene.removals.last(), ConstantsRule::Zero);
+    let error = refused(solve_choice(&scene, &second, &Settings::default()));
+    let SolveError::Derivation(DerivationError::SingularHighestHessian { removal, rank, size, .. }) = error else {
+        panic!("{error}")
+    };
+    assert_eq!((removal.as_str(), rank, size), ("second", 1, 2));
+}
+
+#[test]
+fn constraints_that_nothing_removes() {
+    let text = "title = \"cone\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\nz = { start = 0 }\n[system]\n\
+        lagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"z'^2 - x'^2 - y'^2\"]\n\
+        [start.velocities]\n\"x'\" = 3\n\"y'\" = 4\n\"z'\" = 5\n[run]\nduration = 1\n";
+    let scene = Scene::parse("cone", text).unwrap_or_else(|e| panic!("{e}"));
+    assert!(matches!(removals(&scene), Err(RemovalError::NotLinear { constraint: 1, .. })));
+    let error = compare(scene, Vec::new(), &Settings::default()).err().expect("not refused");
+    assert!(matches!(&error, SolveError::Removal(RemovalError::NotLinear { constraint: 1, .. })), "{error}");
+}
+
+#[test]
+fn a_removal_that_cannot_represent_the_start() {
+    let scene = sledge();
+    let mut elsewhere = scene.removals[0].clone();
+    let u = elsewhere.parameters[0].rate;
+    elsewhere.start = HashMap::from([(u, scene.system.graph.number(7.0))]);
+    let error = refused(solve_choice(
+        &scene,
+        &choice("removed-constraint", Some(&elsewhere), ConstantsRule::Zero),
+        &Settings::default(),
+    ));
+    let SolveError::Start(StartError::RemovalStart { removal, residual, limit }) = error else { panic!("{error}") };
+    assert!(removal == "arc-length" && residual > limit, "{residual}");
+}
+
+#[test]
+fn dependent_constraints_at_the_start() {
+    let mut scene = sledge();
+    let f = scene.system.constraints[0];
+    scene.system.constraints.push(f);
+    for name in ["chetaev", "vakonomic", "vakonomic-costate"] {
+        let error = refused(solve(&scene, name, ConstantsRule::Zero));
+        assert!(matches!(error, SolveError::AtStart(EvaluationFailure::Singular { .. })), "{error}");
+    }
+    let error = compare(scene, Vec::new(), &Settings::default()).err().expect("not refused");
+    assert!(matches!(error, SolveError::Removal(RemovalError::Dependent { .. })), "{error}");
+    // a scene refuses them before
+    let edge = "\"y'*cos(phi) - x'*sin(phi)\"";
+    let removals = SLEDGE.find("[removal").expect("there are some")..SLEDGE.find("[run]").expect("there is one");
+    let text = SLEDGE.replace(&SLEDGE[removals], "").replace(edge, &format!("{edge}, {edge}"));
+    let error = Scene::parse("sledge", &text).unwrap_err();
+    assert!(matches!(*error.kind, SceneErrorKind::Start(StartError::DependentConstraints { .. })), "{error}");
+}
+
+#[test]
+fn undefined_symbols_do_not_compile() {
+    let mut scene = sledge();
+    let g = &scene.system.graph;
+    let stray = g.mul(g.variable(g.symbol("stray")), g.variable(scene.system.coordinates[0].position));
+    scene.system.lagrangian = g.add(scene.system.lagrangian, stray);
+    for name in ["chetaev", "vakonomic", "vakonomic-costate", "removed-constraint"] {
+        let error = refused(solve(&scene, name, ConstantsRule::Zero));
+        assert!(matches!(error, SolveError::Compile(_)) && error.to_string().contains("stray"), "{error}");
+    }
+}
+
+#[test]
+fn wrong_calls_of_the_integrator() {
+    let run = |duration: f64, settings: &Settings| {
+        let scene = Scene { duration, ..sledge() };
+        refused(solve_choice(&scene, &choice("chetaev", None, ConstantsRule::Zero), settings))
+    };
+    let usual = Settings::default();
+    assert!(matches!(run(0.0, &usual), SolveError::Call(CallError::EmptyInterval { .. })));
+    assert!(matches!(run(f64::NAN, &usual), SolveError::Call(CallError::TimeNotFinite { .. })));
+    for tolerance in [0.0, -1e-9, f64::NAN, 2.0] {
+        let error = run(1.0, &Settings { tolerance, ..Settings::default() });
+        assert!(matches!(error, SolveError::Call(CallError::RelativeTolerance { .. })), "{error}");
+    }
+    let error = run(1.0, &Settings { max_steps: 0, ..Settings::default() });
+    assert!(matches!(error, SolveError::Call(CallError::MaxSteps { found: 0, .. })), "{error}");
+}
