@@ -189,7 +189,7 @@ pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError>
 /// # "#)?;
 /// use deltaq::{Settings, choices, solve_choice};
 /// // the ice sledge turns at a constant rate: phi = 0.3 + t
-/// let chetaev = choices(&scene)?.into_iter().find(|c| c.formulation == "chetaev").unwrap();
+/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").unwrap();
 /// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
 /// assert!(motion.is_complete());
 /// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);

@@ -1,6 +1,6 @@
 //! Everything that can keep a motion from starting, provoked.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use deltaq::{Choice, Motion, Settings, SolveError, compare, formulation, removals, solve_choice};
 use integrate::{BoundaryError, CallError};
@@ -154,8 +154,13 @@ fn constraints_that_nothing_removes() {
         [start.velocities]\n\"x'\" = 3\n\"y'\" = 4\n\"z'\" = 5\n[run]\nduration = 1\n";
     let scene = Scene::parse("cone", text).unwrap_or_else(|e| panic!("{e}"));
     assert!(matches!(removals(&scene), Err(RemovalError::NotLinear { constraint: 1, .. })));
-    let error = compare(scene, Vec::new(), &Settings::default()).err().expect("not refused");
-    assert!(matches!(&error, SolveError::Removal(RemovalError::NotLinear { constraint: 1, .. })), "{error}");
+    // the others are compared all the same, and the refusal is part of the result
+    let comparison = compare(scene, Vec::new(), &Settings::default()).unwrap_or_else(|e| panic!("{e}"));
+    let removed = comparison.run("removed-constraint").expect("a run that says why not");
+    let error = comparison.runs[removed].outcome.as_ref().err().expect("refused");
+    assert!(matches!(error, SolveError::Removal(RemovalError::NotLinear { constraint: 1, .. })), "{error}");
+    let (chetaev, vakonomic) = (comparison.run("chetaev"), comparison.run("vakonomic"));
+    assert!(chetaev.zip(vakonomic).is_some_and(|(a, b)| comparison.pair(a, b).is_some()));
 }
 
 #[test]
@@ -163,7 +168,7 @@ fn a_removal_that_cannot_represent_the_start() {
     let scene = sledge();
     let mut elsewhere = scene.removals[0].clone();
     let u = elsewhere.parameters[0].rate;
-    elsewhere.start = HashMap::from([(u, scene.system.graph.number(7.0))]);
+    elsewhere.start = BTreeMap::from([(u, scene.system.graph.number(7.0))]);
     let error = refused(solve_choice(
         &scene,
         &choice("removed-constraint", Some(&elsewhere), ConstantsRule::Zero),
