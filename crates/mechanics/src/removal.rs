@@ -106,7 +106,7 @@ impl Removal {
     /// [`RemovalError::ConstraintRemains`] with the constraint, its residual and the round-off bound;
     /// [`RemovalError::NotCheckable`] where it is finite at no point tried; [`RemovalError::WrongCount`] where there are not `n − h` parameters.
     pub fn verify(&self, system: &System) -> Result<(), RemovalError> {
-        let expected = system.dimension() - system.constraints.len();
+        let expected = system.dimension().saturating_sub(system.constraints.len());
         if self.parameters.len() != expected {
             return Err(RemovalError::WrongCount {
                 removal: self.name.clone(),
