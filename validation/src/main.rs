@@ -14,9 +14,13 @@ fn main() -> ExitCode {
     let answer = match run(Cli::parse()) {
         Ok(answer) => answer,
         Err(error) => {
-            let mut causes: Vec<String> = error.chain().map(ToString::to_string).collect();
-            causes.dedup();
-            eprintln!("deltaq: {}", causes.join("\n  "));
+            let mut told = error.to_string();
+            for cause in error.chain().skip(1).map(ToString::to_string) {
+                if !told.contains(&cause) {
+                    told += &format!("\n  {cause}");
+                }
+            }
+            eprintln!("deltaq: {told}");
             return ExitCode::from(2);
         }
     };
