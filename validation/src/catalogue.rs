@@ -18,6 +18,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("appell-hamel", include_str!("../scenes/appell-hamel.toml")),
     ("velocity-pendulum", include_str!("../scenes/velocity-pendulum.toml")),
     ("bowl", include_str!("../scenes/bowl.toml")),
+    ("planar-body", include_str!("../scenes/planar-body.toml")),
     ("trailer", include_str!("../scenes/trailer.toml")),
 ];
 

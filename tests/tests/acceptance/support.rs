@@ -15,12 +15,17 @@ pub const INSTANTS: usize = 200;
 
 /// Scenes whose constraints are linear (or affine) in the velocities.
 pub fn linear_scenes() -> Vec<Scene> {
-    scenes().into_iter().filter(|s| s.system.constraints_linear_in_velocity()).collect()
+    constrained_scenes().into_iter().filter(|s| s.system.constraints_linear_in_velocity()).collect()
 }
 
 /// All built-in scenes.
 pub fn scenes() -> Vec<Scene> {
     validation::catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
+}
+
+/// The built-in scenes in which something is constrained.
+pub fn constrained_scenes() -> Vec<Scene> {
+    scenes().into_iter().filter(|scene| !scene.system.constraints.is_empty()).collect()
 }
 
 /// A built-in scene with other numbers.

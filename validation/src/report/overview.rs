@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use deltaq::{Comparison, Fit, Verdict};
 
-use crate::report::numbers::{enumerate, short};
+use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
 use crate::substitution;
 
@@ -125,7 +125,7 @@ fn findings(comparisons: &[Comparison]) -> Vec<String> {
     let integrable: Vec<&Comparison> = comparisons.iter().filter(|c| c.integrability.is_integrable()).collect();
     let agreeing = names(integrable.iter().copied().filter(|c| all_same(c)));
     findings.push(format!(
-        "**Integrable constraints are beyond dispute.** Frobenius' test finds {} integrable; all formulations agree on {}.",
+        "**Integrable constraints are beyond dispute.** Frobenius' test finds {} integrable or free of constraints; all formulations agree on {}.",
         enumerate(&names(integrable.iter().copied())),
         enumerate(&agreeing)
     ));
@@ -134,6 +134,7 @@ fn findings(comparisons: &[Comparison]) -> Vec<String> {
             fit_of(c, "vakonomic", "chetaev").and_then(|f| f.fitted.as_ref()).is_some_and(|f| f.gap.verdict == verdict)
         }))
     };
+    findings.extend(constants_of_removal(&integrable));
     findings.push(format!(
         "**Vakonomic is a family, Chetaev one motion.** Among the vakonomic motions with the same start the Chetaev motion was found on {}; \
          on {} even the closest one stays apart.",
@@ -144,6 +145,33 @@ fn findings(comparisons: &[Comparison]) -> Vec<String> {
     findings.push(control(comparisons));
     findings.extend(predictions(comparisons));
     findings
+}
+
+/// What the free constants of removal do where Newton's motion is beyond dispute.
+fn constants_of_removal(integrable: &[&Comparison]) -> Option<String> {
+    let mut examples = Vec::new();
+    for c in integrable {
+        let Some(fit) = fit_of(c, "removed-constraint", "chetaev") else { continue };
+        let (Some(fitted), Some(pair)) = (&fit.fitted, c.pair(fit.run, fit.target)) else { continue };
+        let constants: Vec<String> =
+            fitted.constants.iter().map(|(name, x)| format!("{name} = {}", precise(*x))).collect();
+        let left = match fitted.gap.verdict {
+            Verdict::Same => "it is Newton's motion".to_string(),
+            _ => format!("a gap of {} remains", short(fitted.gap.largest)),
+        };
+        examples.push(format!(
+            "on `{}` the scene's constants give a gap of {} to Newton's motion; with {} {left}",
+            c.scene.name,
+            short(pair.gap.largest),
+            constants.join(", ")
+        ));
+    }
+    (!examples.is_empty()).then(|| {
+        format!(
+            "**Removal needs its constants fixed even there.** Where the parameters are not coordinates, {}.",
+            examples.join("; ")
+        )
+    })
 }
 
 fn parametrizations(comparisons: &[Comparison]) -> String {
