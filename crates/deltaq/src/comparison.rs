@@ -260,12 +260,12 @@ pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Com
             let (left, right) = runs.split_at_mut(second);
             let (Ok(one), Ok(two)) = (&mut left[first].outcome, &mut right[0].outcome) else { continue };
             let gap = compare_motions(one, two, &mut metric)?;
-            let mut pair = Pair { first, second, gap, growth: None, predicted: None };
-            if pair.gap.verdict == Verdict::Different {
-                let points = pair.gap.points.clone();
-                let limit = |t: f64| points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
-                pair.growth = growth(two, one, &mut metric, &limit)?;
-            }
+            let limit = |t: f64| gap.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+            let growth = match gap.verdict {
+                Verdict::Different => growth(two, one, &mut metric, &limit)?,
+                _ => None,
+            };
+            let mut pair = Pair { first, second, gap, growth, predicted: None };
             let names = (left[first].choice.formulation, right[0].choice.formulation);
             if names == ("chetaev", "vakonomic")
                 && let Ok(chetaev) = &mut left[first].outcome
@@ -357,10 +357,7 @@ fn costate_free_guess(system: &System, start: &State) -> Option<Vec<f64>> {
     let system = system.clone();
     let g = &system.graph;
     let mut values = system.parameter_values();
-    values.insert(system.time, start.t);
-    for (i, c) in system.coordinates.iter().enumerate() {
-        values.extend([(c.position, start.q[i]), (c.velocity, start.v[i])]);
-    }
+    values.extend(system.values_at(start));
     let number = |&e: &symbolic::Expr| g.evaluate(e, &values).ok();
     let momenta: Option<Vec<f64>> = g.gradient(system.lagrangian, &system.velocities()).iter().map(number).collect();
     let jacobian = system.constraint_jacobian();

@@ -80,12 +80,11 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
     let origin = first.at(t0)?;
     let mut largest_length = 0.0_f64;
     for t in sample_times(t0, end) {
-        let one = first.at(t)?;
-        let two = second.at(t)?;
+        let (one, first_error) = first.at_with_difference(t)?;
+        let (two, second_error) = second.at_with_difference(t)?;
         let (q, v) = (&one.coordinates, &one.velocities);
         let difference = subtract(q, &two.coordinates);
-        let errors = [first.difference_of_runs(t)?, second.difference_of_runs(t)?];
-        for (estimate, error) in estimates.iter_mut().zip(&errors) {
+        for (estimate, error) in estimates.iter_mut().zip([&first_error, &second_error]) {
             *estimate = estimate.max(metric.length(t, q, v, error));
         }
         scale = scale.max(metric.length(t, q, v, &subtract(q, &origin.coordinates)));
@@ -96,16 +95,13 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
     }
     // where a difference is certain, only certain gaps count; otherwise all of them
     let certain = points.iter().any(|p| p.gap > p.limit);
-    let counts = |p: &GapPoint| !certain || p.gap > p.limit;
     let mut largest = 0.0_f64;
     let mut largest_by_coordinate = vec![0.0_f64; origin.coordinates.len()];
-    for (_, difference) in points.iter().zip(&differences).filter(|(p, _)| counts(p)) {
+    for (p, difference) in points.iter().zip(&differences).filter(|(p, _)| !certain || p.gap > p.limit) {
+        largest = largest.max(p.gap);
         for (l, d) in largest_by_coordinate.iter_mut().zip(difference) {
             *l = l.max(d.abs());
         }
-    }
-    for p in points.iter().filter(|p| counts(p)) {
-        largest = largest.max(p.gap);
     }
     let mut gap_at = |t: f64| -> f64 {
         match (first.at(t), second.at(t)) {

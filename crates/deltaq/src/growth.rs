@@ -165,10 +165,7 @@ pub fn leading_term(
     let system = system.clone();
     let g = &system.graph;
     let mut values: HashMap<Symbol, f64> = system.parameter_values();
-    values.insert(system.time, state.t);
-    for (i, c) in system.coordinates.iter().enumerate() {
-        values.extend([(c.position, state.q[i]), (c.velocity, state.v[i])]);
-    }
+    values.extend(system.values_at(state));
     let (q, v) = (system.positions(), system.velocities());
     let jacobian = system.constraint_jacobian();
     let flow: Vec<_> = system.flow().into_iter().filter(|(s, _)| !v.contains(s)).collect();

@@ -1,6 +1,5 @@
 //! One motion: equations and start data in, a trajectory with its error estimate out.
 
-use std::collections::HashMap;
 use std::time::Instant;
 
 use integrate::{
@@ -10,6 +9,7 @@ use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System, comp
 use symbolic::Symbol;
 
 use crate::SolveError;
+use crate::gap::subtract;
 use crate::horizon::natural_constants;
 
 /// The tolerance of the second run over that of the first.
@@ -118,10 +118,16 @@ impl Motion {
     /// # Errors
     /// As [`Motion::at`].
     pub fn difference_of_runs(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
-        let kept = self.at(t)?.coordinates;
+        Ok(self.at_with_difference(t)?.1)
+    }
+
+    /// [`Motion::at`] and [`Motion::difference_of_runs`] in one.
+    pub(crate) fn at_with_difference(&mut self, t: f64) -> Result<(Outputs, Vec<f64>), SolveError> {
+        let kept = self.at(t)?;
         self.looser.evaluate(t, &mut self.other);
         let looser = self.compiled.outputs(t, &self.other)?.coordinates;
-        Ok(kept.iter().zip(&looser).map(|(a, b)| a - b).collect())
+        let difference = subtract(&kept.coordinates, &looser);
+        Ok((kept, difference))
     }
 
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
@@ -165,21 +171,15 @@ pub(crate) struct Prepared {
     start_tape: symbolic::Tape,
     start_inputs: Vec<f64>,
     pub(crate) t: f64,
-    implicit: bool,
 }
 
 impl Prepared {
     pub(crate) fn new(setting: Setting, equations: Equations, settings: &Settings) -> Result<Self, SolveError> {
-        let implicit = !matches!(settings.method, Method::Dop853 | Method::Tsit45);
         let mut compiled = Compiled::new(&equations)?;
-        if implicit {
+        if settings.method.is_implicit() {
             compiled = compiled.with_jacobian(&equations)?;
         }
-        let mut values: HashMap<Symbol, f64> = HashMap::from([(equations.time, setting.start.t)]);
-        for (i, c) in setting.system.coordinates.iter().enumerate() {
-            values.insert(c.position, setting.start.q[i]);
-            values.insert(c.velocity, setting.start.v[i]);
-        }
+        let mut values = setting.system.values_at(setting.start);
         if let Some(removal) = &equations.removal {
             values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
         }
@@ -189,7 +189,7 @@ impl Prepared {
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
         let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
-        Ok(Prepared { equations, compiled, start_tape, start_inputs, t: setting.start.t, implicit })
+        Ok(Prepared { equations, compiled, start_tape, start_inputs, t: setting.start.t })
     }
 
     /// Sets the free constants and returns `y(t₀)`.
@@ -221,7 +221,6 @@ impl Prepared {
         options.max_steps = settings.max_steps;
         self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
         let mut runner = Runner(&mut self.compiled);
-        debug_assert!(!self.implicit || matches!(settings.method, Method::Bdf | Method::TrBdf2 | Method::Esdirk34));
         Ok(integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?)
     }
 }

@@ -18,6 +18,11 @@ pub enum Method {
 impl Method {
     /// Every method there is.
     pub const ALL: [Method; 5] = [Method::Dop853, Method::Tsit45, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
+
+    /// Whether the method asks for [`crate::Problem::jacobian`].
+    pub fn is_implicit(self) -> bool {
+        matches!(self, Method::Bdf | Method::TrBdf2 | Method::Esdirk34)
+    }
 }
 
 /// Whether accepted states are moved back onto the invariant manifold ([`crate::Problem::project`]).

@@ -178,7 +178,8 @@ impl Split {
             let text = g.plain(system.constraints[index]);
             return Err(RemovalError::NotLinear { constraint: index + 1, text });
         }
-        let values = start_values(system, state);
+        let mut values = system.parameter_values();
+        values.extend(system.values_at(state));
         let at_rest: HashMap<Symbol, Expr> = system.velocities().into_iter().map(|v| (v, g.zero())).collect();
         let jacobian = system.constraint_jacobian();
         // rows of the working matrix: [A | b]
@@ -253,16 +254,6 @@ fn first_nonlinear(system: &System) -> Option<usize> {
     let (g, v) = (&system.graph, system.velocities());
     let jacobian = system.constraint_jacobian();
     (0..system.constraints.len()).find(|&i| jacobian.row(i).iter().any(|&e| v.iter().any(|&s| g.depends_on(e, s))))
-}
-
-fn start_values(system: &System, state: &State) -> HashMap<Symbol, f64> {
-    let mut values = system.parameter_values();
-    values.insert(system.time, state.t);
-    for (i, c) in system.coordinates.iter().enumerate() {
-        values.insert(c.position, state.q[i]);
-        values.insert(c.velocity, state.v[i]);
-    }
-    values
 }
 
 /// Among the pivots that are large enough at the start, the one with the shortest expression.

@@ -22,7 +22,7 @@ pub use project::project_velocity;
 pub use regularity::check_regularity;
 pub use removal_start::{RemovalStart, complete_removal_start};
 
-use numeric::{Problem, values_of};
+use numeric::Problem;
 
 /// What a scene says about the start.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +66,7 @@ pub fn complete_start(system: &System, data: &StartData) -> Result<(State, Compl
     let velocities = system.velocities();
     let at_rest = State { t: data.time, q: data.positions.clone(), v: vec![0.0; data.positions.len()] };
     check_lengths(system, &at_rest)?;
-    let mut known = values_of(system, &at_rest);
+    let mut known = system.values_at(&at_rest);
     known.retain(|s, _| !velocities.contains(s));
     known.extend(data.given.iter().map(|(&s, &x)| (s, x)));
 
@@ -127,7 +127,7 @@ fn parametrized(system: &System, removal: &Removal, data: &StartData) -> (Vec<Ex
 
 /// Number of the constraint, from 1, with the largest relative residual, and that residual.
 fn worst_constraint(system: &System, state: &State) -> Result<(usize, f64), StartError> {
-    let problem = Problem::new(system, system.constraints.clone(), &[], values_of(system, state));
+    let problem = Problem::new(system, system.constraints.clone(), &[], system.values_at(state));
     let residuals = problem.relative_residuals()?;
     let worst = residuals.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     Ok(worst.map_or((0, 0.0), |(i, residual)| (i + 1, residual)))

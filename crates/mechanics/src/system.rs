@@ -113,6 +113,13 @@ impl System {
         self.parameters.iter().map(|p| (p.symbol, p.value)).collect()
     }
 
+    /// Values of `t, q, v` at `state`; parameters are left to [`System::parameter_values`].
+    pub fn values_at(&self, state: &State) -> HashMap<Symbol, f64> {
+        let q = self.positions().into_iter().zip(state.q.iter().copied());
+        let v = self.velocities().into_iter().zip(state.v.iter().copied());
+        q.chain(v).chain([(self.time, state.t)]).collect()
+    }
+
     /// The rates `(q, v), (v, a), (t, 1)` of every variable along a motion, for [`Graph::total_derivative`].
     pub fn flow(&self) -> Vec<(Symbol, Expr)> {
         let g = &self.graph;

@@ -136,3 +136,24 @@ impl Arena {
         odd && 2 * negative == count
     }
 }
+
+/// Terms with their signs between them, each printed by `term`.
+pub(crate) fn signed(terms: &[Term], term: impl Fn(&Term) -> Printed) -> Printed {
+    let mut pieces = Vec::new();
+    let mut binds = SUM;
+    for (i, t) in terms.iter().enumerate() {
+        let sign = match (i, t.negative) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => " + ",
+            (_, true) => " - ",
+        };
+        pieces.push(text(sign));
+        let (inner, inner_binds) = term(t);
+        if terms.len() == 1 && sign.is_empty() {
+            binds = inner_binds;
+        }
+        pieces.extend(inner);
+    }
+    (pieces, binds)
+}

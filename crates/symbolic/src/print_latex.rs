@@ -3,7 +3,7 @@
 use crate::arena::{Arena, Node};
 use crate::latex_names::latex_name;
 use crate::number::Number;
-use crate::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, SUM, Term, text, write};
+use crate::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, signed, text, write};
 use crate::print_plain::number_text;
 use crate::{Expr, Function, Graph, Symbol};
 
@@ -34,7 +34,9 @@ impl Graph {
 impl Arena {
     fn latex_pieces(&self, e: Expr, negated: bool) -> Printed {
         match self.node(e) {
-            Node::Number(_) | Node::Product(_) | Node::Sum(..) => self.latex_terms(self.printed_terms(e, negated)),
+            Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
+                signed(&self.printed_terms(e, negated), |t| self.latex_term(t.number, t.factors.clone()))
+            }
             Node::Symbol(s) => (vec![text(latex_name(self.name(*s)))], ATOM),
             Node::Power(base, exponent) => {
                 let base = Piece::Node(*base, ATOM);
@@ -59,27 +61,6 @@ impl Arena {
             Node::Symbol(_) => vec![text(name + " "), inner],
             _ => vec![text(name + r"\left("), inner, text(r"\right)")],
         }
-    }
-
-    fn latex_terms(&self, terms: Vec<Term>) -> Printed {
-        let several = terms.len() > 1;
-        let mut pieces = Vec::new();
-        let mut binds = SUM;
-        for (i, term) in terms.into_iter().enumerate() {
-            let sign = match (i, term.negative) {
-                (0, false) => "",
-                (0, true) => "-",
-                (_, false) => " + ",
-                (_, true) => " - ",
-            };
-            pieces.push(text(sign));
-            let (inner, inner_binds) = self.latex_term(term.number, term.factors);
-            if !several && sign.is_empty() {
-                binds = inner_binds;
-            }
-            pieces.extend(inner);
-        }
-        (pieces, binds)
     }
 
     /// number · factors for number ≥ 0, as a fraction if there are denominators

@@ -2,7 +2,7 @@
 
 use crate::arena::{Arena, Node};
 use crate::number::Number;
-use crate::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, SUM, Term, text, write};
+use crate::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, signed, text, write};
 use crate::{Expr, Graph};
 
 impl Graph {
@@ -23,7 +23,9 @@ impl Graph {
 impl Arena {
     fn plain_pieces(&self, e: Expr, negated: bool) -> Printed {
         match self.node(e) {
-            Node::Number(_) | Node::Product(_) | Node::Sum(..) => self.plain_terms(self.printed_terms(e, negated)),
+            Node::Number(_) | Node::Product(_) | Node::Sum(..) => {
+                signed(&self.printed_terms(e, negated), |t| self.plain_term(t.number, &t.factors))
+            }
             Node::Symbol(s) => (vec![text(self.name(*s))], ATOM),
             Node::Power(base, exponent) => {
                 let (base, exponent) = (Piece::Node(*base, ATOM), Piece::Node(*exponent, ATOM));
@@ -41,27 +43,6 @@ impl Arena {
                 (vec![text("atan2("), y, text(", "), x, text(")")], ATOM)
             }
         }
-    }
-
-    fn plain_terms(&self, terms: Vec<Term>) -> Printed {
-        let several = terms.len() > 1;
-        let mut pieces = Vec::new();
-        let mut binds = SUM;
-        for (i, term) in terms.into_iter().enumerate() {
-            let sign = match (i, term.negative) {
-                (0, false) => "",
-                (0, true) => "-",
-                (_, false) => " + ",
-                (_, true) => " - ",
-            };
-            pieces.push(text(sign));
-            let (inner, inner_binds) = self.plain_term(term.number, &term.factors);
-            if !several && sign.is_empty() {
-                binds = inner_binds;
-            }
-            pieces.extend(inner);
-        }
-        (pieces, binds)
     }
 
     /// number · factors for number ≥ 0, as numerators over denominators

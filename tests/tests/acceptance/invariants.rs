@@ -1,12 +1,12 @@
 //! Energies and momenta that must stay constant, and those that must not (T6, T7).
 
 use deltaq::{Metric, Motion};
-use mechanics::{Removal, Scene};
+use mechanics::Scene;
 use symbolic::Expr;
 
 use crate::support::{
-    at, chetaev, common_times, equations, motion_of, must, must_exceed, number, numbers, removed, scene, scenes,
-    some_multipliers, state_at, tight, values,
+    at, chetaev, common_times, equations, motion_of, must, must_exceed, number, numbers, regular_removals, removed,
+    scene, scenes, some_multipliers, state_at, tight, values,
 };
 
 /// How long the motions are followed, s. Appell and Hamel's comes to rest before.
@@ -102,15 +102,7 @@ fn vakonomic_keeps_energy_and_cyclic_momenta() {
 fn removed_constraint_keeps_its_energy() {
     for mut scene in scenes() {
         ten_seconds(&mut scene);
-        let automatic = [Removal::by_coordinates, Removal::by_quasi_velocities];
-        let automatic = automatic.iter().filter_map(|find| find(&scene.system, &scene.start).ok());
-        for removal in scene.removals.iter().cloned().chain(automatic) {
-            if matches!(
-                (scene.name.as_str(), removal.name.as_str()),
-                ("three-cylinders", "paper") | ("appell-hamel", "by-heading")
-            ) {
-                continue; // no equations of motion: refused, see below
-            }
+        for removal in regular_removals(&scene) {
             let count = equations(&scene.system, "removed-constraint", Some(&removal)).free_constants.len();
             let mut motion = removed(&scene, &removal, &vec![0.1; count]);
             must_keep(&format!("{}, removal {}", scene.name, removal.name), &scene, &mut motion, &["energy"]);

@@ -2,12 +2,12 @@
 
 use deltaq::{Motion, Settings};
 use integrate::Method;
-use mechanics::{Compiled, Equations, Removal, Scene};
+use mechanics::{Compiled, Equations, Scene};
 use tests::closed_forms::Sledge;
 
 use crate::support::{
-    at, equations, linear_scenes, motion_of, must, number, parameter, removal_values, scene, scenes, some_multipliers,
-    values,
+    at, equations, linear_scenes, motion_of, must, number, parameter, regular_removals, removal_values, scene, scenes,
+    some_multipliers, values,
 };
 
 #[test]
@@ -103,15 +103,7 @@ fn jacobians_are_exact_for_every_formulation_on_every_scene() {
             must(&format!("{}, {name}: Jacobian", scene.name), jacobian_error(&scene, &equations, constants), 1e-8);
             count += 1;
         }
-        let automatic = [Removal::by_coordinates, Removal::by_quasi_velocities];
-        let automatic = automatic.iter().filter_map(|find| find(&scene.system, &scene.start).ok());
-        for removal in scene.removals.iter().cloned().chain(automatic) {
-            if matches!(
-                (scene.name.as_str(), removal.name.as_str()),
-                ("three-cylinders", "paper") | ("appell-hamel", "by-heading")
-            ) {
-                continue; // no regular equations
-            }
+        for removal in regular_removals(&scene) {
             let equations = equations(&scene.system, "removed-constraint", Some(&removal));
             let constants = vec![0.1; equations.free_constants.len()];
             let error = jacobian_error(&scene, &equations, &constants);

@@ -234,3 +234,12 @@ pub fn matching_multipliers(scene: &Scene, removal: &Removal, motion: &mut Motio
     let residual = (a * &mu - right).amax();
     (mu.as_slice().to_vec(), residual)
 }
+
+/// The removals of a scene that have regular equations: those written by hand, then the automatic ones.
+pub fn regular_removals(scene: &Scene) -> Vec<Removal> {
+    let automatic = [Removal::by_coordinates, Removal::by_quasi_velocities];
+    let automatic = automatic.iter().filter_map(|find| find(&scene.system, &scene.start).ok());
+    let refused = [("three-cylinders", "paper"), ("appell-hamel", "by-heading")];
+    let removals = scene.removals.iter().cloned().chain(automatic);
+    removals.filter(|removal| !refused.contains(&(scene.name.as_str(), removal.name.as_str()))).collect()
+}

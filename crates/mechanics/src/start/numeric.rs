@@ -38,13 +38,6 @@ impl Numeric {
     }
 }
 
-/// Values of `q, v, t` by symbol.
-pub(super) fn values_of(system: &System, state: &State) -> HashMap<Symbol, f64> {
-    let q = system.positions().into_iter().zip(state.q.iter().copied());
-    let v = system.velocities().into_iter().zip(state.v.iter().copied());
-    q.chain(v).chain([(system.time, state.t)]).collect()
-}
-
 /// Equations `e(x; known) = 0` in some symbols `x` of a graph.
 pub(super) struct Problem<'a> {
     pub(super) system: &'a System,

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Symbol};
 
-use super::numeric::{Numeric, Problem, Solved, values_of};
+use super::numeric::{Numeric, Problem, Solved};
 use super::{StartError, check_lengths};
 use crate::newton::NewtonOptions;
 use crate::{Removal, State, System};
@@ -48,7 +48,7 @@ pub fn complete_removal_start(system: &System, removal: &Removal, state: &State)
     let g = &system.graph;
     let limit = NewtonOptions::default().limit;
     let fault = |residual| StartError::RemovalStart { removal: removal.name.clone(), residual, limit };
-    let mut known = values_of(system, state);
+    let mut known = system.values_at(state);
     known.extend(start_values(system, removal, &known)?);
     if !known.values().all(|x| x.is_finite()) {
         return Err(fault(f64::INFINITY));
