@@ -190,6 +190,7 @@ impl Split {
                 row
             })
             .collect();
+        let constants = system.parameter_values();
         let mut pivots: Vec<(usize, usize)> = Vec::new();
         for _ in 0..h {
             let (row, column) = choose_pivot(g, &rows, &pivots, n, &values)?;
@@ -204,7 +205,9 @@ impl Split {
                     continue;
                 }
                 for (e, &p) in other.iter_mut().zip(&pivot_row) {
-                    *e = g.sub(*e, g.mul(factor, p));
+                    let rest = g.sub(*e, g.mul(factor, p));
+                    // what cancels without simplifying would be taken for a pivot, or for a dependence that is not there
+                    *e = if g.vanishes(rest, &constants).is_zero() { g.zero() } else { rest };
                 }
             }
             pivots.push((row, column));

@@ -124,7 +124,9 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
         for x in &admissible {
             for y in &newest {
                 let z = bracket(x, y);
-                if z.iter().all(|&e| matches!(g.vanishes(e, &constants), Vanishing::Exactly)) {
+                let verdicts: Vec<Vanishing> = z.iter().map(|&e| g.vanishes(e, &constants)).collect();
+                if verdicts.iter().all(|v| v.is_zero()) {
+                    exact &= verdicts.iter().all(|v| matches!(v, Vanishing::Exactly));
                     continue;
                 }
                 fields.push(z.clone());

@@ -1,9 +1,9 @@
 //! Ranks of matrices of expressions.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use nalgebra::DMatrix;
-use symbolic::{Graph, Matrix, Symbol};
+use symbolic::{Bounded, Graph, Matrix, Scalar, Symbol};
 
 /// Singular values under this fraction of the largest count as zero.
 pub(crate) const RANK_LIMIT: f64 = 1e-9;
@@ -25,35 +25,37 @@ pub(crate) fn rank(mut matrix: DMatrix<f64>) -> usize {
 }
 
 /// The rank that `matrix` has almost everywhere: the largest found at a few points with fixed pseudo-random coordinates,
-/// those not counted at which an entry is not finite. `constants` keep their values.
+/// those not counted at which an entry is not finite. `constants` keep their values. An entry that is round-off of larger terms counts as zero.
 pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, f64>) -> usize {
     if matrix.rows() == 0 || matrix.columns() == 0 {
         return 0;
     }
-    let at = |point| {
-        let values = random_values(graph, matrix, constants, point);
-        let entries: Vec<f64> =
-            matrix.entries().iter().map(|&e| graph.evaluate(e, &values).unwrap_or(f64::NAN)).collect();
+    let symbols: BTreeSet<Symbol> = matrix.entries().iter().flat_map(|&e| graph.symbols_of(e)).collect();
+    let symbols: Vec<Symbol> = symbols.into_iter().collect();
+    let Ok(tape) = graph.compile(&symbols, matrix.entries(), &HashMap::new()) else { return 0 };
+    let mut registers = tape.workspace();
+    let mut entries = vec![Bounded::from_f64(0.0); matrix.entries().len()];
+    let mut at = |point| {
+        tape.evaluate(&random_values(&symbols, constants, point), &mut registers, &mut entries);
+        let number = |e: &Bounded| if e.may_be_zero() { 0.0 } else { e.value };
         entries
             .iter()
-            .all(|x| x.is_finite())
-            .then(|| rank(DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries)))
+            .all(|e| e.is_finite())
+            .then(|| rank(DMatrix::from_row_iterator(matrix.rows(), matrix.columns(), entries.iter().map(number))))
     };
-    (0..POINTS).filter_map(at).max().unwrap_or(0)
+    (0..POINTS).filter_map(&mut at).max().unwrap_or(0)
 }
 
-/// Values in ±[0.3, 1.3] for every symbol of `matrix` that is not a constant, a pure function of `(symbol, point)`.
-fn random_values(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, f64>, point: u64) -> HashMap<Symbol, f64> {
-    let mut values = constants.clone();
-    let symbols: std::collections::BTreeSet<Symbol> =
-        matrix.entries().iter().flat_map(|&e| graph.symbols_of(e)).collect();
-    for (i, symbol) in symbols.into_iter().enumerate() {
+/// Values in ±[0.3, 1.3] for every symbol that is not a constant, a pure function of its place and `point`.
+fn random_values(symbols: &[Symbol], constants: &HashMap<Symbol, f64>, point: u64) -> Vec<Bounded> {
+    let value = |(i, symbol): (usize, &Symbol)| {
         let mut x = (point << 32 | i as u64).wrapping_add(0x9E37_79B9_7F4A_7C15);
         x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         x ^= x >> 31;
         let magnitude = 0.3 + (x >> 11) as f64 / (1u64 << 53) as f64;
-        values.entry(symbol).or_insert(if x & 1 == 0 { magnitude } else { -magnitude });
-    }
-    values
+        let random = if x & 1 == 0 { magnitude } else { -magnitude };
+        Bounded::from_f64(constants.get(symbol).copied().unwrap_or(random))
+    };
+    symbols.iter().enumerate().map(value).collect()
 }

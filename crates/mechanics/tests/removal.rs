@@ -113,3 +113,24 @@ fn quasi_velocity_of_the_knife_edge_is_the_arc_length() {
     assert!((start[&blade.rate] - speed).abs() < 1e-14);
     assert_eq!(start[&blade.symbol], 0.0);
 }
+
+/// Found by random systems: what is zero without simplifying to zero was taken for a rate, and `q2' = 0` could not be started.
+#[test]
+fn what_cancels_without_simplifying_is_zero() {
+    let integrable = "(16*q3' - 3*q1'*cos(q1))";
+    let mixed = [
+        format!("3*q2'/8 + 9*(sin(q1) + 2)*{integrable}/2048 + {integrable}*(sin(q1) + 4)/64"),
+        format!("(sin(q1) + 4)*(256*q2' + 3*(sin(q1) + 2)*{integrable})/1024"),
+    ];
+    let constraints: Vec<&str> = mixed.iter().map(String::as_str).collect();
+    let (system, state) = systems::kinetic(&["q1", "q2", "q3"], &[], &constraints);
+    let state = project_velocity(&system, &mechanics::State { v: vec![0.5, 0.3, 0.1], ..state }).unwrap().0;
+    assert!(state.v[1].abs() < 1e-14, "{state:?}");
+    for removal in [Removal::by_coordinates, Removal::by_quasi_velocities].map(|find| find(&system, &state).unwrap()) {
+        let second = removal.memory.iter().find(|w| w.coordinate == Some(1)).expect("q2 is memory");
+        assert!(system.graph.is_zero(second.rate), "{}", system.graph.plain(second.rate));
+        complete_removal_start(&system, &removal, &state).unwrap();
+    }
+    let verdict = mechanics::integrability(&system, &state).unwrap();
+    assert!(matches!(verdict, mechanics::Integrability::Integrable { .. }), "{verdict}");
+}

@@ -31,6 +31,7 @@
 
 mod abbreviate;
 mod arena;
+mod bounded;
 mod calculus;
 mod content;
 mod evaluate;
@@ -57,6 +58,7 @@ mod simplify;
 mod suggest;
 mod tape;
 
+pub use bounded::Bounded;
 pub use evaluate::CompileError;
 pub use function::Function;
 pub use graph::{Expr, Graph, Symbol};

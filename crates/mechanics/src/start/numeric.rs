@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use nalgebra::{DMatrix, DVector};
-use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+use symbolic::{Bounded, CompileError, Expr, Scalar, Symbol, Tape, Workspace};
 
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, Root, solve};
 use crate::{State, System};
@@ -35,6 +35,30 @@ impl Numeric {
     pub(super) fn at(&mut self, state: &State) -> &[f64] {
         let inputs = [&state.q[..], &state.v, &[state.t]].concat();
         self.run(&inputs)
+    }
+}
+
+/// As [`Numeric`], with the size of the terms behind every value: what a residual is compared with.
+struct Measured {
+    tape: Tape,
+    registers: Workspace<Bounded>,
+    inputs: Vec<Bounded>,
+    values: Vec<Bounded>,
+}
+
+impl Measured {
+    fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
+        let tape = system.graph.compile(inputs, outputs, &system.parameter_values())?;
+        let zeros = |count| vec![Bounded::from_f64(0.0); count];
+        Ok(Measured { registers: tape.workspace(), inputs: zeros(inputs.len()), values: zeros(outputs.len()), tape })
+    }
+
+    fn run(&mut self, inputs: &[f64]) -> &[Bounded] {
+        for (bounded, &x) in self.inputs.iter_mut().zip(inputs) {
+            *bounded = Bounded::from_f64(x);
+        }
+        self.tape.evaluate(&self.inputs, &mut self.registers, &mut self.values);
+        &self.values
     }
 }
 
@@ -79,23 +103,17 @@ impl<'a> Problem<'a> {
         let known_symbols: Vec<Symbol> = known.iter().map(|k| k.0).collect();
         let mut outputs = self.equations.clone();
         outputs.extend(g.jacobian(&self.equations, &self.unknowns).entries());
-        outputs.extend(g.jacobian(&self.equations, &known_symbols).entries());
         let inputs = [&self.unknowns[..], &known_symbols].concat();
-        let mut numeric = Numeric::new(self.system, &inputs, &outputs)?;
-        let given: Vec<f64> = known.iter().map(|k| k.1).collect();
-        let mut point = [vec![0.0; n], given.clone()].concat();
+        let mut measured = Measured::new(self.system, &inputs, &outputs)?;
+        let mut point: Vec<f64> = vec![0.0; n];
+        point.extend(known.iter().map(|k| k.1));
         let evaluate = |x: &DVector<f64>| {
             point[..n].copy_from_slice(x.as_slice());
-            let values = numeric.run(&point);
-            let jacobian = &values[m..m + m * n];
-            let by_known = &values[m + m * n..];
-            let magnitude = |i: usize| {
-                size_of_terms(&jacobian[i * n..], x.as_slice()) + size_of_terms(&by_known[i * known.len()..], &given)
-            };
+            let (residuals, jacobian) = measured.run(&point).split_at(m);
             Evaluation {
-                magnitude: DVector::from_fn(m, |i, _| magnitude(i)),
-                residual: DVector::from_column_slice(&values[..m]),
-                jacobian: DMatrix::from_row_slice(m, n, jacobian),
+                magnitude: DVector::from_iterator(m, residuals.iter().map(|r| r.magnitude)),
+                residual: DVector::from_iterator(m, residuals.iter().map(|r| r.value)),
+                jacobian: DMatrix::from_row_iterator(m, n, jacobian.iter().map(|d| d.value)),
             }
         };
         let start = DVector::from_iterator(n, self.unknowns.iter().map(|s| *guess.get(s).unwrap_or(&default)));
@@ -111,17 +129,17 @@ impl<'a> Problem<'a> {
         let (symbols, point): (Vec<Symbol>, Vec<f64>) = self.known_in_order().into_iter().unzip();
         let mut outputs = self.equations.clone();
         outputs.extend(self.system.graph.jacobian(&self.equations, &symbols).entries());
-        let mut numeric = Numeric::new(self.system, &symbols, &outputs)?;
-        let (residuals, derivatives) = numeric.run(&point).split_at(self.equations.len());
+        let mut measured = Measured::new(self.system, &symbols, &outputs)?;
+        let (residuals, derivatives) = measured.run(&point).split_at(self.equations.len());
         let n = point.len();
         let x = DVector::from_column_slice(&point);
-        let single = |(i, &r): (usize, &f64)| {
-            let gradient = &derivatives[i * n..(i + 1) * n];
-            let finite = gradient.iter().map(|d| if d.is_finite() { *d } else { 0.0 });
+        let single = |(i, r): (usize, &Bounded)| {
+            let gradient = derivatives[i * n..(i + 1) * n].iter().map(|d| d.value);
+            let finite = gradient.map(|d| if d.is_finite() { d } else { 0.0 });
             let evaluation = Evaluation {
-                residual: DVector::from_element(1, r),
+                residual: DVector::from_element(1, r.value),
                 jacobian: DMatrix::from_iterator(1, n, finite),
-                magnitude: DVector::from_element(1, size_of_terms(gradient, &point)),
+                magnitude: DVector::from_element(1, if r.magnitude.is_finite() { r.magnitude } else { 0.0 }),
             };
             evaluation.relative_residual(&x)
         };
@@ -155,11 +173,6 @@ impl<'a> Problem<'a> {
         }
         Ok((values.to_vec(), open))
     }
-}
-
-/// `Σ |∂e/∂xⱼ · xⱼ|`, terms that are not finite left out.
-fn size_of_terms(gradient: &[f64], x: &[f64]) -> f64 {
-    gradient.iter().zip(x).map(|(d, x)| (d * x).abs()).filter(|t| t.is_finite()).sum()
 }
 
 /// How solving a [`Problem`] ended.

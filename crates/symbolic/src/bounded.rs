@@ -1,0 +1,170 @@
+//! Numbers that know how much round-off there may be in them.
+
+use crate::Scalar;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A value below this part of what was added up to it is round-off.
+const RELATIVE_BOUND: f64 = 1e-11;
+
+/// Added in every product, so that what underflows counts as round-off.
+const UNDERFLOW: f64 = 1e-300;
+
+/// A value and what round-off in it is measured by: the sum of all that was added up on the way, each
+/// times how much the value depends on it.
+///
+/// ```
+/// use std::collections::HashMap;
+/// use symbolic::{Bounded, Graph, Scalar};
+/// let g = Graph::new();
+/// let x = g.variable(g.symbol("x"));
+/// // x(x + 2) + 1 − (x + 1)² is zero, and in numbers nearly so
+/// let two = g.integer(2);
+/// let rest = g.sum(&[g.mul(x, g.add(x, two)), g.one(), g.neg(g.powi(g.add(x, g.one()), 2))]);
+/// let tape = g.compile(&[g.as_symbol(x).unwrap()], &[rest], &HashMap::new())?;
+/// let mut value = [Bounded::from_f64(0.0)];
+/// tape.evaluate(&[Bounded::from_f64(0.7)], &mut tape.workspace(), &mut value);
+/// assert!(value[0].may_be_zero() && value[0].magnitude > 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded {
+    /// The value.
+    pub value: f64,
+    /// The size of what was added up to it.
+    pub magnitude: f64,
+}
+
+impl Bounded {
+    /// What of the value may be round-off.
+    pub fn round_off(self) -> f64 {
+        RELATIVE_BOUND * self.magnitude
+    }
+
+    /// Whether the value cannot be told from zero.
+    pub fn may_be_zero(self) -> bool {
+        self.value.abs() <= self.round_off()
+    }
+
+    /// Whether value and magnitude are finite.
+    pub fn is_finite(self) -> bool {
+        self.value.is_finite() && self.magnitude.is_finite()
+    }
+
+    /// f(x), where `slope` is f'(x)
+    fn mapped(self, value: f64, slope: f64) -> Self {
+        Self { value, magnitude: value.abs() + slope.abs() * self.magnitude + UNDERFLOW }
+    }
+}
+
+impl Add for Bounded {
+    type Output = Self;
+    fn add(self, b: Self) -> Self {
+        Self { value: self.value + b.value, magnitude: self.magnitude + b.magnitude }
+    }
+}
+
+impl Sub for Bounded {
+    type Output = Self;
+    fn sub(self, b: Self) -> Self {
+        Self { value: self.value - b.value, magnitude: self.magnitude + b.magnitude }
+    }
+}
+
+impl Mul for Bounded {
+    type Output = Self;
+    fn mul(self, b: Self) -> Self {
+        let magnitude = self.magnitude * b.value.abs() + self.value.abs() * b.magnitude;
+        Self { value: self.value * b.value, magnitude: magnitude + UNDERFLOW }
+    }
+}
+
+impl Div for Bounded {
+    type Output = Self;
+    fn div(self, b: Self) -> Self {
+        let value = self.value / b.value;
+        let magnitude = (self.magnitude + value.abs() * b.magnitude) / b.value.abs();
+        Self { value, magnitude: magnitude + UNDERFLOW }
+    }
+}
+
+impl Neg for Bounded {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, magnitude: self.magnitude }
+    }
+}
+
+impl Scalar for Bounded {
+    fn from_f64(x: f64) -> Self {
+        Self { value: x, magnitude: x.abs() }
+    }
+    fn from_ratio(numerator: i64, denominator: i64) -> Self {
+        Self::from_f64(numerator as f64 / denominator as f64)
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.mapped(root, 0.5 / root)
+    }
+    fn sin(self) -> Self {
+        self.mapped(self.value.sin(), self.value.cos())
+    }
+    fn cos(self) -> Self {
+        self.mapped(self.value.cos(), self.value.sin())
+    }
+    fn tan(self) -> Self {
+        let tangent = self.value.tan();
+        self.mapped(tangent, 1.0 + tangent * tangent)
+    }
+    fn sinh(self) -> Self {
+        self.mapped(self.value.sinh(), self.value.cosh())
+    }
+    fn cosh(self) -> Self {
+        self.mapped(self.value.cosh(), self.value.sinh())
+    }
+    fn tanh(self) -> Self {
+        let tangent = self.value.tanh();
+        self.mapped(tangent, 1.0 - tangent * tangent)
+    }
+    fn asin(self) -> Self {
+        self.mapped(self.value.asin(), 1.0 / (1.0 - self.value * self.value).sqrt())
+    }
+    fn acos(self) -> Self {
+        self.mapped(self.value.acos(), 1.0 / (1.0 - self.value * self.value).sqrt())
+    }
+    fn atan(self) -> Self {
+        self.mapped(self.value.atan(), 1.0 / (1.0 + self.value * self.value))
+    }
+    fn asinh(self) -> Self {
+        self.mapped(self.value.asinh(), 1.0 / (1.0 + self.value * self.value).sqrt())
+    }
+    fn acosh(self) -> Self {
+        self.mapped(self.value.acosh(), 1.0 / (self.value * self.value - 1.0).sqrt())
+    }
+    fn atanh(self) -> Self {
+        self.mapped(self.value.atanh(), 1.0 / (1.0 - self.value * self.value))
+    }
+    fn exp(self) -> Self {
+        let power = self.value.exp();
+        self.mapped(power, power)
+    }
+    fn log(self) -> Self {
+        self.mapped(self.value.ln(), 1.0 / self.value)
+    }
+    fn powf(self, exponent: Self) -> Self {
+        let value = self.value.powf(exponent.value);
+        let by_base = self.magnitude * (exponent.value * value / self.value).abs();
+        let by_exponent = exponent.magnitude * (value * self.value.ln()).abs();
+        let by_exponent = if by_exponent.is_nan() { 0.0 } else { by_exponent };
+        Self { value, magnitude: value.abs() + by_base + by_exponent + UNDERFLOW }
+    }
+    fn atan2(self, x: Self) -> Self {
+        let value = self.value.atan2(x.value);
+        // Round-off decides on which side of the cut the angle is: the point says nothing.
+        if self.may_be_zero() && (x.value < 0.0 || x.may_be_zero()) {
+            return Self { value, magnitude: f64::INFINITY };
+        }
+        let square = x.value * x.value + self.value * self.value;
+        let slopes = x.value.abs() * self.magnitude + self.value.abs() * x.magnitude;
+        Self { value, magnitude: value.abs() + slopes / square }
+    }
+}
