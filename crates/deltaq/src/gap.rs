@@ -17,8 +17,36 @@ const ROUND_OFF: f64 = 2e-15;
 /// Gaps whose first times are reported.
 pub const THRESHOLDS: [f64; 3] = [1e-6, 1e-3, 1e-1];
 
-/// Instants at which a gap is sampled.
-const SAMPLES: usize = 600;
+/// How the gap between two motions is sampled.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampling {
+    /// Number of instants, half of them equidistant, half dense near the start.
+    pub instants: usize,
+    /// The first motion at `t` is compared with the second at `rate · t + offset`.
+    pub rate: f64,
+    /// See [`Sampling::rate`].
+    pub offset: f64,
+}
+
+impl Default for Sampling {
+    /// 600 instants, the same clock for both motions.
+    fn default() -> Self {
+        Sampling { instants: 600, rate: 1.0, offset: 0.0 }
+    }
+}
+
+impl Sampling {
+    /// Time of the second motion at time `t` of the first.
+    fn clock(&self, t: f64) -> f64 {
+        self.rate * t + self.offset
+    }
+
+    /// The times of the first motion at which both can be read off.
+    fn range(&self, first: &Motion, second: &Motion) -> (f64, f64) {
+        let [a, b] = [second.start(), second.end()].map(|s| (s - self.offset) / self.rate);
+        (first.start().max(a.min(b)), first.end().min(a.max(b)))
+    }
+}
 
 /// The word on two motions.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,15 +101,28 @@ pub struct Gap {
 /// # Errors
 /// [`SolveError`] where a motion cannot be read off.
 pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Metric) -> Result<Gap, SolveError> {
-    let (t0, end) = (first.start(), first.end().min(second.end()));
+    compare_motions_by(first, second, metric, &Sampling::default())
+}
+
+/// [`compare_motions`] with other samples, and with clocks that differ: for motions run backwards, or in other units of time.
+///
+/// # Errors
+/// [`SolveError`] where a motion cannot be read off.
+pub fn compare_motions_by(
+    first: &mut Motion,
+    second: &mut Motion,
+    metric: &mut Metric,
+    sampling: &Sampling,
+) -> Result<Gap, SolveError> {
+    let (t0, end) = sampling.range(first, second);
     let mut points = Vec::new();
     let mut differences: Vec<Vec<f64>> = Vec::new();
     let (mut estimates, mut scale) = ([0.0_f64; 2], 0.0_f64);
     let origin = first.at(t0)?;
     let mut largest_length = 0.0_f64;
-    for t in sample_times(t0, end) {
+    for t in sample_times(t0, end, sampling.instants) {
         let (one, first_error) = first.at_with_difference(t)?;
-        let (two, second_error) = second.at_with_difference(t)?;
+        let (two, second_error) = second.at_with_difference(sampling.clock(t))?;
         let (q, v) = (&one.coordinates, &one.velocities);
         let difference = subtract(q, &two.coordinates);
         for (estimate, error) in estimates.iter_mut().zip([&first_error, &second_error]) {
@@ -92,6 +133,11 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
         let limit = CERTAINTY * (estimates[0] + estimates[1] + ROUND_OFF * largest_length);
         points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit });
         differences.push(difference);
+    }
+    if sampling.rate < 0.0 {
+        // the second motion started where the first one ended, with the error it had there
+        let largest = points.iter().fold(0.0_f64, |a, p| a.max(p.limit));
+        points.iter_mut().for_each(|p| p.limit = largest);
     }
     // where a difference is certain, only certain gaps count; otherwise all of them
     let certain = points.iter().any(|p| p.gap > p.limit);
@@ -104,7 +150,7 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
         }
     }
     let mut gap_at = |t: f64| -> f64 {
-        match (first.at(t), second.at(t)) {
+        match (first.at(t), second.at(sampling.clock(t))) {
             (Ok(one), Ok(two)) => {
                 metric.length(t, &one.coordinates, &one.velocities, &subtract(&one.coordinates, &two.coordinates))
             }
@@ -141,9 +187,9 @@ pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 /// Times dense near the start (geometric) and everywhere (equidistant), start left out.
-fn sample_times(start: f64, end: f64) -> Vec<f64> {
+fn sample_times(start: f64, end: f64, instants: usize) -> Vec<f64> {
     let length = end - start;
-    let half = SAMPLES / 2;
+    let half = instants / 2;
     let mut times: Vec<f64> = (1..=half).map(|i| start + length * i as f64 / half as f64).collect();
     times.extend((0..half).map(|i| start + length * 10f64.powf(-5.0 + 5.0 * i as f64 / half as f64)));
     times.sort_by(f64::total_cmp);

@@ -15,6 +15,8 @@ use crate::{Motion, SolveError};
 pub struct Growth {
     /// Slope of log gap over log t, extrapolated to the start.
     pub exponent: f64,
+    /// What the exponent changes by when the fit has one term less: a measure of how far the range is from the start.
+    pub uncertainty: f64,
     /// `Δq / (t − t₀)^k` extrapolated to the start, `k` the rounded exponent; length n.
     pub coefficient: Vec<f64>,
     /// Its kinetic length.
@@ -89,9 +91,12 @@ pub fn growth(
         (0..FIT_POINTS).map(|i| difference_at(from + step * i as f64)).collect::<Result<_, _>>()?;
     // log gap = log c + k log s + a s + b s²
     let design = |s: f64| [1.0, s.ln(), s / to, (s / to).powi(2)];
+    let shorter = |s: f64| [1.0, s.ln(), s / to, 0.0];
     let logarithms: Vec<f64> = differences.iter().map(|d| d.2.ln()).collect();
     let Some(fit) = least_squares(&differences, &design, &logarithms) else { return Ok(None) };
     let exponent = fit[1];
+    let uncertainty =
+        least_squares(&differences, &shorter, &logarithms).map_or(f64::INFINITY, |fit| (fit[1] - exponent).abs());
     let k = exponent.round();
     // Δq / s^k = c + c₁ s + c₂ s² + c₃ s³, coordinate by coordinate
     let powers = |s: f64| [1.0, s / to, (s / to).powi(2), (s / to).powi(3)];
@@ -104,7 +109,7 @@ pub fn growth(
         }
     }
     let length = metric.length(start, &q0, &v0, &coefficient);
-    Ok(Some(Growth { exponent, coefficient, length, from, to }))
+    Ok(Some(Growth { exponent, uncertainty, coefficient, length, from, to }))
 }
 
 fn least_squares(

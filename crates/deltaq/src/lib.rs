@@ -24,7 +24,9 @@ pub use comparison::{
 };
 pub use error::SolveError;
 pub use fit::best_fit;
-pub use gap::{CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, THRESHOLDS, Verdict, compare_motions};
+pub use gap::{
+    CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
+};
 pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
 pub use motion::{Ending, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};

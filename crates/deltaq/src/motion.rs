@@ -123,11 +123,19 @@ impl Motion {
 
     /// [`Motion::at`] and [`Motion::difference_of_runs`] in one.
     pub(crate) fn at_with_difference(&mut self, t: f64) -> Result<(Outputs, Vec<f64>), SolveError> {
+        let (kept, looser) = self.at_in_both_runs(t)?;
+        let difference = subtract(&kept.coordinates, &looser.coordinates);
+        Ok((kept, difference))
+    }
+
+    /// [`Motion::at`] from the kept run and from the looser one: any quantity computed from both has its own error estimate.
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn at_in_both_runs(&mut self, t: f64) -> Result<(Outputs, Outputs), SolveError> {
         let kept = self.at(t)?;
         self.looser.evaluate(t, &mut self.other);
-        let looser = self.compiled.outputs(t, &self.other)?.coordinates;
-        let difference = subtract(&kept.coordinates, &looser);
-        Ok((kept, difference))
+        Ok((kept, self.compiled.outputs(t, &self.other)?))
     }
 
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
