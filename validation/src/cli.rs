@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::random::Kind;
+
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
 #[derive(Parser, Debug)]
 #[command(name = "deltaq", version, about, max_term_width = 100)]
@@ -41,6 +43,8 @@ pub enum Command {
     Solve(SolveArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
+    /// Put the claims T1 to T14 to the test on random systems.
+    Random(RandomArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -111,6 +115,44 @@ pub struct CompareArguments {
     /// Tolerance of the looser of the two runs of every motion.
     #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
     pub tolerance: f64,
+}
+
+/// `deltaq random`.
+#[derive(Args, Debug)]
+pub struct RandomArguments {
+    /// Number of systems.
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub count: u64,
+    /// Seed. A system is a function of seed and index (and of the kind, where one is chosen).
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Systems of one kind only; all kinds in turn if left out.
+    #[arg(long, value_enum)]
+    pub kind: Option<Kind>,
+    /// One system only: what is claimed of it, claim by claim, and what was found.
+    #[arg(long, conflicts_with = "count")]
+    pub index: Option<u64>,
+    /// File that every finished system is added to, and that a run which was cut off goes on from.
+    #[arg(long, value_name = "FILE", conflicts_with = "index")]
+    pub log: Option<PathBuf>,
+    /// Folder for scene files: the system of --index, and a shrunk counterexample of every claim that fails.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = RandomFormat::Text)]
+    pub format: RandomFormat,
+    /// No progress bar.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Output formats of `deltaq random`.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RandomFormat {
+    /// Tables.
+    Text,
+    /// One object.
+    Json,
 }
 
 /// `deltaq reports`.

@@ -2,12 +2,10 @@
 
 use std::fmt::Write;
 use std::process::Command;
-use std::sync::Mutex;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{Comparison, Settings, compare};
-use indicatif::{ProgressBar, ProgressStyle};
 use mechanics::Scene;
 
 use crate::catalogue;
@@ -15,7 +13,7 @@ use crate::cli::{JobArguments, ReportsArguments};
 use crate::report::{
     File, Provenance, answer, difference_of_verdicts, overview, pictures, scene_page, verdicts, write_all,
 };
-use crate::substitution;
+use crate::{parallel, substitution};
 
 /// A compared scene with its page and pictures.
 pub struct SceneReport {
@@ -100,33 +98,17 @@ pub fn check(arguments: &ReportsArguments) -> Result<String> {
 
 /// All scenes, over all processors, in the order of `names`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
-    let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(names.len() as u64) };
-    bar.set_style(
-        ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
+    let bar = parallel::progress(names.len(), quiet);
     let settings = Settings::default();
-    let next = Mutex::new(0..names.len());
-    let done: Mutex<Vec<(usize, Result<SceneReport>)>> = Mutex::new(Vec::new());
-    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(names.len().max(1));
-    std::thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some(index) = next.lock().ok().and_then(|mut range| range.next()) {
-                    bar.set_message(names[index].to_string());
-                    let scene = catalogue::find(names[index], &[]).map_err(anyhow::Error::from);
-                    let result = scene.and_then(|scene| scene_files(scene, &settings));
-                    bar.inc(1);
-                    if let Ok(mut done) = done.lock() {
-                        done.push((index, result));
-                    }
-                }
-            });
-        }
+    let results = parallel::map(names, |name| {
+        bar.set_message(name.to_string());
+        let scene = catalogue::find(name, &[]).map_err(anyhow::Error::from);
+        let result = scene.and_then(|scene| scene_files(scene, &settings));
+        bar.inc(1);
+        result
     });
     bar.finish_and_clear();
-    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    done.sort_by_key(|(index, _)| *index);
-    done.into_iter().map(|(_, result)| result).collect()
+    results.into_iter().collect()
 }
 
 fn provenance(seconds: f64) -> Provenance {

@@ -297,28 +297,3 @@ fn every_error_is_said() {
     let mut motion = maggi.solve(&scene.start, 1.0, 1e-9, Form::Accelerations).unwrap();
     assert!(matches!(motion.state(2.0), Err(MaggiError::Dense(_))));
 }
-
-/// Prints what an evaluation costs: `cargo test --release -p validation -- --ignored --nocapture cost`.
-#[test]
-#[ignore = "a measurement"]
-fn cost_of_an_evaluation() {
-    for (name, text) in [("four coordinates", GENERAL), ("sledge", SLEDGE), ("appell-hamel", APPELL_HAMEL)] {
-        let scene = scene(text, &[]);
-        let (State { t, q, v }, count) = (&scene.start, 200_000);
-        let mut maggi = Maggi::new(&scene.system).unwrap();
-        let mut a = maggi.accelerations(*t, q, v).unwrap();
-        let start = std::time::Instant::now();
-        for _ in 0..count {
-            maggi.write_accelerations(*t, std::hint::black_box(q), v, &mut a).unwrap();
-        }
-        let each = start.elapsed().as_secs_f64() / f64::from(count) * 1e6;
-        println!("{name}: {each:.2} µs an evaluation of the accelerations");
-        for form in [Form::Accelerations, Form::for_system(&scene.system)] {
-            let start = std::time::Instant::now();
-            let motion = maggi.solve(&scene.start, 1.0, 1e-13, form).unwrap();
-            let work = motion.solution.work;
-            let each = start.elapsed().as_secs_f64() / work.evaluations as f64 * 1e6;
-            println!("{name}, {form:?}: {} steps, {each:.2} µs an evaluation with the time loop", work.steps);
-        }
-    }
-}

@@ -1,0 +1,116 @@
+//! One suite a theorem. What each claim says and assumes is at the check, in `validation::random`.
+
+use proptest::test_runner::TestCaseError;
+use validation::random::{Kind, NullTest, null_test};
+
+use crate::support::{for_all, holds, part};
+
+/// Kinds with constraints that are linear (or affine) in the velocities and well conditioned.
+const LINEAR: [Kind; 7] = [
+    Kind::ChaplyginIntegrable,
+    Kind::Integrable,
+    Kind::HiddenIntegrable,
+    Kind::PartlyIntegrable,
+    Kind::Linear,
+    Kind::Affine,
+    Kind::TimeDependent,
+];
+
+/// Kinds that are not integrable.
+const NONINTEGRABLE: [Kind; 4] = [Kind::PartlyIntegrable, Kind::Linear, Kind::Affine, Kind::TimeDependent];
+
+const INTEGRABLE: [Kind; 4] = [Kind::Free, Kind::ChaplyginIntegrable, Kind::Integrable, Kind::HiddenIntegrable];
+
+#[test]
+fn two_derivations_of_each_formulation_give_one_motion() {
+    holds(0, &Kind::ALL, 96);
+}
+
+#[test]
+fn t1_integrable_constraints_leave_nothing_to_dispute() {
+    holds(1, &INTEGRABLE, 96);
+}
+
+#[test]
+fn t2_removed_constraint_is_vakonomic_motion_of_the_augmented_system() {
+    holds(2, &Kind::ALL, 96);
+}
+
+#[test]
+fn t3_coordinate_removal_lies_inside_the_vakonomic_family() {
+    holds(3, &Kind::ALL, 96);
+}
+
+#[test]
+fn t4_chetaev_and_vakonomic_do_not_depend_on_writing_and_removal_depends_on_parameters() {
+    let found = holds(4, &Kind::ALL, 96);
+    let (depends, count) = part(&found, "not integrable: removed constraint depends on the parameters");
+    assert!(count > 20 && depends > 0.7, "of {count} pairs of removals only {depends:.2} differ");
+}
+
+#[test]
+fn t5_leading_divergence_is_the_predicted_one() {
+    holds(5, &NONINTEGRABLE, 96);
+}
+
+#[test]
+fn t6_energy_is_constant_where_it_should_be_and_not_elsewhere() {
+    holds(6, &Kind::ALL, 96);
+    let found = holds(6, &[Kind::Affine], 32);
+    let (drifts, count) = part(&found, "affine constraints, and Chetaev's energy is not constant");
+    assert!(count > 20 && drifts > 0.8, "of {count} affine systems only {drifts:.2} do not keep Chetaev's energy");
+}
+
+#[test]
+fn t7_cyclic_momenta_are_vakonomic_invariants_and_not_chetaevs() {
+    let found = holds(7, &LINEAR, 96);
+    let what = "a constraint acts on a cyclic coordinate, and Chetaev does not keep its momentum";
+    let (changes, count) = part(&found, what);
+    assert!(count > 20 && changes > 0.5, "of {count} cyclic momenta only {changes:.2} change");
+}
+
+#[test]
+fn t8_friction_tends_to_chetaev_and_added_mass_to_vakonomic() {
+    holds(8, &LINEAR, 24);
+}
+
+#[test]
+fn t9_fits_find_what_is_there() {
+    let found = holds(9, &NONINTEGRABLE, 32);
+    part(&found, "vakonomic differs from Chetaev, and still does after the best fit");
+}
+
+#[test]
+fn t10_time_reversal_and_units_change_nothing() {
+    holds(10, &Kind::ALL, 64);
+}
+
+#[test]
+fn t11_frobenius_test_finds_what_the_construction_put_in() {
+    holds(11, &Kind::ALL, 256);
+}
+
+#[test]
+fn t12_wrong_formulation_is_flagged_where_it_is_wrong() {
+    let found = holds(12, &Kind::ALL[1..], 96);
+    let (flagged, count) = part(&found, "the wrong formulation is wrong, and flagged");
+    assert!(count > 20 && flagged >= 0.99, "of {count} systems on which it is wrong, {flagged:.3} are flagged");
+}
+
+#[test]
+fn t13_null_tests_with_random_numbers() {
+    for_all(48, &NullTest::strategy(), |numbers| {
+        let found = null_test(&numbers).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        match found.failures().next() {
+            Some(f) => Err(TestCaseError::fail(format!("{}: {:.3e} {} for {numbers:?}", f.claim, f.figure, f.note))),
+            None => Ok(()),
+        }
+    });
+}
+
+#[test]
+fn t14_removal_of_nothing_is_newtons_motion_only_for_the_right_constants() {
+    let found = holds(14, &INTEGRABLE, 96);
+    let (differs, count) = part(&found, "no constraint, other constants, and removal is not Newton's motion");
+    assert!(count > 10 && differs > 0.8, "of {count} free systems only {differs:.2} differ from Newton's motion");
+}

@@ -1,0 +1,91 @@
+//! What the generator of random systems promises.
+
+use std::collections::HashSet;
+
+use mechanics::{Scene, check_regularity};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestCaseError;
+use validation::random::{Batch, Case, Kind, MOST, Recipe, draw, recipes_of, shrink};
+
+use crate::support::for_all;
+
+/// `|f|` at the start.
+const ON_THE_CONSTRAINT: f64 = 1e-12;
+
+#[test]
+fn starts_are_on_the_constraint_and_regular_and_removals_remove() {
+    for_all(256, &recipes_of(&Kind::ALL), |recipe: Recipe| {
+        let scene = recipe.scene("random");
+        let mut metric = deltaq::Metric::new(&scene.system).expect("compiles");
+        let residual = metric.constraint_residual(scene.start.t, &scene.start.q, &scene.start.v);
+        prop_assert!(residual < ON_THE_CONSTRAINT, "residual {residual:e}");
+        prop_assert_eq!(scene.system.constraints.len(), recipe.h());
+        let regular = check_regularity(&scene.system, &scene.start);
+        prop_assert!(regular.is_ok(), "{regular:?}");
+        for removal in deltaq::removals(&scene).expect("removable") {
+            let verified = removal.verify(&scene.system);
+            prop_assert!(verified.is_ok(), "{verified:?}");
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn scenes_survive_being_written_to_a_file() {
+    for_all(64, &recipes_of(&Kind::ALL), |recipe: Recipe| {
+        let scene = recipe.scene("random");
+        let text = scene.to_toml();
+        let again = Scene::parse("random", &text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert_eq!(&again.start, &scene.start);
+        let (mut one, mut two) = (
+            deltaq::Metric::new(&scene.system).expect("compiles"),
+            deltaq::Metric::new(&again.system).expect("compiles"),
+        );
+        let (q, v) = (&scene.start.q, &scene.start.v);
+        let lengths = [&mut one, &mut two].map(|m| m.length(0.3, q, v, v));
+        prop_assert!((lengths[0] - lengths[1]).abs() <= 1e-13 * lengths[0], "{lengths:?}\n{text}");
+        prop_assert_eq!(again.removals.len(), 1);
+        Ok(())
+    });
+}
+
+#[test]
+fn all_sizes_are_drawn() {
+    let batch = |kind: Kind| (0..400).map(move |index| draw(7, index, &[kind]).current());
+    let sizes: HashSet<(usize, usize)> =
+        Kind::ALL.into_iter().flat_map(batch).map(|recipe| (recipe.n(), recipe.h())).collect();
+    let wanted: HashSet<(usize, usize)> = (2..=MOST).flat_map(|n| (0..n).map(move |h| (n, h))).collect();
+    assert_eq!(sizes, wanted);
+}
+
+#[test]
+fn a_system_is_a_function_of_seed_and_index() {
+    let batch = |seed| Batch { seed, kinds: Kind::ALL.to_vec() };
+    assert_eq!(batch(3).record(17), batch(3).record(17));
+    assert_eq!(draw(3, 17, &Kind::ALL).current(), draw(3, 17, &Kind::ALL).current());
+    assert_ne!(draw(3, 15, &Kind::ALL).current(), draw(4, 15, &Kind::ALL).current());
+}
+
+#[test]
+fn a_false_claim_is_shrunk_to_a_small_system() {
+    // false: "nothing with a nonintegrable constraint moves by more than 0.1"
+    let moves = |recipe: &Recipe| {
+        let mut case = Case::new(recipe.clone(), "small").ok()?;
+        let (start, end) = (case.chetaev.at(0.0).ok()?, case.chetaev.at(case.end()).ok()?);
+        let ways = end.coordinates.iter().zip(&start.coordinates).map(|(a, b)| (a - b).abs());
+        let way = ways.fold(0.0, f64::max);
+        (way > 0.1).then(|| (recipe.clone(), case.scene.to_toml().len()))
+    };
+    let mut worst = 0;
+    for index in 0..12 {
+        let mut tree = draw(11, index, &[Kind::Linear]);
+        let before = tree.current();
+        let Some((small, length)) = shrink(&mut tree, &moves) else { continue };
+        assert!(small.n() <= before.n());
+        assert_eq!((small.n(), small.h()), (3, 1), "not the smallest: {small:?}");
+        assert!(small.mass_terms.is_empty() && small.potential.is_empty(), "superfluous terms: {small:?}");
+        worst = worst.max(length);
+    }
+    assert!(worst > 0, "the claim is false on no system tried");
+}

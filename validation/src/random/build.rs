@@ -1,0 +1,361 @@
+//! From a recipe to a scene.
+//!
+//! With independent coordinates `q_i` (m of them, `q₁`, `q₂` the first two) and dependent ones `q_d`, constraint r is
+//!
+//! ```text
+//! f_r = d/dt (q_dr + ψ_r) − s_r(q₁) τ_r(t) (γ v₂ + β) ,
+//! ```
+//!
+//! where `ψ_r` contains `q_i`, `q_d1 … q_dr` and, for some kinds, `t`, with small coefficients, so that `∂f/∂v_d` is lower triangular with a positive diagonal:
+//! full rank everywhere. In the coordinates `(q_i, y)`, `y_r = q_dr + ψ_r`, the admissible directions are
+//! `X₁ = ∂₁`, `X₂ = ∂₂ + γ Σ s_r τ_r ∂_yr`, `T = ∂_t + β Σ s_r τ_r ∂_yr`, the others `∂_i`. All brackets are those of `X₁` with the others,
+//! `ad_X₁ᵏ X₂ = γ Σ s_r⁽ᵏ⁾ τ_r ∂_yr`. So the constraints with `s_r ≡ 0` are the integrals, and the others are completely nonintegrable exactly
+//! where the Wronskian of their `s_r′` is not zero: for distinct powers, and for sines of distinct frequencies.
+
+use std::collections::{BTreeMap, HashMap};
+
+use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable, Removal, Scene, State, System};
+use symbolic::{Expr, Function, Graph, Symbol};
+
+use super::recipe::{MassTerm, Recipe, Shape, Term};
+use super::{Kind, Truth};
+
+/// Length of the run of a random scene.
+pub const DURATION: f64 = 1.5;
+
+/// Name of the removal that every random scene has, in the part of one written by hand.
+pub const REMOVAL: &str = "random";
+
+impl Recipe {
+    /// The scene, with a start on its constraint and a removal of its own.
+    pub fn scene(&self, name: &str) -> Scene {
+        Builder::new(self).scene(name)
+    }
+
+    /// What Frobenius' test has to find.
+    pub fn truth(&self) -> Truth {
+        match self.kind {
+            Kind::Free => Truth::Unconstrained,
+            Kind::Nonlinear => Truth::NotLinear,
+            kind if kind.is_integrable() => Truth::Integrable,
+            Kind::PartlyIntegrable => Truth::PartlyIntegrable { integrals: self.integrals() },
+            _ => Truth::Nonintegrable,
+        }
+    }
+
+    /// Number of constraints that are integrable by construction.
+    fn integrals(&self) -> usize {
+        match self.kind {
+            kind if kind.is_integrable() => self.h(),
+            Kind::PartlyIntegrable => 1 + self.constraints % (self.h() - 1),
+            _ => 0,
+        }
+    }
+
+    /// Whether time may enter.
+    fn moves(&self) -> bool {
+        match self.kind {
+            Kind::TimeDependent => true,
+            Kind::Integrable | Kind::HiddenIntegrable => self.driving > 0,
+            _ => false,
+        }
+    }
+}
+
+struct Builder<'a> {
+    recipe: &'a Recipe,
+    system: System,
+    independent: Vec<usize>,
+    dependent: Vec<usize>,
+    /// Coordinates that `L` and the coefficients of `f` may contain.
+    occurring: Vec<usize>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(recipe: &'a Recipe) -> Self {
+        let names: Vec<String> = (1..=recipe.n()).map(|i| format!("q{i}")).collect();
+        let coordinates: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "1")).collect();
+        let system = System::new(Graph::new(), &coordinates);
+        let (independent, dependent) = (recipe.independent(), recipe.dependent());
+        let mut occurring = independent.clone();
+        if recipe.kind != Kind::ChaplyginIntegrable {
+            let kept = dependent.len().saturating_sub(usize::from(recipe.cyclic));
+            occurring.extend(&dependent[..kept]);
+        }
+        Builder { recipe, system, independent, dependent, occurring }
+    }
+
+    fn q(&self, i: usize) -> Expr {
+        self.system.graph.variable(self.system.coordinates[i].position)
+    }
+
+    fn v(&self, i: usize) -> Expr {
+        self.system.graph.variable(self.system.coordinates[i].velocity)
+    }
+
+    fn time(&self) -> Expr {
+        self.system.graph.variable(self.system.time)
+    }
+
+    /// `shape(q_first [+ q_second])`, places among `allowed`.
+    fn shape(&self, shape: Shape, first: usize, second: Option<usize>, allowed: &[usize]) -> Expr {
+        let g = &self.system.graph;
+        let at = |place: usize| self.q(allowed[place % allowed.len()]);
+        let argument = second.map_or(at(first), |second| g.add(at(first), at(second)));
+        match shape {
+            Shape::Linear => argument,
+            Shape::Sine => g.call(Function::Sin, argument),
+            Shape::Cosine => g.call(Function::Cos, argument),
+        }
+    }
+
+    fn term(&self, term: &Term, allowed: &[usize]) -> Expr {
+        let g = &self.system.graph;
+        g.mul(g.ratio(term.coefficient, 16), self.shape(term.shape, term.first, term.second, allowed))
+    }
+
+    /// `1 + numerator/16 sin q_place`.
+    fn factor(&self, numerator: i64, place: usize, allowed: &[usize]) -> Expr {
+        let g = &self.system.graph;
+        g.add(g.one(), g.mul(g.ratio(numerator, 16), self.shape(Shape::Sine, place, None, allowed)))
+    }
+
+    fn lagrangian(&self) -> Expr {
+        let g = &self.system.graph;
+        let n = self.recipe.n();
+        let mut terms = Vec::new();
+        for i in 0..n {
+            let mass = g.ratio(8 + self.recipe.masses[i], 16);
+            terms.push(g.mul(mass, g.powi(self.v(i), 2)));
+        }
+        for MassTerm { weight, ratio, first, second, place } in &self.recipe.mass_terms {
+            let speed = g.add(self.v(first % n), g.mul(g.ratio(*ratio, 8), self.v(second % n)));
+            let variation = place.map_or(g.one(), |place| self.factor(8, place, &self.occurring));
+            terms.push(g.product(&[g.ratio(*weight, 16), g.powi(speed, 2), variation]));
+        }
+        for term in &self.recipe.gyroscopic {
+            let coefficient = self.term(&Term { second: None, ..term.clone() }, &self.occurring);
+            terms.push(g.mul(coefficient, self.v(term.second.unwrap_or(0) % n)));
+        }
+        terms.extend(self.recipe.potential.iter().map(|term| self.term(term, &self.occurring)));
+        if self.recipe.kind == Kind::TimeDependent && self.recipe.driving > 0 {
+            let strength = g.ratio(self.recipe.driving, 8);
+            terms.push(g.product(&[strength, self.q(self.independent[0]), g.call(Function::Cos, self.time())]));
+        }
+        g.sum(&terms)
+    }
+
+    /// `s_r(q₁) τ_r(t) (γ v₂ + β)`: what is not integrable of constraint `r`.
+    fn nonintegrable(&self, r: usize) -> Expr {
+        let g = &self.system.graph;
+        let row = &self.recipe.rows[r];
+        if r < self.recipe.integrals() {
+            return g.zero();
+        }
+        let q1 = self.q(self.independent[0]);
+        let order = (r + 1 - self.recipe.integrals()) as i64;
+        let function = if self.recipe.rows[0].power {
+            g.powi(q1, order as i32)
+        } else {
+            g.call(Function::Sin, g.mul(g.ratio(order + 1, 2), q1))
+        };
+        let motion = match self.recipe.kind {
+            Kind::TimeDependent if row.time > 0 => {
+                let rate = g.mul(g.ratio(row.time, 8), self.time());
+                g.add(g.one(), g.mul(g.ratio(1, 2), g.call(Function::Sin, rate)))
+            }
+            _ => g.one(),
+        };
+        let along = self.independent.get(1).map_or(g.zero(), |&i| g.mul(g.ratio(self.recipe.along, 8), self.v(i)));
+        let drift = if self.recipe.kind.has_drift() { g.ratio(self.recipe.drift, 8) } else { g.zero() };
+        g.product(&[g.ratio(row.curvature, 8), function, motion, g.add(along, drift)])
+    }
+
+    /// Rates of the dependent coordinates as expressions in the rates `of_independent` of the others: what the constraints say.
+    fn dependent_rates(&self, of_independent: &[Expr]) -> Vec<Expr> {
+        let g = &self.system.graph;
+        if self.recipe.kind == Kind::Nonlinear {
+            let squares: Vec<Expr> = of_independent.iter().map(|&v| g.powi(v, 2)).collect();
+            let speed = g.sqrt(g.sum(&squares));
+            return (0..self.dependent.len()).map(|r| g.mul(self.slope(r), speed)).collect();
+        }
+        let mut rates: Vec<(Symbol, Expr)> = vec![(self.system.time, g.one())];
+        rates.extend(self.independent.iter().zip(of_independent).map(|(&i, &v)| (self.position(i), v)));
+        let as_rates: HashMap<Symbol, Expr> =
+            self.independent.iter().zip(of_independent).map(|(&i, &v)| (self.velocity(i), v)).collect();
+        for (r, &d) in self.dependent.iter().enumerate() {
+            let psi = self.psi(r);
+            let known = g.total_derivative(psi, &rates);
+            let coefficient = g.add(g.one(), g.derivative(psi, self.position(d)));
+            let rate = g.div(g.sub(g.substitute(self.nonintegrable(r), &as_rates), known), coefficient);
+            rates.push((self.position(d), rate));
+        }
+        rates.split_off(1 + self.independent.len()).into_iter().map(|(_, rate)| rate).collect()
+    }
+
+    fn position(&self, i: usize) -> Symbol {
+        self.system.coordinates[i].position
+    }
+
+    fn velocity(&self, i: usize) -> Symbol {
+        self.system.coordinates[i].velocity
+    }
+
+    /// `ψ_r(q, t)`.
+    fn psi(&self, r: usize) -> Expr {
+        let g = &self.system.graph;
+        let row = &self.recipe.rows[r];
+        let allowed: Vec<usize> =
+            self.occurring.iter().copied().filter(|i| !self.dependent[r + 1..].contains(i)).collect();
+        let mut terms: Vec<Expr> = row.potential.iter().map(|term| self.term(term, &allowed)).collect();
+        if self.recipe.moves() && row.time > 0 {
+            let along = self.q(self.independent[0]);
+            terms.push(g.product(&[g.ratio(row.time, 16), g.call(Function::Sin, g.add(self.time(), along))]));
+        }
+        g.sum(&terms)
+    }
+
+    /// `c_r(q)` of the nonlinear kind, positive.
+    fn slope(&self, r: usize) -> Expr {
+        let g = &self.system.graph;
+        let row = &self.recipe.rows[r];
+        let place = row.potential.first().map_or(0, |term| term.first);
+        let varying = row.potential.first().map_or(0, |term| 2 * term.coefficient);
+        g.mul(g.ratio(row.curvature.abs(), 8), self.factor(varying, place, &self.occurring))
+    }
+
+    fn constraints(&self) -> Vec<Expr> {
+        let g = &self.system.graph;
+        let rows: Vec<Expr> = (0..self.dependent.len())
+            .map(|r| {
+                if self.recipe.kind == Kind::Nonlinear {
+                    let squares: Vec<Expr> = self.independent.iter().map(|&i| g.powi(self.v(i), 2)).collect();
+                    let speed = g.mul(g.powi(self.slope(r), 2), g.sum(&squares));
+                    return g.sub(g.powi(self.v(self.dependent[r]), 2), speed);
+                }
+                let flow = self.system.flow();
+                let exact = g.add(self.q(self.dependent[r]), self.psi(r));
+                g.sub(g.total_derivative(exact, &flow), self.nonintegrable(r))
+            })
+            .collect();
+        match self.recipe.kind {
+            Kind::HiddenIntegrable | Kind::PartlyIntegrable => self.recombined(&rows),
+            Kind::NearRankLoss => {
+                let mut rows = rows;
+                let angle = g.number(10f64.powi(-self.recipe.closeness));
+                rows[1] = g.add(rows[0], g.mul(angle, rows[1]));
+                rows
+            }
+            _ => rows,
+        }
+    }
+
+    /// `G f` with `G` lower triangular, then upper triangular with ones, the diagonal between them `1 + ¼ sin q₁`.
+    fn recombined(&self, rows: &[Expr]) -> Vec<Expr> {
+        let g = &self.system.graph;
+        let mut rows = rows.to_vec();
+        let mut entries = self.recipe.mixing.iter();
+        let q1 = &self.independent[..1];
+        for r in 0..rows.len() {
+            for s in 0..r {
+                let Some(&(coefficient, varies)) = entries.next() else { continue };
+                let factor = if varies { self.factor(8, 0, q1) } else { g.one() };
+                let entry = g.mul(g.ratio(coefficient, 8), factor);
+                rows[r] = g.add(rows[r], g.mul(entry, rows[s]));
+            }
+        }
+        for r in 0..rows.len() {
+            rows[r] = g.mul(self.factor(4, 0, q1), rows[r]);
+            if let Some(&next) = rows.get(r + 1) {
+                rows[r] = g.add(rows[r], g.mul(g.ratio(self.recipe.mixing[r].0, 8), next));
+            }
+        }
+        rows
+    }
+
+    /// `v_i = S(q) u̇` with `S` lower triangular and positive on its diagonal, all coordinates memory; for nonlinear constraints, and where `S = 1`,
+    /// the independent coordinates themselves.
+    fn removal(&self) -> Removal {
+        let g = &self.system.graph;
+        let plain = self.recipe.kind == Kind::Nonlinear;
+        let mut entries = self.recipe.removal.iter();
+        let (mut parameters, mut rates, mut start, mut memory) = (Vec::new(), Vec::new(), BTreeMap::new(), Vec::new());
+        let mut start_rates: Vec<Expr> = Vec::new();
+        for (j, &i) in self.independent.iter().enumerate() {
+            if plain {
+                let c = &self.system.coordinates[i];
+                let (symbol, rate, second_rate) = (c.position, c.velocity, c.acceleration);
+                parameters.push(DisplacementParameter { symbol, rate, second_rate, coordinate: Some(i) });
+                rates.push(self.v(i));
+                continue;
+            }
+            let symbols = ["", "'", "''"].map(|primes| g.symbol(&format!("u{}{primes}", j + 1)));
+            let [symbol, rate, second_rate] = symbols;
+            let row: Vec<Expr> = (0..=j)
+                .map(|k| {
+                    let &(coefficient, place) = entries.next().unwrap_or(&(0, 0));
+                    match k == j {
+                        true => self.factor(2 * coefficient, place, &self.occurring),
+                        false => g.mul(g.ratio(coefficient, 16), self.shape(Shape::Sine, place, None, &self.occurring)),
+                    }
+                })
+                .collect();
+            start_rates.push(g.div(g.sub(self.v(i), g.dot(&row[..j], &start_rates)), row[j]));
+            start.insert(symbol, g.zero());
+            start.insert(rate, start_rates[j]);
+            let u: Vec<Expr> = parameters.iter().map(|u: &DisplacementParameter| g.variable(u.rate)).collect();
+            parameters.push(DisplacementParameter { symbol, rate, second_rate, coordinate: None });
+            rates.push(g.add(g.dot(&row[..j], &u), g.mul(row[j], g.variable(rate))));
+            memory.push(MemoryVariable { symbol: self.position(i), rate: rates[j], coordinate: Some(i) });
+        }
+        let dependent = self.dependent_rates(&rates);
+        memory.extend(self.dependent.iter().zip(dependent).map(|(&d, rate)| MemoryVariable {
+            symbol: self.position(d),
+            rate,
+            coordinate: Some(d),
+        }));
+        memory.sort_by_key(|w| w.coordinate);
+        Removal {
+            name: REMOVAL.into(),
+            parameters,
+            memory,
+            coordinates: g.variables(&self.system.positions()),
+            start,
+            constants: ConstantsRule::Zero,
+        }
+    }
+
+    fn start(&self) -> State {
+        let eighths = |x: i64| x as f64 / 8.0;
+        let n = self.recipe.n();
+        let q: Vec<f64> = self.recipe.positions[..n].iter().map(|&x| eighths(x)).collect();
+        let mut v = vec![0.0; n];
+        for (&i, &x) in self.independent.iter().zip(&self.recipe.velocities) {
+            v[i] = eighths(x);
+        }
+        let independent: Vec<Expr> = self.independent.iter().map(|&i| self.v(i)).collect();
+        let values = self.system.values_at(&State { t: 0.0, q: q.clone(), v: v.clone() });
+        for (&d, rate) in self.dependent.iter().zip(self.dependent_rates(&independent)) {
+            v[d] = self.system.graph.evaluate(rate, &values).unwrap_or(f64::NAN);
+        }
+        State { t: 0.0, q, v }
+    }
+
+    fn scene(mut self, name: &str) -> Scene {
+        self.system.lagrangian = self.lagrangian();
+        self.system.constraints = self.constraints();
+        let (removal, start) = (self.removal(), self.start());
+        Scene {
+            name: name.into(),
+            title: format!("Random system, {}", self.recipe.kind),
+            source: String::new(),
+            notes: String::new(),
+            start,
+            completion: Completion::default(),
+            removals: vec![removal],
+            multipliers: self.recipe.multipliers[..self.dependent.len()].iter().map(|&x| x as f64 / 8.0).collect(),
+            duration: DURATION,
+            system: self.system,
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! One random system with its motions, on which claims are tested.
+
+use deltaq::{
+    Choice, Ending, Gap, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict, compare_motions_by,
+    derive, formulation,
+};
+use mechanics::{ConstantsRule, Equations, Removal, Scene, State, System};
+
+use super::claims::constraint_jacobian;
+use super::finding::{Finding, Findings, Word};
+use super::recipe::Recipe;
+use crate::substitution;
+
+/// Tolerances tried one after the other: what round-off does not allow is asked for less sharply.
+const TOLERANCES: [f64; 3] = [1e-11, 1e-9, 1e-7];
+
+/// Steps after which a run is given up.
+const MAX_STEPS: usize = 3_000;
+
+/// Instants at which two motions are compared.
+const INSTANTS: usize = 80;
+
+/// Where a motion stops, all are looked at up to this fraction of the time it lasted.
+const BEFORE_A_STOP: f64 = 0.8;
+
+/// How often the run may be shortened.
+const SHORTENED: usize = 6;
+
+/// A motion of the removed-constraint formulation with its removal.
+pub struct Removed {
+    /// The removal.
+    pub removal: Removal,
+    /// `P(t₀)`, one a memory variable; zero for those without a costate.
+    pub costates: Vec<f64>,
+    /// The motion.
+    pub motion: Motion,
+}
+
+/// A random system, its motions in every formulation, and what was found.
+pub struct Case {
+    /// Where it comes from.
+    pub recipe: Recipe,
+    /// The system and its start; the duration is one that all formulations last.
+    pub scene: Scene,
+    /// Measures gaps.
+    pub metric: Metric,
+    /// Chetaev.
+    pub chetaev: Motion,
+    /// Vakonomic with the multipliers of the scene.
+    pub vakonomic: Motion,
+    /// The removal of the scene, then the automatic ones.
+    pub removed: Vec<Removed>,
+    /// Lindelöf's mistake, on the removal by coordinates where there is one.
+    pub control: Option<(Removal, Motion)>,
+    /// Why the run was shortened, if it was.
+    pub shortened: Option<String>,
+    /// Gaps that the round-off of the data alone can make: `ε κ²`, `κ` the condition of `A` at the start.
+    pub floor: f64,
+    /// What was found so far.
+    pub found: Findings,
+}
+
+impl Case {
+    /// Derives and integrates all formulations. Where a motion stops early, the run is shortened until all last.
+    ///
+    /// # Errors
+    /// [`SolveError`] where a formulation has no motion from this start.
+    pub fn new(recipe: Recipe, name: &str) -> Result<Case, SolveError> {
+        let mut scene = recipe.scene(name);
+        let mut shortened = None;
+        for _ in 0..SHORTENED {
+            let case = Case::with_duration(&recipe, &scene)?;
+            let Some((t, cause)) = case.earliest_stop() else { return Ok(Case { shortened, ..case }) };
+            scene.duration = BEFORE_A_STOP * (t - scene.start.t);
+            shortened.get_or_insert(cause);
+        }
+        Case::with_duration(&recipe, &scene).map(|case| Case { shortened, ..case })
+    }
+
+    fn with_duration(recipe: &Recipe, scene: &Scene) -> Result<Case, SolveError> {
+        let system = &scene.system;
+        let floor = floor(system, &scene.start)?;
+        let run = |equations: Equations, constants: &[f64]| {
+            solve(system, &scene.start, scene.start.t + scene.duration, equations, constants, floor)
+        };
+        let chetaev = run(equations(system, "chetaev", None)?, &[])?;
+        let vakonomic = run(equations(system, "vakonomic", None)?, &scene.multipliers)?;
+        let mut removed = Vec::new();
+        for removal in deltaq::removals(scene)? {
+            let equations = equations(system, "removed-constraint", Some(&removal))?;
+            let costates = some_costates(recipe, &equations, removal.memory.len());
+            let motion = run(equations.clone(), &free_constants(&equations, &costates))?;
+            removed.push(Removed { removal, costates, motion });
+        }
+        let by_coordinates = removed.iter().find(|r| r.removal.name == "coordinates").or(removed.first());
+        let control = match by_coordinates {
+            Some(Removed { removal, .. }) => Some((removal.clone(), run(substitution::derive(system, removal), &[])?)),
+            None => None,
+        };
+        Ok(Case {
+            recipe: recipe.clone(),
+            metric: Metric::new(system)?,
+            scene: scene.clone(),
+            chetaev,
+            vakonomic,
+            removed,
+            control,
+            shortened: None,
+            floor,
+            found: Findings::default(),
+        })
+    }
+
+    fn earliest_stop(&self) -> Option<(f64, String)> {
+        let stop = |label: &str, motion: &Motion| match &motion.ending {
+            Ending::Stopped { t, cause } => Some((*t, format!("{label}: {cause}"))),
+            Ending::Completed => None,
+        };
+        let removed = self.removed.iter().map(|r| (format!("removed constraint ({})", r.removal.name), &r.motion));
+        let control = self.control.iter().map(|(_, motion)| ("substitution".to_string(), motion));
+        [("Chetaev".to_string(), &self.chetaev), ("vakonomic".to_string(), &self.vakonomic)]
+            .into_iter()
+            .chain(removed)
+            .chain(control)
+            .filter_map(|(label, motion)| stop(&label, motion))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Time of the end.
+    pub fn end(&self) -> f64 {
+        self.scene.start.t + self.scene.duration
+    }
+
+    /// A motion of `equations`, which may be those of another system, from `start`.
+    ///
+    /// # Errors
+    /// [`SolveError`].
+    pub fn solve(
+        &self,
+        system: &System,
+        start: &State,
+        end: f64,
+        equations: Equations,
+        constants: &[f64],
+    ) -> Result<Motion, SolveError> {
+        solve(system, start, end, equations, constants, self.floor)
+    }
+
+    /// The motion of another formulation, or with other constants, from the start of the scene.
+    ///
+    /// # Errors
+    /// [`SolveError`].
+    pub fn run(&self, equations: Equations, constants: &[f64]) -> Result<Motion, SolveError> {
+        solve(&self.scene.system, &self.scene.start, self.end(), equations, constants, self.floor)
+    }
+
+    /// Notes whether two motions are the same.
+    pub fn same(&mut self, theorem: u8, claim: &'static str, first: Which, second: &mut Motion) {
+        self.same_by(theorem, claim, first, second, &Sampling::default());
+    }
+
+    /// Notes whether two motions are the same, with clocks that differ.
+    pub fn same_by(
+        &mut self,
+        theorem: u8,
+        claim: &'static str,
+        first: Which,
+        second: &mut Motion,
+        sampling: &Sampling,
+    ) {
+        let sampling = Sampling { instants: INSTANTS, ..*sampling };
+        let (mut metric, motion) = (self.metric.clone(), self.motion(first));
+        match compare_motions_by(motion, second, &mut metric, &sampling) {
+            Ok(gap) => self.found.findings.push(finding(theorem, claim, &gap, self.floor)),
+            Err(error) => self.found.undecided(theorem, claim, error),
+        }
+    }
+
+    /// The gap between two of the case's own motions.
+    ///
+    /// # Errors
+    /// [`SolveError`] where one cannot be read off.
+    pub fn gap(&mut self, first: Which, second: Which) -> Result<Gap, SolveError> {
+        let mut other = self.motion(second).clone();
+        let (mut metric, sampling) = (self.metric.clone(), Sampling { instants: INSTANTS, ..Sampling::default() });
+        compare_motions_by(self.motion(first), &mut other, &mut metric, &sampling)
+    }
+
+    /// One of the case's own motions.
+    ///
+    /// # Panics
+    /// For a removal or a control that the case does not have.
+    pub fn motion(&mut self, which: Which) -> &mut Motion {
+        match which {
+            Which::Chetaev => &mut self.chetaev,
+            Which::Vakonomic => &mut self.vakonomic,
+            Which::Removed(i) => &mut self.removed[i].motion,
+            Which::Control => match &mut self.control {
+                Some((_, motion)) => motion,
+                None => unreachable!("asked for only where there is one"),
+            },
+        }
+    }
+}
+
+/// A motion of a [`Case`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Chetaev.
+    Chetaev,
+    /// Vakonomic with the multipliers of the scene.
+    Vakonomic,
+    /// Removed constraint, by place in [`Case::removed`].
+    Removed(usize),
+    /// The control.
+    Control,
+}
+
+/// The equations of a formulation of the table.
+///
+/// # Errors
+/// [`SolveError`] where it has none for this system.
+pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Result<Equations, SolveError> {
+    let entry = formulation(name).unwrap_or(&deltaq::FORMULATIONS[0]);
+    let choice = Choice {
+        label: entry.title.into(),
+        formulation: entry.name,
+        removal: removal.cloned(),
+        constants: ConstantsRule::Zero,
+    };
+    derive(system, &choice)
+}
+
+/// The free constants of `equations` out of costates that are given one a memory variable.
+pub fn free_constants(equations: &Equations, costates: &[f64]) -> Vec<f64> {
+    equations.free_constants.iter().map(|c| c.memory.and_then(|i| costates.get(i)).copied().unwrap_or(0.0)).collect()
+}
+
+/// Costates of the recipe, zero where the variable has none.
+fn some_costates(recipe: &Recipe, equations: &Equations, memory: usize) -> Vec<f64> {
+    let used = |i: &usize| equations.free_constants.iter().any(|c| c.memory == Some(*i));
+    let value = |i: usize| if used(&i) { recipe.costates[i % recipe.costates.len()] as f64 / 8.0 } else { 0.0 };
+    (0..memory).map(value).collect()
+}
+
+/// The tighter run's tolerance is not under this part of [`Case::floor`].
+const FLOOR: f64 = 1e-6;
+
+/// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does not allow.
+fn solve(
+    system: &System,
+    start: &State,
+    end: f64,
+    equations: Equations,
+    constants: &[f64],
+    floor: f64,
+) -> Result<Motion, SolveError> {
+    let setting = Setting { system, start, end };
+    let rule = ConstantsRule::Given(constants.to_vec());
+    let mut best: Option<Motion> = None;
+    let allowed =
+        |tolerance: &f64| tolerance * TIGHTER >= FLOOR * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
+    for tolerance in TOLERANCES.into_iter().filter(allowed) {
+        let settings = Settings { tolerance, max_steps: MAX_STEPS, ..Settings::default() };
+        let motion = deltaq::solve(setting, equations.clone(), &rule, &settings)?;
+        if motion.is_complete() {
+            return Ok(motion);
+        }
+        if best.as_ref().is_none_or(|b| motion.end() > b.end()) {
+            best = Some(motion);
+        }
+    }
+    match best {
+        Some(motion) => Ok(motion),
+        None => unreachable!("there is a tolerance"),
+    }
+}
+
+/// `10² ε κ²`: constraints that are known to round-off only determine multipliers to `ε κ²`, and motions with them.
+fn floor(system: &System, start: &State) -> Result<f64, SolveError> {
+    if system.constraints.is_empty() {
+        return Ok(0.0);
+    }
+    let singular = constraint_jacobian(system, start)?.singular_values();
+    let (smallest, largest) = singular.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &s| (a.min(s), b.max(s)));
+    Ok(1e2 * f64::EPSILON * (largest / smallest).powi(2))
+}
+
+/// The claim that two motions are the same.
+fn finding(theorem: u8, claim: &'static str, gap: &Gap, floor: f64) -> Finding {
+    let limit = gap.points.iter().fold(floor, |a, p| a.max(p.limit));
+    let certain = gap.points.iter().any(|p| p.gap > p.limit.max(floor));
+    let (word, note) = match &gap.verdict {
+        Verdict::Different if certain => {
+            (Word::Fails, format!("different from t = {:.4}", gap.certain_from.unwrap_or(f64::NAN)))
+        }
+        Verdict::Same | Verdict::Different => (Word::Holds, String::new()),
+        Verdict::Undecided { because } => (Word::Undecided, because.clone()),
+    };
+    Finding { theorem, claim, word, figure: gap.largest, limit, note }
+}

@@ -1,0 +1,270 @@
+//! T1, T2, T3, T11, T14: where formulations give the same motion.
+
+use std::collections::HashMap;
+
+use deltaq::{SolveError, growth};
+use mechanics::{Integrability, Removal, System, integrability};
+use nalgebra::{DMatrix, DVector};
+use symbolic::{CompileError, Expr, Graph, Symbol};
+
+use super::CheckError;
+use crate::random::case::{Which, equations, free_constants};
+use crate::random::transform::augmented;
+use crate::random::{Case, Kind, Truth};
+
+/// Residual of linear equations under which they have a solution, relative to their terms.
+const SOLVABLE: f64 = 1e-9;
+
+/// T1, by construction: for every `μ₀`, and by coordinate removal for every `P(t₀)`.
+pub(super) fn integrable(case: &mut Case) -> Result<(), CheckError> {
+    let by_coordinates: Vec<usize> = (0..case.removed.len()).filter(|&i| is_chart(&case.removed[i].removal)).collect();
+    if case.recipe.kind.is_integrable() {
+        let mut vakonomic = case.vakonomic.clone();
+        case.same(1, "vakonomic agrees with Chetaev", Which::Chetaev, &mut vakonomic);
+        for i in by_coordinates {
+            let mut removed = case.removed[i].motion.clone();
+            case.same(1, "coordinate removal agrees with Chetaev", Which::Chetaev, &mut removed);
+        }
+        return Ok(());
+    }
+    divergence(case, Which::Chetaev, Which::Vakonomic, &DIVERGES[0])?;
+    if let Some(&i) = by_coordinates.first() {
+        divergence(case, Which::Chetaev, Which::Removed(i), &DIVERGES[1])?;
+        divergence(case, Which::Vakonomic, Which::Removed(i), &DIVERGES[2])?;
+    }
+    if case.control.is_some() {
+        divergence(case, Which::Chetaev, Which::Control, &DIVERGES[3])?;
+    }
+    Ok(())
+}
+
+/// Names of what is counted and measured of a pair: whether it differs, when the gap passes 1e-3, and how it grows at first.
+pub(in crate::random) struct Divergence {
+    pub(in crate::random) differs: &'static str,
+    pub(in crate::random) passes: &'static str,
+    pub(in crate::random) grows: &'static str,
+}
+
+/// The pairs that are measured on systems that are not integrable.
+pub(in crate::random) const DIVERGES: [Divergence; 4] = [
+    Divergence {
+        differs: "vakonomic differs from Chetaev",
+        passes: "tau(1e-3), vakonomic and Chetaev",
+        grows: "growth exponent, vakonomic and Chetaev",
+    },
+    Divergence {
+        differs: "coordinate removal differs from Chetaev",
+        passes: "tau(1e-3), coordinate removal and Chetaev",
+        grows: "growth exponent, coordinate removal and Chetaev",
+    },
+    Divergence {
+        differs: "coordinate removal differs from vakonomic",
+        passes: "tau(1e-3), coordinate removal and vakonomic",
+        grows: "growth exponent, coordinate removal and vakonomic",
+    },
+    Divergence {
+        differs: "substitution differs from Chetaev",
+        passes: "tau(1e-3), substitution and Chetaev",
+        grows: "growth exponent, substitution and Chetaev",
+    },
+];
+
+fn divergence(case: &mut Case, first: Which, second: Which, names: &Divergence) -> Result<(), CheckError> {
+    let gap = case.gap(first, second)?;
+    let differs = gap.certain_from.is_some();
+    case.found.count(1, names.differs, differs);
+    if let [_, Some(passes), _] = gap.passes {
+        case.found.observe(1, names.passes, passes - case.scene.start.t);
+    }
+    if differs {
+        let limit = |t: f64| gap.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+        let (mut metric, mut other) = (case.metric.clone(), case.motion(second).clone());
+        if let Some(growth) = growth(&mut other, case.motion(first), &mut metric, &limit)?
+            && growth.uncertainty < CERTAIN_EXPONENT
+        {
+            case.found.observe(1, names.grows, growth.exponent);
+        }
+    }
+    Ok(())
+}
+
+/// Exponents that are less certain are not counted.
+const CERTAIN_EXPONENT: f64 = 0.1;
+
+/// Every parameter is a coordinate.
+fn is_chart(removal: &Removal) -> bool {
+    removal.parameters.iter().all(|u| u.coordinate.is_some())
+}
+
+/// T2, for every removal: the augmented system with `μ = −P − ∂L/∂ẇ`.
+pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
+    for i in 0..case.removed.len() {
+        let removal = case.removed[i].removal.clone();
+        let system = augmented(&case.scene.system, &removal);
+        let n = case.scene.system.dimension();
+        let mut start = case.scene.start.clone();
+        let values = deltaq_start(&case.scene.system, &removal, &case.scene.start)?;
+        for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
+            start.q.push(values.get(&u.symbol).copied().unwrap_or(0.0));
+            start.v.push(values.get(&u.rate).copied().unwrap_or(0.0));
+        }
+        let momenta = momenta(&case.scene.system, &case.scene.start)?;
+        let multipliers: Vec<f64> = removal
+            .memory
+            .iter()
+            .zip(&case.removed[i].costates)
+            .map(|(w, p)| -p - w.coordinate.map_or(0.0, |c| momenta[c]))
+            .collect();
+        let mut equations = equations(&system, "vakonomic", None)?;
+        equations.coordinates.truncate(n);
+        equations.velocities.truncate(n);
+        let mut motion = case.solve(&system, &start, case.end(), equations, &multipliers)?;
+        case.same(2, "removed constraint is vakonomic motion of the augmented system", Which::Removed(i), &mut motion);
+    }
+    Ok(())
+}
+
+fn deltaq_start(
+    system: &System,
+    removal: &Removal,
+    state: &mechanics::State,
+) -> Result<HashMap<Symbol, f64>, SolveError> {
+    Ok(mechanics::complete_removal_start(system, removal, state)?.values())
+}
+
+/// T3: `Aᵀ μ₀ = p_q − L_v` has a solution for a removal by coordinates, and gives the same motion.
+pub(super) fn inside(case: &mut Case) -> Result<(), CheckError> {
+    let system = case.scene.system.clone();
+    for i in (0..case.removed.len()).filter(|&i| is_chart(&case.removed[i].removal)).collect::<Vec<_>>() {
+        if system.constraints.is_empty() {
+            continue;
+        }
+        let costates = momenta_of_removed(case, i)?;
+        let difference = DVector::from_vec(costates) - DVector::from_vec(momenta(&system, &case.scene.start)?);
+        let a = constraint_jacobian(&system, &case.scene.start)?.transpose();
+        let size = difference.norm().max(1.0);
+        let Ok(mu) = a.clone().svd(true, true).solve(&difference, 1e-13) else { continue };
+        case.found.bound(
+            3,
+            "the equations for the multipliers can be solved",
+            (&a * &mu - &difference).norm() / size,
+            SOLVABLE,
+        );
+        let mut motion = case.run(equations(&system, "vakonomic", None)?, mu.as_slice())?;
+        case.same(3, "coordinate removal is a vakonomic motion", Which::Removed(i), &mut motion);
+    }
+    Ok(())
+}
+
+/// `p_q` of a removal by coordinates: `G_u̇` for parameters, `−P` for memory.
+fn momenta_of_removed(case: &mut Case, i: usize) -> Result<Vec<f64>, SolveError> {
+    let start = case.scene.start.t;
+    let removal = case.removed[i].removal.clone();
+    let motion = &mut case.removed[i].motion;
+    let values = motion.at(start)?.multipliers;
+    let named: HashMap<String, f64> = motion.equations.multipliers.iter().map(|m| m.name.clone()).zip(values).collect();
+    let graph = &case.scene.system.graph;
+    let mut p = vec![0.0; case.scene.system.dimension()];
+    for u in &removal.parameters {
+        if let Some(c) = u.coordinate {
+            p[c] = named.get(&format!("p_{}", graph.name(u.symbol))).copied().unwrap_or(f64::NAN);
+        }
+    }
+    for w in &removal.memory {
+        if let Some(c) = w.coordinate {
+            p[c] = -named.get(&format!("P_{}", graph.name(w.symbol))).copied().unwrap_or(0.0);
+        }
+    }
+    Ok(p)
+}
+
+/// T11.
+pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
+    let found = integrability(&case.scene.system, &case.scene.start).map_err(SolveError::from)?;
+    let right = match (case.recipe.truth(), found) {
+        (Truth::Unconstrained, Integrability::Unconstrained)
+        | (Truth::Integrable, Integrability::Integrable { .. })
+        | (Truth::Nonintegrable, Integrability::Nonintegrable { .. })
+        | (Truth::NotLinear, Integrability::NonlinearInVelocity) => true,
+        (Truth::PartlyIntegrable { integrals: put }, Integrability::PartlyIntegrable { integrals, .. }) => {
+            put == integrals
+        }
+        _ => false,
+    };
+    case.found.require(11, "Frobenius' test finds what the construction put in", right, found);
+    if let Integrability::Integrable { exact } = found {
+        case.found.count(11, "integrable, and the brackets vanish by simplification", exact);
+    }
+    Ok(())
+}
+
+/// T14: with `Φ_u̇ᵀ (L_v + P) = 0` at the start, that is `p_u = 0`, removal by the parameters of the recipe is Newton's motion.
+pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
+    if !case.recipe.kind.is_integrable() {
+        return Ok(());
+    }
+    let system = case.scene.system.clone();
+    let g = &system.graph;
+    let Some(place) = case.removed.iter().position(|r| r.removal.parameters.iter().all(|u| u.coordinate.is_none()))
+    else {
+        return Ok(());
+    };
+    let removal = case.removed[place].removal.clone();
+    let equations = equations(&system, "removed-constraint", Some(&removal))?;
+    let rates: Vec<Symbol> = removal.parameters.iter().map(|u| u.rate).collect();
+    let phi = g.jacobian(&removal.velocities(&system), &rates);
+    let mut values = system.values_at(&case.scene.start);
+    values.extend(deltaq_start(&system, &removal, &case.scene.start)?);
+    let phi = DMatrix::from_row_slice(phi.rows(), phi.columns(), &numbers(g, phi.entries(), &values)?).transpose();
+    let momenta = DVector::from_vec(momenta(&system, &case.scene.start)?);
+    // only memory variables with a costate of their own have a free P
+    let free: Vec<usize> = equations.free_constants.iter().filter_map(|c| c.memory).collect();
+    let columns: Vec<usize> = free.iter().filter_map(|&k| removal.memory[k].coordinate).collect();
+    let right = -(&phi * &momenta);
+    let size = momenta.norm().max(1.0);
+    let own = phi.select_columns(&columns);
+    let solution = match columns.is_empty() {
+        true => DVector::zeros(0),
+        false => own.clone().svd(true, true).solve(&right, 1e-12).unwrap_or_else(|_| DVector::zeros(columns.len())),
+    };
+    if (own * &solution - &right).norm() > SOLVABLE * size {
+        case.found.count(14, "p_u = 0 is within the free constants", false);
+        return Ok(());
+    }
+    case.found.count(14, "p_u = 0 is within the free constants", true);
+    let mut costates = vec![0.0; removal.memory.len()];
+    for (&k, &p) in free.iter().zip(solution.iter()) {
+        costates[k] = p;
+    }
+    let constants = free_constants(&equations, &costates);
+    let mut motion = case.run(equations, &constants)?;
+    case.same(14, "removal with p_u = 0 is Newton's motion", Which::Chetaev, &mut motion);
+    let differs = case.gap(Which::Chetaev, Which::Removed(place))?.certain_from.is_some();
+    let what = if case.recipe.kind == Kind::Free {
+        "no constraint, other constants, and removal is not Newton's motion"
+    } else {
+        "integrable, other constants, and removal is not Newton's motion"
+    };
+    case.found.count(14, what, differs);
+    Ok(())
+}
+
+/// `∂L/∂v` at a state.
+pub(super) fn momenta(system: &System, state: &mechanics::State) -> Result<Vec<f64>, CompileError> {
+    numbers(&system.graph, &system.graph.gradient(system.lagrangian, &system.velocities()), &system.values_at(state))
+}
+
+/// `A` at a state.
+pub(in crate::random) fn constraint_jacobian(
+    system: &System,
+    state: &mechanics::State,
+) -> Result<DMatrix<f64>, CompileError> {
+    let a = system.constraint_jacobian();
+    let entries = numbers(&system.graph, a.entries(), &system.values_at(state))?;
+    Ok(DMatrix::from_row_slice(a.rows(), a.columns(), &entries))
+}
+
+/// Expressions as numbers.
+pub(super) fn numbers(g: &Graph, es: &[Expr], values: &HashMap<Symbol, f64>) -> Result<Vec<f64>, CompileError> {
+    es.iter().map(|&e| g.evaluate(e, values)).collect()
+}

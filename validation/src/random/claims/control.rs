@@ -1,0 +1,60 @@
+//! T12: the deliberately wrong formulation.
+
+use deltaq::Verdict;
+
+use super::CheckError;
+use crate::random::case::Which;
+use crate::random::{Case, Kind};
+use crate::referees::maggi::Maggi;
+
+/// Fractions of the run at which the control's equations are put to the test.
+const PLACES: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 0.95];
+
+/// Residual of Maggi's equations on the control motion over which it is wrong, and under which it is right; between them nothing is said.
+const WRONG: f64 = 1e-6;
+const RIGHT: f64 = 3e-10;
+
+/// Flagged wherever Maggi's equations say that it is wrong; called right where it is right, in Chaplygin's integrable form above all.
+pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
+    if case.control.is_none() || case.recipe.kind == Kind::Free {
+        return Ok(());
+    }
+    let residual = residual(case)?;
+    let gap = case.gap(Which::Chetaev, Which::Control)?;
+    let flagged = gap.certain_from.is_some();
+    if case.recipe.kind == Kind::ChaplyginIntegrable {
+        let note = format!("residual {residual:.1e}, gap {:.1e}", gap.largest);
+        case.found.require(12, "right in Chaplygin's integrable form", gap.verdict == Verdict::Same, note);
+    } else if residual > WRONG {
+        case.found.count(12, "the wrong formulation is wrong, and flagged", flagged);
+        match flagged {
+            true => case.found.require(12, "flagged where it is wrong", true, ""),
+            false => case.found.undecided(
+                12,
+                "flagged where it is wrong",
+                format!("residual {residual:.1e}, gap {:.1e}", gap.largest),
+            ),
+        }
+    } else if residual < RIGHT {
+        case.found.require(12, "not flagged where it is right", !flagged, format!("residual {residual:.1e}"));
+    }
+    Ok(())
+}
+
+/// Largest relative residual of Maggi's equations on the control motion, accelerations by differences.
+fn residual(case: &mut Case) -> Result<f64, CheckError> {
+    let mut maggi = Maggi::new(&case.scene.system)?;
+    let (start, duration) = (case.scene.start.t, case.scene.duration);
+    let motion = case.motion(Which::Control);
+    let mut worst = 0.0_f64;
+    for place in PLACES {
+        let (t, h) = (start + place * duration, 1e-3 * duration);
+        let mut velocity = |t: f64| motion.at(t).map(|o| o.velocities);
+        let (a, b, c, d) = (velocity(t - 2.0 * h)?, velocity(t - h)?, velocity(t + h)?, velocity(t + 2.0 * h)?);
+        let derivative = |i: usize| (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * h);
+        let acceleration: Vec<f64> = (0..a.len()).map(derivative).collect();
+        let now = motion.at(t)?;
+        worst = worst.max(maggi.residual(t, &now.coordinates, &now.velocities, &acceleration)?.largest());
+    }
+    Ok(worst)
+}

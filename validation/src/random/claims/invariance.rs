@@ -1,0 +1,155 @@
+//! T4 and T10: what a formulation does not depend on.
+
+use deltaq::Sampling;
+use nalgebra::DMatrix;
+use symbolic::{Expr, Function, Matrix, Symbol};
+
+use super::CheckError;
+use super::agreement::numbers;
+use crate::random::Case;
+use crate::random::case::{Which, equations, free_constants};
+use crate::random::transform::{Rewritten, Scaling, recombined};
+
+/// T4: constraints recombined with coefficients that depend on the configuration, `μ₀ → G⁻ᵀ μ₀`; other coordinates.
+pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
+    let system = case.scene.system.clone();
+    let g = &system.graph;
+    let h = system.constraints.len();
+    let mixing = mixing(&system);
+    if h > 0 {
+        let mut values = system.values_at(&case.scene.start);
+        values.extend(system.parameter_values());
+        let factor = DMatrix::from_row_slice(h, h, &numbers(g, mixing.entries(), &values)?);
+        let mu = nalgebra::DVector::from_vec(case.scene.multipliers.clone());
+        let Some(mu) = factor.transpose().lu().solve(&mu) else { return Ok(()) };
+        let other = recombined(&system, &mixing);
+        let mut chetaev = case.run(equations(&other, "chetaev", None)?, &[])?;
+        case.same(4, "Chetaev: constraints recombined", Which::Chetaev, &mut chetaev);
+        let mut vakonomic = case.run(equations(&other, "vakonomic", None)?, mu.as_slice())?;
+        case.same(4, "vakonomic: constraints recombined", Which::Vakonomic, &mut vakonomic);
+    }
+    // q₁ = y₁ + ¼ sin y₂, …, each shifted by the next, the last by none
+    let positions = system.positions();
+    let shift: Vec<Expr> = (0..positions.len())
+        .map(|i| {
+            positions.get(i + 1).map_or(g.zero(), |&next| g.mul(g.ratio(1, 4), g.call(Function::Sin, g.variable(next))))
+        })
+        .collect();
+    let rewritten = Rewritten::new(&system, &shift);
+    let mut start = case.scene.start.clone();
+    for i in (0..positions.len().saturating_sub(1)).rev() {
+        let (y, rate) = (start.q[i + 1], start.v[i + 1]);
+        start.q[i] -= y.sin() / 4.0;
+        start.v[i] -= rate * y.cos() / 4.0;
+    }
+    for (name, which, constants) in
+        [("chetaev", Which::Chetaev, Vec::new()), ("vakonomic", Which::Vakonomic, case.scene.multipliers.clone())]
+    {
+        let equations = rewritten.outputs(equations(&rewritten.system, name, None)?);
+        let mut motion = case.solve(&rewritten.system, &start, case.end(), equations, &constants)?;
+        let claim = if which == Which::Chetaev { "Chetaev: other coordinates" } else { "vakonomic: other coordinates" };
+        case.same(4, claim, which, &mut motion);
+    }
+    // the removed-constraint motion does depend on the parameters: measured, not required
+    for i in 1..case.removed.len() {
+        let differs = case.gap(Which::Removed(0), Which::Removed(i))?.certain_from.is_some();
+        let what = if case.recipe.kind.is_integrable() {
+            "integrable: removed constraint depends on the parameters"
+        } else {
+            "not integrable: removed constraint depends on the parameters"
+        };
+        case.found.count(4, what, differs);
+    }
+    Ok(())
+}
+
+/// Lower triangular with ones, and `1 + ¼ sin q₁` on the diagonal.
+fn mixing(system: &mechanics::System) -> Matrix {
+    let g = &system.graph;
+    let first: Symbol = system.coordinates[0].position;
+    let last: Symbol = system.coordinates[system.dimension() - 1].position;
+    let varying = |s: Symbol, f: Function| g.add(g.one(), g.mul(g.ratio(1, 4), g.call(f, g.variable(s))));
+    let h = system.constraints.len();
+    Matrix::from_fn(h, h, |i, j| match i.cmp(&j) {
+        std::cmp::Ordering::Less => g.zero(),
+        std::cmp::Ordering::Equal => varying(first, Function::Sin),
+        std::cmp::Ordering::Greater => g.mul(g.ratio(1, 2), varying(last, Function::Cos)),
+    })
+}
+
+/// T10.
+pub(super) fn reversal_and_units(case: &mut Case) -> Result<(), CheckError> {
+    let n = case.scene.system.dimension();
+    backwards(case, &Scaling::reversal(n))?;
+    let lengths = [4.0, 0.125, 10.0, 0.3, 1.0, 25.0][..n].to_vec();
+    units(case, &Scaling { lengths, time: 0.2, action: 7.0, constraint: 0.05 })
+}
+
+/// The motion of the reversed system from where a motion ended, with multipliers and costates as they were there, runs back.
+fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
+    let (t0, t1) = (case.scene.start.t, case.end());
+    let other = reversal.system(&case.scene.system);
+    let clock = Sampling { rate: -1.0, offset: 0.0, ..Sampling::default() };
+    let removed = (0..case.removed.len()).map(Which::Removed);
+    for which in [Which::Chetaev, Which::Vakonomic].into_iter().chain(removed).collect::<Vec<_>>() {
+        let motion = case.motion(which);
+        let end = motion.at(t1)?;
+        let names: Vec<String> = motion.equations.multipliers.iter().map(|m| m.name.clone()).collect();
+        let state = mechanics::State { t: t1, q: end.coordinates.clone(), v: end.velocities.clone() };
+        let (claim, equations, constants) = match which {
+            Which::Chetaev => ("Chetaev runs back the way it came", equations(&other, "chetaev", None)?, Vec::new()),
+            Which::Removed(i) => {
+                let removal = &case.removed[i].removal;
+                let graph = &case.scene.system.graph;
+                let costate = |w: &mechanics::MemoryVariable| {
+                    let name = format!("P_{}", graph.name(w.symbol));
+                    names.iter().position(|n| *n == name).map_or(0.0, |k| end.multipliers[k])
+                };
+                let costates: Vec<f64> = removal.memory.iter().map(costate).collect();
+                let costates = reversal.costates(removal, &costates);
+                let removal = reversal.removal(&other, removal);
+                let equations = equations(&other, "removed-constraint", Some(&removal))?;
+                let constants = free_constants(&equations, &costates);
+                ("removed constraint runs back the way it came", equations, constants)
+            }
+            _ => {
+                let constants = reversal.multipliers(&end.multipliers);
+                ("vakonomic runs back the way it came", equations(&other, "vakonomic", None)?, constants)
+            }
+        };
+        // velocities of the reversed system are those of the motion backwards
+        let start = reversal.state(&state);
+        let outputs = reversal.outputs(equations);
+        let mut back = case.solve(&other, &start, -t0, outputs, &constants)?;
+        case.same_by(10, claim, which, &mut back, &clock);
+    }
+    Ok(())
+}
+
+/// The same motion in other units of length (one a coordinate), time, action, and constraint.
+fn units(case: &mut Case, scaling: &Scaling) -> Result<(), CheckError> {
+    let other = scaling.system(&case.scene.system);
+    let start = scaling.state(&case.scene.start);
+    let end = case.end() / scaling.time;
+    let clock = Sampling { rate: 1.0 / scaling.time, offset: 0.0, ..Sampling::default() };
+    let mut runs = vec![
+        (Which::Chetaev, "Chetaev in other units", equations(&other, "chetaev", None)?, Vec::new()),
+        (
+            Which::Vakonomic,
+            "vakonomic in other units",
+            equations(&other, "vakonomic", None)?,
+            scaling.multipliers(&case.scene.multipliers),
+        ),
+    ];
+    for (i, removed) in case.removed.iter().enumerate() {
+        let removal = scaling.removal(&other, &removed.removal);
+        let equations = equations(&other, "removed-constraint", Some(&removal))?;
+        let constants = free_constants(&equations, &scaling.costates(&removal, &removed.costates));
+        runs.push((Which::Removed(i), "removed constraint in other units", equations, constants));
+    }
+    for (which, claim, equations, constants) in runs {
+        let mut motion = case.solve(&other, &start, end, scaling.outputs(equations), &constants)?;
+        case.same_by(10, claim, which, &mut motion, &clock);
+    }
+    Ok(())
+}

@@ -1,0 +1,135 @@
+//! T6 and T7: energy and momenta, written out here and not taken from what is judged.
+
+use deltaq::{CERTAINTY, Motion, SolveError};
+use mechanics::{Outputs, System};
+use symbolic::{Expr, Symbol};
+
+use super::CheckError;
+use crate::random::Case;
+
+/// Instants at which a quantity is looked at.
+const INSTANTS: usize = 24;
+
+/// Round-off relative to the size of a quantity's terms.
+const ROUND_OFF: f64 = 1e-13;
+
+/// A quantity along a motion, with its error estimate.
+struct Drift {
+    /// Largest change from the start.
+    change: f64,
+    /// What the errors explain.
+    limit: f64,
+}
+
+impl Drift {
+    fn is_certain(&self) -> bool {
+        self.change > self.limit
+    }
+}
+
+/// Follows `e(symbols)` along a motion; `read` gives the values of `symbols` from time and outputs.
+fn drift(
+    system: &System,
+    e: Expr,
+    symbols: &[Symbol],
+    motion: &mut Motion,
+    read: &dyn Fn(f64, &Outputs) -> Vec<f64>,
+) -> Result<Drift, SolveError> {
+    let tape = system.graph.compile(symbols, &[e], &system.parameter_values())?;
+    let mut registers = tape.workspace::<f64>();
+    let mut value = |t: f64, o: &Outputs| {
+        let mut out = [0.0];
+        tape.evaluate(&read(t, o), &mut registers, &mut out);
+        out[0]
+    };
+    let (mut first, mut change, mut error, mut size) = (None, 0.0_f64, 0.0_f64, 1.0_f64);
+    for t in motion.grid(INSTANTS) {
+        let (kept, looser) = motion.at_in_both_runs(t)?;
+        let (now, other) = (value(t, &kept), value(t, &looser));
+        let start = *first.get_or_insert(now);
+        change = change.max((now - start).abs());
+        error = error.max((now - other).abs());
+        size = size.max(now.abs()).max(kept.velocities.iter().map(|v| v * v).sum());
+    }
+    Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) })
+}
+
+/// `(t, q, v)` with further symbols read from the multipliers.
+fn symbols(system: &System, further: &[Symbol]) -> Vec<Symbol> {
+    [&[system.time], &system.positions()[..], &system.velocities(), further].concat()
+}
+
+fn read(t: f64, o: &Outputs) -> Vec<f64> {
+    [&[t], &o.coordinates[..], &o.velocities, &o.multipliers].concat()
+}
+
+/// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and with `G`, for the others wherever
+/// nothing depends on time.
+pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
+    let system = case.scene.system.clone();
+    let g = &system.graph;
+    if !system.is_autonomous() {
+        return Ok(());
+    }
+    let v = system.velocities();
+    let of = |l: Expr| g.sub(g.dot(&g.variables(&v), &g.gradient(l, &v)), l);
+    let plain = of(system.lagrangian);
+    let reaction = |t: f64, o: &Outputs| [&[t], &o.coordinates[..], &o.velocities].concat();
+    let drifted = drift(&system, plain, &symbols(&system, &[]), &mut case.chetaev, &reaction)?;
+    if case.recipe.kind.is_homogeneous() {
+        case.found.bound(6, "Chetaev: energy", drifted.change, drifted.limit);
+    } else {
+        case.found.count(6, "affine constraints, and Chetaev's energy is not constant", drifted.is_certain());
+    }
+    let mu: Vec<Symbol> = (0..system.constraints.len()).map(|i| g.symbol(&format!("multiplier {i}"))).collect();
+    let augmented = g.add(system.lagrangian, g.dot(&g.variables(&mu), &system.constraints));
+    let drifted = drift(&system, of(augmented), &symbols(&system, &mu), &mut case.vakonomic, &read)?;
+    case.found.bound(6, "vakonomic: energy", drifted.change, drifted.limit);
+    for removed in &mut case.removed {
+        let removal = &removed.removal;
+        // G = L + P·B in (u̇, q), with u̇ and P read from what the motion gives out
+        let names: Vec<String> = removed.motion.equations.multipliers.iter().map(|m| m.name.clone()).collect();
+        let read_out: Vec<Symbol> = names.iter().map(|name| g.symbol(&format!("{name} of removal"))).collect();
+        let costate = |w: &mechanics::MemoryVariable| {
+            let name = format!("P_{}", g.name(w.symbol));
+            names.iter().position(|n| *n == name).map_or(g.zero(), |k| g.variable(read_out[k]))
+        };
+        let coupling: Vec<Expr> = removal.memory.iter().map(|w| g.mul(costate(w), w.rate)).collect();
+        let generating = g.add(removal.rewrite(&system, system.lagrangian), g.sum(&coupling));
+        let terms = removal.parameters.iter().map(|u| g.mul(g.variable(u.rate), g.derivative(generating, u.rate)));
+        let energy = g.sub(g.sum(&terms.collect::<Vec<_>>()), generating);
+        // u̇ from (q, v): what the removal says of its own start holds all along
+        let energy = g.substitute(energy, &removal.start.iter().map(|(&s, &e)| (s, e)).collect());
+        let drifted = drift(&system, energy, &symbols(&system, &read_out), &mut removed.motion, &read)?;
+        case.found.bound(6, "removed constraint: energy", drifted.change, drifted.limit);
+    }
+    Ok(())
+}
+
+/// T7: `∂𝓛/∂v_i` of every coordinate in neither `L` nor `f`.
+pub(super) fn momentum(case: &mut Case) -> Result<(), CheckError> {
+    let system = case.scene.system.clone();
+    let g = &system.graph;
+    let mu: Vec<Symbol> = (0..system.constraints.len()).map(|i| g.symbol(&format!("multiplier {i}"))).collect();
+    let augmented = g.add(system.lagrangian, g.dot(&g.variables(&mu), &system.constraints));
+    for c in &system.coordinates {
+        let occurs = |e: &Expr| g.depends_on(*e, c.position);
+        if occurs(&system.lagrangian) || system.constraints.iter().any(|f| occurs(f)) {
+            continue;
+        }
+        let momentum = g.derivative(augmented, c.velocity);
+        let drifted = drift(&system, momentum, &symbols(&system, &mu), &mut case.vakonomic, &read)?;
+        case.found.bound(7, "vakonomic: momentum of a cyclic coordinate", drifted.change, drifted.limit);
+        if system.constraints.iter().any(|&f| g.depends_on(f, c.velocity)) {
+            let plain = g.derivative(system.lagrangian, c.velocity);
+            let reaction = |t: f64, o: &Outputs| [&[t], &o.coordinates[..], &o.velocities].concat();
+            let drifted = drift(&system, plain, &symbols(&system, &[]), &mut case.chetaev, &reaction)?;
+            case.found.count(
+                7,
+                "a constraint acts on a cyclic coordinate, and Chetaev does not keep its momentum",
+                drifted.is_certain(),
+            );
+        }
+    }
+    Ok(())
+}

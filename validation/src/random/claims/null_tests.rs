@@ -1,0 +1,148 @@
+//! T13: systems on which formulations are known to agree, or to differ in a known way, with random numbers in them.
+
+use deltaq::{Motion, SolveError, setting, solve};
+use mechanics::{ConstantsRule, Scene};
+use proptest::prelude::*;
+
+use crate::catalogue;
+use crate::random::case::equations;
+use crate::random::finding::Findings;
+
+/// Numbers for the three null tests.
+#[derive(Clone, Debug)]
+pub struct NullTest {
+    /// Mass, gravity, slope, heading and speed of the Appell–Hamel start; its multiplier.
+    pub appell: [f64; 6],
+    /// Velocity and multiplier of the Heisenberg start.
+    pub heisenberg: [f64; 3],
+    /// Heading, roll rate and turn rate of the disc.
+    pub disc: [f64; 3],
+}
+
+impl NullTest {
+    /// A strategy for the numbers.
+    pub fn strategy() -> impl Strategy<Value = NullTest> {
+        let appell = (
+            [eighths(4..=16), eighths(8..=80), eighths(2..=12)],
+            [eighths(-24..=24), eighths(8..=40), eighths(-8..=8)],
+        );
+        let heisenberg = [eighths(-12..=12), eighths(1..=12), eighths(2..=16)];
+        let disc = [eighths(-12..=12), eighths(2..=16), eighths(2..=12)];
+        (appell, heisenberg, disc).prop_map(|((a, b), heisenberg, disc)| NullTest {
+            appell: [a[0], a[1], a[2], b[0], b[1], b[2]],
+            heisenberg,
+            disc,
+        })
+    }
+}
+
+fn eighths(range: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = f64> {
+    range.prop_map(|k| f64::from(k) / 8.0)
+}
+
+/// What agreement is asked of a closed form, relative to the way.
+const LIMIT: f64 = 1e-9;
+
+/// Instants.
+const INSTANTS: usize = 40;
+
+/// Runs the three null tests.
+///
+/// # Errors
+/// [`SolveError`] where a motion cannot be had.
+pub fn null_test(numbers: &NullTest) -> Result<Findings, SolveError> {
+    let mut found = Findings::default();
+    appell_hamel(&mut found, numbers.appell)?;
+    heisenberg(&mut found, numbers.heisenberg)?;
+    disc(&mut found, numbers.disc)?;
+    Ok(found)
+}
+
+fn scene(name: &str, overrides: &[(&str, f64)]) -> Scene {
+    let overrides: Vec<(String, f64)> = overrides.iter().map(|&(n, x)| (n.to_string(), x)).collect();
+    catalogue::find(name, &overrides).unwrap_or_else(|error| unreachable!("{name} is built in: {error}"))
+}
+
+fn motion(scene: &Scene, name: &str, constants: &[f64]) -> Result<Motion, SolveError> {
+    let equations = equations(&scene.system, name, None)?;
+    solve(setting(scene), equations, &ConstantsRule::Given(constants.to_vec()), &deltaq::Settings::default())
+}
+
+/// Largest distance from a closed form, relative to the way.
+fn error(motion: &mut Motion, exact: &dyn Fn(f64) -> Vec<f64>) -> Result<f64, SolveError> {
+    if !motion.is_complete() {
+        return Ok(f64::INFINITY);
+    }
+    let start = exact(motion.start());
+    let (mut worst, mut way) = (0.0_f64, 1e-3_f64);
+    for t in motion.grid(INSTANTS) {
+        let (found, exact) = (motion.at(t)?.coordinates, exact(t));
+        for ((a, b), s) in found.iter().zip(&exact).zip(&start) {
+            worst = worst.max((a - b).abs());
+            way = way.max((b - s).abs());
+        }
+    }
+    Ok(worst / way)
+}
+
+/// Straight lines with `v̇_h = −g a/(1 + a²)`, for Chetaev and for vakonomic with any `μ₀` but `m/(2a²)`.
+fn appell_hamel(found: &mut Findings, [m, g, a, heading, speed, mu]: [f64; 6]) -> Result<(), SolveError> {
+    if (mu - m / (2.0 * a * a)).abs() < 0.05 {
+        return Ok(()); // singular there
+    }
+    let deceleration = g * a / (1.0 + a * a);
+    let overrides = [
+        ("m", m),
+        ("g", g),
+        ("a", a),
+        ("x'", speed * heading.cos()),
+        ("y'", speed * heading.sin()),
+        ("z'", a * speed),
+        ("duration", 0.8 * speed / deceleration),
+    ];
+    let scene = scene("appell-hamel", &overrides);
+    let exact = |t: f64| {
+        let s = speed * t - deceleration * t * t / 2.0;
+        vec![s * heading.cos(), s * heading.sin(), a * s]
+    };
+    found.bound(13, "Appell–Hamel: Chetaev runs straight", error(&mut motion(&scene, "chetaev", &[])?, &exact)?, LIMIT);
+    let vakonomic = error(&mut motion(&scene, "vakonomic", &[mu])?, &exact)?;
+    found.bound(13, "Appell–Hamel: vakonomic runs the same line", vakonomic, LIMIT);
+    Ok(())
+}
+
+/// Chetaev straight lines, vakonomic circles of rate `μ`.
+fn heisenberg(found: &mut Findings, [vx, vy, mu]: [f64; 3]) -> Result<(), SolveError> {
+    let scene = scene("heisenberg", &[("x'", vx), ("y'", vy)]);
+    let (x0, y0) = (scene.start.q[0], scene.start.q[1]);
+    let z = |x: f64, y: f64| (x0 * y - y0 * x) / 2.0;
+    let line = |t: f64| vec![x0 + vx * t, y0 + vy * t, z(x0 + vx * t, y0 + vy * t)];
+    found.bound(13, "Heisenberg: Chetaev runs straight", error(&mut motion(&scene, "chetaev", &[])?, &line)?, LIMIT);
+    let mut vakonomic = motion(&scene, "vakonomic", &[mu])?;
+    // v turns at the rate μ, in one sense or the other: d²/dt² v = −μ² v, and speed is kept
+    let (mut worst, speed) = (0.0_f64, vx.hypot(vy));
+    for t in vakonomic.grid(INSTANTS) {
+        let v = vakonomic.at(t)?.velocities;
+        let along = (v[0] * vx + v[1] * vy) / (speed * speed);
+        worst = worst.max((along - (mu * t).cos()).abs()).max((v[0].hypot(v[1]) / speed - 1.0).abs());
+    }
+    found.bound(13, "Heisenberg: vakonomic runs in a circle of rate mu", worst, LIMIT);
+    Ok(())
+}
+
+/// `μ₀ = −m (ẋ₀, ẏ₀)` gives the Chetaev motion, with `φ` and `ψ` uniform.
+fn disc(found: &mut Findings, [heading, roll, turn]: [f64; 3]) -> Result<(), SolveError> {
+    let scene = scene("disc", &[("phi", heading), ("psi'", roll), ("phi'", turn), ("duration", 3.0)]);
+    let (radius, start) = (0.5, scene.start.clone());
+    let exact = |t: f64| {
+        let angle = heading + turn * t;
+        let circle = radius * roll / turn;
+        vec![circle * (angle.sin() - heading.sin()), circle * (heading.cos() - angle.cos()), roll * t, angle]
+    };
+    found.bound(13, "disc: Chetaev rolls uniformly", error(&mut motion(&scene, "chetaev", &[])?, &exact)?, LIMIT);
+    let special = error(&mut motion(&scene, "vakonomic", &[-start.v[0], -start.v[1]])?, &exact)?;
+    found.bound(13, "disc: the special multipliers give the Chetaev motion", special, LIMIT);
+    let plain = error(&mut motion(&scene, "vakonomic", &[0.0, 0.0])?, &exact)?;
+    found.require(13, "disc: zero multipliers do not", plain > 1e-6, format!("distance {plain:.1e}"));
+    Ok(())
+}

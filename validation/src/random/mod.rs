@@ -1,0 +1,24 @@
+//! Random systems: what must hold between the formulations, on systems that nobody chose.
+//!
+//! A [`Recipe`] is plain data that proptest draws and shrinks; [`Recipe::scene`] makes a scene of it, of which [`Recipe::truth`] knows by
+//! construction whether its constraints are integrable. A [`Case`] adds the motions of all formulations; [`CHECKS`] are the claims, each
+//! put to the test on a case.
+
+mod build;
+mod bulk;
+mod case;
+mod claims;
+mod finding;
+mod kind;
+mod recipe;
+mod record;
+mod transform;
+
+pub use build::{DURATION, REMOVAL};
+pub use bulk::{Batch, shrink};
+pub use case::{Case, Removed, Which};
+pub use claims::{CHECKS, Check, NullTest, make, null_test, theorem_title};
+pub use finding::{Finding, Findings, Observation, Word};
+pub use kind::{Kind, Truth};
+pub use recipe::{MOST, Recipe, draw, draw_null_test, recipes, recipes_of};
+pub use record::{Count, Open, Record, Summary, THOROUGH};

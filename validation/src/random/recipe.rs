@@ -1,0 +1,245 @@
+//! Recipes of random systems: plain data with a proptest strategy, so that they can be drawn and shrunk.
+//!
+//! A recipe holds material for the largest system; a smaller one leaves the rest unused. So the number of coordinates shrinks by
+//! itself, and every part of a recipe shrinks independently of the others: towards fewer coordinates, fewer terms, rounder numbers.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+use super::{Kind, NullTest};
+
+/// Most coordinates of a random system.
+pub const MOST: usize = 6;
+
+/// A function of one coordinate, or of the sum of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// `x`
+    Linear,
+    /// `sin x`
+    Sine,
+    /// `cos x`
+    Cosine,
+}
+
+/// `coefficient · shape(q_first [+ q_second])`; places are taken modulo the number of coordinates that may occur.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Term {
+    /// In sixteenths.
+    pub coefficient: i64,
+    /// The function.
+    pub shape: Shape,
+    /// First coordinate.
+    pub first: usize,
+    /// Second coordinate.
+    pub second: Option<usize>,
+}
+
+/// `½ weight (v_first + ratio v_second)² (1 + ½ shape(q_place))`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MassTerm {
+    /// In eighths, not negative.
+    pub weight: i64,
+    /// In eighths.
+    pub ratio: i64,
+    /// First velocity.
+    pub first: usize,
+    /// Second velocity.
+    pub second: usize,
+    /// The coordinate on which the term depends, if it does.
+    pub place: Option<usize>,
+}
+
+/// One constraint.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// `ψ`.
+    pub potential: Vec<Term>,
+    /// Strength of the part that is not integrable, in eighths; not zero.
+    pub curvature: i64,
+    /// Whether that part is a power of `q₁`, rather than a sine.
+    pub power: bool,
+    /// Rate of the explicit dependence on time, in eighths.
+    pub time: i64,
+}
+
+/// Everything that a random system is made from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// What is known of it.
+    pub kind: Kind,
+    /// Number of coordinates, n.
+    pub coordinates: usize,
+    /// Picks the number of constraints among those that the kind allows.
+    pub constraints: usize,
+    /// Order of the coordinates: first the independent ones, then the dependent.
+    pub order: Vec<usize>,
+    /// Constant masses above 1, in eighths.
+    pub masses: Vec<i64>,
+    /// Further kinetic energy.
+    pub mass_terms: Vec<MassTerm>,
+    /// Terms of the potential energy.
+    pub potential: Vec<Term>,
+    /// Terms `coefficient · shape(q_first) · v_second`, linear in the velocities.
+    pub gyroscopic: Vec<Term>,
+    /// Strength of a potential that depends on time, in eighths.
+    pub driving: i64,
+    /// Constraints.
+    pub rows: Vec<Row>,
+    /// Recombination of the constraints: entries under the diagonal in eighths, and whether each varies with `q₁`.
+    pub mixing: Vec<(i64, bool)>,
+    /// Strength of the velocity in the nonintegrable part, in eighths.
+    pub along: i64,
+    /// Strength of the drift in the nonintegrable part, in eighths; not zero.
+    pub drift: i64,
+    /// `−log₁₀` of the angle between two nearly dependent constraints.
+    pub closeness: i32,
+    /// One dependent coordinate occurs in neither `L` nor the coefficients of `f`.
+    pub cyclic: bool,
+    /// Hand-written removal: entries under the diagonal and on it, in sixteenths, of `v_i = S(q) u̇`.
+    pub removal: Vec<(i64, usize)>,
+    /// Start positions in eighths.
+    pub positions: Vec<i64>,
+    /// Start velocities of the independent coordinates in eighths; the first is not zero.
+    pub velocities: Vec<i64>,
+    /// Vakonomic multipliers at the start, in eighths.
+    pub multipliers: Vec<i64>,
+    /// Costates at the start, in eighths.
+    pub costates: Vec<i64>,
+}
+
+impl Recipe {
+    /// n.
+    pub fn n(&self) -> usize {
+        self.coordinates.max(self.kind.fewest_coordinates())
+    }
+
+    /// h.
+    pub fn h(&self) -> usize {
+        let (least, most) = self.kind.constraints(self.n()).unwrap_or((0, 0));
+        least + self.constraints % (most - least + 1)
+    }
+
+    /// Indices of the independent coordinates, m = n − h of them.
+    pub fn independent(&self) -> Vec<usize> {
+        self.ordered()[..self.n() - self.h()].to_vec()
+    }
+
+    /// Indices of the dependent coordinates, one a constraint.
+    pub fn dependent(&self) -> Vec<usize> {
+        self.ordered()[self.n() - self.h()..].to_vec()
+    }
+
+    fn ordered(&self) -> Vec<usize> {
+        self.order.iter().copied().filter(|&i| i < self.n()).collect()
+    }
+}
+
+/// Not zero, shrinking towards 4 (a half).
+fn nonzero() -> impl Strategy<Value = i64> {
+    prop_oneof![Just(4), 2..=8_i64, -8..=-2_i64]
+}
+
+fn shape() -> impl Strategy<Value = Shape> {
+    prop_oneof![Just(Shape::Linear), Just(Shape::Sine), Just(Shape::Cosine)]
+}
+
+fn term(largest: i64) -> impl Strategy<Value = Term> {
+    (-largest..=largest, shape(), 0..MOST, prop::option::weighted(0.3, 0..MOST))
+        .prop_map(|(coefficient, shape, first, second)| Term { coefficient, shape, first, second })
+}
+
+fn mass_term() -> impl Strategy<Value = MassTerm> {
+    (0..=6_i64, -8..=8_i64, 0..MOST, 0..MOST, prop::option::of(0..MOST))
+        .prop_map(|(weight, ratio, first, second, place)| MassTerm { weight, ratio, first, second, place })
+}
+
+fn row() -> impl Strategy<Value = Row> {
+    (vec(term(3), 0..=2), nonzero(), any::<bool>(), 0..=4_i64).prop_map(|(potential, curvature, power, time)| Row {
+        potential,
+        curvature,
+        power,
+        time,
+    })
+}
+
+/// Recipes of one kind.
+pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
+    let inertia = (
+        vec(0..=8_i64, MOST),
+        vec(mass_term(), 0..=2),
+        vec(term(16), 0..=3),
+        prop::option::weighted(0.3, term(8)),
+        prop::option::weighted(0.2, 1..=6_i64),
+    );
+    let constraint = (
+        vec(row(), MOST - 1),
+        vec((-4..=4_i64, any::<bool>()), MOST * (MOST - 1) / 2),
+        nonzero(),
+        nonzero(),
+        1..=3_i32,
+        prop::bool::weighted(0.3),
+    );
+    let start = (
+        vec(-8..=8_i64, MOST),
+        vec(-12..=12_i64, MOST - 1).prop_flat_map(|v| nonzero().prop_map(move |first| [&[first], &v[..]].concat())),
+        prop_oneof![Just(vec![0; MOST]), vec(-8..=8_i64, MOST)],
+        prop_oneof![Just(vec![0; MOST]), vec(-8..=8_i64, MOST)],
+    );
+    let sizes = (2..=MOST, 0..MOST, Just((0..MOST).collect::<Vec<_>>()).prop_shuffle());
+    let removal = vec((-3..=3_i64, 0..MOST), MOST * (MOST + 1) / 2);
+    (sizes, inertia, constraint, removal, start).prop_map(move |(sizes, inertia, constraint, removal, start)| {
+        let (coordinates, constraints, order) = sizes;
+        let (masses, mass_terms, potential, gyroscopic, driving) = inertia;
+        let (rows, mixing, along, drift, closeness, cyclic) = constraint;
+        let (positions, velocities, multipliers, costates) = start;
+        Recipe {
+            kind,
+            coordinates,
+            constraints,
+            order,
+            masses,
+            mass_terms,
+            potential,
+            gyroscopic: gyroscopic.into_iter().collect(),
+            driving: driving.unwrap_or(0),
+            rows,
+            mixing,
+            along,
+            drift,
+            closeness,
+            cyclic,
+            removal,
+            positions,
+            velocities,
+            multipliers,
+            costates,
+        }
+    })
+}
+
+/// Recipes of several kinds.
+pub fn recipes_of(kinds: &[Kind]) -> impl Strategy<Value = Recipe> + use<> {
+    prop::sample::select(kinds.to_vec()).prop_flat_map(recipes)
+}
+
+/// The recipe with its ways to shrink that belongs to `(seed, index)`: a pure function of the two and of the kinds.
+pub fn draw(seed: u64, index: u64, kinds: &[Kind]) -> impl ValueTree<Value = Recipe> + use<> {
+    tree(&recipes(kinds[index as usize % kinds.len()]), seed, index)
+}
+
+/// The numbers of the null test that belongs to `(seed, index)`.
+pub fn draw_null_test(seed: u64, index: u64) -> NullTest {
+    tree(&NullTest::strategy(), seed, index).current()
+}
+
+fn tree<S: Strategy>(strategy: &S, seed: u64, index: u64) -> S::Tree {
+    let mut bytes = [0_u8; 32];
+    bytes[..8].copy_from_slice(&seed.to_le_bytes());
+    bytes[8..16].copy_from_slice(&index.to_le_bytes());
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    strategy.new_tree(&mut runner).unwrap_or_else(|reason| unreachable!("the strategy filters nothing: {reason}"))
+}

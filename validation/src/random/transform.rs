@@ -1,0 +1,159 @@
+//! The same system written differently: what a formulation may not depend on, and systems built from it.
+
+use std::collections::HashMap;
+
+use mechanics::{Equations, Removal, State, System};
+use symbolic::{Expr, Matrix, Symbol};
+
+/// Units: `q_i = a_i q̂_i`, `t = τ t̂`, `L̂ = κ L`, `f̂ = c f`. With `τ = −1` and all else 1, the motion run backwards.
+///
+/// Then `v_i = a_i v̂_i / τ`, `μ̂ = κ μ / c`, and of a removal `B̂_k = τ B_k / a_k`, `P̂_k = κ a_k P_k / τ`.
+#[derive(Clone, Debug)]
+pub struct Scaling {
+    /// `a`, length n.
+    pub lengths: Vec<f64>,
+    /// `τ`.
+    pub time: f64,
+    /// `κ`.
+    pub action: f64,
+    /// `c`.
+    pub constraint: f64,
+}
+
+impl Scaling {
+    /// The motion run backwards.
+    pub fn reversal(n: usize) -> Scaling {
+        Scaling { lengths: vec![1.0; n], time: -1.0, action: 1.0, constraint: 1.0 }
+    }
+
+    fn map(&self, system: &System) -> HashMap<Symbol, Expr> {
+        let g = &system.graph;
+        let scaled = |factor: f64, s: Symbol| (s, g.mul(g.number(factor), g.variable(s)));
+        let coordinates = system.coordinates.iter().zip(&self.lengths);
+        coordinates
+            .flat_map(|(c, &a)| [scaled(a, c.position), scaled(a / self.time, c.velocity)])
+            .chain([scaled(self.time, system.time)])
+            .collect()
+    }
+
+    /// The system in the new units, under the same names.
+    pub fn system(&self, system: &System) -> System {
+        let mut scaled = system.clone();
+        let g = &scaled.graph;
+        let map = self.map(&scaled);
+        let rewritten = |factor: f64, e: Expr| g.mul(g.number(factor), g.substitute(e, &map));
+        let lagrangian = rewritten(self.action, system.lagrangian);
+        let constraints = system.constraints.iter().map(|&f| rewritten(self.constraint, f)).collect();
+        (scaled.lagrangian, scaled.constraints) = (lagrangian, constraints);
+        scaled
+    }
+
+    /// A state in the new units.
+    pub fn state(&self, state: &State) -> State {
+        let scaled = |xs: &[f64], by: f64| xs.iter().zip(&self.lengths).map(|(x, a)| by * x / a).collect();
+        State { t: state.t / self.time, q: scaled(&state.q, 1.0), v: scaled(&state.v, self.time) }
+    }
+
+    /// A removal all of whose coordinates are parameters or memory, in the new units; of the `scaled` system.
+    pub fn removal(&self, scaled: &System, removal: &Removal) -> Removal {
+        let g = &scaled.graph;
+        let mut map = self.map(scaled);
+        for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
+            map.insert(u.rate, g.mul(g.number(1.0 / self.time), g.variable(u.rate)));
+        }
+        let mut removal = removal.clone();
+        for w in &mut removal.memory {
+            let length = w.coordinate.map_or(1.0, |i| self.lengths[i]);
+            w.rate = g.mul(g.number(self.time / length), g.substitute(w.rate, &map));
+        }
+        for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
+            // what the parameter's own rate is at the start has the new unit of time too
+            if let Some(start) = removal.start.get_mut(&u.rate) {
+                *start = g.mul(g.number(self.time), g.substitute(*start, &map));
+            }
+        }
+        removal
+    }
+
+    /// Multipliers `μ̂`.
+    pub fn multipliers(&self, multipliers: &[f64]) -> Vec<f64> {
+        multipliers.iter().map(|mu| self.action * mu / self.constraint).collect()
+    }
+
+    /// Costates `P̂`.
+    pub fn costates(&self, removal: &Removal, costates: &[f64]) -> Vec<f64> {
+        let length = |i: usize| removal.memory[i].coordinate.map_or(1.0, |c| self.lengths[c]);
+        costates.iter().enumerate().map(|(i, p)| self.action * length(i) * p / self.time).collect()
+    }
+
+    /// Equations of the scaled system whose outputs are in the old units.
+    pub fn outputs(&self, mut equations: Equations) -> Equations {
+        let g = &equations.graph;
+        let scaled = |es: &[Expr], by: f64| -> Vec<Expr> {
+            es.iter().zip(&self.lengths).map(|(&e, &a)| g.mul(g.number(by * a), e)).collect()
+        };
+        let (coordinates, velocities) =
+            (scaled(&equations.coordinates, 1.0), scaled(&equations.velocities, 1.0 / self.time));
+        (equations.coordinates, equations.velocities) = (coordinates, velocities);
+        equations
+    }
+}
+
+/// The system with constraints `G f`.
+pub fn recombined(system: &System, mixing: &Matrix) -> System {
+    let mut other = system.clone();
+    other.constraints = other.graph.mat_vec(mixing, &system.constraints);
+    other
+}
+
+/// The system in coordinates `y` with `q_i = y_i + shift_i(y)`, under the same names.
+pub struct Rewritten {
+    /// The system in the new coordinates.
+    pub system: System,
+    positions: Vec<Expr>,
+    velocities: Vec<Expr>,
+}
+
+impl Rewritten {
+    /// `shift` are expressions in the positions.
+    pub fn new(system: &System, shift: &[Expr]) -> Rewritten {
+        let mut other = system.clone();
+        let g = &other.graph;
+        let flow: Vec<(Symbol, Expr)> =
+            other.coordinates.iter().map(|c| (c.position, g.variable(c.velocity))).collect();
+        let positions: Vec<Expr> =
+            other.coordinates.iter().zip(shift).map(|(c, &s)| g.add(g.variable(c.position), s)).collect();
+        let velocities: Vec<Expr> = positions.iter().map(|&q| g.total_derivative(q, &flow)).collect();
+        let old = other.positions().into_iter().chain(other.velocities());
+        let map: HashMap<Symbol, Expr> = old.zip(positions.iter().chain(&velocities).copied()).collect();
+        let lagrangian = g.substitute(system.lagrangian, &map);
+        let constraints = g.substitute_all(&system.constraints, &map);
+        (other.lagrangian, other.constraints) = (lagrangian, constraints);
+        Rewritten { system: other, positions, velocities }
+    }
+
+    /// Equations in the new coordinates whose outputs are the old ones.
+    pub fn outputs(&self, mut equations: Equations) -> Equations {
+        equations.coordinates = self.positions.clone();
+        equations.velocities = self.velocities.clone();
+        equations
+    }
+}
+
+/// The augmented system of a removal: coordinates `(q, u)`, Lagrangian `L(q, q̇, t)`, constraints `q̇ = Φ(u̇, q, t)` (T2).
+///
+/// A parameter that is a coordinate is that coordinate. The removal's `q` must be parameters or memory, and `L` of first order in `u`.
+/// The vakonomic multiplier of `ẇ_k − B_k` is `μ_k = −P_k − ∂L/∂ẇ_k`.
+pub fn augmented(system: &System, removal: &Removal) -> System {
+    let mut names: Vec<String> = system.coordinates.iter().map(|c| c.name.clone()).collect();
+    let g = system.graph.clone();
+    names.extend(removal.parameters.iter().filter(|u| u.coordinate.is_none()).map(|u| g.name(u.symbol)));
+    let coordinates: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "1")).collect();
+    let mut other = System::new(g, &coordinates);
+    other.parameters = system.parameters.clone();
+    other.lagrangian = system.lagrangian;
+    let rate = |w: &mechanics::MemoryVariable| other.graph.symbol(&format!("{}'", other.graph.name(w.symbol)));
+    let constraints = removal.memory.iter().map(|w| other.graph.sub(other.graph.variable(rate(w)), w.rate)).collect();
+    other.constraints = constraints;
+    other
+}
