@@ -24,12 +24,24 @@ pub struct JobArguments {
     /// Folder that the reports are written to.
     #[arg(long, default_value = "reports")]
     pub out: PathBuf,
-    /// Scenes to run, all if left out. The overview is written only when all of them run.
+    /// Sections to run, all if left out. The overview is written only when all of them run.
+    #[arg(long, value_enum, value_name = "NAME,…", value_delimiter = ',')]
+    pub sections: Vec<Section>,
+    /// Scenes to run, all if left out; other sections run only if they are named.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub scenes: Vec<String>,
     /// No progress bar.
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Sections of the main job.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// Every built-in scene in every formulation.
+    Scenes,
+    /// The claims T1 to T14 on 1,000 random systems.
+    Random,
 }
 
 /// The subcommands.

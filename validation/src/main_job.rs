@@ -5,13 +5,17 @@ use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use clap::ValueEnum;
 use deltaq::{Comparison, Settings, compare};
 use mechanics::Scene;
+use serde_json::Value;
 
 use crate::catalogue;
-use crate::cli::{JobArguments, ReportsArguments};
+use crate::cli::{JobArguments, ReportsArguments, Section};
+use crate::random::{Batch, Kind, Record};
 use crate::report::{
-    File, Provenance, answer, difference_of_verdicts, overview, pictures, scene_page, verdicts, write_all,
+    File, Provenance, answer, difference_of_verdicts, overview, pictures, random_files, random_headline,
+    random_verdicts, scene_page, verdicts, write_all,
 };
 use crate::{parallel, substitution};
 
@@ -39,6 +43,44 @@ pub fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
     Ok(SceneReport { comparison, files })
 }
 
+/// Random systems of the main job.
+const RANDOM_SYSTEMS: u64 = 1_000;
+
+/// What the main job computed.
+struct Results {
+    comparisons: Vec<Comparison>,
+    scene_files: Vec<File>,
+    batch: Batch,
+    records: Vec<Record>,
+}
+
+impl Results {
+    fn of(sections: &[Section], names: &[&str], quiet: bool) -> Result<Results> {
+        let scenes = if sections.contains(&Section::Scenes) { compare_all(names, quiet)? } else { Vec::new() };
+        let scene_files = scenes.iter().flat_map(|report| report.files.clone()).collect();
+        let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
+        let random = sections.contains(&Section::Random);
+        let records = if random { batch.run(RANDOM_SYSTEMS, None, quiet)? } else { Vec::new() };
+        let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
+        Ok(Results { comparisons, scene_files, batch, records })
+    }
+
+    fn verdicts(&self) -> Value {
+        let mut verdicts = verdicts(&self.comparisons);
+        verdicts["random"] = random_verdicts(&self.batch, &self.records);
+        verdicts
+    }
+
+    /// Pages and pictures of every section that ran.
+    fn files(&self) -> Result<Vec<File>> {
+        let mut files = self.scene_files.clone();
+        if !self.records.is_empty() {
+            files.extend(random_files(&self.batch, &self.records)?);
+        }
+        Ok(files)
+    }
+}
+
 /// Runs the main job and returns what to tell the user.
 ///
 /// # Errors
@@ -49,23 +91,33 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
     if let Some(unknown) = arguments.scenes.iter().find(|s| !known.contains(&s.as_str())) {
         bail!("unknown scene `{unknown}`; known: {}", known.join(", "));
     }
-    let complete = arguments.scenes.is_empty();
-    let names: Vec<&str> = known.into_iter().filter(|n| complete || arguments.scenes.iter().any(|s| s == n)).collect();
-    let results = compare_all(&names, arguments.quiet)?;
-    let mut files: Vec<File> = results.iter().flat_map(|report| report.files.clone()).collect();
-    let comparisons: Vec<Comparison> = results.into_iter().map(|report| report.comparison).collect();
+    let all_scenes = arguments.scenes.is_empty();
+    let sections = match (&arguments.sections[..], all_scenes) {
+        ([], true) => Section::value_variants(),
+        ([], false) => &[Section::Scenes],
+        (some, _) => some,
+    };
+    let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
+    let names: Vec<&str> =
+        known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
+    let results = Results::of(sections, &names, arguments.quiet)?;
+    let mut files = results.files()?;
     if complete {
         let provenance = provenance(clock.elapsed().as_secs_f64());
-        files.push(File { path: "README.md".into(), text: overview(&comparisons, &provenance) });
-        let text = serde_json::to_string_pretty(&verdicts(&comparisons))? + "\n";
+        let text = overview(&results.comparisons, &random_headline(&results.records), &provenance);
+        files.push(File { path: "README.md".into(), text });
+        let text = serde_json::to_string_pretty(&results.verdicts())? + "\n";
         files.push(File { path: "verdicts.json".into(), text });
     }
     write_all(&arguments.out, &files)?;
     let mut told = String::new();
-    for comparison in &comparisons {
+    for comparison in &results.comparisons {
         let answer = answer(comparison);
         let first = answer.split_inclusive(". ").next().unwrap_or_default();
         let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
+    }
+    if !results.records.is_empty() {
+        let _ = writeln!(told, "{:<24} {}", "random systems", random_headline(&results.records));
     }
     let seconds = clock.elapsed().as_secs_f64();
     let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), arguments.out.display());
@@ -80,17 +132,16 @@ pub fn check(arguments: &ReportsArguments) -> Result<String> {
     const MEND: &str = "`cargo run --release` writes the reports anew";
     let path = arguments.out.join("verdicts.json");
     let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}; {MEND}", path.display()))?;
-    let old: serde_json::Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
+    let old: Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
     let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
-    let results = compare_all(&names, true)?;
-    for file in results.iter().flat_map(|report| &report.files) {
+    let results = Results::of(Section::value_variants(), &names, true)?;
+    for file in results.files()? {
         let path = arguments.out.join(&file.path);
         if !path.exists() {
             bail!("{} is missing; {MEND}", path.display());
         }
     }
-    let comparisons: Vec<Comparison> = results.into_iter().map(|report| report.comparison).collect();
-    if let Some(difference) = difference_of_verdicts(&old, &verdicts(&comparisons)) {
+    if let Some(difference) = difference_of_verdicts(&old, &results.verdicts()) {
         bail!("{} is out of date at {difference}; {MEND}", path.display());
     }
     Ok(format!("{} agrees with a fresh run\n", path.display()))

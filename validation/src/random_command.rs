@@ -8,7 +8,7 @@ use anyhow::Result;
 use serde_json::json;
 
 use crate::cli::{RandomArguments, RandomFormat};
-use crate::random::{Batch, Count, Kind, Record, Summary, theorem_title};
+use crate::random::{Batch, Count, Kind, Record, Summary, milliseconds, theorem_title};
 use crate::report::{File, write_all};
 use crate::solve_command::Answer;
 
@@ -50,6 +50,7 @@ fn many(batch: &Batch, arguments: &RandomArguments) -> Result<Answer> {
             }
             let rate = records.len() as f64 / seconds;
             let _ = writeln!(text, "\n{} systems in {seconds:.1} s, {rate:.0} a second", records.len());
+            text += &work(&records);
             for file in &files {
                 let _ = writeln!(text, "counterexample: {file}");
             }
@@ -57,6 +58,16 @@ fn many(batch: &Batch, arguments: &RandomArguments) -> Result<Answer> {
         }
     };
     Ok(Answer { text, complaint: complaint(summary.total()) })
+}
+
+/// Where the time went.
+fn work(records: &[Record]) -> String {
+    let (motions, checks) = milliseconds(records);
+    let checks: Vec<String> = checks.iter().map(|(theorem, ms)| format!("{} {ms:.1}", label(*theorem))).collect();
+    format!(
+        "milliseconds of one processor a system: motions of all formulations {motions:.1}; checks {}\n",
+        checks.join(", ")
+    )
 }
 
 fn one(batch: &Batch, index: u64, arguments: &RandomArguments) -> Result<Answer> {

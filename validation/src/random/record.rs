@@ -1,6 +1,7 @@
 //! What a bulk run keeps of each system, and what it adds up to.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +46,8 @@ pub struct Record {
     pub open: Vec<Open>,
     /// What was measured besides: theorem, what, value.
     pub observed: Vec<(u8, String, f64)>,
+    /// Seconds of work: drawing, derivation and integration of all formulations first, then each theorem's checks.
+    pub seconds: (f64, Vec<(u8, f64)>),
 }
 
 impl Record {
@@ -59,11 +62,16 @@ impl Record {
             held: Vec::new(),
             open: Vec::new(),
             observed: Vec::new(),
+            seconds: (0.0, Vec::new()),
         };
+        let clock = Instant::now();
         let mut found = match Case::new(recipe, "random") {
             Ok(mut case) => {
+                record.seconds.0 = clock.elapsed().as_secs_f64();
                 for check in CHECKS.iter().filter(|check| thorough || !check.thorough) {
+                    let clock = Instant::now();
                     make(check, &mut case);
+                    record.seconds.1.push((check.theorem, clock.elapsed().as_secs_f64()));
                 }
                 record.shortened = case.shortened;
                 case.found
@@ -115,6 +123,16 @@ impl Record {
         theorems.dedup();
         theorems
     }
+}
+
+/// Milliseconds of work a system, on the average: of all formulations, then of each theorem's checks.
+pub fn milliseconds(records: &[Record]) -> (f64, BTreeMap<u8, f64>) {
+    let each = 1e3 / records.len().max(1) as f64;
+    let mut checks: BTreeMap<u8, f64> = BTreeMap::new();
+    for (theorem, seconds) in records.iter().flat_map(|record| &record.seconds.1) {
+        *checks.entry(*theorem).or_default() += each * seconds;
+    }
+    (records.iter().map(|record| each * record.seconds.0).sum(), checks)
 }
 
 /// How often a word was said.

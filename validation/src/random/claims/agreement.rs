@@ -39,14 +39,17 @@ pub(super) fn integrable(case: &mut Case) -> Result<(), CheckError> {
 }
 
 /// Names of what is counted and measured of a pair: whether it differs, when the gap passes 1e-3, and how it grows at first.
-pub(in crate::random) struct Divergence {
-    pub(in crate::random) differs: &'static str,
-    pub(in crate::random) passes: &'static str,
-    pub(in crate::random) grows: &'static str,
+pub struct Divergence {
+    /// Counted: whether the two differ.
+    pub differs: &'static str,
+    /// Observed: when the gap passes 1e-3.
+    pub passes: &'static str,
+    /// Observed: the exponent of the gap near the start.
+    pub grows: &'static str,
 }
 
 /// The pairs that are measured on systems that are not integrable.
-pub(in crate::random) const DIVERGES: [Divergence; 4] = [
+pub const DIVERGES: [Divergence; 4] = [
     Divergence {
         differs: "vakonomic differs from Chetaev",
         passes: "tau(1e-3), vakonomic and Chetaev",

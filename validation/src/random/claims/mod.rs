@@ -17,6 +17,7 @@ use super::Case;
 use crate::referees::maggi::MaggiError;
 
 pub(super) use agreement::constraint_jacobian;
+pub use agreement::{DIVERGES, Divergence};
 pub use null_tests::{NullTest, null_test};
 
 /// Why a check could not be made.

@@ -1,0 +1,308 @@
+//! The page about random systems.
+
+use std::fmt::Write;
+
+use anyhow::Result;
+use serde_json::{Map, Value, json};
+
+use crate::picture::{Aspect, Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
+use crate::random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
+use crate::report::File;
+use crate::report::numbers::{enumerate, short};
+
+/// The part of the verdicts on a theorem that may be undecided.
+const UNDECIDED: f64 = 0.02;
+
+/// Bins of the histogram of exponents, and their width.
+const BINS: usize = 31;
+const LOWEST: f64 = 0.95;
+const WIDTH: f64 = 0.1;
+
+/// Claims that do not hold and are listed one by one.
+const LISTED: usize = 20;
+
+/// A page, its pictures, and the shrunk counterexamples as scene files.
+///
+/// # Errors
+/// Where a picture cannot be drawn.
+pub fn random_files(batch: &Batch, records: &[Record]) -> Result<Vec<File>> {
+    let summary = Summary::of(records);
+    let mut files = vec![
+        File { path: "random-times.svg".into(), text: times(&summary)? },
+        File { path: "random-exponents.svg".into(), text: exponents(&summary)? },
+    ];
+    let mut counterexamples = Vec::new();
+    for record in records {
+        for theorem in record.failures() {
+            if let Some(scene) = batch.counterexample(record.index, theorem) {
+                let path = format!("counterexamples/{}.toml", scene.name);
+                files.push(File { path: path.clone().into(), text: scene.to_toml() });
+                counterexamples.push((theorem, path));
+            }
+        }
+    }
+    files.push(File { path: "random.md".into(), text: page(batch, &summary, records, &counterexamples) });
+    Ok(files)
+}
+
+/// The verdicts for machines: a word a theorem.
+pub fn random_verdicts(batch: &Batch, records: &[Record]) -> Value {
+    let summary = Summary::of(records);
+    let theorems: Map<String, Value> =
+        summary.theorems.iter().map(|(theorem, count)| (label(*theorem), word(*count).into())).collect();
+    json!({ "seed": batch.seed, "systems": summary.systems, "theorems": theorems })
+}
+
+fn word(count: Count) -> &'static str {
+    match count.fails {
+        0 if count.undecided as f64 <= UNDECIDED * count.total() as f64 => "holds",
+        0 => "undecided",
+        _ => "fails",
+    }
+}
+
+fn label(theorem: u8) -> String {
+    if theorem == 0 { "within".into() } else { format!("T{theorem}") }
+}
+
+/// The first line of the page, which the overview repeats.
+pub fn random_headline(records: &[Record]) -> String {
+    headline(&Summary::of(records))
+}
+
+fn headline(summary: &Summary) -> String {
+    let total = summary.total();
+    let failing: Vec<String> = summary
+        .theorems
+        .iter()
+        .filter(|(_, c)| c.fails > 0)
+        .map(|(t, c)| format!("{} on {}", label(*t), c.fails))
+        .collect();
+    let verdict = match failing.as_slice() {
+        [] => "no claim fails".to_string(),
+        some => format!("claims fail: {}", enumerate(some)),
+    };
+    let undecided = 100.0 * total.undecided as f64 / total.total().max(1) as f64;
+    format!(
+        "On {} random systems {verdict}; {} of {} verdicts on theorems ({} %) are undecided.",
+        summary.systems,
+        total.undecided,
+        total.total(),
+        short(undecided)
+    )
+}
+
+fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &[(u8, String)]) -> String {
+    let mut page = format!("# Systems that nobody chose\n\n**{}**\n\n", headline(summary));
+    page += "How many systems a claim was put to the test on, and what became of it. A claim holds where every motion, energy or coefficient \
+             compared agrees within ten times the error estimates; it fails where one does not; it is undecided where the estimates are too large.\n\n";
+    page += "| | claim | holds | fails | undecided |\n|---|---|---:|---:|---:|\n";
+    for (theorem, Count { holds, fails, undecided }) in &summary.theorems {
+        let _ =
+            writeln!(page, "| {} | {} | {holds} | {fails} | {undecided} |", label(*theorem), theorem_title(*theorem));
+    }
+    page += &control_words(summary);
+    page += "\n## When the motions part\n\n";
+    page += "Of the systems whose constraints are not integrable, the part on which the gap in the kinetic metric has passed 1e-3 by time $t$:\n\n\
+             ![Distribution of the time at which the gap passes 1e-3](random-times.svg)\n\n";
+    page += "| pair | differ | of | median $\\tau(10^{-3})$ | passed by the end |\n|---|---:|---:|---:|---:|\n";
+    for names in &DIVERGES {
+        let (differ, of) = counted(summary, names.differs);
+        let times = observed(summary, names.passes);
+        let median = times.get(times.len() / 2).map_or("–".into(), |t| short(*t));
+        let pair = names.passes.trim_start_matches("tau(1e-3), ");
+        let _ = writeln!(page, "| {pair} | {differ} | {of} | {median} | {} |", times.len());
+    }
+    page += "\nHow the gap begins, as a power of $t$, where the exponent is certain to 0.1:\n\n![Distribution of growth exponents](random-exponents.svg)\n\n";
+    page += &exponent_words(summary);
+    page += "\n## What else was counted\n\nNo claim forbids these; they are findings.\n\n| | what | so on | of |\n|---|---|---:|---:|\n";
+    for (theorem, what, values) in counts(summary) {
+        let so = values.iter().filter(|x| **x == 1.0).count();
+        let _ = writeln!(page, "| T{theorem} | {what} | {so} | {} |", values.len());
+    }
+    page += &measured(summary);
+    page += &open_words(batch, records, counterexamples);
+    page += &systems_words(batch, summary);
+    page
+}
+
+/// Observations that are counted: 0 or 1. What the table of pairs shows already is left out.
+fn counts(summary: &Summary) -> Vec<(u8, &str, &[f64])> {
+    let shown = |what: &str| DIVERGES.iter().any(|names| names.differs == what);
+    let all =
+        summary.observed.iter().flat_map(|(t, by)| by.iter().map(|(what, values)| (*t, what.as_str(), &values[..])));
+    all.filter(|(_, what, values)| !shown(what) && values.iter().all(|x| *x == 0.0 || *x == 1.0)).collect()
+}
+
+fn observed<'a>(summary: &'a Summary, what: &str) -> &'a [f64] {
+    summary.observed.values().find_map(|by| by.get(what)).map_or(&[], |values| values)
+}
+
+fn counted(summary: &Summary, what: &str) -> (usize, usize) {
+    let values = observed(summary, what);
+    (values.iter().filter(|x| **x == 1.0).count(), values.len())
+}
+
+fn control_words(summary: &Summary) -> String {
+    let (flagged, wrong) = counted(summary, "the wrong formulation is wrong, and flagged");
+    let right = summary.claims.get(&12).and_then(|claims| claims.get("right in Chaplygin's integrable form"));
+    let right = right.copied().unwrap_or_default();
+    format!(
+        "\nThe deliberately wrong formulation, which puts the constraint into $L$, violates Maggi's equations on {wrong} systems and is flagged on \
+         {flagged} of them ({} %). On {} systems in Chaplygin's integrable form it is right, and called right on {}.\n",
+        short(100.0 * flagged as f64 / wrong.max(1) as f64),
+        right.total(),
+        right.holds
+    )
+}
+
+fn exponent_words(summary: &Summary) -> String {
+    let worst = |what: &str, exponent: f64| {
+        let values = observed(summary, what);
+        let off = values.iter().fold(0.0_f64, |a, x| a.max((x - exponent).abs()));
+        format!("{} systems, off by at most {}", values.len(), short(off))
+    };
+    format!(
+        "T5 predicts 3 for the vakonomic motion with $\\mu_0 = 0$ ({}) and 2 otherwise ({}).\n",
+        worst("growth exponent, mu0 = 0", 3.0),
+        worst("growth exponent, mu0 not zero", 2.0)
+    )
+}
+
+/// Figures that are neither counts nor shown in a picture.
+fn measured(summary: &Summary) -> String {
+    let mut text = String::from("\n| | what | least | median | largest | of |\n|---|---|---:|---:|---:|---:|\n");
+    for (theorem, by) in summary.observed.iter().filter(|(theorem, _)| **theorem == 8 || **theorem == 9) {
+        for (what, values) in by.iter().filter(|(_, values)| values.iter().any(|x| *x != 0.0 && *x != 1.0)) {
+            let (least, most) = (values[0], values[values.len() - 1]);
+            let median = values[values.len() / 2];
+            let _ = writeln!(
+                text,
+                "| T{theorem} | {what} | {} | {} | {} | {} |",
+                short(least),
+                short(median),
+                short(most),
+                values.len()
+            );
+        }
+    }
+    text
+}
+
+fn open_words(batch: &Batch, records: &[Record], counterexamples: &[(u8, String)]) -> String {
+    let mut text = String::from("\n## What does not hold\n\n");
+    let open: Vec<String> = records
+        .iter()
+        .flat_map(|record| record.open.iter().map(move |open| (record, open)))
+        .map(|(record, open)| {
+            let figure =
+                open.figure.map_or(String::new(), |(x, limit)| format!(", {} (limit {})", short(x), short(limit)));
+            let (name, kind, theorem) = (batch.name(record.index), record.kind, label(open.theorem));
+            format!("- `{name}`, {kind}: {theorem}, {}: {}{figure}. {}", open.claim, open.word, open.note)
+        })
+        .collect();
+    if open.is_empty() {
+        text += "Nothing.\n";
+    }
+    for line in open.iter().take(LISTED) {
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    if open.len() > LISTED {
+        let _ =
+            writeln!(text, "- and {} more: `deltaq random --seed {} --format json`", open.len() - LISTED, batch.seed);
+    }
+    for (theorem, path) in counterexamples {
+        let _ = writeln!(text, "\nSmallest system found on which {} fails: [{path}]({path}).", label(*theorem));
+    }
+    if counterexamples.is_empty() {
+        text += "\nThere is no counterexample; one would be shrunk and stand here as a scene file.\n";
+    }
+    text
+}
+
+fn systems_words(batch: &Batch, summary: &Summary) -> String {
+    let kinds: Vec<String> = summary.kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    let mut text = format!(
+        "\n## The systems\n\nSeed {}: {}. They have 2 to 6 coordinates, masses that are constant or vary, potentials, gyroscopic terms; constraints that \
+         are linear, affine or quadratic in the velocities, with or without time; half of the starts have $\\mu_0 = 0$, half have $P(t_0) = 0$. A run lasts \
+         {DURATION}; on {} systems it was shortened because a motion stops earlier (a singularity, or the end of a removal's chart). Nearly dependent \
+         constraints are 1e-1 to 1e-3 apart: nearer than that, the multipliers' own conditioning leaves the motions uncertain by more than 1e-8.\n\n",
+        batch.seed,
+        enumerate(&kinds),
+        summary.shortened
+    );
+    text += "Systems by number of coordinates $n$ and constraints $h$:\n\n| | $h = 0$ | 1 | 2 | 3 | 4 | 5 |\n|---|---:|---:|---:|---:|---:|---:|\n";
+    for n in 2..=6 {
+        let cell = |h: usize| match summary.sizes.get(&format!("{n}, {h}")) {
+            Some(count) => count.to_string(),
+            None => "–".into(),
+        };
+        let cells: Vec<String> = (0..6).map(cell).collect();
+        let _ = writeln!(text, "| $n = {n}$ | {} |", cells.join(" | "));
+    }
+    let _ = writeln!(
+        text,
+        "\n`deltaq random --seed {seed} --index I` shows one of them, claim by claim; `--out DIR` writes it as a scene file. `deltaq random --count N \
+         --seed S` draws others.",
+        seed = batch.seed
+    );
+    text
+}
+
+const STYLES: [Style; 4] =
+    [Style::ChetaevVakonomic, Style::ChetaevRemovedConstraint, Style::VakonomicRemovedConstraint, Style::Substituted];
+
+/// Cumulative distribution of `τ(1e-3)`.
+fn times(summary: &Summary) -> Result<String> {
+    let curves = DIVERGES.iter().zip(STYLES).map(|(names, style)| {
+        let (_, of) = counted(summary, names.differs);
+        let mut points = vec![(0.0, 0.0)];
+        let mut part = 0.0;
+        for (k, &t) in observed(summary, names.passes).iter().enumerate() {
+            points.push((t, part));
+            part = (k + 1) as f64 / of as f64;
+            points.push((t, part));
+        }
+        points.push((DURATION, part));
+        Curve { label: names.passes.trim_start_matches("tau(1e-3), ").into(), style, points }
+    });
+    let picture = Picture {
+        title: "Nonintegrable random systems: when the gap passes 1e-3".into(),
+        x: Axis { range: Some((0.0, DURATION)), ..Axis::linear("t") },
+        y: Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") },
+        curves: curves.collect(),
+        aspect: Aspect::Fill,
+    };
+    Ok(picture.to_svg()?)
+}
+
+/// Histograms of the growth exponents, as outlines.
+fn exponents(summary: &Summary) -> Result<String> {
+    let panels = DIVERGES.iter().zip(STYLES).map(|(names, style)| {
+        let mut bins = [0_u32; BINS];
+        for x in observed(summary, names.grows) {
+            let bin = ((x - LOWEST) / WIDTH).floor();
+            if bin >= 0.0 && bin < BINS as f64 {
+                bins[bin as usize] += 1;
+            }
+        }
+        let mut points = vec![(LOWEST, 0.0)];
+        for (k, &count) in bins.iter().enumerate() {
+            let left = LOWEST + WIDTH * k as f64;
+            points.extend([(left, f64::from(count)), (left + WIDTH, f64::from(count))]);
+        }
+        points.push((LOWEST + WIDTH * BINS as f64, 0.0));
+        let highest = bins.iter().copied().max().unwrap_or(0).max(1);
+        Panel {
+            y: Axis { label: "systems".into(), scale: Scale::Linear, range: Some((0.0, 1.05 * f64::from(highest))) },
+            curves: vec![Curve { label: names.grows.trim_start_matches("growth exponent, ").into(), style, points }],
+        }
+    });
+    let multiples = SmallMultiples {
+        title: "Nonintegrable random systems: how the gap begins".into(),
+        x: Axis { range: Some((LOWEST, LOWEST + WIDTH * BINS as f64)), ..Axis::linear("exponent of t") },
+        panels: panels.collect(),
+        columns: 2,
+    };
+    Ok(multiples.to_svg()?)
+}

@@ -1,0 +1,107 @@
+//! `deltaq random`, run as a user runs it.
+
+use std::fs;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn random(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_deltaq"));
+    command.arg("random").args(arguments).output().expect("the command runs")
+}
+
+#[track_caller]
+fn text(output: &Output, code: i32) -> String {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+}
+
+#[track_caller]
+fn json(arguments: &[&str]) -> Value {
+    let output = random(&[arguments, &["--format", "json"]].concat());
+    serde_json::from_str(&text(&output, 0)).expect("JSON")
+}
+
+#[test]
+fn verdicts_are_counted_by_theorem() {
+    let value = json(&["--count", "20", "--seed", "5"]);
+    assert_eq!(value["summary"]["systems"], 20);
+    assert_eq!(value["summary"]["kinds"]["near-rank-loss"], 2);
+    for theorem in ["0", "1", "2", "3", "4", "10", "11", "12"] {
+        let count = &value["summary"]["theorems"][theorem];
+        assert!(count["holds"].as_u64() >= Some(6), "T{theorem}: {count}");
+        assert_eq!(count["fails"], 0, "T{theorem}: {count}");
+    }
+    let shown = text(&random(&["--count", "10"]), 0);
+    assert!(shown.contains("T11") && shown.contains("a second"), "{shown}");
+}
+
+#[test]
+fn a_run_that_was_cut_off_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("log.jsonl");
+    let path = log.display().to_string();
+    let whole = json(&["--count", "30", "--seed", "2", "--log", &path]);
+    let lines = fs::read_to_string(&log).expect("a log");
+    assert_eq!(lines.lines().count(), 31, "a header and a line a system");
+    // cut off in the middle of a line
+    let cut = lines.match_indices('\n').nth(12).expect("lines").0 + 40;
+    fs::write(&log, &lines[..cut]).expect("written");
+    let again = json(&["--count", "30", "--seed", "2", "--log", &path]);
+    assert_eq!(whole["summary"], again["summary"]);
+    assert_eq!(fs::read_to_string(&log).expect("a log").lines().count(), 31);
+    // nothing is left to do
+    assert_eq!(json(&["--count", "30", "--seed", "2", "--log", &path])["summary"], whole["summary"]);
+}
+
+#[test]
+fn a_log_of_something_else_is_refused_and_left_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("log.jsonl");
+    let path = log.display().to_string();
+    for (content, words) in [
+        ("dear diary\n", "not a log of random systems"),
+        ("dear diary", "not a log of random systems"),
+        ("{\"seed\":7,\"kinds\":[\"free\"]}\n", "is of seed 7"),
+    ] {
+        fs::write(&log, content).expect("written");
+        let output = random(&["--count", "3", "--log", &path]);
+        assert_eq!(text(&output, 2), "");
+        assert!(String::from_utf8_lossy(&output.stderr).contains(words), "{output:?}");
+        assert_eq!(fs::read_to_string(&log).expect("a log"), content);
+    }
+}
+
+#[test]
+fn one_system_is_shown_and_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().display().to_string();
+    let shown = text(&random(&["--seed", "3", "--index", "15", "--out", &path]), 0);
+    assert!(shown.contains("random-3-15: Random system, linear") && shown.contains("T12"), "{shown}");
+    let scene = folder.path().join("random-3-15.toml");
+    let solved = Command::new(env!("CARGO_BIN_EXE_deltaq"))
+        .args(["compare", &scene.display().to_string()])
+        .output()
+        .expect("the command runs");
+    assert!(text(&solved, 0).contains("Chetaev"), "{solved:?}");
+    // the same as in a bulk run
+    let one = json(&["--seed", "3", "--index", "15"]);
+    let bulk = json(&["--seed", "3", "--count", "16"]);
+    assert_eq!(one["record"]["kind"], "linear");
+    assert!(bulk["open"].as_array().expect("a list").iter().all(|r| r["index"] != 15));
+    assert!(one["record"]["open"].as_array().expect("a list").is_empty());
+}
+
+#[test]
+fn bad_options_are_bad_input() {
+    for arguments in [&["--count", "0"][..], &["--kind", "cubic"], &["--index", "1", "--count", "3"], &["--seed", "-1"]]
+    {
+        let output = random(arguments);
+        assert_eq!(text(&output, 2), "", "{arguments:?}");
+    }
+    let output = random(&["--count", "2", "--log", "no/such/folder/log"]);
+    assert_eq!(text(&output, 2), "");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no/such/folder/log"), "{output:?}");
+}
