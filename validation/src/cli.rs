@@ -42,6 +42,8 @@ pub enum Section {
     Scenes,
     /// The claims T1 to T14 on 1,000 random systems.
     Random,
+    /// Friction, added mass, and what they tend to.
+    Realization,
 }
 
 /// The subcommands.

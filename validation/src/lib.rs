@@ -8,6 +8,7 @@ pub mod parallel;
 pub mod picture;
 pub mod random;
 pub mod random_command;
+pub mod realization;
 pub mod referees;
 pub mod report;
 pub mod show_command;

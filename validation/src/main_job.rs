@@ -14,8 +14,8 @@ use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
 use crate::random::{Batch, Kind, Record};
 use crate::report::{
-    File, Provenance, answer, difference_of_verdicts, overview, pictures, random_files, random_headline,
-    random_verdicts, scene_page, verdicts, write_all,
+    File, Provenance, RealizationReport, answer, difference_of_verdicts, overview, pictures, random_files,
+    random_headline, random_verdicts, scene_page, verdicts, write_all,
 };
 use crate::{parallel, substitution};
 
@@ -52,6 +52,7 @@ struct Results {
     scene_files: Vec<File>,
     batch: Batch,
     records: Vec<Record>,
+    realization: Option<RealizationReport>,
 }
 
 impl Results {
@@ -61,14 +62,26 @@ impl Results {
         let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
         let random = sections.contains(&Section::Random);
         let records = if random { batch.run(RANDOM_SYSTEMS, None, quiet)? } else { Vec::new() };
+        let realization =
+            sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
-        Ok(Results { comparisons, scene_files, batch, records })
+        Ok(Results { comparisons, scene_files, batch, records, realization })
     }
 
     fn verdicts(&self) -> Value {
         let mut verdicts = verdicts(&self.comparisons);
         verdicts["random"] = random_verdicts(&self.batch, &self.records);
+        if let Some(realization) = &self.realization {
+            verdicts["realization"] = realization.verdicts();
+        }
         verdicts
+    }
+
+    /// What the other sections say in a line, each with its page.
+    fn further(&self) -> Vec<(String, &'static str)> {
+        let random = (!self.records.is_empty()).then(|| (random_headline(&self.records), "random.md"));
+        let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
+        random.into_iter().chain(realization).collect()
     }
 
     /// Pages and pictures of every section that ran.
@@ -76,6 +89,9 @@ impl Results {
         let mut files = self.scene_files.clone();
         if !self.records.is_empty() {
             files.extend(random_files(&self.batch, &self.records)?);
+        }
+        if let Some(realization) = &self.realization {
+            files.extend(realization.files()?);
         }
         Ok(files)
     }
@@ -104,7 +120,7 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
     let mut files = results.files()?;
     if complete {
         let provenance = provenance(clock.elapsed().as_secs_f64());
-        let text = overview(&results.comparisons, &random_headline(&results.records), &provenance);
+        let text = overview(&results.comparisons, &results.further(), &provenance);
         files.push(File { path: "README.md".into(), text });
         let text = serde_json::to_string_pretty(&results.verdicts())? + "\n";
         files.push(File { path: "verdicts.json".into(), text });
@@ -116,8 +132,8 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
         let first = answer.split_inclusive(". ").next().unwrap_or_default();
         let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
     }
-    if !results.records.is_empty() {
-        let _ = writeln!(told, "{:<24} {}", "random systems", random_headline(&results.records));
+    for (line, page) in results.further() {
+        let _ = writeln!(told, "{page:<24} {line}");
     }
     let seconds = clock.elapsed().as_secs_f64();
     let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), arguments.out.display());

@@ -6,9 +6,9 @@ use deltaq::{
 };
 use mechanics::{ConstantsRule, Equations, Removal, Scene, State, System};
 
-use super::claims::constraint_jacobian;
 use super::finding::{Finding, Findings, Word};
 use super::recipe::Recipe;
+use crate::realization::constraint_jacobian;
 use crate::substitution;
 
 /// Tolerances tried one after the other: what round-off does not allow is asked for less sharply.

@@ -16,9 +16,10 @@ mod transform;
 
 pub use build::{DURATION, REMOVAL};
 pub use bulk::{Batch, shrink};
-pub use case::{Case, Removed, Which};
+pub use case::{Case, Removed, Which, equations, free_constants};
 pub use claims::{CHECKS, Check, DIVERGES, Divergence, NullTest, make, null_test, theorem_title};
 pub use finding::{Finding, Findings, Observation, Word};
 pub use kind::{Kind, Truth};
-pub use recipe::{MOST, Recipe, draw, draw_null_test, recipes, recipes_of};
+pub use recipe::{MOST, Recipe, draw, draw_null_test, draw_recipe, recipes, recipes_of};
 pub use record::{Count, Open, Record, Summary, THOROUGH, milliseconds};
+pub use transform::{Rewritten, Scaling, augmented, recombined};

@@ -230,6 +230,11 @@ pub fn draw(seed: u64, index: u64, kinds: &[Kind]) -> impl ValueTree<Value = Rec
     tree(&recipes(kinds[index as usize % kinds.len()]), seed, index)
 }
 
+/// The recipe of [`draw`], without its ways to shrink.
+pub fn draw_recipe(seed: u64, index: u64, kinds: &[Kind]) -> Recipe {
+    draw(seed, index, kinds).current()
+}
+
 /// The numbers of the null test that belongs to `(seed, index)`.
 pub fn draw_null_test(seed: u64, index: u64) -> NullTest {
     tree(&NullTest::strategy(), seed, index).current()

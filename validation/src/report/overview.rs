@@ -19,8 +19,8 @@ pub struct Provenance {
     pub seconds: f64,
 }
 
-/// One page: the verdict matrix, the findings, what random systems say (`random`, in a line), how to regenerate.
-pub fn overview(comparisons: &[Comparison], random: &str, provenance: &Provenance) -> String {
+/// One page: the verdict matrix, the findings, what further pages say (`further`: a line and a path), how to regenerate.
+pub fn overview(comparisons: &[Comparison], further: &[(String, &str)], provenance: &Provenance) -> String {
     let mut page = format!("# Do the formulations give the same motion?\n\n**{}**\n\n", headline(comparisons));
     page += &matrix(comparisons);
     page += "\nTimes are those at which the gap in the kinetic metric passes 1e-6. *After best fit*: what the free constants $\\mu_0$ that suit the \
@@ -30,7 +30,10 @@ pub fn overview(comparisons: &[Comparison], random: &str, provenance: &Provenanc
     for (i, finding) in findings(comparisons).iter().enumerate() {
         let _ = writeln!(page, "{}. {finding}", i + 1);
     }
-    let _ = writeln!(page, "\n## Systems that nobody chose\n\n{random} [More](random.md).");
+    page += "\n## Further\n\n";
+    for (line, path) in further {
+        let _ = writeln!(page, "- {line} [More]({path}).");
+    }
     let _ = writeln!(
         page,
         "\n## How this was made\n\n`cargo run --release` writes this folder; `deltaq compare SCENE` makes one page for a scene of your own; \

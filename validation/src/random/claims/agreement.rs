@@ -2,15 +2,15 @@
 
 use std::collections::HashMap;
 
-use deltaq::{SolveError, growth};
-use mechanics::{Integrability, Removal, System, integrability};
+use deltaq::{Setting, SolveError, growth};
+use mechanics::{Integrability, Removal, complete_removal_start, integrability};
 use nalgebra::{DMatrix, DVector};
-use symbolic::{CompileError, Expr, Graph, Symbol};
+use symbolic::Symbol;
 
 use super::CheckError;
 use crate::random::case::{Which, equations, free_constants};
-use crate::random::transform::augmented;
 use crate::random::{Case, Kind, Truth};
+use crate::realization::{augmented_start, constraint_jacobian, momenta, numbers};
 
 /// Residual of linear equations under which they have a solution, relative to their terms.
 const SOLVABLE: f64 = 1e-9;
@@ -103,21 +103,9 @@ fn is_chart(removal: &Removal) -> bool {
 pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
     for i in 0..case.removed.len() {
         let removal = case.removed[i].removal.clone();
-        let system = augmented(&case.scene.system, &removal);
         let n = case.scene.system.dimension();
-        let mut start = case.scene.start.clone();
-        let values = deltaq_start(&case.scene.system, &removal, &case.scene.start)?;
-        for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
-            start.q.push(values.get(&u.symbol).copied().unwrap_or(0.0));
-            start.v.push(values.get(&u.rate).copied().unwrap_or(0.0));
-        }
-        let momenta = momenta(&case.scene.system, &case.scene.start)?;
-        let multipliers: Vec<f64> = removal
-            .memory
-            .iter()
-            .zip(&case.removed[i].costates)
-            .map(|(w, p)| -p - w.coordinate.map_or(0.0, |c| momenta[c]))
-            .collect();
+        let setting = Setting { system: &case.scene.system, start: &case.scene.start, end: case.end() };
+        let (system, start, multipliers) = augmented_start(setting, &removal, &case.removed[i].costates)?;
         let mut equations = equations(&system, "vakonomic", None)?;
         equations.coordinates.truncate(n);
         equations.velocities.truncate(n);
@@ -125,14 +113,6 @@ pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
         case.same(2, "removed constraint is vakonomic motion of the augmented system", Which::Removed(i), &mut motion);
     }
     Ok(())
-}
-
-fn deltaq_start(
-    system: &System,
-    removal: &Removal,
-    state: &mechanics::State,
-) -> Result<HashMap<Symbol, f64>, SolveError> {
-    Ok(mechanics::complete_removal_start(system, removal, state)?.values())
 }
 
 /// T3: `Aᵀ μ₀ = p_q − L_v` has a solution for a removal by coordinates, and gives the same motion.
@@ -217,7 +197,7 @@ pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
     let rates: Vec<Symbol> = removal.parameters.iter().map(|u| u.rate).collect();
     let phi = g.jacobian(&removal.velocities(&system), &rates);
     let mut values = system.values_at(&case.scene.start);
-    values.extend(deltaq_start(&system, &removal, &case.scene.start)?);
+    values.extend(complete_removal_start(&system, &removal, &case.scene.start).map_err(SolveError::from)?.values());
     let phi = DMatrix::from_row_slice(phi.rows(), phi.columns(), &numbers(g, phi.entries(), &values)?).transpose();
     let momenta = DVector::from_vec(momenta(&system, &case.scene.start)?);
     // only memory variables with a costate of their own have a free P
@@ -250,24 +230,4 @@ pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
     };
     case.found.count(14, what, differs);
     Ok(())
-}
-
-/// `∂L/∂v` at a state.
-pub(super) fn momenta(system: &System, state: &mechanics::State) -> Result<Vec<f64>, CompileError> {
-    numbers(&system.graph, &system.graph.gradient(system.lagrangian, &system.velocities()), &system.values_at(state))
-}
-
-/// `A` at a state.
-pub(in crate::random) fn constraint_jacobian(
-    system: &System,
-    state: &mechanics::State,
-) -> Result<DMatrix<f64>, CompileError> {
-    let a = system.constraint_jacobian();
-    let entries = numbers(&system.graph, a.entries(), &system.values_at(state))?;
-    Ok(DMatrix::from_row_slice(a.rows(), a.columns(), &entries))
-}
-
-/// Expressions as numbers.
-pub(super) fn numbers(g: &Graph, es: &[Expr], values: &HashMap<Symbol, f64>) -> Result<Vec<f64>, CompileError> {
-    es.iter().map(|&e| g.evaluate(e, values)).collect()
 }

@@ -114,7 +114,7 @@ pub(super) fn momentum(case: &mut Case) -> Result<(), CheckError> {
     let augmented = g.add(system.lagrangian, g.dot(&g.variables(&mu), &system.constraints));
     for c in &system.coordinates {
         let occurs = |e: &Expr| g.depends_on(*e, c.position);
-        if occurs(&system.lagrangian) || system.constraints.iter().any(|f| occurs(f)) {
+        if occurs(&system.lagrangian) || system.constraints.iter().any(occurs) {
             continue;
         }
         let momentum = g.derivative(augmented, c.velocity);

@@ -16,7 +16,6 @@ use symbolic::CompileError;
 use super::Case;
 use crate::referees::maggi::MaggiError;
 
-pub(super) use agreement::constraint_jacobian;
 pub use agreement::{DIVERGES, Divergence};
 pub use null_tests::{NullTest, null_test};
 

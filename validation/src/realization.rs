@@ -1,0 +1,196 @@
+//! Realizations: unconstrained systems whose motions tend to constrained ones (T8).
+//!
+//! ```text
+//! friction     L unchanged, force −N Aᵀ f                                   → Chetaev
+//! added mass   L + ½ N f·f, started at the momenta p₀ = L_v + Aᵀ μ₀          → vakonomic with μ₀
+//! ```
+//!
+//! both at the rate 1/N. For the removed-constraint motion, the added mass has to sit on `ẇ − B(u̇, …)`, with `u` coordinates of their own:
+//! it is the vakonomic motion of that augmented system (T2), and friction there leads elsewhere.
+//!
+//! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1983.
+
+use std::collections::HashMap;
+
+use deltaq::{Metric, Motion, Setting, Settings, SolveError, solve};
+use integrate::Method;
+use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
+use nalgebra::{DMatrix, DVector};
+use symbolic::{CompileError, Expr, Graph, Symbol};
+
+use crate::random::{augmented, equations};
+
+/// Tolerances of the looser of the two runs: where strong added mass leaves round-off that the first cannot go under, the second.
+const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
+
+/// Limit on the steps of one run.
+const MAX_STEPS: usize = 20_000;
+
+/// Instants at which distances are taken, in the second half of the run.
+const INSTANTS: usize = 12;
+
+/// What is made of a constraint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Realization {
+    /// Force `−N Aᵀ f`.
+    Friction,
+    /// Lagrangian `L + ½ N f·f`.
+    AddedMass,
+}
+
+/// The motion of the unconstrained system with strength `N` up to `setting.end`; `multipliers` are `μ₀`, of which only added mass makes use.
+///
+/// # Errors
+/// [`SolveError`] where it cannot be started.
+pub fn realize(kind: Realization, strength: f64, setting: Setting, multipliers: &[f64]) -> Result<Motion, SolveError> {
+    match kind {
+        Realization::Friction => {
+            let system = with_friction(setting.system, strength);
+            run(Setting { system: &system, ..setting }, Method::Bdf, setting.system.dimension())
+        }
+        Realization::AddedMass => {
+            let system = with_added_mass(setting.system, strength);
+            let start = at_momentum(setting, &system, multipliers)?;
+            run(Setting { system: &system, start: &start, ..setting }, Method::Dop853, system.dimension())
+        }
+    }
+}
+
+/// Added mass on the augmented system of a removal, started at the momenta of the removed-constraint motion with costates `P(t₀)`; its first
+/// outputs are the coordinates of `setting.system`.
+///
+/// # Errors
+/// [`SolveError`] where it cannot be started.
+pub fn realize_removal(
+    strength: f64,
+    setting: Setting,
+    removal: &Removal,
+    costates: &[f64],
+) -> Result<Motion, SolveError> {
+    let (system, start, multipliers) = augmented_start(setting, removal, costates)?;
+    let massive = with_added_mass(&system, strength);
+    let start = at_momentum(Setting { system: &system, start: &start, ..setting }, &massive, &multipliers)?;
+    run(Setting { system: &massive, start: &start, ..setting }, Method::Dop853, setting.system.dimension())
+}
+
+/// The augmented system of a removal with its start and its multipliers `μ_k = −P_k − ∂L/∂ẇ_k`.
+///
+/// # Errors
+/// [`SolveError`] where the removal cannot be started.
+pub fn augmented_start(
+    setting: Setting,
+    removal: &Removal,
+    costates: &[f64],
+) -> Result<(System, State, Vec<f64>), SolveError> {
+    let mut start = setting.start.clone();
+    let values = complete_removal_start(setting.system, removal, setting.start)?.values();
+    for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
+        start.q.push(values.get(&u.symbol).copied().unwrap_or(0.0));
+        start.v.push(values.get(&u.rate).copied().unwrap_or(0.0));
+    }
+    let momenta = momenta(setting.system, setting.start)?;
+    let own = |w: &mechanics::MemoryVariable| w.coordinate.map_or(0.0, |c| momenta[c]);
+    let multipliers = removal.memory.iter().zip(costates).map(|(w, p)| -p - own(w)).collect();
+    Ok((augmented(setting.system, removal), start, multipliers))
+}
+
+/// Largest distance between two motions over the second half of the first, in the kinetic metric; NaN where the second stops early.
+///
+/// # Errors
+/// [`SolveError`] where a motion cannot be read off.
+pub fn distance(limit: &mut Motion, motion: &mut Motion, metric: &mut Metric) -> Result<f64, SolveError> {
+    let (start, end) = (limit.start(), limit.end());
+    if motion.end() < end {
+        return Ok(f64::NAN);
+    }
+    let mut largest = 0.0_f64;
+    for k in 0..=INSTANTS {
+        let t = 0.5 * (start + end) + 0.5 * (end - start) * k as f64 / INSTANTS as f64;
+        let (one, two) = (limit.at(t)?, motion.at(t)?);
+        let difference: Vec<f64> = one.coordinates.iter().zip(&two.coordinates).map(|(a, b)| a - b).collect();
+        largest = largest.max(metric.length(t, &one.coordinates, &one.velocities, &difference));
+    }
+    Ok(largest)
+}
+
+/// Newton's motion of an unconstrained system, read off in its first coordinates.
+fn run(setting: Setting, method: Method, coordinates: usize) -> Result<Motion, SolveError> {
+    let mut equations = equations(setting.system, "chetaev", None)?;
+    equations.coordinates.truncate(coordinates);
+    equations.velocities.truncate(coordinates);
+    let at = |tolerance: f64| {
+        let settings = Settings { tolerance, method, max_steps: MAX_STEPS, ..Settings::default() };
+        solve(setting, equations.clone(), &ConstantsRule::Zero, &settings)
+    };
+    let sharp = at(TOLERANCES[0])?;
+    if sharp.is_complete() { Ok(sharp) } else { at(TOLERANCES[1]) }
+}
+
+fn with_friction(system: &System, strength: f64) -> System {
+    let mut other = system.clone();
+    let g = &other.graph;
+    let jacobian = g.jacobian(&system.constraints, &system.velocities());
+    let slip: Vec<Expr> = system.constraints.iter().map(|&f| g.mul(g.number(-strength), f)).collect();
+    let forces = g.transpose_vec(&jacobian, &slip);
+    (other.forces, other.constraints) = (forces, Vec::new());
+    other
+}
+
+fn with_added_mass(system: &System, strength: f64) -> System {
+    let mut other = system.clone();
+    let g = &other.graph;
+    let square = g.dot(&system.constraints, &system.constraints);
+    let lagrangian = g.add(system.lagrangian, g.mul(g.number(strength / 2.0), square));
+    (other.lagrangian, other.constraints) = (lagrangian, Vec::new());
+    other
+}
+
+/// The velocities with which `massive` has the momenta `L_v + Aᵀ μ₀` of the constrained start: linear equations, as momenta are affine in `v`.
+fn at_momentum(setting: Setting, massive: &System, multipliers: &[f64]) -> Result<State, SolveError> {
+    let (g, v) = (&massive.graph, massive.velocities());
+    let n = v.len();
+    let own = g.gradient(massive.lagrangian, &v);
+    let mass = matrix(massive, &g.jacobian(&own, &v), setting.start)?;
+    let own = DVector::from_vec(numbers(g, &own, &values(massive, setting.start))?);
+    let wanted = DVector::from_vec(momenta(setting.system, setting.start)?)
+        + constraint_jacobian(setting.system, setting.start)?.transpose() * DVector::from_column_slice(multipliers);
+    let change = mass.lu().solve(&(wanted - own)).unwrap_or_else(|| DVector::from_element(n, f64::NAN));
+    let v = setting.start.v.iter().zip(change.iter()).map(|(v, d)| v + d).collect();
+    Ok(State { v, ..setting.start.clone() })
+}
+
+/// `∂L/∂v` at a state.
+///
+/// # Errors
+/// [`CompileError`] where it has no value.
+pub fn momenta(system: &System, state: &State) -> Result<Vec<f64>, CompileError> {
+    let momenta = system.graph.gradient(system.lagrangian, &system.velocities());
+    numbers(&system.graph, &momenta, &values(system, state))
+}
+
+/// `A = ∂f/∂v` at a state.
+///
+/// # Errors
+/// [`CompileError`] where it has no value.
+pub fn constraint_jacobian(system: &System, state: &State) -> Result<DMatrix<f64>, CompileError> {
+    matrix(system, &system.constraint_jacobian(), state)
+}
+
+fn matrix(system: &System, m: &symbolic::Matrix, state: &State) -> Result<DMatrix<f64>, CompileError> {
+    let entries = numbers(&system.graph, m.entries(), &values(system, state))?;
+    Ok(DMatrix::from_row_slice(m.rows(), m.columns(), &entries))
+}
+
+fn values(system: &System, state: &State) -> HashMap<Symbol, f64> {
+    let mut values = system.parameter_values();
+    values.extend(system.values_at(state));
+    values
+}
+
+/// Expressions as numbers.
+///
+/// # Errors
+/// [`CompileError`] where one has no value.
+pub fn numbers(g: &Graph, es: &[Expr], values: &HashMap<Symbol, f64>) -> Result<Vec<f64>, CompileError> {
+    es.iter().map(|&e| g.evaluate(e, values)).collect()
+}

@@ -1,0 +1,274 @@
+//! The page about realizations.
+
+use std::fmt::Write;
+
+use anyhow::{Context, Result};
+use deltaq::{Metric, Motion, Setting, SolveError, choices, setting, solve_choice};
+use mechanics::{ConstantsRule, Scene};
+use serde_json::{Map, Value, json};
+
+use crate::catalogue;
+use crate::parallel;
+use crate::picture::{Aspect, Axis, Curve, Picture, Style};
+use crate::random::{Case, Kind, draw_recipe, free_constants};
+use crate::realization::{Realization, distance, realize, realize_removal};
+use crate::report::File;
+use crate::report::numbers::short;
+
+/// `N`.
+const STRENGTHS: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
+
+/// Scenes on the page, each up to this time, with multipliers `μ₀` where the scene has none.
+const SCENES: [(&str, f64); 3] = [("sledge", 3.0), ("disc", 3.0), ("ball-in-cone", 1.0)];
+
+/// Multipliers of the start where a scene has none, one after the other.
+const MULTIPLIERS: [f64; 2] = [0.4, -0.3];
+
+/// Random systems on the page: seed and number.
+const SEED: u64 = 8;
+const COUNT: u64 = 50;
+
+/// Kinds of them: constrained, linear in the velocities and well conditioned, not integrable.
+const KINDS: [Kind; 4] = [Kind::PartlyIntegrable, Kind::Linear, Kind::Affine, Kind::TimeDependent];
+
+/// Rates that count as 1.
+const RATE: std::ops::RangeInclusive<f64> = 0.95..=1.05;
+
+/// Distances at `N = 10³` from which a rate can be told.
+const VISIBLE: f64 = 1e-6;
+
+/// What a realization tends to, and the distances from it.
+#[derive(Clone, Debug)]
+struct Approach {
+    name: &'static str,
+    style: Style,
+    distances: Vec<f64>,
+}
+
+impl Approach {
+    /// `log₁₀` of the distance at `N = 10³` over that at `10⁴`; `None` where it cannot be told.
+    fn rate(&self) -> Option<f64> {
+        let rate = (self.distances[1] / self.distances[2]).log10();
+        (self.distances[1] > VISIBLE && rate.is_finite()).then_some(rate)
+    }
+}
+
+/// What was found on realizations.
+pub struct RealizationReport {
+    scenes: Vec<(String, Vec<Approach>)>,
+    random: Vec<Vec<Approach>>,
+}
+
+const FRICTION: &str = "friction, to Chetaev";
+const ADDED_MASS: &str = "added mass, to vakonomic";
+const AUGMENTED: &str = "added mass on the augmented system, to removed constraint";
+
+impl RealizationReport {
+    /// Runs all realizations.
+    ///
+    /// # Errors
+    /// Where a motion cannot be had.
+    pub fn new(quiet: bool) -> Result<RealizationReport> {
+        let bar = parallel::progress(SCENES.len() + COUNT as usize, quiet);
+        bar.set_message("realizations");
+        let scenes = parallel::map(&SCENES, |(name, duration)| {
+            let approaches = of_scene(name, *duration).with_context(|| format!("realizations of `{name}`"));
+            bar.inc(1);
+            approaches.map(|approaches| (name.to_string(), approaches))
+        });
+        let indices: Vec<u64> = (0..COUNT).collect();
+        let random = parallel::map(&indices, |&index| {
+            let approaches = of_random(index).with_context(|| format!("realizations of random system {index}"));
+            bar.inc(1);
+            approaches
+        });
+        bar.finish_and_clear();
+        Ok(RealizationReport {
+            scenes: scenes.into_iter().collect::<Result<_>>()?,
+            random: random.into_iter().collect::<Result<_>>()?,
+        })
+    }
+
+    /// Rates of one realization on the random systems, sorted; and how many cannot be told.
+    fn random_rates(&self, name: &str) -> (Vec<f64>, usize) {
+        let all = self.random.iter().flatten().filter(|a| a.name == name);
+        let mut rates: Vec<f64> = all.clone().filter_map(Approach::rate).collect();
+        rates.sort_by(f64::total_cmp);
+        (rates, all.filter(|a| a.rate().is_none()).count())
+    }
+
+    /// Every rate on the page that can be told.
+    fn rates(&self) -> Vec<f64> {
+        self.scenes.iter().flat_map(|(_, a)| a).chain(self.random.iter().flatten()).filter_map(Approach::rate).collect()
+    }
+
+    /// The first line of the page.
+    pub fn headline(&self) -> String {
+        let rates = self.rates();
+        let within = rates.iter().filter(|r| RATE.contains(r)).count();
+        let (least, most) = rates.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
+        format!(
+            "Friction leads to Chetaev, added mass to the vakonomic motion, added mass on the augmented system to the removed-constraint motion: \
+             {within} of {} measured rates are 1 within 0.05 in 1/N (from {} to {}).",
+            rates.len(),
+            short(least),
+            short(most)
+        )
+    }
+
+    /// The verdicts for machines.
+    pub fn verdicts(&self) -> Value {
+        let word = |a: &Approach| {
+            a.rate().map_or("too close to tell", |r| if RATE.contains(&r) { "rate 1" } else { "other rate" })
+        };
+        let scene = |approaches: &[Approach]| -> Map<String, Value> {
+            approaches.iter().map(|a| (a.name.to_string(), word(a).into())).collect()
+        };
+        let scenes: Map<String, Value> =
+            self.scenes.iter().map(|(name, a)| (name.clone(), Value::Object(scene(a)))).collect();
+        let off = self.random.iter().flatten().filter(|a| a.rate().is_some_and(|r| !RATE.contains(&r))).count();
+        json!({ "scenes": scenes, "random systems off rate 1": off })
+    }
+
+    /// Page and pictures.
+    ///
+    /// # Errors
+    /// Where a picture cannot be drawn.
+    pub fn files(&self) -> Result<Vec<File>> {
+        let mut files = Vec::new();
+        for (name, approaches) in &self.scenes {
+            files.push(File { path: format!("realization-{name}.svg").into(), text: picture(name, approaches)? });
+        }
+        files.push(File { path: "realization.md".into(), text: self.page() });
+        Ok(files)
+    }
+
+    fn page(&self) -> String {
+        let mut page = format!("# What nature would have to do\n\n**{}**\n\n", self.headline());
+        page += "A constraint is an idealization. Take it away, and let something strong take its place, of strength $N$:\n\n\
+                 - **Friction**: the force $-N A^T f$ on the unconstrained system. As $N \\to \\infty$ the motion tends to Chetaev's.\n\
+                 - **Added mass**: $L + \\tfrac12 N f\\cdot f$, started at the momenta $L_v + A^T\\mu_0$. It tends to the vakonomic motion with that $\\mu_0$.\n\
+                 - **Added mass on the augmented system**: the displacement parameters $u$ of a removal become coordinates of their own, without mass, and the added mass \
+                 sits on $\\dot w - B(\\dot u, \\dots)$, started at $\\mu = -P - L_{\\dot w}$. It tends to the removed-constraint motion with that $P(t_0)$, because that is the vakonomic \
+                 motion of the augmented system. So this formulation has a realization too, but only with coordinates that the mechanism itself does not have; where every $u$ is a function of the \
+                 configuration, it is added mass on the constraint itself, with the $\\mu_0$ that belongs to $P(t_0)$.\n\n\
+                 Distances are the largest in the kinetic metric over the second half of the run; the rate is that from $N = 10^3$ to $10^4$. The limits are integrated as everywhere \
+                 else in these reports; the realizations are Newton's equations of an unconstrained system, those with friction by an implicit method.\n";
+        for (name, approaches) in &self.scenes {
+            let _ = writeln!(page, "\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n");
+            page += "| realization | $N = 10^2$ | $10^3$ | $10^4$ | $10^5$ | rate |\n|---|---:|---:|---:|---:|---:|\n";
+            for a in approaches {
+                let cells: Vec<String> =
+                    a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) }).collect();
+                let rate = a.rate().map_or("too close to tell".into(), short);
+                let _ = writeln!(page, "| {} | {} | {rate} |", a.name, cells.join(" | "));
+            }
+        }
+        let _ = writeln!(
+            page,
+            "\n## Random systems\n\n{COUNT} systems of seed {SEED}, constraints linear or affine and not integrable:\n"
+        );
+        page += "| realization | least rate | median | largest | systems | too close to tell |\n|---|---:|---:|---:|---:|---:|\n";
+        for name in [FRICTION, ADDED_MASS, AUGMENTED] {
+            let (rates, open) = self.random_rates(name);
+            if let (Some(least), Some(most)) = (rates.first(), rates.last()) {
+                let median = rates[rates.len() / 2];
+                let _ = writeln!(
+                    page,
+                    "| {name} | {} | {} | {} | {} | {open} |",
+                    short(*least),
+                    short(median),
+                    short(*most),
+                    rates.len()
+                );
+            }
+        }
+        page
+    }
+}
+
+/// Distances at every strength.
+fn approach(
+    name: &'static str,
+    style: Style,
+    limit: &mut Motion,
+    metric: &mut Metric,
+    realized: &dyn Fn(f64) -> Result<Motion, SolveError>,
+) -> Result<Approach> {
+    let mut distances = Vec::new();
+    for strength in STRENGTHS {
+        distances.push(distance(limit, &mut realized(strength)?, metric)?);
+    }
+    Ok(Approach { name, style, distances })
+}
+
+fn of_scene(name: &str, duration: f64) -> Result<Vec<Approach>> {
+    let mut scene: Scene = catalogue::find(name, &[("duration".into(), duration)])?;
+    if scene.multipliers.iter().all(|mu| *mu == 0.0) {
+        scene.multipliers = (0..scene.multipliers.len()).map(|i| MULTIPLIERS[i % 2]).collect();
+    }
+    let settings = deltaq::Settings::default();
+    let choice =
+        |name: &str| choices(&scene).into_iter().find(|c| c.formulation == name).context("no such formulation");
+    let mut metric = Metric::new(&scene.system)?;
+    let setting = setting(&scene);
+    let mut chetaev = solve_choice(&scene, &choice("chetaev")?, &settings)?;
+    let mut vakonomic = solve_choice(&scene, &choice("vakonomic")?, &settings)?;
+    let mut removed = choice("removed-constraint")?;
+    removed.constants = ConstantsRule::Zero;
+    let mut limit = solve_choice(&scene, &removed, &settings)?;
+    let removal = removed.removal.context("no removal")?;
+    let costates = vec![0.0; removal.memory.len()];
+    approaches(
+        setting,
+        &scene.multipliers,
+        &mut chetaev,
+        &mut vakonomic,
+        (&mut limit, &removal, &costates),
+        &mut metric,
+    )
+}
+
+fn of_random(index: u64) -> Result<Vec<Approach>> {
+    let mut case = Case::new(draw_recipe(SEED, index, &KINDS), "random")?;
+    let (scene, removed) = (&case.scene, &mut case.removed[0]);
+    let setting = Setting { system: &scene.system, start: &scene.start, end: scene.start.t + scene.duration };
+    let removal = removed.removal.clone();
+    debug_assert_eq!(removed.motion.constants, free_constants(&removed.motion.equations, &removed.costates));
+    let limit = (&mut removed.motion, &removal, &removed.costates[..]);
+    approaches(setting, &scene.multipliers, &mut case.chetaev, &mut case.vakonomic, limit, &mut case.metric)
+}
+
+fn approaches(
+    setting: Setting,
+    multipliers: &[f64],
+    chetaev: &mut Motion,
+    vakonomic: &mut Motion,
+    (removed, removal, costates): (&mut Motion, &mechanics::Removal, &[f64]),
+    metric: &mut Metric,
+) -> Result<Vec<Approach>> {
+    let plain = |kind| move |strength| realize(kind, strength, setting, multipliers);
+    Ok(vec![
+        approach(FRICTION, Style::Chetaev, chetaev, metric, &plain(Realization::Friction))?,
+        approach(ADDED_MASS, Style::Vakonomic, vakonomic, metric, &plain(Realization::AddedMass))?,
+        approach(AUGMENTED, Style::RemovedConstraint, removed, metric, &|strength| {
+            realize_removal(strength, setting, removal, costates)
+        })?,
+    ])
+}
+
+fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
+    let curve = |a: &Approach| Curve {
+        label: a.name.into(),
+        style: a.style,
+        points: STRENGTHS.iter().copied().zip(a.distances.iter().copied()).collect(),
+    };
+    let picture = Picture {
+        title: format!("{name}: realizations"),
+        x: Axis::log("strength N"),
+        y: Axis::log("distance in the kinetic metric"),
+        curves: approaches.iter().map(curve).collect(),
+        aspect: Aspect::Fill,
+    };
+    Ok(picture.to_svg()?)
+}
