@@ -2,6 +2,7 @@
 
 mod checks;
 mod licences;
+mod mutate;
 mod sources;
 
 use std::path::{Path, PathBuf};
@@ -10,6 +11,13 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if let Err(error) = std::env::set_current_dir(root()) {
+        eprintln!("{}: {error}", root().display());
+        return ExitCode::FAILURE;
+    }
+    if let ["mutate", rest @ ..] = arguments.as_slice() {
+        return mutate::run(rest);
+    }
     let checks = checks::all();
     let chosen = match arguments.as_slice() {
         [] | ["help" | "--help" | "-h"] => {
@@ -22,10 +30,6 @@ fn main() -> ExitCode {
     };
     if chosen.is_empty() {
         eprintln!("no chore is called `{}`; `cargo xtask` lists them", arguments.join(" "));
-        return ExitCode::FAILURE;
-    }
-    if let Err(error) = std::env::set_current_dir(root()) {
-        eprintln!("{}: {error}", root().display());
         return ExitCode::FAILURE;
     }
     checks::run(&chosen)
@@ -42,4 +46,5 @@ fn list(checks: &[checks::Check]) {
     for check in checks {
         println!("  {:<10} {}", check.name, check.about);
     }
+    println!("\n  {:<10} {}", "mutate", mutate::ABOUT);
 }

@@ -54,6 +54,17 @@ pub(crate) fn paths() -> Result<Outcome> {
     Ok(Outcome::Passed(format!(", {} files", files.len())))
 }
 
+/// Name of every file that is tracked, or would be.
+pub(crate) fn names() -> Result<Vec<String>> {
+    let output = Command::new("git")
+        .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
+        .output()
+        .context("git ls-files")?;
+    ensure!(output.status.success(), "`git ls-files` ended with {}", output.status);
+    let names = String::from_utf8(output.stdout).context("a file name is not UTF-8")?;
+    Ok(names.split_terminator('\0').map(str::to_owned).collect())
+}
+
 /// What in this line belongs to one machine or to a private registry.
 fn private(file: &str, line: &str) -> Option<String> {
     if let Some(place) = PLACES.iter().find(|place| names_place(line, place)) {
@@ -79,16 +90,7 @@ fn names_place(line: &str, place: &str) -> bool {
 
 /// Name and text of every file that is tracked, or would be. Files that are no text are left out.
 fn files() -> Result<Vec<(String, String)>> {
-    let output = Command::new("git")
-        .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
-        .output()
-        .context("git ls-files")?;
-    ensure!(output.status.success(), "`git ls-files` ended with {}", output.status);
-    let names = String::from_utf8(output.stdout).context("a file name is not UTF-8")?;
-    Ok(names
-        .split_terminator('\0')
-        .filter_map(|name| Some((name.to_owned(), std::fs::read_to_string(name).ok()?)))
-        .collect())
+    Ok(names()?.into_iter().filter_map(|name| Some((name.clone(), std::fs::read_to_string(name).ok()?))).collect())
 }
 
 #[cfg(test)]
