@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod control;
+mod derivations;
 mod formulations_agree;
 mod invariants;
 mod leading_term;

@@ -5,4 +5,5 @@
 
 mod claims;
 mod generator;
+mod invariants;
 mod support;

@@ -1,0 +1,111 @@
+//! What derivations hand over besides the motion: equations for the reader, invariants, projections, guards, and what was left out.
+
+use std::collections::BTreeSet;
+
+use deltaq::FORMULATIONS;
+use mechanics::{Derivation, Equations, Removal, Scene};
+
+use crate::support::{constrained_scenes, regular_removals, scenes};
+
+/// A formulation's equations as it derived them, nothing left out.
+fn derived(scene: &Scene, name: &str, removal: Option<&Removal>) -> Equations {
+    let entry = FORMULATIONS.iter().find(|f| f.name == name).expect("in the table");
+    (entry.derive)(&scene.system, &Derivation { removal }).unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name))
+}
+
+/// Every formulation of a scene, removals included.
+fn all(scene: &Scene) -> Vec<Equations> {
+    let variational = !scene.system.has_forces();
+    let mut all = vec![derived(scene, "chetaev", None)];
+    if variational {
+        all.push(derived(scene, "vakonomic", None));
+        all.push(derived(scene, "vakonomic-costate", None));
+        all.extend(regular_removals(scene).iter().map(|r| derived(scene, "removed-constraint", Some(r))));
+    }
+    all
+}
+
+#[test]
+fn the_reader_sees_every_equation_that_is_solved() {
+    for scene in scenes() {
+        for equations in all(&scene) {
+            let said: BTreeSet<_> = equations.statements.iter().map(|s| equations.graph.sub(s.left, s.right)).collect();
+            let n = scene.system.dimension();
+            let what = format!("{}, {}", scene.name, equations.formulation);
+            let balances = match equations.formulation {
+                "chetaev" | "vakonomic" => n,
+                "removed-constraint" => n - scene.system.constraints.len(),
+                _ => 0, // the costate form shows Hamilton's equations; its balances are no residuals
+            };
+            let solved: Vec<_> = equations.blocks.iter().flat_map(|b| &b.residuals).copied().collect();
+            for residual in &solved[..balances] {
+                assert!(said.contains(residual), "{what}: not shown: {}", equations.graph.plain(*residual));
+            }
+            if equations.formulation == "removed-constraint" {
+                let removal = equations.removal.as_ref().expect("derived with one");
+                let meaning = |word: &str| equations.statements.iter().filter(|s| s.meaning == word).count();
+                assert_eq!(meaning("memory"), removal.memory.len(), "{what}");
+                assert_eq!(meaning("costate"), equations.free_constants.iter().filter(|c| c.memory.is_some()).count());
+            } else {
+                for f in &scene.system.constraints {
+                    assert!(said.contains(f), "{what}: constraint not shown");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn states_can_be_put_back_onto_the_constraint_where_they_can_leave_it() {
+    for scene in scenes() {
+        for equations in all(&scene) {
+            let leaves = matches!(equations.formulation, "chetaev" | "vakonomic");
+            let wanted = leaves && !scene.system.constraints.is_empty();
+            assert_eq!(equations.projection.is_some(), wanted, "{}, {}", scene.name, equations.formulation);
+        }
+    }
+}
+
+#[test]
+fn first_order_is_said_where_no_second_rate_is_needed() {
+    for scene in constrained_scenes().iter().filter(|s| !s.system.has_forces()) {
+        for removal in regular_removals(scene) {
+            let equations = derived(scene, "removed-constraint", Some(&removal));
+            let said = equations.left_out.iter().any(|l| l.words.starts_with("second rates"));
+            let states = equations.states.iter().any(|y| y.role == mechanics::Role::ParameterSecondRate);
+            assert_eq!(said, !states, "{}, {}", scene.name, removal.name);
+        }
+    }
+}
+
+const GUARDED: &str = r#"
+title = "Singular in three ways"
+[parameters]
+k = 2
+[coordinates]
+x = { start = 1 }
+y = { start = 0.5 }
+z = { start = 0 }
+w = { start = 0.7 }
+[system]
+lagrangian  = "(x'^2 + y'^2 + z'^2 + w'^2)/2 + z/y + w/k"
+constraints = ["x*z' - k*y'"]
+[start.velocities]
+"x'" = 1
+"y'" = 1
+"w'" = 0.1
+[removal.by-hand]
+parameters = ["x", "y", "u"]
+rates = { z = "k*y'/x", w = "u'/(2 + w)" }
+[run]
+duration = 1
+"#;
+
+/// `x` comes from a rate of memory, `y` from `L`, `2 + w` from a rate; `k` is a parameter and cannot vanish on the way.
+#[test]
+fn what_the_equations_divide_by_is_watched() {
+    let scene = Scene::parse("guarded", GUARDED).unwrap_or_else(|e| panic!("{e}"));
+    let equations = derived(&scene, "removed-constraint", Some(&scene.removals[0]));
+    let guards: BTreeSet<String> = equations.guards.iter().map(|&e| equations.graph.plain(e)).collect();
+    assert_eq!(guards, ["w + 2", "x", "y"].map(String::from).into());
+}
