@@ -58,11 +58,11 @@ pub fn best_fit(
         let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
             let broken = |reason: String| BoundaryError::Residual { reason };
             let run = prepared.run(constants, end, tolerance, limits).map_err(|e| broken(e.to_string()))?;
-            let dense = run.completed()?;
+            run.solution.completed()?;
+            let run = run.trajectory();
             let mut y = vec![0.0; prepared.equations.states.len()];
             for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
-                dense.evaluate(*t, &mut y);
-                let outputs = prepared.compiled.outputs(*t, &y).map_err(|e| broken(e.to_string()))?;
+                let outputs = run.outputs(&mut prepared.compiled, *t, &mut y).map_err(|e| broken(e.to_string()))?;
                 let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
                 residual.copy_from_slice(difference.as_slice());
             }

@@ -45,10 +45,10 @@ pub(crate) fn natural_constants(
             failure = Some(error);
             BoundaryError::Residual { reason }
         })?;
-        if let Ending::Stopped { t, cause } = ending(prepared, &run) {
+        if let Ending::Stopped { t, cause } = ending(prepared, &run.solution) {
             return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
         }
-        run.dense.evaluate(horizon, &mut end);
+        run.solution.dense.evaluate(horizon, &mut end);
         for (r, &place) in residual.iter_mut().zip(&places) {
             *r = end[place];
         }

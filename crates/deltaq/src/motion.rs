@@ -77,8 +77,8 @@ pub struct Motion {
     pub seconds: Seconds,
     end: f64,
     compiled: Compiled,
-    kept: DenseOutput,
-    looser: DenseOutput,
+    kept: Trajectory,
+    looser: Trajectory,
     state: Vec<f64>,
     other: Vec<f64>,
 }
@@ -86,7 +86,7 @@ pub struct Motion {
 impl Motion {
     /// Time of the start.
     pub fn start(&self) -> f64 {
-        self.kept.start()
+        self.kept.dense.start()
     }
 
     /// Last time that both runs reached and at which both can be read off: where a motion stops at a singularity, a little before it.
@@ -101,7 +101,7 @@ impl Motion {
 
     /// End points of the steps of the kept run.
     pub fn step_times(&self) -> Vec<f64> {
-        self.kept.step_times()
+        self.kept.dense.step_times()
     }
 
     /// Coordinates, velocities, multipliers and invariants at `t`.
@@ -109,8 +109,7 @@ impl Motion {
     /// # Errors
     /// [`SolveError::AtStart`] where the equations of the instant cannot be solved.
     pub fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
-        self.kept.evaluate(t, &mut self.state);
-        Ok(self.compiled.outputs(t, &self.state)?)
+        Ok(self.kept.outputs(&mut self.compiled, t, &mut self.state)?)
     }
 
     /// Difference of the coordinates of the two runs at `t`: what the looser run was wrong by, and a bound in practice for the kept one.
@@ -134,8 +133,7 @@ impl Motion {
     /// As [`Motion::at`].
     pub fn at_in_both_runs(&mut self, t: f64) -> Result<(Outputs, Outputs), SolveError> {
         let kept = self.at(t)?;
-        self.looser.evaluate(t, &mut self.other);
-        Ok((kept, self.compiled.outputs(t, &self.other)?))
+        Ok((kept, self.looser.outputs(&mut self.compiled, t, &mut self.other)?))
     }
 
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
@@ -170,6 +168,42 @@ pub struct Setting<'a> {
     pub start: &'a State,
     /// Time at which the motion is to end.
     pub end: f64,
+}
+
+/// States over time, and the unknowns `z` along the way where the equations of an instant have several roots.
+#[derive(Clone)]
+pub(crate) struct Trajectory {
+    pub(crate) dense: DenseOutput,
+    anchors: Vec<(f64, Vec<f64>)>,
+}
+
+impl Trajectory {
+    /// What is read off at `t`; `state` is room for the state there.
+    pub(crate) fn outputs(
+        &self,
+        compiled: &mut Compiled,
+        t: f64,
+        state: &mut [f64],
+    ) -> Result<Outputs, mechanics::EvaluationFailure> {
+        let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
+        if let Some((_, unknowns)) = nearest {
+            compiled.set_guess(unknowns);
+        }
+        self.dense.evaluate(t, state);
+        compiled.outputs(t, state)
+    }
+}
+
+/// A run of the time loop.
+pub(crate) struct Run {
+    pub(crate) solution: Solution,
+    anchors: Vec<(f64, Vec<f64>)>,
+}
+
+impl Run {
+    pub(crate) fn trajectory(self) -> Trajectory {
+        Trajectory { dense: self.solution.dense, anchors: self.anchors }
+    }
 }
 
 /// Equations compiled and started: what every run of the same motion shares.
@@ -221,15 +255,21 @@ impl Prepared {
         end: f64,
         tolerance: f64,
         settings: &Settings,
-    ) -> Result<Solution, SolveError> {
+    ) -> Result<Run, SolveError> {
         let y = self.start(constants);
         let mut options = Options::with_tolerance(tolerance);
         options.method = settings.method;
         options.projection = settings.projection;
         options.max_steps = settings.max_steps;
+        let mut anchors = Vec::new();
+        let start = self.compiled.settle(self.t, &y)?.to_vec();
         self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
-        let mut runner = Runner(&mut self.compiled);
-        Ok(integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?)
+        if self.compiled.needs_guess() {
+            anchors.push((self.t, start));
+        }
+        let mut runner = Runner { compiled: &mut self.compiled, anchors };
+        let solution = integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?;
+        Ok(Run { solution, anchors: runner.anchors })
     }
 }
 
@@ -251,18 +291,20 @@ pub fn solve(
     let looser = prepared.run(&constants, setting.end, settings.tolerance, settings)?;
     let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
-    let ending = ending(&mut prepared, &kept);
+    let ending = ending(&mut prepared, &kept.solution);
     let size = prepared.equations.states.len();
-    let end = readable_end(&mut prepared.compiled, &kept.dense, &looser.dense);
+    let (work, projection) = (kept.solution.work, kept.solution.projection);
+    let (kept, looser) = (kept.trajectory(), looser.trajectory());
+    let end = readable_end(&mut prepared.compiled, &kept, &looser);
     Ok(Motion {
         end,
         ending,
         constants,
-        work: kept.work,
-        projection: kept.projection,
+        work,
+        projection,
         seconds: Seconds { derive: 0.0, compile, integrate },
-        kept: kept.dense,
-        looser: looser.dense,
+        kept,
+        looser,
         state: vec![0.0; size],
         other: vec![0.0; size],
         equations: prepared.equations,
@@ -273,17 +315,12 @@ pub fn solve(
 /// How far before a singularity a motion is read off, as fractions of its length.
 const BEFORE_A_STOP: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
 
-fn readable_end(compiled: &mut Compiled, kept: &DenseOutput, looser: &DenseOutput) -> f64 {
-    let start = kept.start();
-    let length = (kept.end() - start).abs().min((looser.end() - start).abs());
-    let direction = (kept.end() - start).signum();
-    let mut y = vec![0.0; kept.dimension()];
-    let mut readable = |t: f64| {
-        [kept, looser].iter().all(|dense| {
-            dense.evaluate(t, &mut y);
-            compiled.outputs(t, &y).is_ok()
-        })
-    };
+fn readable_end(compiled: &mut Compiled, kept: &Trajectory, looser: &Trajectory) -> f64 {
+    let start = kept.dense.start();
+    let length = (kept.dense.end() - start).abs().min((looser.dense.end() - start).abs());
+    let direction = (kept.dense.end() - start).signum();
+    let mut y = vec![0.0; kept.dense.dimension()];
+    let mut readable = |t: f64| [kept, looser].iter().all(|run| run.outputs(compiled, t, &mut y).is_ok());
     let ends = BEFORE_A_STOP.map(|fraction| start + direction * length * (1.0 - fraction));
     ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
 }
@@ -362,7 +399,10 @@ fn nearly_zero_guard(prepared: &mut Prepared, dense: &DenseOutput) -> Option<Str
 }
 
 /// Compiled equations as the time integrator sees them.
-struct Runner<'a>(&'a mut Compiled);
+struct Runner<'a> {
+    compiled: &'a mut Compiled,
+    anchors: Vec<(f64, Vec<f64>)>,
+}
 
 fn refused(failure: mechanics::EvaluationFailure) -> integrate::EvaluationError {
     integrate::EvaluationError { reason: failure.to_string() }
@@ -370,22 +410,29 @@ fn refused(failure: mechanics::EvaluationFailure) -> integrate::EvaluationError 
 
 impl Problem for Runner<'_> {
     fn dimension(&self) -> usize {
-        self.0.dimension()
+        self.compiled.dimension()
     }
     fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.0.rates(t, y, rates).map_err(refused)
+        self.compiled.rates(t, y, rates).map_err(refused)
     }
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.0.jacobian(t, y, jacobian).map_err(refused)
+        self.compiled.jacobian(t, y, jacobian).map_err(refused)
     }
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, integrate::EvaluationError> {
-        self.0.project(t, y).map_err(refused)
+        self.compiled.project(t, y).map_err(refused)
+    }
+    fn accepted(&mut self, t: f64, y: &[f64]) -> Result<(), integrate::EvaluationError> {
+        if self.compiled.needs_guess() {
+            let unknowns = self.compiled.settle(t, y).map_err(refused)?.to_vec();
+            self.anchors.push((t, unknowns));
+        }
+        Ok(())
     }
     fn events(&self) -> usize {
-        self.0.guards()
+        self.compiled.guards()
     }
     fn event_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
-        self.0.guard_values(t, y, values);
+        self.compiled.guard_values(t, y, values);
         Ok(())
     }
 }

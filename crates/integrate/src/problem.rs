@@ -61,6 +61,14 @@ pub trait Problem {
         Ok(0.0)
     }
 
+    /// Told of every state that the integration accepts, in order, the start left out: what later evaluations may go out from.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where the state is not acceptable after all. The step is then tried again, shorter.
+    fn accepted(&mut self, _t: f64, _y: &[f64]) -> Result<(), EvaluationError> {
+        Ok(())
+    }
+
     /// The number of event functions; a sign change of one is located and ends the integration.
     fn events(&self) -> usize {
         0

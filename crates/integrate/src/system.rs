@@ -142,6 +142,11 @@ impl<'p> System<'p> {
         }
     }
 
+    /// Tells the problem that `y` is accepted.
+    pub(crate) fn accepted(&self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        Ok(self.inner.borrow_mut().problem.accepted(t, y)?)
+    }
+
     pub(crate) fn event_values(&self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.inner.borrow_mut().problem.event_values(t, y, values)?;
         match values.iter().position(|g| !g.is_finite()) {

@@ -116,6 +116,12 @@ impl Record<'_, '_> {
                 return Err(failure);
             }
         };
+        if let Err(failure) = self.system.accepted(t, stepper.candidate()) {
+            if has_room {
+                self.dense.pop_room();
+            }
+            return Err(failure);
+        }
         let mut end = t;
         if let Some((_, theta, t_event)) = found {
             let mut state = vec![0.0; self.dense.dimension()];

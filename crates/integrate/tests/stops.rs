@@ -2,7 +2,7 @@
 
 mod problems;
 
-use integrate::{CallError, EvaluationError, Method, Options, Start, Status, StopCause, integrate};
+use integrate::{CallError, EvaluationError, Method, Options, Problem, Start, Status, StopCause, integrate};
 use problems::*;
 
 fn options(method: Method) -> Options {
@@ -260,4 +260,51 @@ fn every_bad_call() {
     assert!(matches!(call(&late, 1.0f64.next_up(), &good), Some(CallError::EmptyInterval { .. })));
     let options = Options { max_steps: 0, ..good };
     assert_eq!(call(&start, 1.0, &options), Some(CallError::MaxSteps { found: 0, limit: 1 }));
+}
+
+/// `y' = 1`, and everything that was accepted.
+struct Diary {
+    accepted: Vec<(f64, f64)>,
+    refuse: usize,
+}
+
+impl Problem for Diary {
+    fn dimension(&self) -> usize {
+        1
+    }
+    fn rates(&mut self, t: f64, _: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
+        rates[0] = t.cos();
+        Ok(())
+    }
+    fn jacobian(&mut self, _: f64, _: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
+        jacobian[0] = 0.0;
+        Ok(())
+    }
+    fn accepted(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationError> {
+        if self.refuse > 0 {
+            self.refuse -= 1;
+            return Err(EvaluationError { reason: "not yet".into() });
+        }
+        self.accepted.push((t, y[0]));
+        Ok(())
+    }
+}
+
+#[test]
+fn a_problem_is_told_of_every_accepted_state_and_may_refuse_one() {
+    for method in Method::ALL {
+        for refuse in [0, 3] {
+            let mut diary = Diary { accepted: Vec::new(), refuse };
+            let mut options = Options::with_tolerance(1e-8);
+            options.method = method;
+            let start = Start { t: 0.0, y: vec![0.0] };
+            let solution = integrate(&mut diary, &start, 2.0, &options).unwrap();
+            assert_eq!(solution.status, Status::Completed, "{method:?}");
+            let times: Vec<f64> = diary.accepted.iter().map(|a| a.0).collect();
+            let steps = solution.dense.step_times();
+            assert_eq!(times, steps[steps.len() - times.len()..], "{method:?}");
+            assert_eq!(diary.accepted.last().map(|a| a.1), Some(solution.dense.end_state()[0]));
+            assert!(refuse == 0 || solution.work.rejected >= refuse, "{method:?}: {:?}", solution.work);
+        }
+    }
 }

@@ -20,6 +20,8 @@ pub struct Compiled {
     sizes: Sizes,
     /// `t, y, constants, z` in this order.
     inputs: Vec<f64>,
+    /// `z` from which blocks that are not linear are solved.
+    anchor: Vec<f64>,
 }
 
 #[derive(Clone, Copy)]
@@ -96,6 +98,7 @@ impl Compiled {
                 multipliers: multipliers.len(),
                 invariants: invariants.len(),
             },
+            anchor: vec![0.0; all.len() - known.len()],
             inputs: vec![0.0; all.len()],
         })
     }
@@ -140,13 +143,28 @@ impl Compiled {
         self.inputs[first..first + self.sizes.constants].copy_from_slice(constants);
     }
 
-    /// Sets the point from which blocks that are not linear are solved for the first time.
+    /// Whether a block is not linear in its unknowns, so that it matters from where it is solved.
+    pub fn needs_guess(&self) -> bool {
+        self.equations_of_instant.iter().any(|block| !block.linear)
+    }
+
+    /// Sets the point `z` from which blocks that are not linear are solved: one on the same branch, near by.
     ///
     /// # Panics
     /// If the length is not that of [`Equations::unknowns`].
     pub fn set_guess(&mut self, unknowns: &[f64]) {
+        self.anchor.copy_from_slice(unknowns);
+    }
+
+    /// Solves the equations of the instant at `(t, y)`; from its solution, which is returned, blocks that are not linear are solved from now on.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn settle(&mut self, t: f64, y: &[f64]) -> Result<&[f64], EvaluationFailure> {
+        self.solve_instant(t, y)?;
         let known = self.sizes.known();
-        self.inputs[known..].copy_from_slice(unknowns);
+        self.anchor.copy_from_slice(&self.inputs[known..]);
+        Ok(&self.anchor)
     }
 
     /// `F(t, y)`.
@@ -251,6 +269,8 @@ impl Compiled {
                 let (r, z) = (block.solution(), &mut self.inputs[known + block.first..]);
                 z[..r.len()].copy_from_slice(r);
             } else {
+                let (first, end) = (block.first, block.first + block.size);
+                self.inputs[known + first..known + end].copy_from_slice(&self.anchor[first..end]);
                 block.newton(&mut self.inputs, known)?;
             }
         }

@@ -218,3 +218,28 @@ fn newton_that_finds_no_root_says_so() {
     let failure = compiled.rates(0.0, &[0.1], &mut [0.0]).unwrap_err();
     assert!(matches!(failure, EvaluationFailure::NotConverged { step, limit, .. } if step > limit), "{failure}");
 }
+
+/// `v² = x`: two roots. From where it is solved decides which one; [`Compiled::settle`] moves that place along, [`Compiled::rates`] does not.
+#[test]
+fn a_block_with_two_roots_keeps_to_the_one_it_was_settled_on() {
+    let states = [("x", Role::Position, "vx")];
+    let square = equations(&[], &states, &[(&["vx"], &["vx^2 - x"])], &["x"], &["vx"]);
+    let mut compiled = Compiled::new(&square).unwrap();
+    assert!(compiled.needs_guess());
+    let mut rate = [0.0];
+    for (guess, sign) in [(0.9, 1.0), (-1.1, -1.0)] {
+        compiled.set_guess(&[guess]);
+        for x in [1.0, 1.3, 1.7, 2.2] {
+            let settled = compiled.settle(0.0, &[x]).unwrap()[0];
+            assert!((settled - sign * x.sqrt()).abs() < 1e-13);
+        }
+        // wherever the rates were asked for in between, the next ones start from 2.2
+        compiled.rates(0.0, &[1.4], &mut rate).unwrap();
+        compiled.rates(0.0, &[2.9], &mut rate).unwrap();
+        assert!((rate[0] - sign * 2.9_f64.sqrt()).abs() < 1e-13);
+    }
+    // too far to be sure of the root: refused, not guessed
+    compiled.set_guess(&[0.05]);
+    let failure = compiled.rates(0.0, &[-0.01], &mut rate).unwrap_err();
+    assert!(matches!(failure, EvaluationFailure::NotConverged { .. }), "{failure}");
+}

@@ -163,7 +163,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// Derives the costate form: states `(q, p)`, unknowns `(v, μ)`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`.
 ///
 /// The equations for `(v, μ)` are linear where `L` is quadratic and `f` linear in `v`; otherwise they are
-/// solved by Newton's method from the previous instant.
+/// solved by Newton's method from the last accepted state.
 ///
 /// # Errors
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
