@@ -7,7 +7,7 @@ use mechanics::{ConstantsRule, Equations};
 use nalgebra::DVector;
 
 use crate::metric::Metric;
-use crate::motion::Prepared;
+use crate::run::Prepared;
 use crate::{Motion, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the fit compares.

@@ -2,7 +2,8 @@
 
 use integrate::{BoundaryError, ShootOptions, shoot};
 
-use crate::motion::{Prepared, Settings, ending};
+use crate::motion::{Settings, ending};
+use crate::run::Prepared;
 use crate::{Ending, SolveError, TIGHTER};
 
 /// Residual at the horizon that is accepted, over the tolerance of the integration.

@@ -16,6 +16,7 @@ mod growth;
 mod horizon;
 mod metric;
 mod motion;
+mod run;
 mod table;
 
 pub use comparison::{
