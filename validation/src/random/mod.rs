@@ -22,3 +22,4 @@ pub use finding::{Finding, Findings, Observation, Word};
 pub use kind::{Kind, Truth};
 pub use recipe::{MOST, Recipe, draw, draw_null_test, recipes, recipes_of};
 pub use record::{Count, Open, Record, Summary, THOROUGH, milliseconds};
+pub use transform::augmented;

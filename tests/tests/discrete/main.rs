@@ -1,0 +1,6 @@
+//! Discrete variational principles against the motions of deltaq: no equation of motion stands between `L`, `f` and the referee.
+
+mod flipped;
+mod random;
+mod scenes;
+mod support;
