@@ -13,7 +13,7 @@ const SEED: u64 = 1788;
 const SYSTEMS: u64 = 40;
 
 /// What the extrapolated motion may differ by, besides what the case knows its own round-off to be.
-const LIMIT: f64 = 1e-8;
+const LIMIT: f64 = 1e-10;
 
 #[test]
 fn discrete_motions_tend_to_continuous_ones_on_random_systems() {

@@ -3,12 +3,18 @@
 use deltaq::{Choice, Motion, Settings, choices, solve_choice};
 use mechanics::{ConstantsRule, Scene};
 use validation::catalogue::{SCENES, find};
-use validation::referees::discrete::Discrete;
+use validation::referees::discrete::{Discrete, Ends, RemovedStart};
 
 use crate::support::{HORIZON, Tally, agrees, costates, measure, removed, short};
 
 /// What the extrapolated motion may differ by.
-const LIMIT: f64 = 1e-9;
+const LIMIT: f64 = 1e-12;
+
+/// The same, where `P(t₀)` is itself found by shooting.
+const NATURAL_LIMIT: f64 = 1e-11;
+
+/// `t₁ − t₀` with `P(t₁) = 0`, s.
+const NATURAL_HORIZON: f64 = 0.1;
 
 fn scenes() -> Vec<Scene> {
     let found = SCENES.iter().map(|(name, _)| find(name, &[]).unwrap_or_else(|e| panic!("{e}")));
@@ -84,4 +90,33 @@ fn stationary_discrete_action_of_a_removal_tends_to_the_removed_motion() {
     tally.say("removed constraint, scenes");
     println!("without: {refused:?}");
     assert!(tally.measured() >= 15 && refused.len() <= 2, "{refused:?}");
+}
+
+#[test]
+fn natural_ends_are_those_of_the_boundary_value_problem() {
+    let mut tally = Tally::default();
+    for scene in scenes() {
+        for choice in choices(&scene).into_iter().filter(|c| c.formulation == "removed-constraint") {
+            let Some(removal) = choice.removal.clone() else { continue };
+            let what = format!("{}, {}, P(t₁) = 0", scene.name, removal.name);
+            let horizon = scene.start.t + NATURAL_HORIZON;
+            let choice = Choice { constants: ConstantsRule::Natural { horizon }, ..choice };
+            let settings = Settings { tolerance: 1e-12, ..Settings::default() };
+            let scene = Scene { duration: NATURAL_HORIZON, ..scene.clone() };
+            let Ok(mut motion) = solve_choice(&scene, &choice, &settings) else { continue };
+            let guess = costates(&motion, &removal);
+            if guess.iter().all(|&p| p == 0.0) {
+                continue;
+            }
+            // from another guess than the answer
+            let guess: Vec<f64> = guess.iter().map(|p| 0.5 * p).collect();
+            let start = RemovedStart::at(&scene.system, &removal, &scene.start, &guess);
+            let discrete =
+                start.and_then(|start| Discrete::removed(&scene.system, &removal, &start, horizon, Ends::Natural));
+            let found = measure(&what, discrete, &mut motion);
+            agrees(&what, &found, NATURAL_LIMIT, &mut tally);
+        }
+    }
+    tally.say("removed constraint with natural ends, scenes");
+    assert!(tally.measured() >= 15);
 }

@@ -2,7 +2,7 @@
 
 use deltaq::Motion;
 use mechanics::{Removal, State, System};
-use validation::referees::discrete::{Convergence, Discrete, DiscreteError, RemovedStart, convergence};
+use validation::referees::discrete::{Convergence, Discrete, DiscreteError, Ends, RemovedStart, convergence};
 
 /// Steps of the coarsest grid: the first of these whose own estimate of its error is under [`COARSE`].
 const STEPS: [usize; 5] = [8, 16, 32, 64, 128];
@@ -64,9 +64,17 @@ pub fn measure(what: &str, discrete: Result<Discrete, DiscreteError>, motion: &m
     let mut from = |steps: usize, levels: usize| {
         convergence(&mut discrete, steps, levels, |t| motion.at(t).map(|o| o.coordinates))
     };
-    let fine_enough = |&steps: &usize| from(steps, 2).is_ok_and(|found| found.estimate < COARSE);
-    let steps = STEPS.into_iter().find(fine_enough).unwrap_or_else(|| panic!("{what}: no grid is fine enough"));
-    from(steps, LEVELS).unwrap_or_else(|e| panic!("{what}: {e}"))
+    let mut tried = String::new();
+    for steps in STEPS {
+        match from(steps, 2) {
+            Ok(found) if found.estimate < COARSE => {
+                return from(steps, LEVELS).unwrap_or_else(|e| panic!("{what}: {e}"));
+            }
+            Ok(found) => tried = format!("estimate {:.1e}", found.estimate),
+            Err(e) => tried = e.to_string(),
+        }
+    }
+    panic!("{what}: no grid is fine enough; the last: {tried}")
 }
 
 /// Demands order 2 and, after extrapolation, a difference under `limit`.
@@ -98,7 +106,7 @@ pub fn removed(
     end: f64,
 ) -> Option<Result<Discrete, DiscreteError>> {
     let discrete = RemovedStart::at(system, removal, start, costates)
-        .and_then(|start| Discrete::removed(system, removal, &start, end));
+        .and_then(|start| Discrete::removed(system, removal, &start, end, Ends::GivenStart));
     match discrete {
         Err(DiscreteError::HighRate { .. }) => None,
         other => Some(other),

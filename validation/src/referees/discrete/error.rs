@@ -88,6 +88,20 @@ pub enum DiscreteError {
         /// Correction that would have been accepted.
         limit: f64,
     },
+    /// No `P₀` with `P_N = 0` is found.
+    #[error(
+        "no costates at the start lead to none at t = {t}: {found} is left after {attempts} attempts, limit {limit}"
+    )]
+    NoNaturalEnd {
+        /// Time of the end.
+        t: f64,
+        /// Attempts made.
+        attempts: usize,
+        /// Largest `|P_N|`, relative to 1 + the largest of `P₀`.
+        found: f64,
+        /// What would have been accepted.
+        limit: f64,
+    },
     /// A count that must be at least 1 is 0.
     #[error("{what} is {found}, at least {limit} needed")]
     TooFew {
