@@ -2,4 +2,5 @@
 //! [`mechanics::System`], that is from `L`, `f` and `Q`, and uses nothing of ours but differentiation, tapes and the time
 //! loop.
 
+pub mod discrete;
 pub mod maggi;

@@ -1,0 +1,7 @@
+//! Discrete variational principles against the motions of deltaq: no equation of motion stands between `L`, `f` and the referee.
+
+mod flip;
+mod flipped;
+mod random;
+mod scenes;
+mod support;

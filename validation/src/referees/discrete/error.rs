@@ -1,0 +1,123 @@
+//! What the referee says when it cannot answer.
+
+use mechanics::StartError;
+use symbolic::CompileError;
+use thiserror::Error;
+
+/// The referee cannot answer.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DiscreteError {
+    /// `L`, `f`, `Q` or the removal contains a name without a value, or something that is not finite.
+    #[error("the system cannot be compiled: {0}")]
+    Compile(#[from] CompileError),
+    /// There are no values of `(u, u̇, w)` for the state.
+    #[error(transparent)]
+    Removal(#[from] StartError),
+    /// As many constraints as coordinates, or more: nothing is left to move.
+    #[error("{found} constraints on {limit} coordinates leave no motion")]
+    NoFreedom {
+        /// Number of constraints, h.
+        found: usize,
+        /// Number of coordinates, n.
+        limit: usize,
+    },
+    /// A slice has the wrong length.
+    #[error("{what}: {found} numbers where {expected} are needed")]
+    Length {
+        /// What it holds.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length needed.
+        expected: usize,
+    },
+    /// A quantity is NaN or infinite.
+    #[error("{what} is {found} at t = {t}")]
+    NotFinite {
+        /// Which quantity.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+        /// Time.
+        t: f64,
+    },
+    /// A force acts, and a stationary action has no place for it.
+    #[error("a force acts on coordinate {number}, and a stationary action has no place for it")]
+    Force {
+        /// Which coordinate, counted from 1.
+        number: usize,
+    },
+    /// The removal brings a rate into the action, or into the coordinates, that a discrete action of first order does not have.
+    #[error(
+        "removal `{removal}`: {what} contains `{symbol}`; only removals of first order have a discrete action here"
+    )]
+    HighRate {
+        /// Name of the removal.
+        removal: String,
+        /// Where it stands.
+        what: &'static str,
+        /// The rate.
+        symbol: String,
+    },
+    /// The start is not on the constraint.
+    #[error("the start is off the constraints by {found}, limit {limit}")]
+    OffConstraint {
+        /// Largest `|f_i| / (|A_i| (1 + |v|))`.
+        found: f64,
+        /// [`super::START_LIMIT`].
+        limit: f64,
+    },
+    /// The matrix of a step is singular.
+    #[error("the step from t = {t} is not determined: its matrix is singular")]
+    Singular {
+        /// Time of the node where the step starts.
+        t: f64,
+    },
+    /// Newton's method does not settle.
+    #[error(
+        "the step from t = {t} is not solved after {iterations} iterations: the last changed it by {found}, limit {limit}"
+    )]
+    NotConverged {
+        /// Time of the node where the step starts.
+        t: f64,
+        /// Iterations made.
+        iterations: usize,
+        /// Largest component of the last correction, relative to 1 + the largest unknown.
+        found: f64,
+        /// Correction that would have been accepted.
+        limit: f64,
+    },
+    /// No `P₀` with `P_N = 0` is found.
+    #[error(
+        "no costates at the start lead to none at t = {t}: {found} is left after {attempts} attempts, limit {limit}"
+    )]
+    NoNaturalEnd {
+        /// Time of the end.
+        t: f64,
+        /// Attempts made.
+        attempts: usize,
+        /// Largest `|P_N|`, relative to 1 + the largest of `P₀`.
+        found: f64,
+        /// What would have been accepted.
+        limit: f64,
+    },
+    /// A count that must be at least 1 is 0.
+    #[error("{what} is {found}, at least {limit} needed")]
+    TooFew {
+        /// Steps or levels.
+        what: &'static str,
+        /// What was given.
+        found: usize,
+        /// What is needed.
+        limit: usize,
+    },
+    /// The motion to compare with cannot be read off.
+    #[error("the reference cannot be read off at t = {t}: {cause}")]
+    Reference {
+        /// Time.
+        t: f64,
+        /// Its own words.
+        cause: String,
+    },
+}
