@@ -9,7 +9,6 @@ pub mod picture;
 pub mod random;
 pub mod random_command;
 pub mod realization;
-pub mod referees;
 pub mod report;
 pub mod show_command;
 pub mod solve_command;

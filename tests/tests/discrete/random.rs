@@ -1,7 +1,7 @@
 //! Systems that nobody chose.
 
+use referees::discrete::Discrete;
 use validation::random::{Case, Kind, draw};
-use validation::referees::discrete::Discrete;
 
 use crate::support::{Tally, agrees, measure, removed, short};
 use proptest::strategy::ValueTree;

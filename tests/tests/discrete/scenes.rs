@@ -2,8 +2,8 @@
 
 use deltaq::{Choice, Motion, Settings, choices, solve_choice};
 use mechanics::{ConstantsRule, Scene};
+use referees::discrete::{Discrete, Ends, RemovedStart};
 use validation::catalogue::{SCENES, find};
-use validation::referees::discrete::{Discrete, Ends, RemovedStart};
 
 use crate::support::{HORIZON, Tally, agrees, costates, measure, removed, short};
 

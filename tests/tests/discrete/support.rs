@@ -2,7 +2,7 @@
 
 use deltaq::Motion;
 use mechanics::{Removal, State, System};
-use validation::referees::discrete::{Convergence, Discrete, DiscreteError, Ends, RemovedStart, convergence};
+use referees::discrete::{Convergence, Discrete, DiscreteError, Ends, RemovedStart, convergence};
 
 /// Steps of the coarsest grid: the first of these whose own estimate of its error is under [`COARSE`].
 const STEPS: [usize; 5] = [8, 16, 32, 64, 128];

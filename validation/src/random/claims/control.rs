@@ -5,7 +5,7 @@ use deltaq::Verdict;
 use super::CheckError;
 use crate::random::case::Which;
 use crate::random::{Case, Kind};
-use crate::referees::maggi::Maggi;
+use referees::maggi::Maggi;
 
 /// Fractions of the run at which the control's equations are put to the test.
 const PLACES: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 0.95];

@@ -14,7 +14,7 @@ use deltaq::SolveError;
 use symbolic::CompileError;
 
 use super::Case;
-use crate::referees::maggi::MaggiError;
+use referees::maggi::MaggiError;
 
 pub use agreement::{DIVERGES, Divergence};
 pub use null_tests::{NullTest, null_test};

@@ -3,7 +3,7 @@
 use super::CheckError;
 use crate::random::Case;
 use crate::random::case::{Which, equations};
-use crate::referees::maggi::{Form, Maggi};
+use referees::maggi::{Form, Maggi};
 
 /// Instants at which the constraint is looked at.
 const INSTANTS: usize = 12;

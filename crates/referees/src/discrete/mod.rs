@@ -69,8 +69,8 @@ pub const START_LIMIT: f64 = 1e-9;
 /// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), for any number of steps. Clone it for another thread.
 ///
 /// ```
-/// use validation::referees::discrete::Discrete;
-/// let scene = mechanics::Scene::parse("sledge", include_str!("../../../scenes/sledge.toml"))?;
+/// use referees::discrete::Discrete;
+/// let scene = mechanics::Scene::parse("sledge", include_str!("../../../../validation/scenes/sledge.toml"))?;
 /// let mut discrete = Discrete::chetaev(&scene.system, &scene.start, 1.0)?;
 /// let q = discrete.positions(200)?;
 /// // φ = 0.3 + 1.1 t exactly, x by its integral to order h²

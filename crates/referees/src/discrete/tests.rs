@@ -9,7 +9,8 @@ use super::*;
 const PLATEAU: f64 = 1e-11;
 
 fn scene(name: &str) -> Scene {
-    crate::catalogue::find(name, &[]).unwrap()
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/scenes");
+    Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
 }
 
 /// Every measured order above round-off is `order ± 0.1`, and at least `least` of them are measured.
@@ -125,8 +126,8 @@ fn a_nonlinear_constraint_needs_the_node_before_the_start() {
     scene.system.lagrangian = lagrangian;
     let (system, start) = (scene.system, scene.start);
     let mut discrete = Discrete::chetaev(&system, &start, 0.5).unwrap();
-    let mut maggi = crate::referees::maggi::Maggi::new(&system).unwrap();
-    let mut motion = maggi.solve(&start, 0.5, 1e-13, crate::referees::maggi::Form::Accelerations).unwrap();
+    let mut maggi = crate::maggi::Maggi::new(&system).unwrap();
+    let mut motion = maggi.solve(&start, 0.5, 1e-13, crate::maggi::Form::Accelerations).unwrap();
     let found = convergence(&mut discrete, 10, 5, |t| motion.state(t).map(|s| s.q)).unwrap();
     assert_orders("nonlinear", &found, 0, 4);
     assert_orders("nonlinear", &found, 1, 2);

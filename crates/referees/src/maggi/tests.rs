@@ -4,8 +4,8 @@ use mechanics::{Scene, State, System};
 
 use super::{Ending, Form, Maggi, MaggiError, Residual, dot};
 
-const SLEDGE: &str = include_str!("../../../scenes/sledge.toml");
-const APPELL_HAMEL: &str = include_str!("../../../scenes/appell-hamel.toml");
+const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
+const APPELL_HAMEL: &str = include_str!("../../../../validation/scenes/appell-hamel.toml");
 
 /// Everything at once: a mass matrix that depends on the configuration, a gyroscopic term, time in L and in f, a force, two
 /// affine constraints.
