@@ -159,7 +159,7 @@ impl Bench {
             let mut child = Command::new(&binary.program)
                 .current_dir(&binary.folder)
                 .env("CARGO_MANIFEST_DIR", &binary.folder)
-                .env("PROPTEST_FAILURE_PERSISTENCE", "off")
+                .env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "true")
                 .stdout(output)
                 .stderr(Stdio::null())
                 .spawn()

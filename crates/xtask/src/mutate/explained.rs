@@ -16,6 +16,8 @@ pub(crate) struct Explanation {
     pub(crate) function: String,
     pub(crate) original: String,
     pub(crate) replacement: String,
+    /// Part of the line where the change begins; empty where the rest is enough to find the one place.
+    pub(crate) context: String,
     pub(crate) reason: String,
 }
 
@@ -25,10 +27,12 @@ pub(crate) struct Judged<'a> {
     pub(crate) unexplained: Vec<&'a Mutant>,
     /// Explanations of what does not survive, or is not a mutant any more.
     pub(crate) stale: Vec<&'a Explanation>,
+    /// Explanations that fit several places: one of them may matter.
+    pub(crate) ambiguous: Vec<&'a Explanation>,
 }
 
-/// Reads explanations. Each has `file`, `function`, `original`, `replacement` and `reason`, and none is empty but for the
-/// replacement by which a statement is left out.
+/// Reads explanations. Each has `file`, `function`, `original`, `replacement` and `reason`; `context`, a part of the line, is
+/// needed where the same text stands at several places of a function.
 pub(crate) fn parse(text: &str) -> Result<Vec<Explanation>> {
     let table = DeTable::parse(text).context(FILE)?;
     let Some(list) = table.get_ref().get("explained") else { return Ok(Vec::new()) };
@@ -50,6 +54,7 @@ fn explanation(entry: &DeValue) -> Result<Explanation> {
         function: text("function")?,
         original: text("original")?,
         replacement: text("replacement")?,
+        context: if table.contains_key("context") { text("context")? } else { String::new() },
         reason: text("reason")?,
     };
     ensure!(!explanation.reason.is_empty(), "has an empty `reason`");
@@ -59,7 +64,8 @@ fn explanation(entry: &DeValue) -> Result<Explanation> {
 /// Sorts survivors into explained and unexplained, and finds stale explanations. A mutant without a verdict has not been
 /// run: its explanation is not stale. Nor is one for a file that was not looked at.
 pub(crate) fn judge<'a>(outcomes: &[(&'a Mutant, Option<Verdict>)], explanations: &'a [Explanation]) -> Judged<'a> {
-    let mut judged = Judged { explained: Vec::new(), unexplained: Vec::new(), stale: Vec::new() };
+    let mut judged =
+        Judged { explained: Vec::new(), unexplained: Vec::new(), stale: Vec::new(), ambiguous: Vec::new() };
     for (mutant, _) in outcomes.iter().filter(|(_, verdict)| *verdict == Some(Verdict::Survived)) {
         match explanations.iter().find(|explanation| matches(explanation, mutant)) {
             Some(explanation) => judged.explained.push((mutant, explanation)),
@@ -72,6 +78,8 @@ pub(crate) fn judge<'a>(outcomes: &[(&'a Mutant, Option<Verdict>)], explanations
         outcomes.iter().any(|(mutant, verdict)| open(*verdict) && matches(e, mutant))
     };
     judged.stale = explanations.iter().filter(|e| looked_at(e) && !needed(e)).collect();
+    let places = |e: &Explanation| outcomes.iter().filter(|(mutant, _)| matches(e, mutant)).count();
+    judged.ambiguous = explanations.iter().filter(|e| places(e) > 1).collect();
     judged
 }
 
@@ -80,6 +88,7 @@ fn matches(explanation: &Explanation, mutant: &Mutant) -> bool {
         && explanation.function == mutant.function
         && explanation.original == mutant.original
         && explanation.replacement == mutant.replacement
+        && mutant.context.contains(&explanation.context)
 }
 
 #[cfg(test)]
@@ -110,6 +119,18 @@ mod tests {
         // c is killed now, d is gone
         let stale: Vec<&str> = judged.stale.iter().map(|e| e.original.as_str()).collect();
         assert_eq!(stale, ["g.neg(c)", "g.neg(d)"]);
+    }
+
+    #[test]
+    fn an_explanation_is_of_one_place() {
+        let mutants = find("a.rs", "fn derive(g: &Graph) {\n    one(g.neg(a));\n    two(g.neg(a));\n}").unwrap();
+        let outcomes: Vec<_> = mutants.iter().map(|mutant| (mutant, Some(Verdict::Survived))).collect();
+        let both = parse(&text("g.neg(a)", "a")).unwrap();
+        assert_eq!(judge(&outcomes, &both).ambiguous.len(), 1);
+        let first = parse(&(text("g.neg(a)", "a") + "context = \"one(\"\n")).unwrap();
+        let judged = judge(&outcomes, &first);
+        assert!(judged.ambiguous.is_empty() && judged.stale.is_empty());
+        assert_eq!(judged.unexplained.iter().map(|m| m.line).collect::<Vec<_>>(), [3]);
     }
 
     #[test]

@@ -21,6 +21,8 @@ pub(crate) struct Mutant {
     pub(crate) function: String,
     /// Line where the change begins, from 1.
     pub(crate) line: usize,
+    /// The text of that line.
+    pub(crate) context: String,
     pub(crate) range: Range<usize>,
     /// What stands there, its white space made single blanks.
     pub(crate) original: String,
@@ -78,6 +80,7 @@ impl Finder<'_> {
             file: self.file.to_owned(),
             function: self.functions.last().map_or_else(String::new, |(name, _)| name.clone()),
             line: span.start().line,
+            context: self.source.lines().nth(span.start().line - 1).map_or_else(String::new, one_line),
             range: span.byte_range(),
             original: one_line(self.text(node)),
             replacement: one_line(&text),
@@ -123,7 +126,11 @@ impl Finder<'_> {
             ("sum", [_]) => self.sum(call, &graph, &whole),
             ("integer", [n]) => self.add(call, format!("{graph}.integer({n} + 1)"), "number changed"),
             ("one", []) => self.add(call, format!("{graph}.neg({whole})"), "sign turned"),
-            ("substitute", [e, _]) => self.add(call, e, "substitution left out"),
+            ("substitute", [e, map]) => {
+                // What is not substituted keeps its type all the same.
+                let kind = "std::collections::HashMap<symbolic::Symbol, symbolic::Expr>";
+                self.add(call, format!("{{ let _: &{kind} = {map}; {e} }}"), "substitution left out");
+            }
             ("jacobian", _) => {
                 let entry = format!("|i, j| {graph}.neg(m[(i, j)])");
                 let matrix = format!("symbolic::Matrix::from_fn(m.rows(), m.columns(), {entry})");

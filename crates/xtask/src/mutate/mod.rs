@@ -116,13 +116,17 @@ fn mutate(options: &Options) -> Result<Ending> {
     for mutant in &judged.unexplained {
         println!("   {}", place(mutant));
     }
-    for stale in &judged.stale {
-        println!("\nstale in {}: `{}` -> `{}` of {}", explained::FILE, stale.original, stale.replacement, stale.file);
+    for (fault, explanations) in [("stale", &judged.stale), ("of several places, needs a `context`", &judged.ambiguous)]
+    {
+        for e in explanations {
+            println!("\n{fault}: in {}, `{}` -> `{}` of {}", explained::FILE, e.original, e.replacement, e.file);
+        }
     }
     if !complete {
         bail!("not every mutant was run");
     }
-    Ok(if judged.unexplained.is_empty() && judged.stale.is_empty() { Ending::Fine } else { Ending::Found })
+    let sound = judged.unexplained.is_empty() && judged.stale.is_empty() && judged.ambiguous.is_empty();
+    Ok(if sound { Ending::Fine } else { Ending::Found })
 }
 
 /// Runs what has no verdict yet. An outcome for each task, and whether none failed to run.
