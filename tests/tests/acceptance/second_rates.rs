@@ -136,3 +136,35 @@ fn a_singular_highest_hessian_is_refused_with_its_rank() {
         Ok(_) => panic!("not refused"),
     }
 }
+
+const HALF_BLIND: &str = r#"
+title = "Two coordinates from one parameter of second order, and one that does nothing"
+[coordinates]
+x = { start = 0.8 }
+y = { start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2)/2 - x^2/2"
+constraints = []
+[start.velocities]
+"x'" = -0.3
+"y'" = -0.3
+[removal.half-blind]
+parameters = ["u", "w"]
+direct = { x = "u + u'", y = "u'" }
+start = { u = 0.8, w = 0, "w'" = 0 }
+[run]
+duration = 3
+"#;
+
+/// One parameter has its second rate in `L`, the other not: the Hessian in `(ü, ẇ)` has rank 1.
+#[test]
+fn a_singular_highest_hessian_is_refused_where_only_some_parameters_are_of_second_order() {
+    let scene = Scene::parse("half-blind", HALF_BLIND).unwrap_or_else(|e| panic!("{e}"));
+    let derivation = Derivation { removal: Some(&scene.removals[0]) };
+    let entry = deltaq::formulation("removed-constraint").expect("in the table");
+    match (entry.derive)(&scene.system, &derivation) {
+        Err(DerivationError::SingularHighestHessian { rank, size, .. }) => assert_eq!((rank, size), (1, 2)),
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("not refused"),
+    }
+}

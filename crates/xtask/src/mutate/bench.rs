@@ -23,7 +23,7 @@ use crate::sources;
 const SUITES: [(&str, &[&str]); 3] = [
     ("tests/tests/acceptance/main.rs", &["--package", "tests", "--test", "acceptance"]),
     ("tests/tests/properties/main.rs", &["--package", "tests", "--test", "properties"]),
-    ("tests/tests/properties.rs", &["--package", "tests", "--test", "properties"]),
+    ("crates/deltaq/tests/errors.rs", &["--package", "deltaq", "--test", "errors"]),
 ];
 /// Shortest time that the tests of a mutant are given.
 const PATIENCE: Duration = Duration::from_secs(60);
