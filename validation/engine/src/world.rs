@@ -1,10 +1,10 @@
 //! One run of the engine.
 
+use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::{
     ActiveHooks, ColliderBuilder, ContactModificationContext, FrictionModel, HalfSpace, MassProperties, PhysicsHooks,
     PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, SharedShape, SpringCoefficients,
 };
-use rapier3d_f64::math::Vector;
 
 use crate::{EngineError, Pose, Setup, Surface};
 
@@ -75,9 +75,9 @@ impl Run {
         for step in 1..=self.steps {
             world.step_with_events(&hooks, &());
             if step % (self.steps / self.samples) == 0 {
-                trajectory.keep(setup, &world, ball).ok_or(EngineError::Lost {
-                    time: self.duration * step as f64 / self.steps as f64,
-                })?;
+                trajectory
+                    .keep(setup, &world, ball)
+                    .ok_or(EngineError::Lost { time: self.duration * step as f64 / self.steps as f64 })?;
             }
         }
         Ok(trajectory)
