@@ -68,9 +68,11 @@ pub struct Study {
     pub targets: Vec<Target>,
     /// Relative distance of each target from the first.
     pub apart: Vec<f64>,
-    /// Runs with hard contacts, coarsest first.
+    /// Runs with [`Contacts::HARD`], coarsest first.
     pub hard: Vec<Level>,
-    /// Runs with contacts as the engine ships them.
+    /// Runs with [`Contacts::YIELDING`].
+    pub yielding: Vec<Level>,
+    /// Runs with [`Contacts::AsShipped`].
     pub shipped: Vec<Level>,
 }
 
@@ -114,6 +116,7 @@ impl Study {
             targets,
             apart: Vec::new(),
             hard: Vec::new(),
+            yielding: Vec::new(),
             shipped: Vec::new(),
         }
         .measured(ladder)
@@ -151,6 +154,7 @@ impl Study {
             targets: vec![closed],
             apart: Vec::new(),
             hard: Vec::new(),
+            yielding: Vec::new(),
             shipped: Vec::new(),
         }
         .measured(ladder)
@@ -161,8 +165,13 @@ impl Study {
         let still = vec![self.setup.pose; first.len()];
         self.scale = self.distance(first, &still);
         self.apart = self.targets.iter().map(|t| self.distance(first, &t.poses) / self.scale).collect();
-        self.hard = self.levels(ladder, Contacts::Hard)?;
-        self.shipped = self.levels(ladder, Contacts::AsShipped)?;
+        let study = &self;
+        let [hard, yielding, shipped] = std::thread::scope(|scope| {
+            let kinds = [Contacts::HARD, Contacts::YIELDING, Contacts::AsShipped];
+            let threads = kinds.map(|contacts| scope.spawn(move || study.levels(ladder, contacts)));
+            threads.map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+        });
+        (self.hard, self.yielding, self.shipped) = (hard?, yielding?, shipped?);
         Ok(self)
     }
 
@@ -200,21 +209,26 @@ impl Study {
         one.iter().zip(two).map(|(a, b)| a.distance(b, gyration)).fold(0.0, f64::max)
     }
 
-    /// What the hard contacts show.
+    /// What the runs show.
     pub fn finding(&self) -> Finding {
-        let order = order(&self.hard);
-        let best = |levels: &[Level]| levels.iter().map(|l| l.distances[0]).fold(f64::INFINITY, f64::min);
-        let extrapolated: Vec<f64> =
-            self.hard.iter().filter_map(|l| l.extrapolated.as_ref()).map(|distances| distances[0]).collect();
+        let distances = |levels: &[Level]| levels.iter().map(|level| level.distances[0]).collect::<Vec<f64>>();
+        let extrapolated = |levels: &[Level]| {
+            let extrapolated = levels.iter().filter_map(|level| level.extrapolated.as_ref());
+            extrapolated.map(|distances| distances[0]).collect::<Vec<f64>>()
+        };
+        let smallest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        let hard = extrapolated(&self.hard);
         let finest = self.hard.last().map_or(&[][..], |level| &level.distances);
-        let others = finest.iter().skip(1).copied().filter(|d| d.is_finite()).fold(f64::INFINITY, f64::min);
+        let others: Vec<f64> = finest.iter().skip(1).copied().filter(|distance| distance.is_finite()).collect();
+        let nearest = smallest(&distances(&self.hard));
         Finding {
-            order,
-            finest: best(&self.hard),
-            extrapolated: extrapolated.iter().copied().fold(f64::INFINITY, f64::min),
-            falling: extrapolated.windows(2).last().is_some_and(|pair| pair[1] < 0.5 * pair[0]),
-            others: others / best(&self.hard),
-            shipped: best(&self.shipped),
+            order: order(&self.hard),
+            nearest,
+            extrapolated: smallest(&hard),
+            falling: hard.windows(2).last().is_some_and(|pair| pair[1] < 0.5 * pair[0]),
+            others: smallest(&others) / nearest,
+            yielding: smallest(&extrapolated(&self.yielding)),
+            shipped: smallest(&distances(&self.shipped)),
         }
     }
 }
@@ -225,13 +239,15 @@ pub struct Finding {
     /// Exponent of `dt` in the distance to Chetaev's motion, by least squares over all runs.
     pub order: f64,
     /// Smallest relative distance to Chetaev's motion.
-    pub finest: f64,
+    pub nearest: f64,
     /// The same after Richardson's extrapolation.
     pub extrapolated: f64,
     /// Whether the last halving of the step still at least halved the extrapolated distance: then no floor has been met.
     pub falling: bool,
     /// How many times as far the nearest motion of another formulation is; infinite where there is no other.
     pub others: f64,
+    /// [`Finding::extrapolated`] with contacts that yield.
+    pub yielding: f64,
     /// Smallest relative distance to Chetaev's motion with contacts as shipped.
     pub shipped: f64,
 }

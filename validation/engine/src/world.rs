@@ -12,14 +12,24 @@ use crate::{EngineError, Pose, Setup, Surface};
 const ROUGH: f64 = 1e9;
 
 /// How the engine is told to hold contacts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contacts {
     /// Every parameter but the time step as the engine ships it: soft contacts, four substeps, a simplified friction, contacts
     /// kept while the pair has moved little.
     AsShipped,
-    /// Contacts of a natural frequency of 1 MHz at a damping ratio of 1, one solver iteration, Coulomb friction at each
+    /// Contacts of a given natural frequency at a damping ratio of 1, one solver iteration, Coulomb friction at each
     /// contact point, contacts found anew in every step, no continuous collision detection.
-    Hard,
+    Stiff {
+        /// Natural frequency of a contact, Hz. It yields noticeably in steps that are not long beside its period.
+        frequency: f64,
+    },
+}
+
+impl Contacts {
+    /// 1 GHz: hard at every step used here.
+    pub const HARD: Contacts = Contacts::Stiff { frequency: 1e9 };
+    /// 1 MHz, the stiffest that the engine uses by itself (for joints): steps of some microseconds notice that it yields.
+    pub const YIELDING: Contacts = Contacts::Stiff { frequency: 1e6 };
 }
 
 /// What is wanted of a run.
@@ -62,9 +72,9 @@ impl Run {
         let (mut world, ball) = world(setup);
         let parameters = &mut world.integration_parameters;
         parameters.dt = self.duration / self.steps as f64;
-        if self.contacts == Contacts::Hard {
-            parameters.contact_softness = SpringCoefficients::new(1e6, 1.0);
-            parameters.static_contact_softness = SpringCoefficients::new(1e6, 1.0);
+        if let Contacts::Stiff { frequency } = self.contacts {
+            parameters.contact_softness = SpringCoefficients::new(frequency, 1.0);
+            parameters.static_contact_softness = SpringCoefficients::new(frequency, 1.0);
             parameters.num_solver_iterations = 1;
             parameters.friction_model = FrictionModel::Coulomb;
             parameters.contact_recycling = false;

@@ -65,6 +65,6 @@ fn what_cannot_be_done_is_said() {
     let renamed = mechanics::Scene::parse("turntable", &text).unwrap();
     assert!(matches!(Mapping::new(&renamed), Err(EngineError::Missing { name, .. }) if name == "Omega"));
     let setup = Mapping::new(&find("turntable", &[]).unwrap()).unwrap().setup;
-    let run = Run { contacts: Contacts::Hard, duration: 1.0, steps: 150, samples: 100 };
+    let run = Run { contacts: Contacts::HARD, duration: 1.0, steps: 150, samples: 100 };
     assert!(matches!(run.of(&setup), Err(EngineError::Steps { steps: 150, samples: 100 })));
 }
