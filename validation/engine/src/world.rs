@@ -59,14 +59,14 @@ pub struct Trajectory {
 impl Run {
     /// Lets the engine move the ball.
     ///
-    /// The engine gets masses, shapes, velocities and gravity. Its contacts on planes are its own. It has no round cone, only
+    /// The engine gets masses, shapes, velocities and gravity. Its contacts on planes are its own. It has no hollow cone, only
     /// triangles that imitate one, so there each step is told the contact of ball and cone in closed form
     /// ([`Surface::foot_and_normal`]): a point, a normal, a distance. What follows from the contact is left to it.
     ///
     /// # Errors
     /// [`EngineError::Steps`], [`EngineError::Lost`].
     pub fn of(&self, setup: &Setup) -> Result<Trajectory, EngineError> {
-        if self.samples == 0 || self.steps == 0 || self.steps % self.samples != 0 {
+        if self.samples == 0 || self.steps == 0 || !self.steps.is_multiple_of(self.samples) {
             return Err(EngineError::Steps { steps: self.steps, samples: self.samples });
         }
         let (mut world, ball) = world(setup);
@@ -84,7 +84,7 @@ impl Run {
         let mut trajectory = Trajectory { poses: vec![setup.pose], off_surface: 0.0, slip: 0.0 };
         for step in 1..=self.steps {
             world.step_with_events(&hooks, &());
-            if step % (self.steps / self.samples) == 0 {
+            if step.is_multiple_of(self.steps / self.samples) {
                 trajectory
                     .keep(setup, &world, ball)
                     .ok_or(EngineError::Lost { time: self.duration * step as f64 / self.steps as f64 })?;
