@@ -38,7 +38,7 @@ fn on_the_turntable_the_engine_tends_to_chetaev() {
 
 #[test]
 fn in_the_cone_the_engine_tends_to_chetaev() {
-    tends_to_chetaev("ball-in-cone", 2.0, Ladder { coarsest: 32_000, runs: 5 });
+    tends_to_chetaev("ball-in-cone", 1.0, Ladder { coarsest: 16_000, runs: 4 });
 }
 
 #[test]
