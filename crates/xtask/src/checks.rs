@@ -116,6 +116,17 @@ pub(crate) fn run(checks: &[Check]) -> ExitCode {
     ExitCode::SUCCESS
 }
 
+/// Writes `reports/engine.md`. No check: what it runs is another program, at a length of its own.
+pub(crate) fn engine() -> ExitCode {
+    match succeed(cargo().args(["run", "--release", "--package", "engine"])) {
+        Ok(_) => ExitCode::SUCCESS,
+        Err(error) => {
+            println!("{error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
 /// The cargo that runs this.
 pub(crate) fn cargo() -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));

@@ -19,6 +19,9 @@ fn main() -> ExitCode {
         return mutate::run(rest);
     }
     let checks = checks::all();
+    if arguments == ["engine"] {
+        return checks::engine();
+    }
     let chosen = match arguments.as_slice() {
         [] | ["help" | "--help" | "-h"] => {
             list(&checks);
@@ -47,4 +50,5 @@ fn list(checks: &[checks::Check]) {
         println!("  {:<10} {}", check.name, check.about);
     }
     println!("\n  {:<10} {}", "mutate", mutate::ABOUT);
+    println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
 }

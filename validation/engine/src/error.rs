@@ -1,0 +1,58 @@
+//! What can go wrong.
+
+use deltaq::SolveError;
+use validation::catalogue::NotFound;
+
+/// Why a scene cannot be put to the engine, or compared with it.
+#[derive(Debug, thiserror::Error)]
+pub enum EngineError {
+    /// The scene cannot be read.
+    #[error(transparent)]
+    Scene(#[from] NotFound),
+    /// No mapping from this scene's coordinates to a rigid body is known here.
+    #[error("scene `{scene}` is not mapped to a rigid body")]
+    NotMapped {
+        /// The scene.
+        scene: String,
+    },
+    /// A parameter or a coordinate that the mapping needs.
+    #[error("scene `{scene}` has no `{name}`, which the mapping to a rigid body needs")]
+    Missing {
+        /// The scene.
+        scene: String,
+        /// What is missing.
+        name: String,
+    },
+    /// At the start the body does not do what the scene says.
+    #[error("scene `{scene}`: at the start the {what} of the rigid body is {body:e}, that of the scene {expected:e}")]
+    Mapping {
+        /// The scene.
+        scene: String,
+        /// The quantity.
+        what: &'static str,
+        /// Its value in the engine.
+        body: f64,
+        /// Its value in the scene.
+        expected: f64,
+    },
+    /// Steps that do not fall onto the sampling times.
+    #[error("{steps} steps cannot be read off at {samples} equidistant times")]
+    Steps {
+        /// Steps asked for.
+        steps: usize,
+        /// Samples asked for.
+        samples: usize,
+    },
+    /// The body is lost, or no longer finite.
+    #[error("the engine lost the ball at t = {time} s")]
+    Lost {
+        /// Time, s.
+        time: f64,
+    },
+    /// A motion of deltaq.
+    #[error(transparent)]
+    Motion(#[from] SolveError),
+    /// The scene's metric.
+    #[error(transparent)]
+    Metric(#[from] symbolic::CompileError),
+}

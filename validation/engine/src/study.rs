@@ -1,0 +1,281 @@
+//! What the engine's motion tends to as its time step shrinks.
+
+use deltaq::{Ending, Settings, choices, solve_choice};
+use mechanics::Scene;
+
+use crate::{Ball, Contacts, EngineError, Mapping, Pose, Run, Setup, Trajectory};
+
+/// Times at which motions are compared, besides the start.
+pub const SAMPLES: usize = 100;
+/// The order that is expected of the engine, and how far the measured one may be from it.
+pub const ORDER: (f64, f64) = (1.0, 0.15);
+/// How near to Chetaev's motion the extrapolated one has to come, relative.
+pub const NEAR: f64 = 1e-4;
+/// How many times further than Chetaev's the motions of the other formulations have to be.
+pub const FAR: f64 = 100.0;
+
+/// The motion of one formulation, as poses of the ball.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// What the reader sees.
+    pub label: String,
+    /// Name of the formulation.
+    pub formulation: String,
+    /// Poses at the sampling times that the motion reaches.
+    pub poses: Vec<Pose>,
+    /// Why it reaches none, or not all.
+    pub remark: Option<String>,
+}
+
+/// The engine at one time step.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// Time step, s.
+    pub dt: f64,
+    /// Largest distance to each target, relative to [`Study::scale`]; NaN where the target has no motion.
+    pub distances: Vec<f64>,
+    /// The same after Richardson's extrapolation with the level before, which has twice the time step.
+    pub extrapolated: Option<Vec<f64>>,
+    /// Largest distance of the ball from the surface, m.
+    pub off_surface: f64,
+}
+
+/// Time steps, as powers of two.
+#[derive(Clone, Copy, Debug)]
+pub struct Ladder {
+    /// Steps of the coarsest run, a multiple of [`SAMPLES`].
+    pub coarsest: usize,
+    /// Runs, each with twice the steps of the one before.
+    pub runs: u32,
+}
+
+/// One scene in the engine, beside its formulations.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// Name: that of the scene.
+    pub name: String,
+    /// One line.
+    pub title: String,
+    /// What the engine got.
+    pub setup: Setup,
+    /// Velocity of the contact point at the start, m/s.
+    pub residual: f64,
+    /// Length of the motions, s.
+    pub duration: f64,
+    /// Largest distance of the first target from its start, m ([`Pose::distance`]).
+    pub scale: f64,
+    /// Chetaev's motion first.
+    pub targets: Vec<Target>,
+    /// Relative distance of each target from the first.
+    pub apart: Vec<f64>,
+    /// Runs with [`Contacts::HARD`], coarsest first.
+    pub hard: Vec<Level>,
+    /// Runs with [`Contacts::YIELDING`].
+    pub yielding: Vec<Level>,
+    /// Runs with [`Contacts::AsShipped`].
+    pub shipped: Vec<Level>,
+}
+
+impl Study {
+    /// A scene with all its formulations (the costate form of the vakonomic one left out: it is the same motion).
+    ///
+    /// # Errors
+    /// [`EngineError`] where the scene is not mapped or the engine loses the ball. A formulation that refuses is a remark.
+    pub fn of_scene(scene: &Scene, ladder: Ladder) -> Result<Study, EngineError> {
+        let mapping = Mapping::new(scene)?;
+        let mut targets = Vec::new();
+        for choice in choices(scene).into_iter().filter(|c| c.formulation != "vakonomic-costate") {
+            let mut target = Target {
+                label: choice.label.clone(),
+                formulation: choice.formulation.into(),
+                poses: vec![],
+                remark: None,
+            };
+            match solve_choice(scene, &choice, &Settings::default()) {
+                Ok(mut motion) => {
+                    for time in (0..=SAMPLES).map(|k| scene.start.t + scene.duration * k as f64 / SAMPLES as f64) {
+                        if time <= motion.end() {
+                            target.poses.push(mapping.pose(&motion.at(time)?.coordinates));
+                        }
+                    }
+                    if let Ending::Stopped { t, cause } = &motion.ending {
+                        target.remark = Some(format!("stops at {t:.3} s: {cause}"));
+                    }
+                }
+                Err(error) => target.remark = Some(format!("refuses: {error}")),
+            }
+            targets.push(target);
+        }
+        Study {
+            name: scene.name.clone(),
+            title: scene.title.clone(),
+            setup: mapping.setup,
+            residual: mapping.residual,
+            duration: scene.duration,
+            scale: 0.0,
+            targets,
+            apart: Vec::new(),
+            hard: Vec::new(),
+            yielding: Vec::new(),
+            shipped: Vec::new(),
+        }
+        .measured(ladder)
+    }
+
+    /// A homogeneous ball (1 kg, 0.1 m) from rest on a plane of slope 0.3 rad, 1 s, against its closed solution: it goes
+    /// `s = ½ · 5/7 g sin α t²` downhill and turns by `s/a`. The constraint is integrable, so that all formulations agree here.
+    ///
+    /// # Errors
+    /// As [`Study::of_scene`].
+    pub fn of_incline(ladder: Ladder) -> Result<Study, EngineError> {
+        let (slope, duration, radius) = (0.3_f64, 1.0, 0.1);
+        let ball = Ball { mass: 1.0, radius, gyration: (0.4_f64).sqrt() * radius };
+        let setup = Setup::incline(slope, ball, 9.81);
+        let downhill = rapier3d_f64::math::Vector::new(slope.cos(), 0.0, -slope.sin());
+        let poses = (0..=SAMPLES).map(|k| {
+            let time = duration * k as f64 / SAMPLES as f64;
+            let way = 0.5 * 5.0 / 7.0 * setup.gravity * slope.sin() * time * time;
+            let attitude = rapier3d_f64::math::Rotation::from_rotation_y(way / radius);
+            Pose { centre: setup.pose.centre + way * downhill, attitude }
+        });
+        let closed = Target {
+            label: "5/7 g sin α".into(),
+            formulation: "chetaev".into(),
+            poses: poses.collect(),
+            remark: Some("all formulations agree: the constraint is integrable".into()),
+        };
+        Study {
+            name: "incline".into(),
+            title: "Homogeneous ball on an incline".into(),
+            setup,
+            residual: setup.slip(setup.pose.centre, setup.velocity, setup.spin).length(),
+            duration,
+            scale: 0.0,
+            targets: vec![closed],
+            apart: Vec::new(),
+            hard: Vec::new(),
+            yielding: Vec::new(),
+            shipped: Vec::new(),
+        }
+        .measured(ladder)
+    }
+
+    fn measured(mut self, ladder: Ladder) -> Result<Study, EngineError> {
+        let first = &self.targets[0].poses;
+        let still = vec![self.setup.pose; first.len()];
+        self.scale = self.distance(first, &still);
+        self.apart = self.targets.iter().map(|t| self.distance(first, &t.poses) / self.scale).collect();
+        let study = &self;
+        let [hard, yielding, shipped] = std::thread::scope(|scope| {
+            let kinds = [Contacts::HARD, Contacts::YIELDING, Contacts::AsShipped];
+            let threads = kinds.map(|contacts| scope.spawn(move || study.levels(ladder, contacts)));
+            threads.map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+        });
+        (self.hard, self.yielding, self.shipped) = (hard?, yielding?, shipped?);
+        Ok(self)
+    }
+
+    fn levels(&self, ladder: Ladder, contacts: Contacts) -> Result<Vec<Level>, EngineError> {
+        let mut levels = Vec::new();
+        let mut coarser: Option<Trajectory> = None;
+        for run in 0..ladder.runs {
+            let steps = ladder.coarsest << run;
+            let trajectory = Run { contacts, duration: self.duration, steps, samples: SAMPLES }.of(&self.setup)?;
+            let extrapolated = coarser.map(|coarser| {
+                let pairs = trajectory.poses.iter().zip(&coarser.poses);
+                self.to_targets(&pairs.map(|(fine, coarse)| fine.extrapolated(coarse)).collect::<Vec<Pose>>())
+            });
+            levels.push(Level {
+                dt: self.duration / steps as f64,
+                distances: self.to_targets(&trajectory.poses),
+                extrapolated,
+                off_surface: trajectory.off_surface,
+            });
+            coarser = Some(trajectory);
+        }
+        Ok(levels)
+    }
+
+    fn to_targets(&self, poses: &[Pose]) -> Vec<f64> {
+        self.targets.iter().map(|target| self.distance(poses, &target.poses) / self.scale).collect()
+    }
+
+    /// Largest distance over the times that both reach, m; NaN where there is none but the start.
+    fn distance(&self, one: &[Pose], two: &[Pose]) -> f64 {
+        if one.len().min(two.len()) < 2 {
+            return f64::NAN;
+        }
+        let gyration = self.setup.ball.gyration;
+        one.iter().zip(two).map(|(a, b)| a.distance(b, gyration)).fold(0.0, f64::max)
+    }
+
+    /// What the runs show.
+    pub fn finding(&self) -> Finding {
+        let distances = |levels: &[Level]| levels.iter().map(|level| level.distances[0]).collect::<Vec<f64>>();
+        let extrapolated = |levels: &[Level]| {
+            let extrapolated = levels.iter().filter_map(|level| level.extrapolated.as_ref());
+            extrapolated.map(|distances| distances[0]).collect::<Vec<f64>>()
+        };
+        let smallest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        let hard = extrapolated(&self.hard);
+        let finest = self.hard.last().map_or(&[][..], |level| &level.distances);
+        let others: Vec<f64> = finest.iter().skip(1).copied().filter(|distance| distance.is_finite()).collect();
+        let nearest = smallest(&distances(&self.hard));
+        Finding {
+            order: order(&self.hard),
+            nearest,
+            extrapolated: smallest(&hard),
+            falling: hard.windows(2).last().is_some_and(|pair| pair[1] < 0.5 * pair[0]),
+            others: smallest(&others) / nearest,
+            yielding: smallest(&extrapolated(&self.yielding)),
+            shipped: smallest(&distances(&self.shipped)),
+        }
+    }
+}
+
+/// The end of a [`Study`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finding {
+    /// Exponent of `dt` in the distance to Chetaev's motion, by least squares over all runs.
+    pub order: f64,
+    /// Smallest relative distance to Chetaev's motion.
+    pub nearest: f64,
+    /// The same after Richardson's extrapolation.
+    pub extrapolated: f64,
+    /// Whether the last halving of the step still at least halved the extrapolated distance: then no floor has been met.
+    pub falling: bool,
+    /// How many times as far the nearest motion of another formulation is; infinite where there is no other.
+    pub others: f64,
+    /// [`Finding::extrapolated`] with contacts that yield.
+    pub yielding: f64,
+    /// Smallest relative distance to Chetaev's motion with contacts as shipped.
+    pub shipped: f64,
+}
+
+impl Finding {
+    /// Whether the motion tends to Chetaev's at first order, comes near it, and stays far from the others.
+    pub fn holds(&self) -> bool {
+        (self.order - ORDER.0).abs() <= ORDER.1 && self.extrapolated <= NEAR && self.others >= FAR
+    }
+}
+
+/// Slope of `ln distance` over `ln dt`, first target.
+fn order(levels: &[Level]) -> f64 {
+    let points: Vec<(f64, f64)> = levels.iter().map(|l| (l.dt.ln(), l.distances[0].ln())).collect();
+    let count = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
+    let (up, down) =
+        points.iter().fold((0.0, 0.0), |(up, down), p| (up + (p.0 - x) * (p.1 - y), down + (p.0 - x).powi(2)));
+    up / down
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_a_power_is_its_exponent() {
+        let level = |dt: f64| Level { dt, distances: vec![3.0 * dt.powf(1.5)], extrapolated: None, off_surface: 0.0 };
+        assert!((order(&[level(0.1), level(0.05), level(0.01)]) - 1.5).abs() < 1e-12);
+    }
+}
