@@ -290,6 +290,7 @@ impl Context {
             let residual = g.add(self.expression(&format!("{p}'"))?, g.derivative(generating, g.symbol(w)));
             self.found.borrow_mut().insert(format!("costate_{w}"), residual);
         }
+        self.found.borrow_mut().insert("G".into(), generating);
         self.add_variations(&texts(action, "variation")?)
     }
 

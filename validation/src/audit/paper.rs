@@ -6,6 +6,7 @@ use anyhow::{Context as _, Result};
 use symbolic::{Expr, Vanishing};
 use toml::{Table, Value};
 
+use super::along::along;
 use super::context::{Context, texts, words};
 
 /// The formulas.
@@ -88,8 +89,8 @@ pub struct Finding {
     pub corrected: Form,
     /// Other readings.
     pub variants: Vec<Variant>,
-    /// The scene along whose removed-constraint motion it is checked too.
-    pub along: Option<String>,
+    /// Largest residuals of the printed and the corrected lines along a computed motion, where it is checked on one.
+    pub along: Option<[Vec<f64>; 2]>,
     /// Remarks.
     pub note: String,
     /// Where a scanning error is as likely.
@@ -133,6 +134,14 @@ impl Paper {
         self.equations.iter().map(|e| text(e, "number")).collect()
     }
 
+    /// A context by name.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn context(&self, name: &str) -> Result<&Context> {
+        self.contexts.get(name).with_context(|| format!("no context `{name}`"))
+    }
+
     /// Checks one equation.
     ///
     /// # Errors
@@ -165,7 +174,7 @@ impl Paper {
             printed,
             corrected,
             variants,
-            along: equation.get("along").and_then(Value::as_str).map(str::to_string),
+            along: self.along(number)?,
             note: text(equation, "note").into(),
             scan: text(equation, "scan").into(),
         })
@@ -193,6 +202,14 @@ impl Paper {
         Ok(form.lines.into_iter().map(|line| line.residual).collect())
     }
 
+    fn along(&self, number: &str) -> Result<Option<[Vec<f64>; 2]>> {
+        let equation = self.equation(number)?;
+        let Some(scene) = equation.get("along").and_then(Value::as_str) else { return Ok(None) };
+        let context = self.context(text(equation, "context"))?;
+        let residuals = |which| along(context, scene, &self.lines(number, which)?);
+        Ok(Some([residuals(Which::Printed)?, residuals(Which::Corrected)?]))
+    }
+
     fn equation(&self, number: &str) -> Result<&Table> {
         self.equations.iter().find(|e| text(e, "number") == number).with_context(|| format!("no equation {number}"))
     }
@@ -204,7 +221,7 @@ impl Paper {
             return Ok(Form::default());
         }
         let name = own("context").or(equation.get("context")).and_then(Value::as_str).context("no context")?;
-        let mut context = self.contexts.get(name).with_context(|| format!("no context `{name}`"))?.clone();
+        let mut context = self.context(name)?.clone();
         let key = if own("integrals").is_some() { "corrected_integrals" } else { "integrals" };
         let mut integrals = Vec::new();
         for (name, integrand) in texts(equation, key)? {
