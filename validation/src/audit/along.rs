@@ -14,7 +14,7 @@ use crate::random::equations;
 const INSTANTS: usize = 20;
 
 /// Half the distance of the velocities whose difference is an acceleration.
-const STEP: f64 = 2e-3;
+const STEP: f64 = 2.5e-4;
 
 /// The largest residual of each formula along the removed-constraint motion of a scene by its first removal. Names are coordinates with
 /// primes (second derivatives are differences of velocities), parameters, `t`, and `t1`, the horizon of the constants.

@@ -71,10 +71,8 @@ fn ball_in_cone(context: &Context, contact: ContactAt) -> Result<Vec<(String, Ex
     let omega = [spin[2][1], spin[0][2], spin[1][0]];
     let slip = add(g, velocity, cross(g, omega, scale(g, g.neg(a), inward)));
     let kinetic = e("m/2")?;
-    let kinetic = g.add(
-        g.mul(kinetic, dot(g, velocity, velocity)),
-        g.product(&[kinetic, e("k^2")?, dot(g, omega, omega)]),
-    );
+    let kinetic =
+        g.add(g.mul(kinetic, dot(g, velocity, velocity)), g.product(&[kinetic, e("k^2")?, dot(g, omega, omega)]));
     let height = g.product(&[e("m*g")?, centre[2]]);
     Ok(vec![
         ("slip_s".into(), dot(g, slip, along)),
@@ -95,11 +93,8 @@ fn cylinders(context: &Context) -> Result<Vec<(String, Expr)>> {
     let velocity = rate(context, centre)?;
     let omega = add(g, scale(g, e("theta'")?, up), scale(g, e("phi'")?, heading));
     let (half, about_up, about_axis) = (g.ratio(1, 2), dot(g, omega, up), dot(g, omega, heading));
-    let mut doubled = vec![
-        dot(g, velocity, velocity),
-        g.mul(e("A")?, g.powi(about_up, 2)),
-        g.mul(e("C")?, g.powi(about_axis, 2)),
-    ];
+    let mut doubled =
+        vec![dot(g, velocity, velocity), g.mul(e("A")?, g.powi(about_up, 2)), g.mul(e("C")?, g.powi(about_axis, 2))];
     let mut all = Vec::new();
     for (number, angle) in [("1", g.zero()), ("2", e("alpha")?)] {
         let roll = format!("phi{number}");

@@ -101,6 +101,7 @@ pub struct Finding {
 pub struct Paper {
     contexts: BTreeMap<String, Context>,
     equations: Vec<Table>,
+    written: Vec<Table>,
 }
 
 /// Which formulas of an equation.
@@ -124,9 +125,20 @@ impl Paper {
             let table = value.as_table().with_context(|| format!("context `{name}` has to be a table"))?;
             contexts.insert(name.clone(), Context::read(table).with_context(|| format!("context `{name}`"))?);
         }
-        let list = data.get("equation").and_then(Value::as_array).context("no equations")?;
-        let equations: Option<Vec<Table>> = list.iter().map(|e| e.as_table().cloned()).collect();
-        Ok(Paper { contexts, equations: equations.context("an equation has to be a table")? })
+        Ok(Paper { contexts, equations: tables(&data, "equation")?, written: tables(&data, "written")? })
+    }
+
+    /// Example 3 written out: groups of formulas, each checked.
+    ///
+    /// # Errors
+    /// Where the data are faulty.
+    pub fn written(&self) -> Result<Vec<Variant>> {
+        self.written.iter().map(|group| self.variant(group)).collect()
+    }
+
+    fn variant(&self, variant: &Table) -> Result<Variant> {
+        let form = self.form(variant, Which::Printed, &words(variant, "lines")?)?;
+        Ok(Variant { words: text(variant, "words").into(), form })
     }
 
     /// Numbers of the equations, in order.
@@ -164,8 +176,7 @@ impl Paper {
         let mut variants = Vec::new();
         for variant in equation.get("variants").and_then(Value::as_array).into_iter().flatten() {
             let variant = variant.as_table().context("a variant has to be a table")?;
-            let form = self.form(variant, Which::Printed, &words(variant, "lines")?)?;
-            variants.push(Variant { words: text(variant, "words").into(), form });
+            variants.push(self.variant(variant)?);
         }
         Ok(Finding {
             number: number.into(),
@@ -272,4 +283,10 @@ fn without(g: &symbolic::Graph, e: Expr, symbol: symbolic::Symbol) -> Expr {
 
 fn text<'a>(table: &'a Table, key: &str) -> &'a str {
     table.get(key).and_then(Value::as_str).unwrap_or("")
+}
+
+fn tables(data: &Table, key: &str) -> Result<Vec<Table>> {
+    let list = data.get(key).and_then(Value::as_array).with_context(|| format!("no `{key}`"))?;
+    let tables: Option<Vec<Table>> = list.iter().map(|e| e.as_table().cloned()).collect();
+    tables.with_context(|| format!("`{key}` has to be a list of tables"))
 }

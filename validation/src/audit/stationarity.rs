@@ -16,13 +16,13 @@ use super::context::Context;
 use super::paper::Paper;
 use crate::random::equations;
 
-/// Readings of (34), each as what has to be zero, with `P = C − ∫ L_λ dt`.
-pub const READINGS: [(&str, &str); 5] = [
+/// Readings of (34), each as what has to be zero, with `P = C − ∫ L_λ dt`. (The fourth, second operator on `L` and first on `β`, divides by `P`, which is
+/// zero at `t₁`.)
+pub const READINGS: [(&str, &str); 4] = [
     (STATEMENT, "K_u"),
     ("(34), first operator on L, second on β", "L_u2'' - L_u1' + L_u0 - P*(beta_u1' - beta_u0) + beta_u1*L_lambda"),
     ("(34), first operator on both", "L_u2'' - L_u1' + L_u0 - P*(beta_u2'' - beta_u1' + beta_u0) + beta_u1*L_lambda"),
     ("(34), second operator on both", "L_u1' - L_u0 - P*(beta_u1' - beta_u0) + beta_u1*L_lambda"),
-    ("(34), second operator on L, first on β", "L_u1' - L_u0 - P*(beta_u2'' - beta_u1' + beta_u0) + beta_u1*L_lambda"),
 ];
 
 /// The statement with `G`.
@@ -83,9 +83,8 @@ impl Stationarity {
             action.start = vec![start.lambda];
             let law = std::cell::RefCell::new(law);
             let curve = |t: f64| vec![law.borrow_mut().at(&motion, t).map_or([f64::NAN; 3], |point| point.jet)];
-            let derivatives = (0..BUMPS)
-                .map(|k| action.derivative(&curve, &|t| vec![bump(k, SPAN, t)], SPAN))
-                .collect::<Vec<f64>>();
+            let derivatives =
+                (0..BUMPS).map(|k| action.derivative(&curve, &|t| vec![bump(k, SPAN, t)], SPAN)).collect::<Vec<f64>>();
             if name == STATEMENT {
                 gap = gap_to_derivation(context, &mut law.borrow_mut(), &motion, &constants)?;
             }
@@ -221,10 +220,7 @@ fn gap_to_derivation(
 
 /// Some curve of the sledge, `u = sin t + t²/2`, `φ = 0.3 + t − t³/5`.
 fn some_curve(t: f64) -> Vec<Jet> {
-    vec![
-        [t.sin() + t * t / 2.0, t.cos() + t, 1.0 - t.sin()],
-        [0.3 + t - t.powi(3) / 5.0, 1.0 - 0.6 * t * t, -1.2 * t],
-    ]
+    vec![[t.sin() + t * t / 2.0, t.cos() + t, 1.0 - t.sin()], [0.3 + t - t.powi(3) / 5.0, 1.0 - 0.6 * t * t, -1.2 * t]]
 }
 
 /// `dI/dε` of example 1 along that curve: measured, and by the kernels of `δI`.
