@@ -49,6 +49,15 @@ impl Context {
             zero: words(data, "zero")?,
             found: RefCell::default(),
         };
+        // symbols are printed in the order in which they come to be: constants before functions, or as said
+        for name in words(data, "order")?.iter().chain(&words(data, "constants")?) {
+            context.graph.symbol(name);
+        }
+        for name in texts(data, "integrals")?.iter().map(|(name, _)| name).chain(&words(data, "functions")?) {
+            for primes in ["", "'", "''"] {
+                context.graph.symbol(&format!("{name}{primes}"));
+            }
+        }
         if let Some(name) = data.get("geometry").and_then(Value::as_str) {
             for (name, e) in geometry::definitions(name, &context)? {
                 context.found.borrow_mut().insert(name, e);
@@ -162,8 +171,18 @@ impl Context {
             1 => r"\tfrac{d}{dt} ".into(),
             n => format!(r"\tfrac{{d^{n}}}{{dt^{n}}} "),
         };
-        let variable = g.latex_symbol(g.symbol(&with_primes(variable)));
+        let variable = g.latex_symbol(g.symbol(&self.with_primes(variable)));
         Some(format!("{operator}{}_{{{variable}}}", g.latex_symbol(g.symbol(function))))
+    }
+
+    /// `u2` as `u''`, for a free function `u` (and for the coordinates `q`, which no function here contains).
+    fn with_primes(&self, variable: &str) -> String {
+        let stem = variable.trim_end_matches(['0', '1', '2']);
+        let order = variable[stem.len()..].parse::<usize>().ok().filter(|order| *order < 3);
+        match order {
+            Some(order) if self.functions.contains(stem) || stem == "q" => format!("{stem}{}", "'".repeat(order)),
+            _ => variable.to_string(),
+        }
     }
 
     /// Names to suggest.
@@ -212,7 +231,7 @@ impl Context {
         if !self.partials.iter().any(|p| p == function) {
             return Ok(None);
         }
-        let symbol = g.symbol(&with_primes(variable));
+        let symbol = g.symbol(&self.with_primes(variable));
         Ok(self.meaning(function, depth)?.map(|e| g.derivative(e, symbol)))
     }
 
@@ -317,17 +336,6 @@ impl Context {
             self.found.borrow_mut().insert(format!("delta_{function}"), variation);
         }
         Ok(())
-    }
-}
-
-/// `u2` as `u''`: a letter and its order.
-fn with_primes(variable: &str) -> String {
-    match variable.as_bytes() {
-        [letter @ b'a'..=b'z', order @ b'0'..=b'2'] => {
-            let primes = "'".repeat(usize::from(order - b'0'));
-            format!("{}{primes}", char::from(*letter))
-        }
-        _ => variable.to_string(),
     }
 }
 

@@ -44,6 +44,18 @@ pub fn cone() -> Result<Example> {
     example("ball-in-cone", "paper")
 }
 
+/// Why the equations for the paper's `u` and `θ` of example 3 cannot be integrated.
+///
+/// # Errors
+/// Where they can.
+pub fn refusal() -> Result<String> {
+    let scene = catalogue::find("three-cylinders", &[])?;
+    match equations(&scene.system, "removed-constraint", Some(removal(&scene, "paper")?)) {
+        Err(error) => Ok(error.to_string()),
+        Ok(_) => anyhow::bail!("the paper's parametrization of example 3 is not refused"),
+    }
+}
+
 fn example(name: &str, of: &str) -> Result<Example> {
     let scene: Scene = catalogue::find(name, &[])?;
     let removal = removal(&scene, of)?;

@@ -12,6 +12,6 @@ mod stationarity;
 pub use action::{Action, BUMPS, Jet, bump};
 pub use constants::{Augmented, Constants, HORIZONS, Horizon};
 pub use context::Context;
-pub use examples::{Example, cone};
+pub use examples::{Example, cone, refusal};
 pub use paper::{Finding, Form, Line, Paper, Variant, Verdict, Which};
 pub use stationarity::{READINGS, Reading, STATEMENT, Stationarity};
