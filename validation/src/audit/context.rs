@@ -166,13 +166,13 @@ impl Context {
             return Some(format!(r"\delta {}", g.latex_symbol(g.symbol(&varied))));
         }
         self.partials.iter().find(|p| *p == function)?;
-        let operator = match name.len() - stem.len() {
-            0 => String::new(),
-            1 => r"\tfrac{d}{dt} ".into(),
-            n => format!(r"\tfrac{{d^{n}}}{{dt^{n}}} "),
-        };
         let variable = g.latex_symbol(g.symbol(&self.with_primes(variable)));
-        Some(format!("{operator}{}_{{{variable}}}", g.latex_symbol(g.symbol(function))))
+        let partial = format!("{}_{{{variable}}}", g.latex_symbol(g.symbol(function)));
+        Some(match name.len() - stem.len() {
+            0 => partial,
+            1 => format!(r"\bigl(\tfrac{{d}}{{dt}} {partial}\bigr)"),
+            n => format!(r"\bigl(\tfrac{{d^{n}}}{{dt^{n}}} {partial}\bigr)"),
+        })
     }
 
     /// `u2` as `u''`, for a free function `u` (and for the coordinates `q`, which no function here contains).

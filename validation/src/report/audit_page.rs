@@ -246,7 +246,7 @@ impl AuditReport {
                 }
             }
         }
-        page += "\n$V$ is the velocity of the centre along the axis of the upper cylinder, $U$ across it, $\\Omega/R$ its rate of roll, $M$ the momentum of $\\theta$. $W$ and $\\theta$ are the displacement parameters, $\\kappa$ is memory with costate $P$. Free constant: $P(t_0)$; with the paper's three integrals there are three, of which only this combination concerns the upper cylinder's own motion, while the others act as momenta conjugate to $\\varphi_1$ and $\\varphi_2$.\n";
+        page += "\n$V$ is the velocity of the centre along the axis of the upper cylinder, $U$ across it, $\\Omega/R$ its rate of roll, $M$ the momentum of $\\theta$. $W$ and $\\theta$ are the displacement parameters, $\\kappa$ is memory with costate $P$. Free constant: $P(t_0)$; with the paper's three integrals there are three, of which this is one: what $P_{\\varphi_1}$ and $P_{\\varphi_2}$ have beyond the values above is constant and adds $c_1\\dot\\varphi_1 + c_2\\dot\\varphi_2$ to $G$.\n";
         page
     }
 }
