@@ -44,6 +44,8 @@ pub enum Section {
     Random,
     /// Friction, added mass, and what they tend to.
     Realization,
+    /// The paper's equations, each shown to hold or not.
+    PaperAudit,
 }
 
 /// The subcommands.

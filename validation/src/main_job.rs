@@ -14,7 +14,7 @@ use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
 use crate::random::{Batch, Kind, Record};
 use crate::report::{
-    File, Provenance, RealizationReport, answer, difference_of_verdicts, overview, pictures, random_files,
+    AuditReport, File, Provenance, RealizationReport, answer, difference_of_verdicts, overview, pictures, random_files,
     random_headline, random_verdicts, scene_page, verdicts, write_all,
 };
 use crate::{parallel, substitution};
@@ -53,6 +53,7 @@ struct Results {
     batch: Batch,
     records: Vec<Record>,
     realization: Option<RealizationReport>,
+    audit: Option<AuditReport>,
 }
 
 impl Results {
@@ -64,8 +65,9 @@ impl Results {
         let records = if random { batch.run(RANDOM_SYSTEMS, None, quiet)? } else { Vec::new() };
         let realization =
             sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
+        let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
-        Ok(Results { comparisons, scene_files, batch, records, realization })
+        Ok(Results { comparisons, scene_files, batch, records, realization, audit })
     }
 
     fn verdicts(&self) -> Value {
@@ -74,6 +76,9 @@ impl Results {
         if let Some(realization) = &self.realization {
             verdicts["realization"] = realization.verdicts();
         }
+        if let Some(audit) = &self.audit {
+            verdicts["paper audit"] = audit.verdicts();
+        }
         verdicts
     }
 
@@ -81,7 +86,8 @@ impl Results {
     fn further(&self) -> Vec<(String, &'static str)> {
         let random = (!self.records.is_empty()).then(|| (random_headline(&self.records), "random.md"));
         let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
-        random.into_iter().chain(realization).collect()
+        let audit = self.audit.as_ref().map(|report| (report.headline(), "paper-audit.md"));
+        random.into_iter().chain(realization).chain(audit).collect()
     }
 
     /// Pages and pictures of every section that ran.
@@ -93,6 +99,7 @@ impl Results {
         if let Some(realization) = &self.realization {
             files.extend(realization.files()?);
         }
+        files.extend(self.audit.iter().flat_map(AuditReport::files));
         Ok(files)
     }
 }

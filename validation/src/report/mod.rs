@@ -1,5 +1,6 @@
 //! Reports: Markdown that reads well on a code host, SVG pictures by relative link, one JSON file for machines.
 
+mod audit_page;
 mod equations;
 mod files;
 mod numbers;
@@ -11,6 +12,7 @@ mod scene_page;
 mod tables;
 mod verdicts;
 
+pub use audit_page::AuditReport;
 pub use equations::{EquationStyle, equations_text};
 pub use files::{File, write_all};
 pub use overview::{Provenance, overview};
