@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use integrate::{
-    DenseOutput, Method, Options, Problem, Projection, ProjectionReport, Solution, Start, Status, StopCause, Work,
+    DenseOutput, Interrupt, Method, Options, Problem, Projection, ProjectionReport, Solution, Start, Status, StopCause,
+    Work,
 };
 use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System, complete_removal_start};
 use symbolic::Symbol;
@@ -26,12 +27,14 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
+    /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
+    pub interrupt: Option<Interrupt>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (Method::Dop853, Projection::EveryStep);
-        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000 }
+        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000, interrupt: None }
     }
 }
 
@@ -178,6 +181,7 @@ pub(crate) struct Prepared {
     pub(crate) compiled: Compiled,
     start_tape: symbolic::Tape,
     start_inputs: Vec<f64>,
+    pub(crate) guess: Vec<f64>,
     pub(crate) t: f64,
 }
 
@@ -197,7 +201,7 @@ impl Prepared {
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
         let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
-        Ok(Prepared { equations, compiled, start_tape, start_inputs, t: setting.start.t })
+        Ok(Prepared { equations, compiled, start_tape, start_inputs, guess: Vec::new(), t: setting.start.t })
     }
 
     /// Sets the free constants and returns `y(t₀)`.
@@ -206,10 +210,10 @@ impl Prepared {
         self.start_inputs[first..].copy_from_slice(constants);
         let mut values = vec![0.0; self.start_tape.outputs()];
         self.start_tape.evaluate(&self.start_inputs, &mut self.start_tape.workspace(), &mut values);
-        let guess = values.split_off(self.equations.states.len());
+        self.guess = values.split_off(self.equations.states.len());
         self.compiled.set_constants(constants);
-        if guess.len() == self.equations.unknowns().len() {
-            self.compiled.set_guess(&guess);
+        if self.guess.len() == self.equations.unknowns().len() {
+            self.compiled.set_guess(&self.guess);
         }
         values
     }
@@ -227,6 +231,7 @@ impl Prepared {
         options.method = settings.method;
         options.projection = settings.projection;
         options.max_steps = settings.max_steps;
+        options.interrupt = settings.interrupt.clone();
         self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
         let mut runner = Runner(&mut self.compiled);
         Ok(integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?)
@@ -288,7 +293,11 @@ fn readable_end(compiled: &mut Compiled, kept: &DenseOutput, looser: &DenseOutpu
     ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
 }
 
-fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -> Result<Vec<f64>, SolveError> {
+pub(crate) fn resolve(
+    prepared: &mut Prepared,
+    rule: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Vec<f64>, SolveError> {
     let expected = prepared.equations.free_constants.len();
     match rule {
         ConstantsRule::Zero => Ok(vec![0.0; expected]),

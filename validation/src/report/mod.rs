@@ -1,6 +1,5 @@
 //! Reports: Markdown that reads well on a code host, SVG pictures by relative link, one JSON file for machines.
 
-mod equations;
 mod files;
 mod numbers;
 mod overview;
@@ -10,7 +9,6 @@ mod scene_page;
 mod tables;
 mod verdicts;
 
-pub use equations::{EquationStyle, equations_text};
 pub use files::{File, write_all};
 pub use overview::{Provenance, overview};
 pub use pictures::pictures;
