@@ -2,15 +2,15 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::{EquationStyle, Ready, constant_names, equations_text};
-use mechanics::{Compiled, EvaluationFailure, Role};
+use deltaq::{EquationStyle, Ready, constant_names, equations_text, ready, setting};
+use mechanics::{Compiled, EvaluationFailure, Role, Scene};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, times};
-use crate::errors;
 use crate::motion::{Names, Outputs};
+use crate::{arguments, background, errors};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
@@ -21,6 +21,7 @@ type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Equations {
     ready: Mutex<Ready>,
+    scene: Mutex<Scene>,
     dimension: usize,
     /// Name of the formulation.
     #[pyo3(get)]
@@ -52,13 +53,14 @@ fn each(t: &Rows, y: &Rows, mut body: impl FnMut(f64, &[f64]) -> Result<(), Eval
 }
 
 impl Equations {
-    pub(crate) fn new(ready: Ready, dimension: usize) -> Equations {
+    pub(crate) fn new(ready: Ready, scene: Scene) -> Equations {
         let equations = &ready.equations;
         let g = &equations.graph;
         let lines: Vec<String> =
             equations.statements.iter().map(|s| format!("{} &= {}", g.latex(s.left), g.latex(s.right))).collect();
         Equations {
-            dimension,
+            dimension: scene.system.dimension(),
+            scene: Mutex::new(scene),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
             states: equations.states.iter().map(|y| g.name(y.symbol)).collect(),
@@ -123,10 +125,22 @@ impl Equations {
 
 #[pymethods]
 impl Equations {
-    /// The state y(t0) that belongs to the start of the system, shape (m,). The free constants are those asked for in `System.equations`.
-    #[pyo3(signature = ())]
-    fn initial_state<'py>(&self, py: Python<'py>) -> Array<'py> {
-        let start = self.ready.lock().unwrap_or_else(PoisonError::into_inner).start.clone();
+    /// The state y(t0) that belongs to the start of the system, shape (m,).
+    ///
+    /// constants: the free constants, "zero", {"horizon": T} (natural at time T) or an array. By default those that `System.equations` was given.
+    #[pyo3(signature = (constants=None))]
+    fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
+        let rule = arguments::constants(constants.as_ref(), None)?;
+        let Ready { equations, start, .. } = self.ready.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let start = match rule {
+            None => start,
+            Some(rule) => {
+                let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000)?;
+                let scene = self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                let work = move || ready(setting(&scene), equations, &rule, &settings);
+                background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
+            }
+        };
         let width = start.len();
         array(py, start, None, &[width])
     }

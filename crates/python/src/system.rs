@@ -301,11 +301,11 @@ impl System {
         let work = move || {
             let equations = derive(&scene.system, &choice)?;
             let made = ready(setting(&scene), equations, &choice.constants, &settings)?;
-            Ok((made, scene.system.dimension()))
+            Ok((made, scene))
         };
         let made = background::run(py, &interrupt, work)?;
-        let (made, dimension) = made.map_err(|error: deltaq::SolveError| errors::solve(error))?;
-        Ok(Equations::new(made, dimension))
+        let (made, scene) = made.map_err(|error: deltaq::SolveError| errors::solve(error))?;
+        Ok(Equations::new(made, scene))
     }
 
     /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
