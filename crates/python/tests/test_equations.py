@@ -120,8 +120,10 @@ def test_wrong_shapes(system):
         equations.rates([0, 1, 2], y)
     with pytest.raises(ValueError, match="finite"):
         equations.rates(0, np.full(6, np.nan))
-    with pytest.raises(TypeError):
+    with pytest.raises(ValueError, match="string"):
         equations.rates(0, "y")
+    with pytest.raises(TypeError):
+        equations.rates(0, object())
 
 
 def test_singular_equations():
