@@ -2,6 +2,7 @@
 
 mod checks;
 mod licences;
+mod python;
 mod sources;
 
 use std::path::{Path, PathBuf};
