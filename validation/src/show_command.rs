@@ -3,12 +3,11 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{choices, derive};
+use deltaq::{EquationStyle, choices, derive, equations_text};
 use mechanics::{Scene, integrability};
 
 use crate::catalogue;
 use crate::cli::ShowArguments;
-use crate::report::{EquationStyle, equations_text};
 
 /// The built-in scenes, a line each.
 pub fn list() -> String {

@@ -2,7 +2,8 @@
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, Ending, FORMULATIONS, Metric, Motion, Settings, default_constants, formulation, removals, solve_choice,
+    Choice, Ending, FORMULATIONS, Motion, Settings, default_constants, error_estimate, formulation, removals, setting,
+    solve_choice,
 };
 use integrate::Projection;
 use mechanics::{ConstantsRule, Removal, Scene};
@@ -14,7 +15,7 @@ use crate::cli::{Format, SolveArguments};
 /// Relative error estimate over which a trajectory is not trusted.
 const TRUSTED: f64 = 1e-3;
 
-/// Times at which invariants and error estimates are sampled.
+/// Times at which invariants are sampled.
 const SAMPLES: usize = 200;
 
 /// How the command ended: the text to print, and whether the trajectory can be trusted.
@@ -43,7 +44,7 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
     };
     let wanted = times(arguments.times.as_deref(), &scene)?;
     let mut motion = solve_choice(&scene, &choice, &settings)?;
-    let estimate = error_estimate(&mut motion, &scene)?;
+    let estimate = error_estimate(&mut motion, setting(&scene))?;
     let complaint = match &motion.ending {
         Ending::Stopped { t, cause } => Some(format!("stopped at t = {t}: {cause}")),
         Ending::Completed if estimate.relative.is_nan() || estimate.relative > TRUSTED => Some(format!(
@@ -140,25 +141,6 @@ fn times(text: Option<&str>, scene: &Scene) -> Result<Vec<f64>> {
         }
     }
     Ok(times)
-}
-
-struct Estimate {
-    absolute: f64,
-    relative: f64,
-}
-
-/// Largest difference of the two runs in the kinetic metric, and over the length of the way.
-fn error_estimate(motion: &mut Motion, scene: &Scene) -> Result<Estimate> {
-    let mut metric = Metric::new(&scene.system)?;
-    let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
-    for t in motion.grid(SAMPLES) {
-        let now = motion.at(t)?;
-        let length = |metric: &mut Metric, d: &[f64]| metric.length(t, &now.coordinates, &now.velocities, d);
-        absolute = absolute.max(length(&mut metric, &motion.difference_of_runs(t)?));
-        let way: Vec<f64> = now.coordinates.iter().zip(&scene.start.q).map(|(a, b)| a - b).collect();
-        scale = scale.max(length(&mut metric, &way));
-    }
-    Ok(Estimate { absolute, relative: if scale > 0.0 { absolute / scale } else { absolute } })
 }
 
 fn csv(scene: &Scene, motion: &mut Motion, times: &[f64]) -> Result<String> {

@@ -6,16 +6,20 @@
 //!
 //! - [`FORMULATIONS`]: the table.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate.
+//! - [`ready()`]: the equations compiled, for other integrators.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
 mod comparison;
+mod equations_text;
 mod error;
+mod estimate;
 mod fit;
 mod gap;
 mod growth;
 mod horizon;
 mod metric;
 mod motion;
+mod ready;
 mod run;
 mod table;
 
@@ -23,7 +27,9 @@ pub use comparison::{
     Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, removals, setting,
     solve_choice,
 };
+pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
+pub use estimate::{ErrorEstimate, error_estimate};
 pub use fit::best_fit;
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
@@ -31,4 +37,5 @@ pub use gap::{
 pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
 pub use motion::{Ending, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
+pub use ready::{Ready, ready};
 pub use table::{FORMULATIONS, formulation};

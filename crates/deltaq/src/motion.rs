@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use integrate::{DenseOutput, Method, Projection, ProjectionReport, Solution, Status, StopCause, Work};
+use integrate::{DenseOutput, Interrupt, Method, Projection, ProjectionReport, Solution, Status, StopCause, Work};
 use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System};
 
 use crate::SolveError;
@@ -24,12 +24,14 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
+    /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
+    pub interrupt: Option<Interrupt>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (Method::Dop853, Projection::EveryStep);
-        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000 }
+        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000, interrupt: None }
     }
 }
 
@@ -220,7 +222,11 @@ fn readable_end(compiled: &mut Compiled, kept: &Trajectory, looser: &Trajectory)
     ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
 }
 
-fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -> Result<Vec<f64>, SolveError> {
+pub(crate) fn resolve(
+    prepared: &mut Prepared,
+    rule: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Vec<f64>, SolveError> {
     let expected = prepared.equations.free_constants.len();
     match rule {
         ConstantsRule::Zero => Ok(vec![0.0; expected]),

@@ -48,6 +48,7 @@ pub(crate) struct Prepared {
     pub(crate) compiled: Compiled,
     start_tape: symbolic::Tape,
     start_inputs: Vec<f64>,
+    pub(crate) guess: Vec<f64>,
     pub(crate) t: f64,
 }
 
@@ -67,7 +68,7 @@ impl Prepared {
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
         let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
-        Ok(Prepared { equations, compiled, start_tape, start_inputs, t: setting.start.t })
+        Ok(Prepared { equations, compiled, start_tape, start_inputs, guess: Vec::new(), t: setting.start.t })
     }
 
     /// Sets the free constants and returns `y(t₀)`.
@@ -76,10 +77,10 @@ impl Prepared {
         self.start_inputs[first..].copy_from_slice(constants);
         let mut values = vec![0.0; self.start_tape.outputs()];
         self.start_tape.evaluate(&self.start_inputs, &mut self.start_tape.workspace(), &mut values);
-        let guess = values.split_off(self.equations.states.len());
+        self.guess = values.split_off(self.equations.states.len());
         self.compiled.set_constants(constants);
-        if guess.len() == self.equations.unknowns().len() {
-            self.compiled.set_guess(&guess);
+        if self.guess.len() == self.equations.unknowns().len() {
+            self.compiled.set_guess(&self.guess);
         }
         values
     }
@@ -97,6 +98,7 @@ impl Prepared {
         options.method = settings.method;
         options.projection = settings.projection;
         options.max_steps = settings.max_steps;
+        options.interrupt = settings.interrupt.clone();
         let mut anchors = Vec::new();
         let start = self.compiled.settle(self.t, &y)?.to_vec();
         self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;

@@ -80,7 +80,7 @@ mod time_loop;
 pub use boundary::{BoundaryError, Residual, ShootOptions, Shot, fit, shoot};
 pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
-pub use options::{Dense, Method, Options, Projection};
+pub use options::{Dense, Interrupt, Method, Options, Projection};
 pub use problem::{EvaluationError, Problem, Start};
 pub use root::find_root;
 pub use status::{ProjectionReport, Solution, Status, StopCause, Work};

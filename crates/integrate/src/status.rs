@@ -67,6 +67,9 @@ pub enum StopCause {
         /// [`crate::Options::max_steps`].
         limit: usize,
     },
+    /// [`crate::Options::interrupt`] was raised.
+    #[error("interrupted")]
+    Interrupted,
     /// The library behind the method gave up.
     #[error("the solver gave up: {reason}")]
     Solver {

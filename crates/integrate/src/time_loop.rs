@@ -2,7 +2,7 @@
 
 use crate::dense::{DenseOutput, evaluate_segment};
 use crate::events::{EventWatch, Segment};
-use crate::options::{Dense, Options, Projection};
+use crate::options::{Dense, Interrupt, Options, Projection};
 use crate::problem::Start;
 use crate::status::{ProjectionReport, Solution, Status, StopCause};
 use crate::stepper::{Attempt, Stepper};
@@ -50,6 +50,9 @@ impl Record<'_, '_> {
         let mut failure: Option<Failure> = None;
         let mut failures = 0;
         while stepper.time() != end {
+            if self.options.interrupt.as_ref().is_some_and(Interrupt::is_raised) {
+                return Err(StopCause::Interrupted);
+            }
             let work = system.work();
             if work.steps + work.rejected >= self.options.max_steps {
                 return Err(StopCause::TooManySteps { limit: self.options.max_steps });

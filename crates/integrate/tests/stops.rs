@@ -2,7 +2,7 @@
 
 mod problems;
 
-use integrate::{CallError, EvaluationError, Method, Options, Problem, Start, Status, StopCause, integrate};
+use integrate::{CallError, EvaluationError, Interrupt, Method, Options, Problem, Start, Status, StopCause, integrate};
 use problems::*;
 
 fn options(method: Method) -> Options {
@@ -260,6 +260,46 @@ fn every_bad_call() {
     assert!(matches!(call(&late, 1.0f64.next_up(), &good), Some(CallError::EmptyInterval { .. })));
     let options = Options { max_steps: 0, ..good };
     assert_eq!(call(&start, 1.0, &options), Some(CallError::MaxSteps { found: 0, limit: 1 }));
+}
+
+/// The oscillator, which raises the flag once it is past t = 1.
+struct Interrupting {
+    case: Case,
+    interrupt: Interrupt,
+}
+
+impl Problem for Interrupting {
+    fn dimension(&self) -> usize {
+        self.case.dimension()
+    }
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
+        if t > 1.0 {
+            self.interrupt.raise();
+        }
+        self.case.rates(t, y, rates)
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
+        self.case.jacobian(t, y, jacobian)
+    }
+}
+
+#[test]
+fn an_interrupt_ends_the_run_at_the_end_of_a_step() {
+    for method in Method::ALL {
+        let interrupt = Interrupt::default();
+        let options = Options { interrupt: Some(interrupt.clone()), ..options(method) };
+        let mut problem = Interrupting { case: oscillator(), interrupt };
+        let start = Start { t: 0.0, y: vec![1.0, 0.0] };
+        let solution = integrate(&mut problem, &start, 100.0, &options).unwrap();
+        let end = solution.dense.end();
+        assert_eq!(solution.status, Status::Stopped { t: end, cause: StopCause::Interrupted }, "{method:?}");
+        assert!(end > 0.0 && end < 10.0, "{method:?}: {end}");
+        assert!((solution.dense.end_state()[0] - end.cos()).abs() < 1e-4, "{method:?}");
+        // the flag stays up: what starts after it makes no step
+        let solution = integrate(&mut oscillator(), &start, 100.0, &options).unwrap();
+        assert_eq!(solution.status, Status::Stopped { t: 0.0, cause: StopCause::Interrupted }, "{method:?}");
+        assert_eq!(solution.work.steps, 0);
+    }
 }
 
 /// `y' = 1`, and everything that was accepted.

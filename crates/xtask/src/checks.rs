@@ -3,13 +3,14 @@
 //! All that compiles is compiled in the release profile: integration needs the optimisation, the reports are written
 //! by a release build, and so the dependencies are built once.
 
+use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{licences, sources};
+use crate::{licences, python, sources};
 
 /// One thing that must hold.
 pub(crate) struct Check {
@@ -75,6 +76,12 @@ pub(crate) fn all() -> Vec<Check> {
             run: doctests,
         },
         Check {
+            name: "python",
+            about: "the Python module builds, installs and does what its tests say",
+            mend: "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
+            run: python::check,
+        },
+        Check {
             name: "docs",
             about: "the documentation builds without a warning",
             mend: "RUSTDOCFLAGS=\"-D warnings\" cargo doc --release --workspace --no-deps, after mending the comment",
@@ -129,7 +136,12 @@ pub(crate) fn engine() -> ExitCode {
 
 /// The cargo that runs this.
 pub(crate) fn cargo() -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    outside(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// A program that runs as if nobody had run this one.
+pub(crate) fn outside(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
     // What cargo says of this package is not meant for the ones it is asked about.
     for (name, _) in std::env::vars_os() {
         if name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_")) {
@@ -139,9 +151,11 @@ pub(crate) fn cargo() -> Command {
     command
 }
 
-fn succeed(command: &mut Command) -> Result<Outcome> {
+/// Runs a program that must succeed.
+pub(crate) fn succeed(command: &mut Command) -> Result<Outcome> {
     let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy().into_owned()).collect();
-    let line = format!("cargo {}", arguments.join(" "));
+    let program = Path::new(command.get_program()).file_stem().unwrap_or_default().to_string_lossy();
+    let line = format!("{program} {}", arguments.join(" "));
     let status = command.status().with_context(|| line.clone())?;
     if !status.success() {
         bail!("`{line}` ended with {status}");

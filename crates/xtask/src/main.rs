@@ -3,6 +3,7 @@
 mod checks;
 mod licences;
 mod mutate;
+mod python;
 mod sources;
 
 use std::path::{Path, PathBuf};

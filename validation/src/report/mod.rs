@@ -1,7 +1,6 @@
 //! Reports: Markdown that reads well on a code host, SVG pictures by relative link, one JSON file for machines.
 
 mod audit_page;
-mod equations;
 mod files;
 mod numbers;
 mod overview;
@@ -13,7 +12,6 @@ mod tables;
 mod verdicts;
 
 pub use audit_page::AuditReport;
-pub use equations::{EquationStyle, equations_text};
 pub use files::{File, write_all};
 pub use overview::{Provenance, overview};
 pub use pictures::pictures;

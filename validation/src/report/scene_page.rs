@@ -3,9 +3,8 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Comparison, Pair, Verdict, removals};
+use deltaq::{Comparison, EquationStyle, Pair, Verdict, equations_text, removals};
 
-use crate::report::equations::{EquationStyle, equations_text};
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables;
 use crate::substitution;

@@ -1,0 +1,32 @@
+//! The error estimate of a whole motion.
+
+use crate::gap::subtract;
+use crate::{Metric, Motion, Setting, SolveError};
+
+/// Instants at which it is taken.
+const SAMPLES: usize = 200;
+
+/// Largest difference of the two runs of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorEstimate {
+    /// In the kinetic metric.
+    pub absolute: f64,
+    /// Over the largest distance from the start, where there is one.
+    pub relative: f64,
+}
+
+/// The error estimate of `motion`, which started at `setting`, at 200 equidistant times.
+///
+/// # Errors
+/// [`SolveError`] where the motion cannot be read off.
+pub fn error_estimate(motion: &mut Motion, setting: Setting) -> Result<ErrorEstimate, SolveError> {
+    let mut metric = Metric::new(setting.system)?;
+    let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
+    for t in motion.grid(SAMPLES) {
+        let (now, difference) = motion.at_with_difference(t)?;
+        let mut length = |d: &[f64]| metric.length(t, &now.coordinates, &now.velocities, d);
+        absolute = absolute.max(length(&difference));
+        scale = scale.max(length(&subtract(&now.coordinates, &setting.start.q)));
+    }
+    Ok(ErrorEstimate { absolute, relative: if scale > 0.0 { absolute / scale } else { absolute } })
+}

@@ -1,0 +1,68 @@
+//! Equations made ready for time integrators other than ours.
+
+use mechanics::{Compiled, ConstantsRule, Equations};
+
+use crate::motion::resolve;
+use crate::run::Prepared;
+use crate::{Setting, Settings, SolveError};
+
+/// Equations compiled and started.
+#[derive(Clone)]
+pub struct Ready {
+    /// The equations.
+    pub equations: Equations,
+    /// `ẏ = F(t, y)` with its Jacobian; the constants and the guess are set.
+    pub compiled: Compiled,
+    /// Values of the free constants.
+    pub constants: Vec<f64>,
+    /// `y(t₀)`.
+    pub start: Vec<f64>,
+    /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty where the derivation knows none.
+    pub guess: Vec<f64>,
+}
+
+/// Compiles `equations`, Jacobian included, and computes what they start from. Nothing is integrated, unless the constants are natural at a
+/// horizon; that is done as `settings` say.
+///
+/// # Errors
+/// [`SolveError`] where there is no start.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// use deltaq::{Settings, choices, derive, ready, setting};
+/// // the ice sledge turns at a constant rate, y = (x, y, phi, x', y', phi')
+/// let chetaev = choices(&scene).remove(0);
+/// let equations = derive(&scene.system, &chetaev)?;
+/// let mut ready = ready(setting(&scene), equations, &chetaev.constants, &Settings::default())?;
+/// let mut rates = [0.0; 6];
+/// ready.compiled.rates(0.0, &ready.start, &mut rates)?;
+/// assert_eq!((rates[2], rates[5]), (1.0, 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn ready(
+    setting: Setting,
+    equations: Equations,
+    constants: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Ready, SolveError> {
+    let mut prepared = Prepared::new(setting, equations, settings)?;
+    let constants = resolve(&mut prepared, constants, settings)?;
+    let start = prepared.start(&constants);
+    let Prepared { equations, compiled, guess, .. } = prepared;
+    let compiled = if settings.method.is_implicit() { compiled } else { compiled.with_jacobian(&equations)? };
+    Ok(Ready { equations, compiled, constants, start, guess })
+}

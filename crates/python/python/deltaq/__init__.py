@@ -1,0 +1,68 @@
+"""Mechanical systems with velocity constraints: three formulations of their motion, derived, integrated, compared.
+
+    import deltaq
+    system = deltaq.load("sledge.toml")           # or deltaq.System(...), deltaq.parse(text)
+    motion = system.solve("chetaev")              # Motion: times, coordinates, velocities, ...
+    equations = system.equations("vakonomic")     # Equations: text, latex, rates(t, y), jacobian(t, y), ...
+    comparison = system.compare()                 # Comparison: pairs with verdicts, fits of the free constants
+
+All arrays are of float64. Everything that deltaq refuses is a DeltaqError; a wrong shape or an unknown name is a ValueError.
+"""
+
+from ._native import (
+    FORMULATIONS,
+    METHODS,
+    BoundaryError,
+    CallError,
+    Comparison,
+    CompileError,
+    DeltaqError,
+    DerivationError,
+    Equations,
+    EvaluationError,
+    Fit,
+    Growth,
+    LeadingTerm,
+    Motion,
+    Outputs,
+    Pair,
+    RemovalError,
+    Run,
+    SceneError,
+    SolveError,
+    StartError,
+    State,
+    System,
+    __version__,
+    load,
+    parse,
+)
+
+__all__ = [
+    "FORMULATIONS",
+    "METHODS",
+    "BoundaryError",
+    "CallError",
+    "Comparison",
+    "CompileError",
+    "DeltaqError",
+    "DerivationError",
+    "Equations",
+    "EvaluationError",
+    "Fit",
+    "Growth",
+    "LeadingTerm",
+    "Motion",
+    "Outputs",
+    "Pair",
+    "RemovalError",
+    "Run",
+    "SceneError",
+    "SolveError",
+    "StartError",
+    "State",
+    "System",
+    "__version__",
+    "load",
+    "parse",
+]

@@ -1,0 +1,117 @@
+//! What is chosen by name: formulation, removal, constants, method.
+
+use deltaq::{Choice, FORMULATIONS, Settings, default_constants, formulation, removals};
+use integrate::{Interrupt, Method, Projection};
+use mechanics::{ConstantsRule, Removal, Scene};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::arrays::FloatList;
+use crate::errors;
+
+/// Names of the methods.
+pub(crate) const METHODS: [(&str, Method); 5] = [
+    ("dop853", Method::Dop853),
+    ("tsit45", Method::Tsit45),
+    ("bdf", Method::Bdf),
+    ("tr-bdf2", Method::TrBdf2),
+    ("esdirk34", Method::Esdirk34),
+];
+
+/// How to integrate, and the flag that ends it.
+pub(crate) fn settings(
+    method: &str,
+    tolerance: f64,
+    project: bool,
+    max_steps: usize,
+) -> PyResult<(Settings, Interrupt)> {
+    let Some((_, method)) = METHODS.iter().find(|m| m.0 == method) else {
+        return Err(unknown("method", method, METHODS.iter().map(|m| m.0)));
+    };
+    let interrupt = Interrupt::default();
+    let settings = Settings {
+        tolerance,
+        method: *method,
+        projection: if project { Projection::EveryStep } else { Projection::Off },
+        max_steps,
+        interrupt: Some(interrupt.clone()),
+    };
+    Ok((settings, interrupt))
+}
+
+fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
+    PyValueError::new_err(format!("unknown {what} `{name}`; known: {}", known.collect::<Vec<_>>().join(", ")))
+}
+
+/// The choice of a formulation, a removal and constants for a scene.
+pub(crate) fn choice(
+    scene: &Scene,
+    name: &str,
+    removal: Option<&str>,
+    constants: Option<ConstantsRule>,
+) -> PyResult<Choice> {
+    let Some(entry) = formulation(name) else {
+        return Err(unknown("formulation", name, FORMULATIONS.iter().map(|f| f.name)));
+    };
+    if removal.is_some() && !entry.needs_removal {
+        return Err(PyValueError::new_err(format!("the {name} formulation takes no removal")));
+    }
+    let removal = if entry.needs_removal { Some(pick(scene, removal)?) } else { None };
+    let usual = || removal.as_ref().map_or_else(|| default_constants(entry, scene), |r| r.constants.clone());
+    let constants = constants.unwrap_or_else(usual);
+    Ok(Choice { label: entry.title.into(), formulation: entry.name, removal, constants })
+}
+
+/// The removal of that name, by default the first.
+fn pick(scene: &Scene, name: Option<&str>) -> PyResult<Removal> {
+    const AUTOMATIC: [&str; 2] = ["coordinates", "quasi-velocities"];
+    let refused = |error: mechanics::RemovalError| errors::solve(error);
+    if let Some(removal) = scene.removals.iter().find(|r| name.is_some_and(|n| r.name == n)) {
+        return Ok(removal.clone());
+    }
+    match name {
+        Some("coordinates") => Removal::by_coordinates(&scene.system, &scene.start).map_err(refused),
+        Some("quasi-velocities") => Removal::by_quasi_velocities(&scene.system, &scene.start).map_err(refused),
+        Some(name) => {
+            let own = scene.removals.iter().map(|r| r.name.as_str());
+            Err(unknown("removal", name, own.chain(AUTOMATIC)))
+        }
+        None => Ok(removals(scene).map_err(refused)?.swap_remove(0)),
+    }
+}
+
+/// Free constants from the arguments `constants` and `mu0`.
+pub(crate) fn constants(
+    constants: Option<&Bound<'_, PyAny>>,
+    mu0: Option<FloatList<'_>>,
+) -> PyResult<Option<ConstantsRule>> {
+    match (constants, mu0) {
+        (Some(_), Some(_)) => Err(PyTypeError::new_err("either constants or mu0, not both")),
+        (None, None) => Ok(None),
+        (None, Some(mu0)) => Ok(Some(ConstantsRule::Given(list(&mu0)))),
+        (Some(rule), None) => rule_from(rule).map(Some),
+    }
+}
+
+fn list(array: &FloatList<'_>) -> Vec<f64> {
+    array.as_array().iter().copied().collect()
+}
+
+fn rule_from(rule: &Bound<'_, PyAny>) -> PyResult<ConstantsRule> {
+    let expected = "constants is none of \"zero\", {\"horizon\": T}, an array of numbers";
+    if let Ok(word) = rule.cast::<PyString>() {
+        return match &*word.to_cow()? {
+            "zero" => Ok(ConstantsRule::Zero),
+            other => Err(PyValueError::new_err(format!("{expected}: {other:?}"))),
+        };
+    }
+    if let Ok(table) = rule.cast::<PyDict>() {
+        return match (table.len(), table.get_item("horizon")?) {
+            (1, Some(horizon)) => Ok(ConstantsRule::Natural { horizon: horizon.extract()? }),
+            _ => Err(PyValueError::new_err(format!("{expected}: {table}"))),
+        };
+    }
+    let values: FloatList = rule.extract().map_err(|_| PyTypeError::new_err(format!("{expected}: {rule}")))?;
+    Ok(ConstantsRule::Given(list(&values)))
+}

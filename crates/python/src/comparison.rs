@@ -1,0 +1,280 @@
+//! All formulations of a system, pair by pair.
+
+use deltaq::{Gap, THRESHOLDS, Verdict};
+use mechanics::Scene;
+use numpy::PyArrayDyn;
+use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::array;
+use crate::motion::{Motion, Sampled};
+
+/// How a gap grows near the start: gap = length * (t - t0)**exponent.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Growth {
+    /// Measured exponent.
+    exponent: f64,
+    /// By how much the exponent is uncertain.
+    uncertainty: f64,
+    /// Leading coefficient of the second motion minus the first, shape (n,).
+    coefficient: Py<PyArrayDyn<f64>>,
+    /// Its length in the kinetic metric.
+    length: f64,
+}
+
+/// The leading term of vakonomic minus Chetaev as theory predicts it.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct LeadingTerm {
+    /// 2 or 3.
+    exponent: u32,
+    /// Leading coefficient, shape (n,).
+    coefficient: Py<PyArrayDyn<f64>>,
+    /// Its length in the kinetic metric.
+    length: f64,
+}
+
+/// Two motions compared.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Pair {
+    /// Label of the first motion.
+    first: String,
+    /// Label of the second motion.
+    second: String,
+    /// "same", "different" or "undecided".
+    verdict: &'static str,
+    /// Why the verdict is undecided, else None.
+    because: Option<String>,
+    /// First time at which the gap passes each threshold (1e-6, 1e-3, 0.1); None where it never does.
+    tau: Py<PyDict>,
+    /// Largest gap sqrt(dq' M dq), among the certain ones where there are any.
+    largest_gap: f64,
+    /// Largest difference of each coordinate, by name.
+    largest_by_coordinate: Py<PyDict>,
+    /// First sample at which the gap is certain, None where it never is.
+    certain_from: Option<f64>,
+    /// Largest error estimates of both motions, kinetic metric.
+    error_estimates: (f64, f64),
+    /// Time up to which both motions exist.
+    end: f64,
+    /// Samples of the gap: times, shape (k,).
+    times: Py<PyArrayDyn<f64>>,
+    /// Samples of the gap: gaps, shape (k,).
+    gap: Py<PyArrayDyn<f64>>,
+    /// Samples of the gap: what each has to pass to count, shape (k,).
+    limit: Py<PyArrayDyn<f64>>,
+    /// Growth near the start, None where the gap does not stand out from the errors there.
+    growth: Option<Py<Growth>>,
+    /// Predicted leading term for Chetaev and vakonomic, None elsewhere.
+    predicted: Option<Py<LeadingTerm>>,
+}
+
+#[pymethods]
+impl Pair {
+    fn __repr__(&self) -> String {
+        let Pair { first, second, verdict, largest_gap, .. } = self;
+        format!("<deltaq.Pair {first} - {second}: {verdict}, largest gap {largest_gap:.3e}>")
+    }
+}
+
+/// The free constants with which one motion comes closest to another.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Fit {
+    /// Label of the motion whose constants were fitted.
+    run: String,
+    /// Label of the motion that was to be met.
+    target: String,
+    /// The best constants by name; None where no constants lead to a motion over the whole time.
+    constants: Option<Py<PyDict>>,
+    /// "same", "different" or "undecided" of what is left; None as for `constants`.
+    verdict: Option<&'static str>,
+    /// Largest gap that is left; None as for `constants`.
+    largest_gap: Option<f64>,
+}
+
+#[pymethods]
+impl Fit {
+    fn __repr__(&self) -> String {
+        let left = self.largest_gap.map_or("no motion".into(), |gap| format!("gap left {gap:.3e}"));
+        format!("<deltaq.Fit {} to {}: {left}>", self.run, self.target)
+    }
+}
+
+/// One formulation with all choices made, and what became of it.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Run {
+    /// Label: the formulation, and the removal where there are several.
+    label: String,
+    /// Name of the formulation.
+    formulation: &'static str,
+    /// Name of the removal, None where the formulation needs none.
+    removal: Option<String>,
+    /// The motion, None where there is none.
+    motion: Option<Py<Motion>>,
+    /// Why there is no motion, None where there is one.
+    error: Option<String>,
+}
+
+#[pymethods]
+impl Run {
+    fn __repr__(&self) -> String {
+        format!("<deltaq.Run {}: {}>", self.label, self.error.as_deref().unwrap_or("a motion"))
+    }
+}
+
+/// A system in every formulation, pair by pair.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Comparison {
+    /// Frobenius' verdict on the constraints, in words.
+    integrability: String,
+    /// All runs.
+    runs: Vec<Py<Run>>,
+    /// All pairs that were compared.
+    pairs: Vec<Py<Pair>>,
+    /// Fits of free constants.
+    fits: Vec<Py<Fit>>,
+}
+
+#[pymethods]
+impl Comparison {
+    /// The pair of two runs, in either order. A run is named by its label, or by its formulation where that is the first of its kind.
+    ///
+    /// KeyError where there is no such run, or where the two were not compared.
+    #[pyo3(signature = (a, b))]
+    fn pair(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<Py<Pair>> {
+        let (one, two) = (self.label(a)?, self.label(b)?);
+        let is = |p: &Pair| (p.first == one && p.second == two) || (p.first == two && p.second == one);
+        let found = self.pairs.iter().find(|p| is(p.get())).map(|p| p.clone_ref(py));
+        found.ok_or_else(|| PyKeyError::new_err(format!("{one} and {two} were not compared")))
+    }
+
+    /// "same", "different" or "undecided" for two runs, named as in `pair`.
+    #[pyo3(signature = (a, b))]
+    fn verdict(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<&'static str> {
+        Ok(self.pair(py, a, b)?.get().verdict)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<deltaq.Comparison of {} runs, {} pairs>", self.runs.len(), self.pairs.len())
+    }
+}
+
+impl Comparison {
+    fn label(&self, name: &str) -> PyResult<String> {
+        let runs = || self.runs.iter().map(Py::get);
+        let found = runs().find(|r| r.label == name).or_else(|| runs().find(|r| r.formulation == name));
+        let known = || runs().map(|r| r.label.as_str()).collect::<Vec<_>>().join(", ");
+        found
+            .map(|r| r.label.clone())
+            .ok_or_else(|| PyKeyError::new_err(format!("no run `{name}`; there are {}", known())))
+    }
+
+    pub(crate) fn new(py: Python<'_>, compared: Compared) -> PyResult<Comparison> {
+        let Compared { scene, integrability, runs, pairs, fits } = compared;
+        let labels: Vec<String> = runs.iter().map(|r| r.0.label.clone()).collect();
+        let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
+        let vector = |values: Vec<f64>| {
+            let count = Some(values.len());
+            array(py, values, count, &[]).map(Bound::unbind)
+        };
+        let pair = |p: deltaq::Pair| -> PyResult<Py<Pair>> {
+            let (verdict, because) = words(&p.gap);
+            let (tau, by_coordinate) = (PyDict::new(py), PyDict::new(py));
+            for (threshold, time) in THRESHOLDS.iter().zip(p.gap.passes) {
+                tau.set_item(threshold, time)?;
+            }
+            for (name, difference) in names.iter().zip(&p.gap.largest_by_coordinate) {
+                by_coordinate.set_item(name, difference)?;
+            }
+            let growth = p.growth.map(|g| -> PyResult<Py<Growth>> {
+                let (exponent, uncertainty, length) = (g.exponent, g.uncertainty, g.length);
+                Py::new(py, Growth { exponent, uncertainty, length, coefficient: vector(g.coefficient)? })
+            });
+            let predicted = p.predicted.map(|term| -> PyResult<Py<LeadingTerm>> {
+                let (exponent, length) = (term.exponent, term.length);
+                Py::new(py, LeadingTerm { exponent, length, coefficient: vector(term.coefficient)? })
+            });
+            let samples = |pick: fn(&deltaq::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
+            let pair = Pair {
+                first: labels[p.first].clone(),
+                second: labels[p.second].clone(),
+                verdict,
+                because,
+                tau: tau.unbind(),
+                largest_gap: p.gap.largest,
+                largest_by_coordinate: by_coordinate.unbind(),
+                certain_from: p.gap.certain_from,
+                error_estimates: p.gap.estimates.into(),
+                end: p.gap.end,
+                times: samples(|p| p.t)?,
+                gap: samples(|p| p.gap)?,
+                limit: samples(|p| p.limit)?,
+                growth: growth.transpose()?,
+                predicted: predicted.transpose()?,
+            };
+            Py::new(py, pair)
+        };
+        let fit = |f: deltaq::Fit| -> PyResult<Py<Fit>> {
+            let constants = f.fitted.as_ref().map(|m| -> PyResult<Py<PyDict>> {
+                let dict = PyDict::new(py);
+                m.constants.iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
+                Ok(dict.unbind())
+            });
+            let fit = Fit {
+                run: labels[f.run].clone(),
+                target: labels[f.target].clone(),
+                constants: constants.transpose()?,
+                verdict: f.fitted.as_ref().map(|m| words(&m.gap).0),
+                largest_gap: f.fitted.as_ref().map(|m| m.gap.largest),
+            };
+            Py::new(py, fit)
+        };
+        let run = |(choice, outcome): (deltaq::Choice, Result<Sampled, deltaq::SolveError>)| {
+            let (motion, error) = match outcome {
+                Ok(sampled) => (Some(Py::new(py, Motion::new(py, sampled)?)?), None),
+                Err(error) => (None, Some(error.to_string())),
+            };
+            let removal = choice.removal.map(|r| r.name);
+            Py::new(py, Run { label: choice.label, formulation: choice.formulation, removal, motion, error })
+        };
+        Ok(Comparison {
+            integrability,
+            runs: runs.into_iter().map(run).collect::<PyResult<_>>()?,
+            pairs: pairs.into_iter().map(pair).collect::<PyResult<_>>()?,
+            fits: fits.into_iter().map(fit).collect::<PyResult<_>>()?,
+        })
+    }
+}
+
+fn words(gap: &Gap) -> (&'static str, Option<String>) {
+    match &gap.verdict {
+        Verdict::Same => ("same", None),
+        Verdict::Different => ("different", None),
+        Verdict::Undecided { because } => ("undecided", Some(because.clone())),
+    }
+}
+
+/// A comparison, with its motions read off.
+pub(crate) struct Compared {
+    scene: Scene,
+    integrability: String,
+    runs: Vec<(deltaq::Choice, Result<Sampled, deltaq::SolveError>)>,
+    pairs: Vec<deltaq::Pair>,
+    fits: Vec<deltaq::Fit>,
+}
+
+/// Compares all formulations of `scene`.
+pub(crate) fn compare(scene: Scene, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
+    let deltaq::Comparison { scene, integrability, runs, pairs, fits } = deltaq::compare(scene, Vec::new(), settings)?;
+    let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
+    let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
+    Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, scene })
+}
+
+/// Refuses a tolerance with which every run would be refused.
+pub(crate) fn check_tolerance(tolerance: f64) -> PyResult<()> {
+    if tolerance > 0.0 && tolerance < 1.0 {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!("tolerance is {tolerance}; it must be above 0 and below 1")))
+}

@@ -1,0 +1,239 @@
+//! Equations of motion as functions of arrays.
+
+use std::sync::{Mutex, PoisonError};
+
+use deltaq::{EquationStyle, Ready, constant_names, equations_text, ready, setting};
+use mechanics::{Compiled, EvaluationFailure, Role, Scene};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::{FloatList, Floats, Rows, array, common, times};
+use crate::motion::{Names, Outputs};
+use crate::{arguments, background, errors};
+
+type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+
+/// The equations of motion y' = F(t, y) of a system under one formulation.
+///
+/// States y are named in `states`; what (q0, v0) leaves open is named in `constants`. All callables take one state, t a number and y of shape
+/// (m,), or k of them at once, y of shape (k, m) with t a number or of shape (k,).
+#[pyclass(frozen, module = "deltaq")]
+pub(crate) struct Equations {
+    ready: Mutex<Ready>,
+    scene: Mutex<Scene>,
+    dimension: usize,
+    /// Name of the formulation.
+    #[pyo3(get)]
+    formulation: &'static str,
+    /// Name of the removal, None where the formulation needs none.
+    #[pyo3(get)]
+    removal: Option<String>,
+    /// Names of the states y, length m.
+    #[pyo3(get)]
+    states: Vec<String>,
+    /// Names of the free constants.
+    #[pyo3(get)]
+    constants: Vec<String>,
+    /// The equations and what was left out of them, in the language of scenes.
+    #[pyo3(get)]
+    text: String,
+    /// The equations in LaTeX: one `aligned` environment.
+    #[pyo3(get)]
+    latex: String,
+}
+
+/// Calls `body` with each row of `t` and `y`: the row's number, time and state.
+fn each(t: &Rows, y: &Rows, mut body: impl FnMut(f64, &[f64]) -> Result<(), EvaluationFailure>) -> PyResult<()> {
+    for i in 0..y.count().unwrap_or(1) {
+        let time = t.row(i)[0];
+        body(time, y.row(i)).map_err(|error| errors::evaluation(&error, time))?;
+    }
+    Ok(())
+}
+
+impl Equations {
+    pub(crate) fn new(ready: Ready, scene: Scene) -> Equations {
+        let equations = &ready.equations;
+        let g = &equations.graph;
+        let lines: Vec<String> =
+            equations.statements.iter().map(|s| format!("{} &= {}", g.latex(s.left), g.latex(s.right))).collect();
+        Equations {
+            dimension: scene.system.dimension(),
+            scene: Mutex::new(scene),
+            formulation: equations.formulation,
+            removal: equations.removal.as_ref().map(|r| r.name.clone()),
+            states: equations.states.iter().map(|y| g.name(y.symbol)).collect(),
+            constants: constant_names(equations),
+            text: equations_text(equations, EquationStyle::Plain),
+            latex: format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n")),
+            ready: Mutex::new(ready),
+        }
+    }
+
+    /// Reads `t` and `y`, and calls `body` with the compiled equations, which start from the same guess in each call.
+    fn evaluate<T>(
+        &self,
+        t: &Floats<'_>,
+        y: &Floats<'_>,
+        body: impl FnOnce(&mut Compiled, &Rows, &Rows) -> PyResult<T>,
+    ) -> PyResult<(T, Option<usize>)> {
+        let (t, y) = (times(t)?, Rows::read("y", y, self.states.len())?);
+        let count = common(&[("y", &y), ("t", &t)])?;
+        if t.count().is_some() && y.count().is_none() {
+            return Err(PyValueError::new_err("t has several entries, y has a single row"));
+        }
+        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        let Ready { compiled, guess, .. } = &mut *ready;
+        if !guess.is_empty() {
+            compiled.set_guess(guess);
+        }
+        Ok((body(compiled, &t, &y)?, count))
+    }
+
+    /// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
+    fn state(&self, q: &[f64], v: &[f64], mu: &[f64]) -> PyResult<(Vec<f64>, Vec<usize>)> {
+        let ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        let equations = &ready.equations;
+        let place =
+            |list: &[symbolic::Expr], symbol| list.iter().position(|&e| equations.graph.as_symbol(e) == Some(symbol));
+        let multipliers: Vec<_> = equations.multipliers.iter().map(|m| m.expression).collect();
+        let (mut y, mut velocities) = (Vec::new(), vec![None; q.len()]);
+        for state in &equations.states {
+            let value = match state.role {
+                Role::Position => place(&equations.coordinates, state.symbol).map(|i| q[i]),
+                Role::Velocity => place(&equations.velocities, state.symbol).map(|i| {
+                    velocities[i] = Some(y.len());
+                    v[i]
+                }),
+                Role::Multiplier => place(&multipliers, state.symbol).and_then(|i| mu.get(i).copied()),
+                _ => None,
+            };
+            y.extend(value);
+        }
+        let places: Option<Vec<usize>> = velocities.into_iter().collect();
+        match places.filter(|_| y.len() == equations.states.len()) {
+            Some(places) => Ok((y, places)),
+            None => Err(PyValueError::new_err(format!(
+                "the states of the {} formulation ({}) are not coordinates, velocities and the given mu; use rates",
+                self.formulation,
+                self.states.join(", ")
+            ))),
+        }
+    }
+}
+
+#[pymethods]
+impl Equations {
+    /// The state y(t0) that belongs to the start of the system, shape (m,).
+    ///
+    /// constants: the free constants, "zero", {"horizon": T} (natural at time T) or an array. By default those that `System.equations` was given.
+    #[pyo3(signature = (constants=None))]
+    fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
+        let rule = arguments::constants(constants.as_ref(), None)?;
+        let Ready { equations, start, .. } = self.ready.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let start = match rule {
+            None => start,
+            Some(rule) => {
+                let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000)?;
+                let scene = self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                let work = move || ready(setting(&scene), equations, &rule, &settings);
+                background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
+            }
+        };
+        let width = start.len();
+        array(py, start, None, &[width])
+    }
+
+    /// Rates y' = F(t, y), of the shape of y.
+    #[pyo3(signature = (t, y))]
+    fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
+        let width = self.states.len();
+        let (values, count) = self.evaluate(&t, &y, |compiled, t, y| {
+            let mut values = Vec::with_capacity(width * y.count().unwrap_or(1));
+            let mut rates = vec![0.0; width];
+            each(t, y, |t, y| {
+                compiled.rates(t, y, &mut rates)?;
+                values.extend_from_slice(&rates);
+                Ok(())
+            })?;
+            Ok(values)
+        })?;
+        array(py, values, count, &[width])
+    }
+
+    /// The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j.
+    #[pyo3(signature = (t, y))]
+    fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
+        let width = self.states.len();
+        let (values, count) = self.evaluate(&t, &y, |compiled, t, y| {
+            let mut values = Vec::with_capacity(width * width * y.count().unwrap_or(1));
+            let mut jacobian = vec![0.0; width * width];
+            each(t, y, |t, y| {
+                compiled.jacobian(t, y, &mut jacobian)?;
+                values.extend_from_slice(&jacobian);
+                Ok(())
+            })?;
+            Ok(values)
+        })?;
+        array(py, values, count, &[width, width])
+    }
+
+    /// Coordinates, velocities, multipliers and invariants at (t, y).
+    #[pyo3(signature = (t, y))]
+    fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
+        let (rows, count) = self.evaluate(&t, &y, |compiled, t, y| {
+            let mut rows = Vec::new();
+            each(t, y, |t, y| {
+                rows.push(compiled.outputs(t, y)?);
+                Ok(())
+            })?;
+            Ok(rows)
+        })?;
+        let names = Names::of(&self.ready.lock().unwrap_or_else(PoisonError::into_inner).equations);
+        Outputs::new(py, &rows, self.dimension, &names, count)
+    }
+
+    /// Accelerations q'' at one point, shape (n,): t a number, q and v of shape (n,).
+    ///
+    /// The vakonomic formulation also needs mu, shape (h,). ValueError where the states are others.
+    #[pyo3(signature = (t, q, v, mu=None))]
+    fn acceleration<'py>(
+        &self,
+        py: Python<'py>,
+        t: f64,
+        q: FloatList<'_>,
+        v: FloatList<'_>,
+        mu: Option<FloatList<'_>>,
+    ) -> Array<'py> {
+        let values = |array: &FloatList| array.as_array().iter().copied().collect::<Vec<f64>>();
+        let (q, v, mu) = (values(&q), values(&v), mu.as_ref().map(values).unwrap_or_default());
+        for (name, list) in [("q", &q), ("v", &v)] {
+            if list.len() != self.dimension {
+                let (found, needed) = (list.len(), self.dimension);
+                return Err(PyValueError::new_err(format!("{name} has {found} entries; {needed} are needed")));
+            }
+        }
+        let (y, places) = self.state(&q, &v, &mu)?;
+        let mut rates = vec![0.0; y.len()];
+        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        let Ready { compiled, guess, .. } = &mut *ready;
+        if !guess.is_empty() {
+            compiled.set_guess(guess);
+        }
+        compiled.rates(t, &y, &mut rates).map_err(|error| errors::evaluation(&error, t))?;
+        array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
+    }
+
+    fn _repr_latex_(&self) -> String {
+        format!("$\\displaystyle {}$", self.latex)
+    }
+
+    fn __str__(&self) -> &str {
+        &self.text
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<deltaq.Equations {}, states ({})>", self.formulation, self.states.join(", "))
+    }
+}

@@ -1,0 +1,55 @@
+//! Exceptions: one class for each error of the library that a caller can meet.
+
+use mechanics::EvaluationFailure;
+use pyo3::create_exception;
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+
+create_exception!(deltaq, DeltaqError, PyException, "What deltaq refuses, and why.");
+create_exception!(
+    deltaq,
+    SceneError,
+    DeltaqError,
+    "A fault in the description of a system, with its place: `file`, `line` and `column` (from 1; 0 where it is not in the text)."
+);
+create_exception!(deltaq, SolveError, DeltaqError, "A motion that could not be started.");
+create_exception!(deltaq, DerivationError, SolveError, "The formulation has no equations for this system.");
+create_exception!(deltaq, RemovalError, SolveError, "A parametrization that does not remove the constraints.");
+create_exception!(deltaq, StartError, SolveError, "Start values could not be found.");
+create_exception!(deltaq, CompileError, SolveError, "The derived equations cannot be compiled.");
+create_exception!(deltaq, EvaluationError, SolveError, "Equations that cannot be evaluated at a point.");
+create_exception!(deltaq, BoundaryError, SolveError, "No free constants meet the condition at the horizon.");
+create_exception!(deltaq, CallError, SolveError, "The time integrator was called wrongly.");
+
+pub(crate) fn scene(py: Python<'_>, error: &mechanics::SceneError) -> PyErr {
+    let raised = SceneError::new_err(error.to_string());
+    let value = raised.value(py);
+    let set = value
+        .setattr("file", &error.file)
+        .and_then(|()| value.setattr("line", error.line))
+        .and_then(|()| value.setattr("column", error.column));
+    set.err().unwrap_or(raised)
+}
+
+pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
+    use deltaq::SolveError as Error;
+    let error = error.into();
+    let text = error.to_string();
+    match error {
+        Error::Derivation(_) => DerivationError::new_err(text),
+        Error::Removal(_) => RemovalError::new_err(text),
+        Error::Start(_) => StartError::new_err(text),
+        Error::Compile(_) => CompileError::new_err(text),
+        Error::AtStart(_) => EvaluationError::new_err(text),
+        Error::Boundary { .. } => BoundaryError::new_err(text),
+        Error::Call(_) => CallError::new_err(text),
+        Error::ConstantCount { .. }
+        | Error::ConstantNotFinite { .. }
+        | Error::NoNaturalCondition { .. }
+        | Error::Horizon { .. } => SolveError::new_err(text),
+    }
+}
+
+pub(crate) fn evaluation(error: &EvaluationFailure, t: f64) -> PyErr {
+    EvaluationError::new_err(format!("at t = {t}: {error}"))
+}

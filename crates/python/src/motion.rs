@@ -1,0 +1,236 @@
+//! Motions, read off at many times.
+
+use std::sync::{Mutex, PoisonError};
+
+use deltaq::{Ending, ErrorEstimate, Setting, SolveError, constant_names, error_estimate};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{Floats, array, columns, times};
+use crate::errors;
+
+/// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Outputs {
+    /// Coordinates q, shape (n,) or (k, n), in the units of the system.
+    coordinates: Py<PyArrayDyn<f64>>,
+    /// Velocities q', shape (n,) or (k, n), in units of the coordinates per unit of time.
+    velocities: Py<PyArrayDyn<f64>>,
+    /// Multipliers and costates by name, each a float or of shape (k,).
+    multipliers: Py<PyDict>,
+    /// Quantities that should stay constant by name, each a float or of shape (k,).
+    invariants: Py<PyDict>,
+}
+
+/// Names of multipliers and invariants.
+#[derive(Clone)]
+pub(crate) struct Names {
+    multipliers: Vec<String>,
+    invariants: Vec<String>,
+}
+
+impl Names {
+    pub(crate) fn of(equations: &mechanics::Equations) -> Names {
+        let names = |list: &[mechanics::Named]| list.iter().map(|n| n.name.clone()).collect();
+        Names { multipliers: names(&equations.multipliers), invariants: names(&equations.invariants) }
+    }
+}
+
+impl Outputs {
+    /// From `rows`, one an instant; `count` is `None` where there is one instant, given as a number.
+    pub(crate) fn new(
+        py: Python<'_>,
+        rows: &[mechanics::Outputs],
+        dimension: usize,
+        names: &Names,
+        count: Option<usize>,
+    ) -> PyResult<Outputs> {
+        let flat = |pick: fn(&mechanics::Outputs) -> &[f64]| rows.iter().flat_map(|r| pick(r).to_vec()).collect();
+        let matrix = |pick| array(py, flat(pick), count, &[dimension]).map(Bound::unbind);
+        Ok(Outputs {
+            coordinates: matrix(|r| &r.coordinates)?,
+            velocities: matrix(|r| &r.velocities)?,
+            multipliers: columns(py, &names.multipliers, rows.iter().map(|r| &r.multipliers[..]), count)?.unbind(),
+            invariants: columns(py, &names.invariants, rows.iter().map(|r| &r.invariants[..]), count)?.unbind(),
+        })
+    }
+}
+
+/// A motion with everything that is computed without Python's lock.
+pub(crate) struct Sampled {
+    motion: deltaq::Motion,
+    times: Vec<f64>,
+    rows: Vec<mechanics::Outputs>,
+    estimate: ErrorEstimate,
+    dimension: usize,
+}
+
+/// Instants at which a motion is read off unless told otherwise.
+const INSTANTS: usize = 101;
+
+impl Sampled {
+    /// Reads `motion` off at those of `times` that it reached.
+    pub(crate) fn new(
+        mut motion: deltaq::Motion,
+        setting: Setting,
+        times: Option<Vec<f64>>,
+    ) -> Result<Sampled, SolveError> {
+        let mut times = times.unwrap_or_else(|| {
+            let end = setting.end - setting.start.t;
+            (0..INSTANTS).map(|i| setting.start.t + end * i as f64 / (INSTANTS - 1) as f64).collect()
+        });
+        times.retain(|&t| t <= motion.end());
+        let rows = times.iter().map(|&t| motion.at(t)).collect::<Result<_, _>>()?;
+        let estimate = error_estimate(&mut motion, setting)?;
+        Ok(Sampled { motion, times, rows, estimate, dimension: setting.system.dimension() })
+    }
+}
+
+/// One motion: the trajectory of a system under one formulation, with its error estimate.
+///
+/// `times` are those asked for that were reached; all arrays belong to them. `at(t)` reads the motion off at any other time.
+#[pyclass(frozen, module = "deltaq")]
+pub(crate) struct Motion {
+    motion: Mutex<deltaq::Motion>,
+    names: Names,
+    dimension: usize,
+    /// Name of the formulation.
+    #[pyo3(get)]
+    formulation: &'static str,
+    /// Name of the removal, None where the formulation needs none.
+    #[pyo3(get)]
+    removal: Option<String>,
+    /// Times, shape (k,), in the unit of time of the system.
+    #[pyo3(get)]
+    times: Py<PyArrayDyn<f64>>,
+    samples: Py<Outputs>,
+    /// Largest difference of the two runs, in the kinetic metric sqrt(dq' M dq): a bound in practice for the error of the coordinates.
+    #[pyo3(get)]
+    error_estimate: f64,
+    /// The error estimate over the largest distance from the start.
+    #[pyo3(get)]
+    relative_error_estimate: f64,
+    /// "completed" or "stopped".
+    #[pyo3(get)]
+    status: &'static str,
+    /// Why the motion stopped, None where it is complete.
+    #[pyo3(get)]
+    cause: Option<String>,
+    /// Time of the start.
+    #[pyo3(get)]
+    start: f64,
+    /// Last time at which the motion can be read off.
+    #[pyo3(get)]
+    end: f64,
+    /// Values of the free constants, by name.
+    #[pyo3(get)]
+    constants: Py<PyDict>,
+    /// What the kept run cost: steps, rejected, evaluations, jacobians.
+    #[pyo3(get)]
+    work: Py<PyDict>,
+    /// What the projections moved: count, largest, total (Euclidean lengths of changes of the velocities).
+    #[pyo3(get)]
+    projection: Py<PyDict>,
+    /// Wall-clock seconds: derive, compile, integrate.
+    #[pyo3(get)]
+    seconds: Py<PyDict>,
+}
+
+impl Motion {
+    pub(crate) fn new(py: Python<'_>, sampled: Sampled) -> PyResult<Motion> {
+        let Sampled { motion, times, rows, estimate, dimension } = sampled;
+        let names = Names::of(&motion.equations);
+        let count = Some(times.len());
+        let samples = Outputs::new(py, &rows, dimension, &names, count)?;
+        let (status, cause) = match &motion.ending {
+            Ending::Completed => ("completed", None),
+            Ending::Stopped { t, cause } => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
+        };
+        let (constants, work, projection, seconds) =
+            (PyDict::new(py), PyDict::new(py), PyDict::new(py), PyDict::new(py));
+        for (name, value) in constant_names(&motion.equations).iter().zip(&motion.constants) {
+            constants.set_item(name, value)?;
+        }
+        work.set_item("steps", motion.work.steps)?;
+        work.set_item("rejected", motion.work.rejected)?;
+        work.set_item("evaluations", motion.work.evaluations)?;
+        work.set_item("jacobians", motion.work.jacobians)?;
+        projection.set_item("count", motion.projection.projections)?;
+        projection.set_item("largest", motion.projection.largest)?;
+        projection.set_item("total", motion.projection.total)?;
+        seconds.set_item("derive", motion.seconds.derive)?;
+        seconds.set_item("compile", motion.seconds.compile)?;
+        seconds.set_item("integrate", motion.seconds.integrate)?;
+        Ok(Motion {
+            names,
+            dimension,
+            formulation: motion.equations.formulation,
+            removal: motion.equations.removal.as_ref().map(|r| r.name.clone()),
+            times: array(py, times, count, &[])?.unbind(),
+            samples: Py::new(py, samples)?,
+            error_estimate: estimate.absolute,
+            relative_error_estimate: estimate.relative,
+            status,
+            cause,
+            start: motion.start(),
+            end: motion.end(),
+            constants: constants.unbind(),
+            work: work.unbind(),
+            projection: projection.unbind(),
+            seconds: seconds.unbind(),
+            motion: Mutex::new(motion),
+        })
+    }
+}
+
+#[pymethods]
+impl Motion {
+    /// Coordinates q at `times`, shape (k, n), in the units of the system.
+    #[getter]
+    fn coordinates(&self, py: Python<'_>) -> Py<PyArrayDyn<f64>> {
+        self.samples.get().coordinates.clone_ref(py)
+    }
+
+    /// Velocities q' at `times`, shape (k, n), in units of the coordinates per unit of time.
+    #[getter]
+    fn velocities(&self, py: Python<'_>) -> Py<PyArrayDyn<f64>> {
+        self.samples.get().velocities.clone_ref(py)
+    }
+
+    /// Multipliers and costates by name, each of shape (k,).
+    #[getter]
+    fn multipliers(&self, py: Python<'_>) -> Py<PyDict> {
+        self.samples.get().multipliers.clone_ref(py)
+    }
+
+    /// Quantities that should stay constant by name, each of shape (k,).
+    #[getter]
+    fn invariants(&self, py: Python<'_>) -> Py<PyDict> {
+        self.samples.get().invariants.clone_ref(py)
+    }
+
+    /// Everything at time t, read off the dense output (order 7 for dop853).
+    ///
+    /// t is a number or of shape (k,), from start to end; ValueError elsewhere.
+    #[pyo3(signature = (t))]
+    fn at(&self, py: Python<'_>, t: Floats<'_>) -> PyResult<Outputs> {
+        let t = times(&t)?;
+        let instants: Vec<f64> = (0..t.count().unwrap_or(1)).map(|i| t.row(i)[0]).collect();
+        if let Some(outside) = instants.iter().find(|&t| !(self.start..=self.end).contains(t)) {
+            let (start, end) = (self.start, self.end);
+            return Err(PyValueError::new_err(format!("t = {outside} is outside of the motion, {start} to {end}")));
+        }
+        let rows = {
+            let mut motion = self.motion.lock().unwrap_or_else(PoisonError::into_inner);
+            instants.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>().map_err(errors::solve)?
+        };
+        Outputs::new(py, &rows, self.dimension, &self.names, t.count())
+    }
+
+    fn __repr__(&self) -> String {
+        let Motion { formulation, start, end, status, error_estimate, .. } = self;
+        format!("<deltaq.Motion {formulation}, t = {start} to {end}, {status}, error estimate {error_estimate:.1e}>")
+    }
+}

@@ -1,0 +1,376 @@
+//! Systems, and what can be asked of them.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use deltaq::{derive, ready, removals, setting, solve_choice};
+use mechanics::{Scene, integrability};
+use numpy::PyArrayDyn;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{FloatList, Floats, Rows, array, common, finite, times};
+use crate::comparison::{Comparison, check_tolerance, compare};
+use crate::equations::Equations;
+use crate::motion::{Motion, Sampled};
+use crate::scene_text::{Arguments, write};
+use crate::{arguments, background, errors};
+
+/// A point of a motion: time, coordinates, velocities.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct State {
+    /// Time.
+    t: f64,
+    /// Coordinates, shape (n,), in the units of the system.
+    q: Py<PyArrayDyn<f64>>,
+    /// Velocities, shape (n,), in units of the coordinates per unit of time.
+    v: Py<PyArrayDyn<f64>>,
+}
+
+#[pymethods]
+impl State {
+    fn __repr__(&self) -> String {
+        format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)
+    }
+}
+
+/// A mechanical system with velocity constraints, its start and everything else that a scene file says.
+///
+/// Expressions are strings in the language of scene files, in coordinates, their velocities (`x'`), parameters and time `t`; or numbers.
+///
+/// coordinates: names of the n coordinates.
+/// lagrangian: L(q, v, t).
+/// constraints: f(q, v, t), h of them, each to be zero.
+/// parameters: name to number. definitions: name to expression, usable in all others.
+/// units: coordinate to text. forces: coordinate to expression, generalized forces Q.
+/// start: every coordinate to its start. velocities: some velocities ("x'") to their start; the constraints supply the others.
+/// guess: velocities near which the others are sought. project: whether given velocities are moved onto the constraints.
+/// removals: name to {"parameters": [...], "rates": {...}, ...}, as in the sections [removal.NAME] of scene files.
+/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run.
+///
+/// SceneError names the line of the scene file that the arguments amount to.
+#[pyclass(frozen, module = "deltaq")]
+pub(crate) struct System(Mutex<Scene>);
+
+/// A system from a scene file of at most 1 MiB.
+///
+/// overrides: name to number, in the place of a parameter, a start value ("x", "x'"), "time", "duration", or a multiplier ("mu1", ...).
+#[pyfunction]
+#[pyo3(signature = (path, overrides=None))]
+pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<String, f64>>) -> PyResult<System> {
+    let overrides: Vec<(String, f64)> = overrides.into_iter().flatten().collect();
+    System::from(py, py.detach(|| Scene::load_with(&path, &overrides)))
+}
+
+/// A system from the text of a scene file. `name` stands for the file in errors; overrides as in `load`.
+#[pyfunction]
+#[pyo3(signature = (text, overrides=None, *, name="scene"))]
+pub(crate) fn parse(
+    py: Python<'_>,
+    text: &str,
+    overrides: Option<HashMap<String, f64>>,
+    name: &str,
+) -> PyResult<System> {
+    let overrides: Vec<(String, f64)> = overrides.into_iter().flatten().collect();
+    System::from(py, py.detach(|| Scene::parse_with(name, text, &overrides)))
+}
+
+impl System {
+    fn from(py: Python<'_>, scene: Result<Scene, mechanics::SceneError>) -> PyResult<System> {
+        scene.map(|scene| System(Mutex::new(scene))).map_err(|error| errors::scene(py, &error))
+    }
+
+    /// The scene. No lock of Python is waited for while it is held.
+    fn scene(&self) -> MutexGuard<'_, Scene> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl System {
+    #[new]
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        coordinates, lagrangian, constraints=Vec::new(), *, parameters=None, definitions=None, units=None, forces=None,
+        start=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
+        name="system", title=None
+    ))]
+    fn new(
+        py: Python<'_>,
+        coordinates: Vec<String>,
+        lagrangian: String,
+        constraints: Vec<String>,
+        parameters: Option<Bound<'_, PyDict>>,
+        definitions: Option<Bound<'_, PyDict>>,
+        units: Option<Bound<'_, PyDict>>,
+        forces: Option<Bound<'_, PyDict>>,
+        start: Option<Bound<'_, PyDict>>,
+        velocities: Option<Bound<'_, PyDict>>,
+        guess: Option<Bound<'_, PyDict>>,
+        project: bool,
+        removals: Option<Bound<'_, PyDict>>,
+        multipliers: Option<Bound<'_, PyAny>>,
+        time: f64,
+        duration: f64,
+        name: &str,
+        title: Option<String>,
+    ) -> PyResult<System> {
+        let text = write(&Arguments {
+            title: title.unwrap_or_else(|| name.into()),
+            coordinates,
+            units,
+            start,
+            tables: vec![
+                ("parameters", parameters),
+                ("definitions", definitions),
+                ("system.forces", forces),
+                ("start.velocities", velocities),
+                ("start.guess", guess),
+                ("removal", removals),
+            ],
+            lagrangian,
+            constraints,
+            time,
+            project,
+            multipliers,
+            duration,
+        })?;
+        System::from(py, py.detach(|| Scene::parse(name, &text)))
+    }
+
+    /// Name: that of the file without its ending.
+    #[getter]
+    fn name(&self) -> String {
+        self.scene().name.clone()
+    }
+
+    /// Title, one line.
+    #[getter]
+    fn title(&self) -> String {
+        self.scene().title.clone()
+    }
+
+    /// Where the example is from, empty where that is not said.
+    #[getter]
+    fn source(&self) -> String {
+        self.scene().source.clone()
+    }
+
+    /// Names of the coordinates, length n.
+    #[getter]
+    fn coordinates(&self) -> Vec<String> {
+        self.scene().system.coordinates.iter().map(|c| c.name.clone()).collect()
+    }
+
+    /// Units of the coordinates, by name.
+    #[getter]
+    fn units(&self) -> HashMap<String, String> {
+        self.scene().system.coordinates.iter().map(|c| (c.name.clone(), c.unit.clone())).collect()
+    }
+
+    /// Number of coordinates, n.
+    #[getter]
+    fn dimension(&self) -> usize {
+        self.scene().system.dimension()
+    }
+
+    /// Values of the parameters, by name.
+    #[getter]
+    fn parameters(&self) -> HashMap<String, f64> {
+        let scene = self.scene();
+        scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).collect()
+    }
+
+    /// The Lagrangian, as text.
+    #[getter]
+    fn lagrangian(&self) -> String {
+        let scene = self.scene();
+        scene.system.graph.plain(scene.system.lagrangian)
+    }
+
+    /// The constraints, as text, length h.
+    #[getter]
+    fn constraints(&self) -> Vec<String> {
+        let scene = self.scene();
+        scene.system.constraints.iter().map(|&f| scene.system.graph.plain(f)).collect()
+    }
+
+    /// The generalized forces other than zero, as text, by coordinate.
+    #[getter]
+    fn forces(&self) -> HashMap<String, String> {
+        let scene = self.scene();
+        let g = &scene.system.graph;
+        let pairs = scene.system.coordinates.iter().zip(&scene.system.forces);
+        pairs.filter(|(_, force)| !g.is_zero(**force)).map(|(c, &force)| (c.name.clone(), g.plain(force))).collect()
+    }
+
+    /// The start: t0, q0 and v0 with f(q0, v0, t0) = 0.
+    #[getter]
+    fn start(&self, py: Python<'_>) -> PyResult<State> {
+        let mechanics::State { t, q, v } = self.scene().start.clone();
+        let n = q.len();
+        Ok(State { t, q: array(py, q, None, &[n])?.unbind(), v: array(py, v, None, &[n])?.unbind() })
+    }
+
+    /// Multipliers mu0 at the start of vakonomic motions, length h.
+    #[getter]
+    fn multipliers(&self) -> Vec<f64> {
+        self.scene().multipliers.clone()
+    }
+
+    /// Length of the run, in the unit of time.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.scene().duration
+    }
+
+    /// Names of the removals that the removed-constraint formulation can use: those written by hand, then automatic ones.
+    ///
+    /// RemovalError where there is none.
+    #[getter]
+    fn removals(&self) -> PyResult<Vec<String>> {
+        let known = removals(&self.scene()).map_err(errors::solve)?;
+        Ok(known.into_iter().map(|r| r.name).collect())
+    }
+
+    /// Frobenius' verdict on the constraints, in words; RemovalError where they are dependent at the start.
+    #[getter]
+    fn integrability(&self) -> PyResult<String> {
+        let scene = self.scene();
+        Ok(integrability(&scene.system, &scene.start).map_err(errors::solve)?.to_string())
+    }
+
+    /// The system as the text of a scene file, with every start value as a number; `parse` of it gives the same system.
+    #[pyo3(signature = ())]
+    fn to_toml(&self) -> String {
+        self.scene().to_toml()
+    }
+
+    /// Residuals f(q, v, t) of the constraints, shape (h,) or (k, h): q and v of shape (n,) or (k, n), t a number or of shape (k,).
+    #[pyo3(signature = (t, q, v))]
+    fn constraint<'py>(
+        &self,
+        py: Python<'py>,
+        t: Floats<'_>,
+        q: Floats<'_>,
+        v: Floats<'_>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (values, count, width) = {
+            let scene = self.scene();
+            let system = &scene.system;
+            let n = system.dimension();
+            let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
+            let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
+            let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
+            let tape = system.graph.compile(&inputs, &system.constraints, &system.parameter_values());
+            let tape = tape.map_err(errors::solve)?;
+            let (mut registers, mut row) = (tape.workspace(), vec![0.0; tape.outputs()]);
+            let mut values = Vec::new();
+            for i in 0..count.unwrap_or(1) {
+                tape.evaluate(&[t.row(i), q.row(i), v.row(i)].concat(), &mut registers, &mut row);
+                values.extend_from_slice(&row);
+            }
+            (values, count, row.len())
+        };
+        array(py, values, count, &[width])
+    }
+
+    /// The equations of motion under a formulation, one of FORMULATIONS.
+    ///
+    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
+    /// constants: the free constants, from which `Equations.initial_state` follows; as in `solve`, but zero by default where they are natural at a horizon.
+    #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
+    fn equations(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Equations> {
+        let given = arguments::constants(constants.as_ref(), mu0)?;
+        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000)?;
+        let scene = self.scene().clone();
+        let is_given = given.is_some();
+        let mut choice = arguments::choice(&scene, formulation, removal, given)?;
+        if !is_given && matches!(choice.constants, mechanics::ConstantsRule::Natural { .. }) {
+            choice.constants = mechanics::ConstantsRule::Zero;
+        }
+        let work = move || {
+            let equations = derive(&scene.system, &choice)?;
+            let made = ready(setting(&scene), equations, &choice.constants, &settings)?;
+            Ok((made, scene))
+        };
+        let made = background::run(py, &interrupt, work)?;
+        let (made, scene) = made.map_err(|error: deltaq::SolveError| errors::solve(error))?;
+        Ok(Equations::new(made, scene))
+    }
+
+    /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
+    ///
+    /// times: where it is read off, shape (k,), from the start on; it is integrated up to the last. By default 101 times over `duration`.
+    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
+    /// mu0: multipliers at the start of the vakonomic formulations, shape (h,). By default those of the system.
+    /// constants: the free constants, "zero", {"horizon": T} (natural at time T) or an array. By default those of the removal or of the system.
+    /// method: one of METHODS. tolerance: of the looser run; the one that is kept has a hundredth of it.
+    /// project: whether velocities are moved onto the constraint after every step. max_steps: limit on the steps of one run.
+    ///
+    /// Other threads go on meanwhile; Ctrl-C ends it. SolveError where there is no motion; one that stops early says so in `status`.
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, method="dop853", tolerance=1e-11,
+        project=true, max_steps=1_000_000
+    ))]
+    fn solve(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        times: Option<FloatList<'_>>,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+        method: &str,
+        tolerance: f64,
+        project: bool,
+        max_steps: usize,
+    ) -> PyResult<Motion> {
+        let given = arguments::constants(constants.as_ref(), mu0)?;
+        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps)?;
+        let mut scene = self.scene().clone();
+        let choice = arguments::choice(&scene, formulation, removal, given)?;
+        let times = times.map(|times| finite("times", times.as_array().iter().copied().collect())).transpose()?;
+        if let Some(times) = &times {
+            let start = scene.start.t;
+            if let Some(early) = times.iter().find(|&&t| t < start) {
+                return Err(PyValueError::new_err(format!("times contains {early}, before the start {start}")));
+            }
+            let last = times.iter().fold(start, |a, &b| a.max(b));
+            if last > start {
+                scene.duration = last - start;
+            }
+        }
+        let work = move || {
+            let motion = solve_choice(&scene, &choice, &settings)?;
+            Sampled::new(motion, setting(&scene), times)
+        };
+        Motion::new(py, background::run(py, &interrupt, work)?.map_err(errors::solve)?)
+    }
+
+    /// Computes the motions of all formulations and compares them pair by pair; tolerance and max_steps as in `solve`.
+    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000))]
+    fn compare(&self, py: Python<'_>, tolerance: f64, max_steps: usize) -> PyResult<Comparison> {
+        check_tolerance(tolerance)?;
+        let (settings, interrupt) = arguments::settings("dop853", tolerance, true, max_steps)?;
+        let scene = self.scene().clone();
+        let compared = background::run(py, &interrupt, move || compare(scene, &settings))?;
+        Comparison::new(py, compared.map_err(errors::solve)?)
+    }
+
+    fn __repr__(&self) -> String {
+        let scene = self.scene();
+        let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
+        format!("<deltaq.System {:?}, coordinates ({})>", scene.title, names.join(", "))
+    }
+}

@@ -1,0 +1,64 @@
+"""Comparisons: verdicts, growth, fits."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def comparison(sledge):
+    return sledge.system(duration=3.0, removals=None).compare()
+
+
+def test_verdicts(comparison):
+    assert comparison.verdict("chetaev", "vakonomic") == "different"
+    assert comparison.verdict("vakonomic", "vakonomic-costate") == "same"
+    pair = comparison.pair("Chetaev", "vakonomic")
+    assert pair is comparison.pair("vakonomic", "chetaev")
+    assert pair.verdict == "different" and pair.because is None
+    assert list(pair.tau) == [1e-6, 1e-3, 0.1]
+    assert 0 < pair.tau[1e-6] < pair.tau[1e-3] < 3
+    assert pair.times.shape == pair.gap.shape == pair.limit.shape
+    np.testing.assert_allclose(pair.gap.max(), pair.largest_gap)
+    assert set(pair.largest_by_coordinate) == {"x", "y", "phi"} and max(pair.error_estimates) < 1e-8
+    assert "nonintegrable" in comparison.integrability
+
+
+def test_growth_is_as_predicted(comparison):
+    # without multipliers at the start, the gap grows with the cube of time
+    pair = comparison.pair("chetaev", "vakonomic")
+    assert pair.predicted.exponent == 3 and pair.growth.exponent == pytest.approx(3, abs=0.01)
+    np.testing.assert_allclose(pair.growth.coefficient, pair.predicted.coefficient, rtol=1e-3, atol=1e-3)
+
+
+def test_runs_and_fits(sledge, comparison):
+    assert [run.formulation for run in comparison.runs][:2] == ["chetaev", "vakonomic"]
+    assert all(run.error is None and run.motion.status in ("completed", "stopped") for run in comparison.runs)
+    fit = next(fit for fit in comparison.fits if (fit.run, fit.target) == ("vakonomic", "Chetaev"))
+    assert list(fit.constants) == ["mu0_1"]
+    assert fit.largest_gap > 0.1 and fit.verdict == "different"
+    # nearer in the mean over time, kinetic metric diag(1, 1, k^2), than the motion that starts without multipliers
+    system, t = sledge.system(duration=3.0), np.linspace(0, 3, 41)
+    goal = system.solve("chetaev", t).coordinates
+
+    def distance(mu0):
+        return np.sum([1, 1, sledge.k**2] * (system.solve("vakonomic", t, mu0=mu0).coordinates - goal) ** 2)
+
+    best = fit.constants["mu0_1"]
+    assert distance([best]) < distance([best + 0.01]) < distance([0])
+    assert distance([best]) < distance([best - 0.01])
+
+
+def test_names(comparison):
+    with pytest.raises(KeyError, match="no run `hertz`"):
+        comparison.verdict("hertz", "chetaev")
+    with pytest.raises(KeyError, match="not compared"):
+        comparison.verdict("chetaev", "vakonomic-costate")
+
+
+def test_refused_formulations_say_why(sledge):
+    # a force has no place in a variational principle
+    comparison = sledge.system(duration=1.0, removals=None, forces={"x": "-x'"}).compare(tolerance=1e-9)
+    run = next(run for run in comparison.runs if run.formulation == "vakonomic")
+    assert run.motion is None and "variational principle" in run.error
+    with pytest.raises(ValueError, match="tolerance"):
+        sledge.system().compare(tolerance=0)

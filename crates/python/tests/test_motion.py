@@ -1,0 +1,104 @@
+"""Motions against closed forms."""
+
+import numpy as np
+import pytest
+
+import deltaq
+
+
+def test_chetaev_sledge_turns_at_a_constant_rate(sledge, system):
+    motion = system.solve("chetaev")
+    t = motion.times
+    assert motion.status == "completed" and motion.cause is None
+    assert t.shape == (101,) and motion.coordinates.shape == (101, 3) and motion.velocities.shape == (101, 3)
+    phi, speed = sledge.phi(t), sledge.speed(t)
+    np.testing.assert_allclose(motion.coordinates[:, 2], phi, atol=1e-11)
+    np.testing.assert_allclose(motion.velocities[:, 0], speed * np.cos(phi), atol=1e-10)
+    np.testing.assert_allclose(motion.velocities[:, 1], speed * np.sin(phi), atol=1e-10)
+    assert 0 <= motion.error_estimate < 1e-8 and motion.relative_error_estimate < 1e-9
+
+
+def test_reaction_of_the_blade(sledge, system):
+    # d/dt x' = g sin(alpha) - lambda sin(phi), and u' = g sin(alpha) cos(phi): lambda = u w + g sin(alpha) sin(phi)
+    motion = system.solve()
+    (name,) = motion.multipliers
+    phi, speed = sledge.phi(motion.times), sledge.speed(motion.times)
+    expected = speed * sledge.w + sledge.g * np.sin(sledge.alpha) * np.sin(phi)
+    np.testing.assert_allclose(motion.multipliers[name], expected, atol=1e-9)
+
+
+def test_natural_constants(sledge, system):
+    # P_x = g sin(alpha) (T - t)
+    motion = system.solve("removed-constraint", [0.0, 5.0, 10.0])
+    a = sledge.g * np.sin(sledge.alpha)
+    np.testing.assert_allclose(motion.multipliers["P_x"], a * (10 - motion.times), atol=1e-8)
+    assert motion.removal == "arc-length"
+    np.testing.assert_allclose(motion.constants["P0_x"], a * 10, rtol=1e-12)
+    assert system.solve("removed-constraint", constants="zero").constants["P0_x"] == 0
+    horizon = system.solve("removed-constraint", [0, 1], constants={"horizon": 4})
+    np.testing.assert_allclose(horizon.constants["P0_x"], a * 4, rtol=1e-10)
+    given = system.solve("removed-constraint", [0, 1], constants=[2])
+    assert given.constants == {"P0_x": 2.0}
+    automatic = system.solve("removed-constraint", [0, 1], removal="coordinates", constants="zero")
+    assert automatic.removal == "coordinates"
+
+
+def test_multipliers_at_the_start(system):
+    assert system.solve("vakonomic", [0, 1]).constants == {"mu0_1": 0.0}
+    motion = system.solve("vakonomic", [0, 1], mu0=np.array([0.25]))
+    assert motion.constants == {"mu0_1": 0.25} and motion.multipliers["mu_1"][0] == 0.25
+
+
+@pytest.mark.parametrize("method", deltaq.METHODS)
+def test_every_method(sledge, system, method):
+    motion = system.solve(times=np.linspace(0, 1, 5), method=method, tolerance=1e-7)
+    np.testing.assert_allclose(motion.coordinates[:, 2], sledge.phi(motion.times), atol=1e-4)
+    assert (motion.work["jacobians"] > 0) == (method in ("bdf", "tr-bdf2", "esdirk34"))
+
+
+def test_reading_off(sledge, system):
+    motion = system.solve()
+    one, many = motion.at(2.5), motion.at([2.5, 3.0])
+    assert one.coordinates.shape == (3,) and many.coordinates.shape == (2, 3)
+    np.testing.assert_array_equal(one.coordinates, many.coordinates[0])
+    assert isinstance(next(iter(one.multipliers.values())), float)
+    assert next(iter(many.multipliers.values())).shape == (2,)
+    for outside in (-1e-3, 10.001, [0, 11]):
+        with pytest.raises(ValueError, match="outside of the motion"):
+            motion.at(outside)
+    with pytest.raises(ValueError, match="finite"):
+        motion.at(np.nan)
+
+
+def test_times_say_how_far(system):
+    motion = system.solve(times=np.linspace(0, 20, 3))
+    assert motion.end == 20.0 and motion.times.shape == (3,)
+    assert system.solve(times=(0, 2)).end == 2.0
+    assert system.solve(times=np.arange(3, dtype=np.int32)).end == 2.0
+    with pytest.raises(ValueError, match="before the start"):
+        system.solve(times=[-1, 1])
+    with pytest.raises(ValueError, match="finite"):
+        system.solve(times=[0, np.inf])
+
+
+def test_energy_is_an_invariant_with_small_drift(system):
+    motion = system.solve()
+    assert motion.invariants
+    for values in motion.invariants.values():
+        assert np.ptp(values) < 1e-8
+
+
+def test_a_motion_that_stops(sledge):
+    # this chart ends where the blade points across the slope, phi = pi/2
+    along_x = {"along-x": {"parameters": ["x", "phi"], "rates": {"y": "x'*tan(phi)"}}}
+    system = sledge.system(lagrangian="(x'^2 + y'^2)/2 + phi'^2/4 + 4*x + y", removals=along_x, duration=30)
+    motion = system.solve("removed-constraint")
+    assert motion.status == "stopped" and motion.cause.startswith("stopped at t = ") and "cos(phi)" in motion.cause
+    assert 0 < motion.end < 30 and motion.times.max() <= motion.end < motion.times.max() + 0.31
+    assert len(motion.times) == len(motion.coordinates)
+    assert motion.at(motion.end).coordinates[2] == pytest.approx(np.pi / 2, abs=1e-2)
+
+
+def test_limit_on_steps(system):
+    motion = system.solve(max_steps=5)
+    assert motion.status == "stopped" and "more than 5 steps" in motion.cause

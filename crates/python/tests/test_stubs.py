@@ -1,0 +1,63 @@
+"""What the stubs promise is there, is described, and takes the arguments that they say."""
+
+import ast
+import inspect
+from pathlib import Path
+
+import pytest
+
+import deltaq
+from deltaq import _native
+
+STUBS = Path(deltaq.__file__).with_name("_native.pyi")
+TREE = ast.parse(STUBS.read_text())
+CLASSES = {node.name: node for node in TREE.body if isinstance(node, ast.ClassDef)}
+FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.FunctionDef)}
+VALUES = {node.target.id for node in TREE.body if isinstance(node, ast.AnnAssign) and not node.target.id.startswith("_")}
+
+
+def public(names):
+    return {name for name in names if not name.startswith("_")}
+
+
+def test_it_is_marked_as_typed():
+    assert STUBS.with_name("py.typed").exists()
+
+
+def test_the_same_names_everywhere():
+    stubbed = public(CLASSES) | public(FUNCTIONS) | VALUES
+    assert stubbed == public(deltaq.__all__) == public(vars(_native))
+    assert all(hasattr(deltaq, name) for name in deltaq.__all__)
+
+
+@pytest.mark.parametrize("name", sorted(CLASSES))
+def test_classes(name):
+    cls = getattr(deltaq, name)
+    assert cls.__doc__, name
+    assert cls.__module__ == "deltaq"
+    assert [base.id for base in CLASSES[name].bases] == [base.__name__ for base in cls.__bases__ if base is not object]
+    body = {node.name: node for node in CLASSES[name].body if isinstance(node, ast.FunctionDef)}
+    assert public(body) == public(vars(cls))
+    for member in public(body):
+        assert inspect.getdoc(getattr(cls, member)), f"{name}.{member} is not described"
+        if not body[member].decorator_list:
+            same_parameters(body[member], getattr(cls, member))
+    if "__new__" in body:
+        same_parameters(body["__new__"], cls, without=1)
+
+
+@pytest.mark.parametrize("name", sorted(FUNCTIONS))
+def test_functions(name):
+    assert inspect.getdoc(getattr(deltaq, name))
+    same_parameters(FUNCTIONS[name], getattr(deltaq, name))
+
+
+def same_parameters(stub, real, without=0):
+    arguments = stub.args
+    positional = [a.arg for a in arguments.args][without:]
+    found = inspect.signature(real).parameters.values()
+    assert positional == [p.name for p in found if p.kind is not p.KEYWORD_ONLY], stub.name
+    assert [a.arg for a in arguments.kwonlyargs] == [p.name for p in found if p.kind is p.KEYWORD_ONLY], stub.name
+    defaults = [p.default for p in found if p.kind is p.KEYWORD_ONLY]
+    for node, default in zip(arguments.kw_defaults, defaults):
+        assert ast.literal_eval(node) == default, stub.name

@@ -1,0 +1,70 @@
+"""Beside other work: the lock is released while integrating, and Ctrl-C ends it."""
+
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+LONG = 1e9
+
+
+def test_other_threads_go_on(system):
+    # a second thread counts while this one integrates; with the lock held it would get no turn
+    counted, done = [0], threading.Event()
+
+    def count():
+        while not done.is_set():
+            counted[0] += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    time.sleep(0.01)
+    before, began = counted[0], time.perf_counter()
+    motion = system.solve(times=[0, 1e5], max_steps=20_000)
+    seconds, turns = time.perf_counter() - began, counted[0] - before
+    done.set()
+    thread.join()
+    assert motion.status in ("stopped", "completed")
+    assert turns > 1000, f"{turns} turns in {seconds:.3f} s"
+
+
+def test_two_threads_give_what_one_gives(system):
+    expected = system.solve("vakonomic").coordinates
+    equations = system.equations("vakonomic")
+    y = equations.initial_state()
+    rates = equations.rates(0, y)
+    found = []
+
+    def work():
+        for _ in range(5):
+            found.append((system.solve("vakonomic").coordinates, equations.rates(0, y)))
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 10
+    for coordinates, again in found:
+        np.testing.assert_array_equal(coordinates, expected)
+        np.testing.assert_array_equal(again, rates)
+
+
+@pytest.mark.parametrize("ask", ["solve", "compare", "horizon"])
+def test_control_c(sledge, system, ask):
+    endless = {
+        "solve": lambda: system.solve(times=[0, LONG], max_steps=2**60),
+        "compare": lambda: sledge.system(duration=LONG).compare(max_steps=2**60),
+        "horizon": lambda: system.solve("removed-constraint", constants={"horizon": LONG}, max_steps=2**60),
+    }[ask]
+    timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+    timer.start()
+    began = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        endless()
+    assert 0.2 < time.perf_counter() - began < 5
+    timer.join()
+    # and what comes after is not disturbed
+    assert system.solve().status == "completed"
