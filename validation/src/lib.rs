@@ -1,5 +1,6 @@
 //! The harness behind the `deltaq` command: scenes, the control formulation, the commands, the reports.
 
+pub mod casadi_job;
 pub mod catalogue;
 pub mod cli;
 pub mod compare_command;

@@ -1,0 +1,72 @@
+"""Motions integrated by SUNDIALS (CVODES, and IDAS on the equations as they stand) from the start of ours, compared with ours.
+
+The distance of two motions at one time is the largest over the coordinates of |difference| / way, where the way of a coordinate is how far it gets
+from its start; a coordinate that moves less than a hundredth of what the one that moves most does is measured with that hundredth.
+"""
+
+import casadi as ca
+import numpy as np
+
+TOLERANCES = {"CVODES": 1e-14, "IDAS": 1e-11}
+COMMON = {"abstol": 1e-14, "max_num_steps": 400_000}
+OPTIONS = {
+    "CVODES": {"linear_multistep_method": "adams", "nonlinear_solver_iteration": "functional"},
+    "IDAS": {"calc_ic": True},
+}
+
+
+def start(instant, motion):
+    """y(t0) (s) of our motion, states that ours left out at zero."""
+    values = np.array([motion["start"]], dtype=float)
+    return instant.ordered(motion["tags"], values)[0]
+
+
+def integrate(instant, y0, times, solver):
+    """States (N x s) at the times; times[0] is the start.
+
+    CVODES gets y' = F(t, y) with z eliminated, IDAS the pair y' = F(t, y, z), R(z; t, y) = 0.
+    """
+    options = COMMON | OPTIONS[solver] | {"reltol": TOLERANCES[solver]}
+    problem = {"t": instant.t, "x": instant.y}
+    if solver == "CVODES" or instant.z.numel() == 0:
+        z = ca.solve(instant.matrix, instant.right) if instant.z.numel() else instant.z
+        problem["ode"] = ca.substitute(instant.rates, instant.z, z) if instant.z.numel() else instant.rates
+        guess = {}
+    else:
+        problem |= {"z": instant.z, "ode": instant.rates, "alg": ca.mtimes(instant.matrix, instant.z) - instant.right}
+        guess = {"z0": instant.solve(times[:1], y0[None, :])[0][0]}
+    run = ca.integrator("run", "cvodes" if solver == "CVODES" else "idas", problem, times[0], list(times[1:]), options)
+    states = np.array(run(x0=y0, **guess)["xf"]).T
+    return np.vstack([y0, states])
+
+
+def distance(ours, theirs):
+    """Largest relative difference of two tables of coordinates (N x n)."""
+    way = np.abs(ours - ours[0]).max(axis=0)
+    scale = np.maximum(way, 0.01 * way.max())
+    if way.max() == 0:
+        scale = np.ones_like(way)
+    return float((np.abs(ours - theirs) / scale).max())
+
+
+def largest_constraint(instant, times, states):
+    """Largest |f| along their motion: nobody projects it."""
+    if instant.constraint_function.size1_out(0) == 0:
+        return 0.0
+    f = instant.constraint_function.map(len(times))(np.reshape(times, (1, -1)), states.T)
+    return float(np.abs(np.array(f)).max())
+
+
+def compare(instant, motion, solver):
+    """(distance of the coordinates, distance of the multipliers mu or None, largest |f|)."""
+    times = np.array(motion["times"], dtype=float)
+    states = integrate(instant, start(instant, motion), times, solver)
+    theirs = np.array(instant.coordinate_function.map(len(times))(times.reshape(1, -1), states.T)).T
+    ours = np.array(motion["coordinates"], dtype=float)
+    mu = [i for i, tag in enumerate(instant.tags) if tag[0] == "mu"]
+    multipliers = None
+    if mu and motion["multipliers"]:
+        table = np.array(motion["multipliers"], dtype=float)
+        scale = max(1.0, np.abs(table).max())
+        multipliers = float(np.abs(table - states[:, mu]).max() / scale)
+    return distance(ours, theirs), multipliers, largest_constraint(instant, times, states)
