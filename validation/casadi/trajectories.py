@@ -7,7 +7,7 @@ from its start; a coordinate that moves less than a hundredth of what the one th
 import casadi as ca
 import numpy as np
 
-TOLERANCES = {"CVODES": 1e-14, "IDAS": 1e-11}
+TOLERANCES = {"CVODES": 1e-14, "IDAS": 1e-12}
 COMMON = {"abstol": 1e-14, "max_num_steps": 400_000}
 OPTIONS = {
     "CVODES": {"linear_multistep_method": "adams", "nonlinear_solver_iteration": "functional"},

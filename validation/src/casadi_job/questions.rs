@@ -325,19 +325,21 @@ fn transcription(scene: &Scene, choice: &Choice, horizon: f64, intervals: usize)
     let mut short = scene.clone();
     short.duration = horizon;
     let tags = tags(&full);
-    let motion = solve(setting(&short), full, &constants, &Settings::default())
-        .with_context(|| format!("{} over {horizon}", choice.label))?;
-    if !motion.is_complete() {
-        return Ok(None);
-    }
-    let mut motion = motion;
+    let automatic = is_automatic(scene, choice);
+    let mut motion = match solve(setting(&short), full, &constants, &Settings::default()) {
+        Ok(motion) if motion.is_complete() => motion,
+        // A chart that ends before the horizon; shooting that does not find P(t₀) for parameters that nobody chose.
+        Ok(_) => return Ok(None),
+        Err(_) if automatic => return Ok(None),
+        Err(error) => return Err(error).with_context(|| format!("{} over {horizon}", choice.label)),
+    };
     let times = motion.grid(2 * intervals);
     let states = times.iter().map(|&t| motion.states_at(t)).collect();
     Ok(Some(Transcription {
         label: choice.label.clone(),
         formulation: choice.formulation,
         removal: choice.removal.as_ref().map(|r| r.name.clone()),
-        automatic: is_automatic(scene, choice),
+        automatic,
         tags,
         times,
         states,
