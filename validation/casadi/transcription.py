@@ -65,39 +65,62 @@ def problem(scene, case):
     return tags, costates, integrand, ca.Function("q", [s.t, x], [s.q]), free
 
 
-def discretize(integrand, sizes, times, intervals):
-    """The discretized action with its constraints, as a function of nodes (d x (N S + 1)) and multipliers (k x N S)."""
-    lobatto, gauss, weights = points()
-    values, slopes = lagrange_basis(lobatto, gauss)
-    length = (times[-1] - times[0]) / intervals
-    nodes, multipliers = ca.SX.sym("x", sizes[0], intervals * S + 1), ca.SX.sym("m", sizes[1], intervals * S)
-    total = 0
-    for i in range(intervals):
-        local = nodes[:, i * S : (i + 1) * S + 1]
-        x, dx = ca.mtimes(local, values.T), ca.mtimes(local, slopes.T) / length
-        for c in range(S):
-            t = times[0] + (i + gauss[c]) * length
-            total += weights[c] * length * integrand(t, x[:, c], dx[:, c], multipliers[:, i * S + c])
-    return nodes, multipliers, total
+class Action:
+    """The discretized action with its constraints; unknowns are the nodes (d x (N S + 1)) and the multipliers (k x N S), column after column.
+
+    Gradient and Hessian are CasADi's at every Gauss point, in (x, x', m), and carried over to the unknowns by the chain rule: x = V nodes, x' = D nodes.
+    """
+
+    def __init__(self, integrand, d, k, times, intervals):
+        lobatto, gauss, weights = points()
+        self.values, self.slopes = lagrange_basis(lobatto, gauss)
+        self.d, self.k, self.intervals = d, k, intervals
+        self.length = (times[-1] - times[0]) / intervals
+        self.slopes = self.slopes / self.length
+        self.weights = np.tile(weights, intervals) * self.length
+        self.times = times[0] + (np.arange(intervals)[:, None] + gauss[None, :]).ravel() * self.length
+        t, z = ca.SX.sym("t"), ca.SX.sym("z", 2 * d + k)
+        hessian, gradient = ca.hessian(integrand(t, z[:d], z[d : 2 * d], z[2 * d :]), z)
+        self.local = ca.Function("local", [t, z], [ca.densify(hessian), ca.densify(gradient)]).map(len(self.times))
+        self.nodes = d * (intervals * S + 1)
+        self.size = self.nodes + k * intervals * S
+
+    def evaluate(self, unknowns):
+        """Hessian (size x size) and gradient (size) at `unknowns` (size)."""
+        d, k, count = self.d, self.k, self.intervals * S
+        nodes = unknowns[: self.nodes].reshape(-1, d).T
+        points_ = np.empty((2 * d + k, count))
+        for i in range(self.intervals):
+            local, part = nodes[:, i * S : (i + 1) * S + 1], slice(i * S, (i + 1) * S)
+            points_[:d, part], points_[d : 2 * d, part] = local @ self.values.T, local @ self.slopes.T
+        points_[2 * d :] = unknowns[self.nodes :].reshape(-1, k).T if k else 0.0
+        local_hessian, local_gradient = (np.array(x) for x in self.local(self.times.reshape(1, -1), points_))
+        hessian, gradient = np.zeros((self.size, self.size)), np.zeros(self.size)
+        for p in range(count):
+            i, c = divmod(p, S)
+            # (x, x', m) at this point from the nodes of the interval and its own multipliers
+            chain = np.zeros((2 * d + k, d * (S + 1) + k))
+            chain[:d, : d * (S + 1)] = np.kron(self.values[c], np.eye(d))
+            chain[d : 2 * d, : d * (S + 1)] = np.kron(self.slopes[c], np.eye(d))
+            chain[2 * d :, d * (S + 1) :] = np.eye(k)
+            first = i * S * d
+            places = np.concatenate([np.arange(first, first + d * (S + 1)), self.nodes + p * k + np.arange(k)])
+            block = local_hessian[:, p * (2 * d + k) : (p + 1) * (2 * d + k)]
+            hessian[np.ix_(places, places)] += self.weights[p] * (chain.T @ block @ chain)
+            gradient[places] += self.weights[p] * (chain.T @ local_gradient[:, p])
+        return hessian, gradient
 
 
-def newton(action, unknowns, guess):
-    """A zero of the gradient; (values, steps, length of the last step relative to the values)."""
-    hessian, gradient = ca.hessian(action, unknowns)
-    evaluate = ca.Function("kkt", [unknowns], [hessian, gradient])
-    solver, x = None, ca.DM(guess)
+def newton(action, unknowns, free):
+    """Stationary values of the unknowns at the places `free`; (values of all, steps)."""
     relative = np.inf
     for step in range(NEWTON_STEPS):
-        matrix, right = evaluate(x)
-        if solver is None:
-            solver = ca.Linsol("kkt", "lsqr" if matrix.shape[0] == 0 else "csparse", matrix.sparsity())
-        solver.sfact(matrix)
-        solver.nfact(matrix)
-        change = -solver.solve(matrix, right)
-        x += change
-        previous, relative = relative, float(ca.norm_inf(change)) / max(1.0, float(ca.norm_inf(x)))
-        if relative < 1e-13 or (relative < 1e-10 and relative >= previous):
-            return np.array(x).ravel(), step + 1, relative
+        hessian, gradient = action.evaluate(unknowns)
+        change = -np.linalg.solve(hessian[np.ix_(free, free)], gradient[free])
+        unknowns[free] += change
+        previous, relative = relative, np.abs(change).max() / max(1.0, np.abs(unknowns).max())
+        if relative < 1e-13 or (relative < 1e-9 and relative >= previous):
+            return unknowns, step + 1
         if not np.isfinite(relative):
             break
     raise ValueError(f"Newton's method did not converge: last step {relative:.1e} after {step + 1} steps")
@@ -124,7 +147,7 @@ def compare(scene, case):
     column = {tag: i for i, tag in enumerate(instant.tags)}
     ours, ours_multipliers = states[:, [column[t] for t in tags]], states[:, [column[t] for t in multiplier_tags]]
     intervals, d, k = (len(times) - 1) // 2, len(tags), len(multiplier_tags)
-    nodes, multipliers, action = discretize(integrand, (d, k), times, intervals)
+    action = Action(integrand, d, k, times, intervals)
 
     lobatto, gauss, _ = points()
     place = np.concatenate([[0.0]] + [(i + lobatto[1:]) / intervals for i in range(intervals)])
@@ -137,22 +160,12 @@ def compare(scene, case):
     fixed[:, -1] = [tag not in free for tag in tags]
     guess[fixed] = exact[fixed]
 
-    x = ca.SX(guess)
-    variables = []
-    for j in range(exact.shape[1]):
-        for i in range(d):
-            if not fixed[i, j]:
-                x[i, j] = nodes[i, j]
-                variables.append((i, j))
-    unknowns = ca.vertcat(*[nodes[i, j] for i, j in variables], ca.vec(multipliers))
-    action = ca.substitute(action, nodes, x)
     # multipliers start from zero
-    start = np.concatenate([[guess[i, j] for i, j in variables], np.zeros(k * intervals * S)])
-    solution, steps, _ = newton(action, unknowns, start)
-    found = guess.copy()
-    for value, (i, j) in zip(solution, variables):
-        found[i, j] = value
-    found_multipliers = solution[len(variables) :].reshape(intervals * S, k).T
+    unknowns = np.concatenate([guess.T.ravel(), np.zeros(k * intervals * S)])
+    free_places = np.concatenate([np.flatnonzero(~fixed.T.ravel()), np.arange(action.nodes, action.size)])
+    solution, steps = newton(action, unknowns, free_places)
+    found = solution[: action.nodes].reshape(-1, d).T
+    found_multipliers = solution[action.nodes :].reshape(intervals * S, k).T
 
     middle, _ = lagrange_basis(lobatto, np.array([0.0, 0.5, 1.0]))
     middle_multipliers, _ = lagrange_basis(gauss, np.array([0.0, 0.5, 1.0]))

@@ -32,7 +32,7 @@ mod table;
 
 pub use environment::NotRun;
 pub use questions::{Amount, Question, Tag};
-pub use table::{headline, scene_table, verdict_words};
+pub use table::{headline, referee_table, verdict_words};
 
 /// What the referee says about one comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -132,7 +132,7 @@ pub const SYMPY_STATES: usize = 20;
 
 /// Scenes whose action is discretized: horizon and number of intervals.
 const TRANSCRIBED: [(&str, f64, usize); 4] =
-    [("sledge", 2.0, 12), ("particle", 2.0, 8), ("disc", 2.0, 12), ("ball-in-cone", 0.3, 8)];
+    [("sledge", 1.0, 12), ("particle", 2.0, 8), ("disc", 1.0, 12), ("ball-in-cone", 0.3, 8)];
 /// Scenes for SymPy.
 const SYMPY_SCENES: [&str; 4] = ["sledge", "disc", "particle", "appell-hamel"];
 

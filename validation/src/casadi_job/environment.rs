@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-
 const REQUIREMENTS: &str = include_str!("../../casadi/requirements.txt");
 
 /// Name and text of the referee's files.
@@ -85,7 +84,8 @@ pub fn interpreter() -> Result<PathBuf, NotRun> {
         return Err(NotRun::NoPython);
     }
     std::fs::create_dir_all(&target).map_err(files("the target folder"))?;
-    let building = tempfile::Builder::new().prefix("casadi-new-").tempdir_in(&target).map_err(files("an environment"))?;
+    let building =
+        tempfile::Builder::new().prefix("casadi-new-").tempdir_in(&target).map_err(files("an environment"))?;
     let folder = building.path().join("environment");
     let run = |command: &mut Command| command.output().map_err(|_| NotRun::NoPython);
     let made = run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;

@@ -62,6 +62,10 @@ struct MotionTable {
     start: Vec<f64>,
     times: Vec<f64>,
     coordinates: Vec<Vec<f64>>,
+    /// Coordinates of the kept run less those of the looser one.
+    differences: Vec<Vec<f64>>,
+    /// Whether it reached the time asked for.
+    complete: bool,
     /// `μ(t)`, vakonomic only.
     multipliers: Vec<Vec<f64>>,
 }
@@ -94,6 +98,9 @@ impl Uniform {
 
 /// How far random states are from the start: positions, parameters and memory; everything else.
 const SPREAD: (f64, f64) = (0.25, 1.0);
+
+/// Where a motion stops at a singularity, it is compared up to this fraction of the time it lasted.
+const BEFORE_A_STOP: f64 = 0.98;
 
 /// States drawn for each one wanted, at most: where our equations cannot be solved another one is drawn.
 const TRIES: usize = 10;
@@ -129,12 +136,15 @@ impl Question {
         self
     }
 
-    /// Asks for the direct transcription of the action over the first `horizon` of the run, in `intervals` intervals.
+    /// Asks for the direct transcription of the action over the first `horizon` of the run, in `intervals` intervals: the vakonomic motion, and
+    /// those of the removals in the text with `P(t₁) = 0` at the horizon.
     ///
     /// # Errors
     /// Where a motion of ours cannot be computed or read off.
     pub fn with_transcription(mut self, scene: &Scene, horizon: f64, intervals: usize) -> Result<Question> {
-        for choice in choices(scene).iter().filter(|c| ["vakonomic", "removed-constraint"].contains(&c.formulation)) {
+        let variational = |c: &&Choice| ["vakonomic", "removed-constraint"].contains(&c.formulation);
+        let by_hand = |c: &&Choice| !is_automatic(scene, c);
+        for choice in choices(scene).iter().filter(variational).filter(by_hand) {
             self.transcriptions.extend(transcription(scene, choice, horizon, intervals)?);
         }
         Ok(self)
@@ -189,10 +199,10 @@ fn case(scene: &Scene, choice: &Choice, amount: Amount) -> Result<Option<Case>> 
     if samples.is_none() && motion.is_none() {
         return Ok(None);
     }
-    let solvers = match (&motion, costate_form) {
+    let solvers = match (&motion, choice.formulation) {
         (None, _) => vec![],
-        (Some(_), true) => vec!["CVODES"],
-        (Some(_), false) => vec!["CVODES", "IDAS"],
+        (Some(_), "chetaev") => vec!["CVODES", "IDAS"],
+        (Some(_), _) => vec!["CVODES"],
     };
     Ok(Some(Case {
         label: choice.label.clone(),
@@ -290,7 +300,11 @@ fn samples(scene: &Scene, choice: &Choice, equations: &Equations, count: usize) 
 
 fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: usize) -> Result<MotionTable> {
     let system = &scene.system;
-    let times = motion.grid(times);
+    let complete = motion.is_complete();
+    let fraction = if complete { 1.0 } else { BEFORE_A_STOP };
+    let begin = motion.start();
+    let times: Vec<f64> = motion.grid(times).into_iter().map(|t| begin + fraction * (t - begin)).collect();
+    let differences = times.iter().map(|&t| motion.difference_of_runs(t)).collect::<Result<_, _>>()?;
     let outputs = times.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
     let vakonomic = motion.equations.formulation.starts_with("vakonomic");
     let (tags, start) = if motion.equations.removal.is_some() {
@@ -312,10 +326,11 @@ fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: u
         Vec::new()
     };
     let coordinates = outputs.into_iter().map(|o| o.coordinates).collect();
-    Ok(MotionTable { tags, start, times, coordinates, multipliers })
+    Ok(MotionTable { tags, start, times, coordinates, differences, complete, multipliers })
 }
 
-/// The vakonomic motion of the scene, or the removed-constraint motion with `P(t₁) = 0` at the horizon, at the ends and middles of the intervals.
+/// `None` where the motion does not last that long: the
+/// vakonomic motion of the scene, or the removed-constraint motion with `P(t₁) = 0` at the horizon, at the ends and middles of the intervals.
 fn transcription(scene: &Scene, choice: &Choice, horizon: f64, intervals: usize) -> Result<Option<Transcription>> {
     let Some(full) = equations(scene, choice) else { return Ok(None) };
     let constants = match choice.formulation {
@@ -325,21 +340,18 @@ fn transcription(scene: &Scene, choice: &Choice, horizon: f64, intervals: usize)
     let mut short = scene.clone();
     short.duration = horizon;
     let tags = tags(&full);
-    let automatic = is_automatic(scene, choice);
-    let mut motion = match solve(setting(&short), full, &constants, &Settings::default()) {
-        Ok(motion) if motion.is_complete() => motion,
-        // A chart that ends before the horizon; shooting that does not find P(t₀) for parameters that nobody chose.
-        Ok(_) => return Ok(None),
-        Err(_) if automatic => return Ok(None),
-        Err(error) => return Err(error).with_context(|| format!("{} over {horizon}", choice.label)),
-    };
+    let mut motion = solve(setting(&short), full, &constants, &Settings::default())
+        .with_context(|| format!("{} over {horizon}", choice.label))?;
+    if !motion.is_complete() {
+        return Ok(None);
+    }
     let times = motion.grid(2 * intervals);
     let states = times.iter().map(|&t| motion.states_at(t)).collect();
     Ok(Some(Transcription {
         label: choice.label.clone(),
         formulation: choice.formulation,
         removal: choice.removal.as_ref().map(|r| r.name.clone()),
-        automatic,
+        automatic: false,
         tags,
         times,
         states,

@@ -23,15 +23,8 @@ fn word(verdict: Word) -> &'static str {
     }
 }
 
-/// The table of one scene; empty where it was not asked about.
-pub fn scene_table(outcome: &Outcome, scene: &str) -> String {
-    let rows: Vec<&Row> = match outcome {
-        Outcome::NotRun(reason) => return format!("CasADi: *not run: {reason}.*\n"),
-        Outcome::Ran(rows) => rows.iter().filter(|row| row.scene == scene).collect(),
-    };
-    if rows.is_empty() {
-        return String::new();
-    }
+/// Comparisons as a table, in Markdown.
+pub fn referee_table(rows: &[Row]) -> String {
     let mut text = String::from(
         "| who | what was compared | how many | largest relative difference | tolerance | verdict |\n|---|---|---|---|---|---|\n",
     );
