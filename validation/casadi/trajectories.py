@@ -7,8 +7,9 @@ from its start; a coordinate that moves less than a hundredth of what the one th
 import casadi as ca
 import numpy as np
 
-TOLERANCES = {"CVODES": 1e-14, "IDAS": 1e-11}
-COMMON = {"abstol": 1e-14, "max_num_steps": 100_000}
+TOLERANCES = {"CVODES": 1e-14, "IDAS": 1e-10}
+ABSOLUTE = {"CVODES": 1e-14, "IDAS": 1e-11}
+COMMON = {"max_num_steps": 100_000}
 OPTIONS = {
     "CVODES": {"linear_multistep_method": "adams", "nonlinear_solver_iteration": "functional"},
     "IDAS": {"calc_ic": True},
@@ -26,7 +27,7 @@ def integrate(instant, y0, times, solver):
 
     CVODES gets y' = F(t, y) with z eliminated, IDAS the pair y' = F(t, y, z), R(z; t, y) = 0.
     """
-    options = COMMON | OPTIONS[solver] | {"reltol": TOLERANCES[solver]}
+    options = COMMON | OPTIONS[solver] | {"reltol": TOLERANCES[solver], "abstol": ABSOLUTE[solver]}
     problem = {"t": instant.t, "x": instant.y}
     if solver == "CVODES":
         t, y = ca.MX.sym("t"), ca.MX.sym("y", instant.y.numel())
@@ -59,17 +60,35 @@ def largest_constraint(instant, times, states):
     return float(np.abs(np.array(f)).max())
 
 
+class Found:
+    """Two motions at the same times: coordinates (N x n) of our kept run, of our looser run, and theirs; multipliers (N x h)."""
+
+    def __init__(self, ours, looser, theirs, our_multipliers, their_multipliers, drift):
+        self.ours, self.looser, self.theirs, self.drift = ours, looser, theirs, drift
+        self.our_multipliers, self.their_multipliers = our_multipliers, their_multipliers
+        self.has_multipliers = our_multipliers.size > 0
+
+    def apart(self, count):
+        """Distance of the first `count` points."""
+        return distance(self.ours[:count], self.theirs[:count])
+
+    def own(self, count):
+        """Distance of our own two runs."""
+        return distance(self.ours[:count], self.looser[:count])
+
+    def multipliers(self, count):
+        """Largest difference of the multipliers, relative to the largest of them, or to 1."""
+        scale = max(1.0, np.abs(self.our_multipliers[:count]).max())
+        return float(np.abs(self.our_multipliers - self.their_multipliers)[:count].max() / scale)
+
+
 def compare(instant, motion, solver):
-    """(distance of the coordinates, distance of the multipliers mu or None, largest |f|, distance of our own two runs)."""
+    """Our motion and theirs from the same start."""
     times = np.array(motion["times"], dtype=float)
     states = integrate(instant, start(instant, motion), times, solver)
     theirs = np.array(instant.coordinate_function.map(len(times))(times.reshape(1, -1), states.T)).T
     ours = np.array(motion["coordinates"], dtype=float)
     mu = [i for i, tag in enumerate(instant.tags) if tag[0] == "mu"]
-    multipliers = None
-    if mu and motion["multipliers"]:
-        table = np.array(motion["multipliers"], dtype=float)
-        scale = max(1.0, np.abs(table).max())
-        multipliers = float(np.abs(table - states[:, mu]).max() / scale)
-    looser = ours - np.array(motion["differences"], dtype=float)
-    return distance(ours, theirs), multipliers, largest_constraint(instant, times, states), distance(ours, looser)
+    table = np.array(motion["multipliers"], dtype=float) if mu and motion["multipliers"] else np.zeros((len(times), 0))
+    drift = largest_constraint(instant, times, states)
+    return Found(ours, ours - np.array(motion["differences"], dtype=float), theirs, table, states[:, mu], drift)

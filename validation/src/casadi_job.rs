@@ -132,7 +132,7 @@ pub const SYMPY_STATES: usize = 20;
 
 /// Scenes whose action is discretized: horizon and number of intervals.
 const TRANSCRIBED: [(&str, f64, usize); 4] =
-    [("sledge", 1.0, 12), ("particle", 2.0, 8), ("disc", 1.0, 12), ("ball-in-cone", 0.3, 8)];
+    [("sledge", 1.0, 12), ("particle", 2.0, 8), ("disc", 1.0, 12), ("ball-in-cone", 0.3, 20)];
 /// Scenes for SymPy.
 const SYMPY_SCENES: [&str; 4] = ["sledge", "disc", "particle", "appell-hamel"];
 
