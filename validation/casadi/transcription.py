@@ -89,12 +89,12 @@ class Action:
         """Hessian (size x size) and gradient (size) at `unknowns` (size)."""
         d, k, count = self.d, self.k, self.intervals * S
         nodes = unknowns[: self.nodes].reshape(-1, d).T
-        points_ = np.empty((2 * d + k, count))
+        at = np.empty((2 * d + k, count))
         for i in range(self.intervals):
             local, part = nodes[:, i * S : (i + 1) * S + 1], slice(i * S, (i + 1) * S)
-            points_[:d, part], points_[d : 2 * d, part] = local @ self.values.T, local @ self.slopes.T
-        points_[2 * d :] = unknowns[self.nodes :].reshape(-1, k).T if k else 0.0
-        local_hessian, local_gradient = (np.array(x) for x in self.local(self.times.reshape(1, -1), points_))
+            at[:d, part], at[d : 2 * d, part] = local @ self.values.T, local @ self.slopes.T
+        at[2 * d :] = unknowns[self.nodes :].reshape(-1, k).T if k else 0.0
+        local_hessian, local_gradient = (np.array(x) for x in self.local(self.times.reshape(1, -1), at))
         hessian, gradient = np.zeros((self.size, self.size)), np.zeros(self.size)
         for p in range(count):
             i, c = divmod(p, S)
