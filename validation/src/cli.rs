@@ -27,6 +27,9 @@ pub struct JobArguments {
     /// Sections to run, all if left out. The overview is written only when all of them run.
     #[arg(long, value_enum, value_name = "NAME,…", value_delimiter = ',')]
     pub sections: Vec<Section>,
+    /// Sections to leave out.
+    #[arg(long, value_enum, value_name = "NAME,…", value_delimiter = ',')]
+    pub without: Vec<Section>,
     /// Scenes to run, all if left out; other sections run only if they are named.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub scenes: Vec<String>,
@@ -40,6 +43,8 @@ pub struct JobArguments {
 pub enum Section {
     /// Every built-in scene in every formulation.
     Scenes,
+    /// The scenes and 50 random systems once more by CasADi and SymPy, which derive everything again; needs Python 3.11 and a package index.
+    Casadi,
     /// The claims T1 to T14 on 1,000 random systems.
     Random,
     /// Friction, added mass, and what they tend to.

@@ -1,6 +1,7 @@
 //! The harness behind the `deltaq` command: scenes, the control formulation, the commands, the reports.
 
 pub mod audit;
+pub mod casadi_job;
 pub mod catalogue;
 pub mod cli;
 pub mod compare_command;

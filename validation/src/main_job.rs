@@ -10,12 +10,13 @@ use deltaq::{Comparison, Settings, compare};
 use mechanics::Scene;
 use serde_json::Value;
 
+use crate::casadi_job::{self, Outcome};
 use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
 use crate::random::{Batch, Kind, Record};
 use crate::report::{
     AuditReport, File, Provenance, RealizationReport, answer, difference_of_verdicts, overview, pictures, random_files,
-    random_headline, random_verdicts, scene_page, verdicts, write_all,
+    random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all,
 };
 use crate::{parallel, substitution};
 
@@ -50,6 +51,7 @@ const RANDOM_SYSTEMS: u64 = 1_000;
 struct Results {
     comparisons: Vec<Comparison>,
     scene_files: Vec<File>,
+    casadi: Option<Outcome>,
     batch: Batch,
     records: Vec<Record>,
     realization: Option<RealizationReport>,
@@ -58,8 +60,16 @@ struct Results {
 
 impl Results {
     fn of(sections: &[Section], names: &[&str], quiet: bool) -> Result<Results> {
-        let scenes = if sections.contains(&Section::Scenes) { compare_all(names, quiet)? } else { Vec::new() };
-        let scene_files = scenes.iter().flat_map(|report| report.files.clone()).collect();
+        let mut scenes = if sections.contains(&Section::Scenes) { compare_all(names, quiet)? } else { Vec::new() };
+        let casadi = sections.contains(&Section::Casadi).then(|| casadi_job::section(names)).transpose()?;
+        let mut scene_files = Vec::new();
+        for report in &mut scenes {
+            let section = referees_section(&mut report.comparison, casadi.as_ref())?;
+            if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
+                page.text += &section;
+            }
+            scene_files.extend(report.files.clone());
+        }
         let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
         let random = sections.contains(&Section::Random);
         let records = if random { batch.run(RANDOM_SYSTEMS, None, quiet)? } else { Vec::new() };
@@ -67,7 +77,7 @@ impl Results {
             sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
         let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
-        Ok(Results { comparisons, scene_files, batch, records, realization, audit })
+        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit })
     }
 
     fn verdicts(&self) -> Value {
@@ -78,6 +88,9 @@ impl Results {
         }
         if let Some(audit) = &self.audit {
             verdicts["paper audit"] = audit.verdicts();
+        }
+        if let Some(words) = self.casadi.as_ref().and_then(casadi_job::verdict_words) {
+            verdicts["casadi"] = words;
         }
         verdicts
     }
@@ -120,6 +133,8 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
         ([], false) => &[Section::Scenes],
         (some, _) => some,
     };
+    let sections: Vec<Section> = sections.iter().copied().filter(|s| !arguments.without.contains(s)).collect();
+    let sections = &sections[..];
     let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
@@ -139,6 +154,9 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
         let first = answer.split_inclusive(". ").next().unwrap_or_default();
         let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
     }
+    if let Some(casadi) = &results.casadi {
+        let _ = writeln!(told, "{:<24} {}", "CasADi", casadi_job::headline(casadi));
+    }
     for (line, page) in results.further() {
         let _ = writeln!(told, "{page:<24} {line}");
     }
@@ -155,7 +173,7 @@ pub fn check(arguments: &ReportsArguments) -> Result<String> {
     const MEND: &str = "`cargo run --release` writes the reports anew";
     let path = arguments.out.join("verdicts.json");
     let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}; {MEND}", path.display()))?;
-    let old: Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
+    let mut old: Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
     let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let results = Results::of(Section::value_variants(), &names, true)?;
     for file in results.files()? {
@@ -164,7 +182,14 @@ pub fn check(arguments: &ReportsArguments) -> Result<String> {
             bail!("{} is missing; {MEND}", path.display());
         }
     }
-    if let Some(difference) = difference_of_verdicts(&old, &results.verdicts()) {
+    let mut new = results.verdicts();
+    // the referee is not everywhere: its verdicts are compared where there are two to compare
+    if old.get("casadi").is_none() || new.get("casadi").is_none() {
+        for verdicts in [&mut old, &mut new] {
+            verdicts.as_object_mut().and_then(|all| all.remove("casadi"));
+        }
+    }
+    if let Some(difference) = difference_of_verdicts(&old, &new) {
         bail!("{} is out of date at {difference}; {MEND}", path.display());
     }
     Ok(format!("{} agrees with a fresh run\n", path.display()))

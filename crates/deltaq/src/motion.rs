@@ -112,6 +112,12 @@ impl Motion {
         Ok(self.kept.outputs(&mut self.compiled, t, &mut self.state)?)
     }
 
+    /// The states `y` at `t` from the kept run, in the order of the states of [`Motion::equations`].
+    pub fn states_at(&mut self, t: f64) -> Vec<f64> {
+        self.kept.dense.evaluate(t, &mut self.state);
+        self.state.clone()
+    }
+
     /// Difference of the coordinates of the two runs at `t`: what the looser run was wrong by, and a bound in practice for the kept one.
     ///
     /// # Errors

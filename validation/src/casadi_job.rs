@@ -1,0 +1,189 @@
+//! CasADi as a referee: another program derives the equations again and integrates them with another integrator.
+//!
+//! The referee is `validation/casadi/`, Python. It reads the *text* of `L`, `f`, `Q` and the removals from scene files with a reader of its own,
+//! differentiates with CasADi and knows nothing of the Rust crates but numbers that it is handed. With `𝓛 = L + μ·f` and `G = L + P·B` it states
+//!
+//! ```text
+//! Chetaev             d/dt L_v − L_q = Q + Aᵀ λ ,                     d/dt f = 0
+//! vakonomic           d/dt 𝓛_v − 𝓛_q = 0 ,                            d/dt f = 0
+//! removed constraint  d²/dt² G_ü − d/dt G_u̇ + G_u = 0 ,  Ṗ = −G_w ,   ẇ = B
+//! ```
+//!
+//! and compares
+//!
+//! - rates of all states, and `λ`, at random states near the start (and off the constraint), with all equations as derived;
+//! - motions, with those of SUNDIALS' CVODES and IDAS;
+//! - motions, with curves that make the discretized action stationary: no equation of motion at all (vakonomic: `f = 0` imposed, ends fixed;
+//!   removed constraint: `u` fixed at both ends, `w(t₁)` free, so that `P(t₁) = 0` has to come out);
+//! - Chetaev's accelerations, with those of SymPy's `LagrangesMethod`.
+//!
+//! The virtual environment is made in cargo's target folder when it is first needed.
+
+use anyhow::{Context, Result};
+use mechanics::Scene;
+use serde::Deserialize;
+
+use crate::random::{Batch, Kind};
+use crate::{catalogue, parallel};
+
+mod environment;
+mod questions;
+mod table;
+
+pub use environment::NotRun;
+pub use questions::{Amount, Question, Tag};
+pub use table::{headline, referee_table, verdict_words};
+
+/// What the referee says about one comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Word {
+    /// Within the tolerance.
+    Agrees,
+    /// Not within the tolerance, or not finite.
+    Disagrees,
+    /// The referee has no result; the note says why.
+    Failed,
+}
+
+/// One comparison.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Row {
+    /// Name of the scene.
+    pub scene: String,
+    /// Who compared: `CasADi`, `CVODES`, `IDAS`, `transcription`, `SymPy`.
+    pub who: String,
+    /// What was compared: the run and the quantity.
+    pub what: String,
+    /// At how many states or times.
+    pub count: usize,
+    /// Largest relative difference; `None` where it is not finite or there is none.
+    pub largest: Option<f64>,
+    /// Largest difference that counts as agreement.
+    pub tolerance: f64,
+    /// The verdict.
+    pub verdict: Word,
+    /// Remarks.
+    pub note: String,
+    /// Condition of the equilibrated matrix of the instant where the difference is largest, for right-hand sides.
+    #[serde(default)]
+    pub condition: Option<f64>,
+}
+
+/// The answer of the scripts.
+#[derive(Deserialize)]
+struct Answer {
+    rows: Vec<Row>,
+}
+
+/// What became of the section.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// The comparisons, scene after scene.
+    Ran(Vec<Row>),
+    /// Why there are none.
+    NotRun(NotRun),
+}
+
+impl Outcome {
+    /// The comparisons; none where the referee did not run.
+    pub fn rows(&self) -> &[Row] {
+        match self {
+            Outcome::Ran(rows) => rows,
+            Outcome::NotRun(_) => &[],
+        }
+    }
+}
+
+/// Puts questions to the referee.
+///
+/// # Errors
+/// Where its answer cannot be read. That it could not run is [`Outcome::NotRun`].
+pub fn ask(questions: &[Question]) -> Result<Outcome> {
+    let found = environment::interpreter().and_then(|python| {
+        let job = serde_json::json!({ "scenes": questions }).to_string();
+        environment::answer(&python, &job)
+    });
+    match found {
+        Ok(text) => {
+            let answer: Answer = serde_json::from_str(&text).context("the answer of the referee")?;
+            Ok(Outcome::Ran(answer.rows))
+        }
+        Err(reason) => Ok(Outcome::NotRun(reason)),
+    }
+}
+
+/// Whether the environment is there, or can be made: before work is done for a referee that cannot run.
+///
+/// # Errors
+/// [`NotRun`].
+pub fn prepare() -> std::result::Result<(), NotRun> {
+    environment::interpreter().map(|_| ())
+}
+
+/// States and times for each formulation of a built-in scene in the main job.
+pub const BUILT_IN: Amount = Amount { states: 1_000, times: 20 };
+/// The same for a random system.
+pub const RANDOM: Amount = Amount { states: 40, times: 0 };
+/// Random systems in the main job.
+pub const RANDOM_SYSTEMS: u64 = 50;
+/// States that go to SymPy.
+pub const SYMPY_STATES: usize = 20;
+
+/// Scenes whose action is discretized: horizon and number of intervals.
+const TRANSCRIBED: [(&str, f64, usize); 4] =
+    [("sledge", 1.0, 12), ("particle", 2.0, 8), ("disc", 1.0, 12), ("ball-in-cone", 0.3, 20)];
+/// Scenes for SymPy.
+const SYMPY_SCENES: [&str; 4] = ["sledge", "disc", "particle", "appell-hamel"];
+
+/// Everything about a built-in scene.
+///
+/// # Errors
+/// Where there is no such scene, or a motion of ours cannot be read off.
+pub fn built_in(name: &str, amount: Amount) -> Result<Question> {
+    let (_, text) = catalogue::SCENES.iter().find(|(known, _)| *known == name).context("no such scene")?;
+    let scene = Scene::parse(name, text)?;
+    let mut question = Question::new(&scene, text, amount)?;
+    if SYMPY_SCENES.contains(&name) {
+        question = question.with_lagranges_method(SYMPY_STATES);
+    }
+    if let Some((_, horizon, intervals)) = TRANSCRIBED.iter().find(|(scene, ..)| *scene == name) {
+        question = question.with_transcription(&scene, *horizon, *intervals)?;
+    }
+    Ok(question)
+}
+
+/// The right-hand sides of a random system.
+///
+/// # Errors
+/// Where a rate of ours cannot be evaluated.
+pub fn random(index: u64, amount: Amount) -> Result<Question> {
+    let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
+    let scene = batch.scene(index);
+    let text = scene.to_toml();
+    Question::new(&scene, &text, amount)
+}
+
+/// The section of the main job: the named built-in scenes, and, where all of them are, random systems.
+///
+/// # Errors
+/// Where a motion of ours cannot be read off, or the answer of the referee cannot be read.
+pub fn section(names: &[&str]) -> Result<Outcome> {
+    if let Err(reason) = prepare() {
+        return Ok(Outcome::NotRun(reason));
+    }
+    let mut tasks: Vec<Task> = names.iter().map(|&name| Task::BuiltIn(name)).collect();
+    if names.len() == catalogue::SCENES.len() {
+        tasks.extend((0..RANDOM_SYSTEMS).map(Task::Random));
+    }
+    let questions = parallel::map(&tasks, |task| match task {
+        Task::BuiltIn(name) => built_in(name, BUILT_IN).with_context(|| format!("scene `{name}`")),
+        Task::Random(index) => random(*index, RANDOM).with_context(|| format!("random system {index}")),
+    });
+    ask(&questions.into_iter().collect::<Result<Vec<_>>>()?)
+}
+
+enum Task<'a> {
+    BuiltIn(&'a str),
+    Random(u64),
+}

@@ -1,0 +1,73 @@
+//! The referee's findings for readers and for machines: bounds that are powers of ten, so that they do not change with the last digit.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value, json};
+
+use super::{Outcome, Row, Word};
+
+/// `< 1e-12`: the smallest power of ten above the difference.
+fn bound(row: &Row) -> String {
+    match row.largest {
+        None => "–".into(),
+        Some(0.0) => "0".into(),
+        Some(x) => format!("< 1e{:+03}", (x.log10().floor() as i32 + 1).max(row.tolerance.log10().round() as i32 - 1)),
+    }
+}
+
+fn word(verdict: Word) -> &'static str {
+    match verdict {
+        Word::Agrees => "agrees",
+        Word::Disagrees => "disagrees",
+        Word::Failed => "failed",
+    }
+}
+
+/// Comparisons as a table, in Markdown.
+pub fn referee_table(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "| who | what was compared | how many | largest relative difference | tolerance | verdict |\n|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        let verdict = match row.verdict {
+            Word::Agrees => word(row.verdict).to_string(),
+            _ => format!("**{}**", word(row.verdict)),
+        };
+        let note = if row.note.is_empty() { String::new() } else { format!("; {}", row.note) };
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {:.0e} | {verdict}{note} |",
+            row.who,
+            row.what,
+            row.count,
+            bound(row),
+            row.tolerance
+        );
+    }
+    text
+}
+
+/// One sentence about everything.
+pub fn headline(outcome: &Outcome) -> String {
+    let rows = match outcome {
+        Outcome::NotRun(reason) => return format!("not run: {reason}"),
+        Outcome::Ran(rows) => rows,
+    };
+    let agree = rows.iter().filter(|row| row.verdict == Word::Agrees).count();
+    let mut text = format!("{agree} of {} comparisons agree", rows.len());
+    if let Some(first) = rows.iter().find(|row| row.verdict != Word::Agrees) {
+        let _ = write!(text, "; {} {} {}: {}", first.scene, first.who, first.what, word(first.verdict));
+    }
+    text
+}
+
+/// Verdict words by scene, for `verdicts.json`; `None` where the referee did not run.
+pub fn verdict_words(outcome: &Outcome) -> Option<Value> {
+    let Outcome::Ran(rows) = outcome else { return None };
+    let mut scenes: Map<String, Value> = Map::new();
+    for row in rows {
+        let entry = scenes.entry(row.scene.clone()).or_insert_with(|| json!({}));
+        entry[format!("{}: {}", row.who, row.what)] = word(row.verdict).into();
+    }
+    Some(Value::Object(scenes))
+}

@@ -1,0 +1,70 @@
+//! The referee in Python: it has to be able to run, to agree where we are right, and to disagree where we are not.
+
+use mechanics::Scene;
+use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, random};
+use validation::catalogue;
+
+const FEW: Amount = Amount { states: 50, times: 5 };
+
+#[track_caller]
+fn rows(questions: &[Question]) -> Vec<Row> {
+    match ask(questions).expect("an answer that can be read") {
+        Outcome::Ran(rows) => rows,
+        Outcome::NotRun(reason) => panic!("the referee has to run here: {reason}"),
+    }
+}
+
+#[test]
+fn the_referee_agrees() {
+    let scenes = ["sledge", "particle", "appell-hamel"];
+    let mut questions: Vec<Question> = scenes.iter().map(|name| built_in(name, FEW).expect(name)).collect();
+    questions.extend((0..5).map(|index| random(index, Amount { states: 20, times: 0 }).expect("a random system")));
+    let rows = rows(&questions);
+    for row in &rows {
+        assert_eq!(row.verdict, Word::Agrees, "{row:?}");
+    }
+    let of = |who: &str| rows.iter().filter(|row| row.who == who).count();
+    assert!(of("CasADi") >= 14 && of("CVODES") >= 9 && of("transcription") >= 6 && of("SymPy") == 3, "{rows:?}");
+    for scene in scenes.map(String::from).into_iter().chain((0..5).map(|i| format!("random-1-{i}"))) {
+        assert!(rows.iter().any(|row| row.scene == scene && row.who == "CasADi"), "{scene}");
+    }
+}
+
+/// `d/dt L_v + L_q = Aᵀ λ` is no equation of motion, and `λ` with the other sign is not ours.
+#[test]
+fn a_wrong_sign_is_found() {
+    let (name, text) = catalogue::SCENES[0];
+    let scene = Scene::parse(name, text).expect("a scene");
+    let mut questions = Vec::new();
+    for flip in [true, false] {
+        let mut question = Question::new(&scene, text, FEW).expect("questions");
+        let change = |equations: &mut mechanics::Equations| {
+            let g = &equations.graph;
+            for (residual, q) in equations.blocks[0].residuals.iter_mut().zip(scene.system.positions()) {
+                let gradient = g.derivative(scene.system.lagrangian, q);
+                let factor = if flip { 2 } else { 0 };
+                *residual = g.add(*residual, g.mul(g.integer(factor), gradient));
+            }
+        };
+        question.corrupt(&scene, "chetaev", FEW.states, change).expect("rates");
+        questions.push(question);
+    }
+    let rows = rows(&questions);
+    let words: Vec<Word> = rows.iter().map(|row| row.verdict).collect();
+    assert_eq!(words, [Word::Disagrees, Word::Agrees], "{rows:?}");
+    assert!(rows[0].largest > Some(0.1), "{rows:?}");
+}
+
+#[test]
+fn a_wrong_text_is_found() {
+    let (name, text) = catalogue::SCENES[0];
+    let scene = Scene::parse(name, text).expect("a scene");
+    let other = text.replace("+ g*x*sin(alpha)", "- g*x*sin(alpha)");
+    assert_ne!(text, other);
+    let question = Question::new(&scene, &other, Amount { states: 10, times: 0 }).expect("questions");
+    let rows = rows(&[question]);
+    for formulation in ["Chetaev", "vakonomic", "removed constraint (arc-length)"] {
+        let row = rows.iter().find(|row| row.what.starts_with(formulation)).expect(formulation);
+        assert_eq!(row.verdict, Word::Disagrees, "{row:?}");
+    }
+}
