@@ -78,7 +78,7 @@ impl Costates {
             equations.multipliers.push(Named { name: g.name(p.symbol), expression: costate });
         }
         let second = removal.parameters.iter().any(|u| g.depends_on(self.generating_function, u.second_rate));
-        if !second && !removal.parameters.is_empty() {
+        if !second {
             let words = "second rates of the parameters: G is of first order".into();
             equations.left_out.push(LeftOut { variables: Vec::new(), words });
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use deltaq::FORMULATIONS;
-use mechanics::{Derivation, Equations, Removal, Scene};
+use mechanics::{Derivation, Equations, Removal, Role, Scene};
 
 use crate::support::{constrained_scenes, regular_removals, scenes};
 
@@ -72,7 +72,7 @@ fn first_order_is_said_where_no_second_rate_is_needed() {
         for removal in regular_removals(scene) {
             let equations = derived(scene, "removed-constraint", Some(&removal));
             let said = equations.left_out.iter().any(|l| l.words.starts_with("second rates"));
-            let states = equations.states.iter().any(|y| y.role == mechanics::Role::ParameterSecondRate);
+            let states = equations.states.iter().any(|y| y.role == Role::ParameterSecondRate);
             assert_eq!(said, !states, "{}, {}", scene.name, removal.name);
         }
     }
@@ -87,25 +87,82 @@ x = { start = 1 }
 y = { start = 0.5 }
 z = { start = 0 }
 w = { start = 0.7 }
+s = { start = 0 }
 [system]
 lagrangian  = "(x'^2 + y'^2 + z'^2 + w'^2)/2 + z/y + w/k"
-constraints = ["x*z' - k*y'"]
+constraints = ["x*z' - k*y'", "(3 + y)*s' - x'"]
 [start.velocities]
 "x'" = 1
 "y'" = 1
 "w'" = 0.1
 [removal.by-hand]
 parameters = ["x", "y", "u"]
-rates = { z = "k*y'/x", w = "u'/(2 + w)" }
+rates = { z = "k*y'/x", w = "u'/(2 + w)", s = "x'/(3 + y)" }
 [run]
 duration = 1
 "#;
 
-/// `x` comes from a rate of memory, `y` from `L`, `2 + w` from a rate; `k` is a parameter and cannot vanish on the way.
+/// `y` comes from `L`; `x` and `2 + w` from rates that `L` needs, `3 + y` from the rate of a quadrature; `k` is a parameter and cannot vanish on the way.
 #[test]
 fn what_the_equations_divide_by_is_watched() {
     let scene = Scene::parse("guarded", GUARDED).unwrap_or_else(|e| panic!("{e}"));
     let equations = derived(&scene, "removed-constraint", Some(&scene.removals[0]));
     let guards: BTreeSet<String> = equations.guards.iter().map(|&e| equations.graph.plain(e)).collect();
-    assert_eq!(guards, ["w + 2", "x", "y"].map(String::from).into());
+    assert_eq!(guards, ["w + 2", "x", "y", "y + 3"].map(String::from).into());
+}
+
+const DRIVEN: &str = r#"
+title = "Driven oscillator, and a parameter of second order"
+[coordinates]
+x = { start = 1 }
+y = { start = 0.2 }
+[system]
+lagrangian  = "(x'^2 + y'^2)/2 + x*cos(t)"
+constraints = []
+[start.velocities]
+"x'" = 0.4
+"y'" = 1
+[removal.second-order]
+parameters = ["u", "w"]
+direct = { x = "u + u'/2", y = "w" }
+[removal.by-rate]
+parameters = ["u", "y"]
+rates = { x = "u'*(2 + y)" }
+[run]
+duration = 1
+"#;
+
+#[test]
+fn what_depends_on_time_has_no_energy() {
+    let scene = Scene::parse("driven", DRIVEN).unwrap_or_else(|e| panic!("{e}"));
+    let mut all = vec![derived(&scene, "chetaev", None), derived(&scene, "vakonomic", None)];
+    all.extend(scene.removals.iter().map(|r| derived(&scene, "removed-constraint", Some(r))));
+    for equations in all {
+        let named: Vec<&str> = equations.invariants.iter().map(|i| i.name.as_str()).collect();
+        assert!(!named.contains(&"energy"), "{}: {named:?}", equations.formulation);
+        assert!(named.iter().any(|name| name.starts_with("momentum")), "{}: {named:?}", equations.formulation);
+    }
+}
+
+#[test]
+fn states_say_what_they_are_and_second_rates_are_not_denied() {
+    let scene = Scene::parse("driven", DRIVEN).unwrap_or_else(|e| panic!("{e}"));
+    let [mixed, memory] = [0, 1].map(|i| derived(&scene, "removed-constraint", Some(&scene.removals[i])));
+    let first_order = |e: &Equations| e.left_out.iter().any(|l| l.words.starts_with("second rates"));
+    assert!(!first_order(&mixed) && first_order(&memory));
+    let role = |e: &Equations, name: &str| {
+        let state = e.states.iter().find(|y| e.graph.name(y.symbol) == name);
+        state.unwrap_or_else(|| panic!("no state {name}")).role
+    };
+    assert_eq!(role(&memory, "x"), Role::Position, "memory that is a coordinate");
+    assert_eq!(role(&memory, "y"), Role::Position);
+    assert_eq!(role(&memory, "u"), Role::DisplacementParameter);
+    assert_eq!(role(&mixed, "u''"), Role::ParameterSecondRate);
+    let scene = &scenes().into_iter().find(|s| s.name == "three-cylinders").expect("built in");
+    let by_turn = scene.removals.iter().find(|r| r.name == "by-turn").expect("built in");
+    let equations = derived(scene, "removed-constraint", Some(by_turn));
+    for w in &by_turn.memory {
+        let wanted = if w.coordinate.is_some() { Role::Position } else { Role::Memory };
+        assert_eq!(role(&equations, &equations.graph.name(w.symbol)), wanted);
+    }
 }

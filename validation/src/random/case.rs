@@ -5,10 +5,12 @@ use deltaq::{
     derive, formulation,
 };
 use mechanics::{ConstantsRule, Equations, Removal, Scene, State, System};
+use nalgebra::DMatrix;
+use symbolic::Expr;
 
 use super::finding::{Finding, Findings, Word};
 use super::recipe::Recipe;
-use crate::realization::constraint_jacobian;
+use crate::realization::{constraint_jacobian, numbers};
 use crate::substitution;
 
 /// Tolerances tried one after the other: what round-off does not allow is asked for less sharply.
@@ -54,7 +56,7 @@ pub struct Case {
     pub control: Option<(Removal, Motion)>,
     /// Why the run was shortened, if it was.
     pub shortened: Option<String>,
-    /// Gaps that the round-off of the data alone can make: `ε κ²`, `κ` the condition of `A` at the start.
+    /// Gaps that the round-off of the data alone can make: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
     pub floor: f64,
     /// What was found so far.
     pub found: Findings,
@@ -79,7 +81,7 @@ impl Case {
 
     fn with_duration(recipe: &Recipe, scene: &Scene) -> Result<Case, SolveError> {
         let system = &scene.system;
-        let floor = floor(system, &scene.start)?;
+        let floor = floor(system, &scene.start, &scene.multipliers)?;
         let run = |equations: Equations, constants: &[f64]| {
             solve(system, &scene.start, scene.start.t + scene.duration, equations, constants, floor)
         };
@@ -276,14 +278,27 @@ fn solve(
     }
 }
 
-/// `10² ε κ²`: constraints that are known to round-off only determine multipliers to `ε κ²`, and motions with them.
-fn floor(system: &System, start: &State) -> Result<f64, SolveError> {
-    if system.constraints.is_empty() {
+/// `10² ε κ` with the condition `κ` of the saddle-point matrix `[𝓛_vv Aᵀ; A 0]` at the start: data that are known to round-off only determine
+/// accelerations, multipliers and costates to `ε κ`, and motions with them. Nearly dependent constraints have `κ ∝ 1/angle²`.
+fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, SolveError> {
+    let h = system.constraints.len();
+    if h == 0 {
         return Ok(0.0);
     }
-    let singular = constraint_jacobian(system, start)?.singular_values();
+    let (g, v) = (&system.graph, system.velocities());
+    let mu: Vec<Expr> = multipliers.iter().map(|&mu| g.number(mu)).collect();
+    let augmented = g.add(system.lagrangian, g.dot(&mu, &system.constraints));
+    let hessian = g.jacobian(&g.gradient(augmented, &v), &v);
+    let n = v.len();
+    let hessian = DMatrix::from_row_slice(n, n, &numbers(g, hessian.entries(), &system.values_at(start))?);
+    let a = constraint_jacobian(system, start)?;
+    let mut saddle = DMatrix::zeros(n + h, n + h);
+    saddle.view_mut((0, 0), (n, n)).copy_from(&hessian);
+    saddle.view_mut((0, n), (n, h)).copy_from(&a.transpose());
+    saddle.view_mut((n, 0), (h, n)).copy_from(&a);
+    let singular = saddle.singular_values();
     let (smallest, largest) = singular.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &s| (a.min(s), b.max(s)));
-    Ok(1e2 * f64::EPSILON * (largest / smallest).powi(2))
+    Ok(1e2 * f64::EPSILON * largest / smallest)
 }
 
 /// The claim that two motions are the same.
