@@ -43,6 +43,7 @@ const SETTINGS: Settings = Settings {
     method: integrate::Method::Dop853,
     projection: integrate::Projection::EveryStep,
     max_steps: 40_000,
+    interrupt: None,
 };
 
 /// What a referee found: how far the motion is from its own, and by how much the two may be wrong. Relative to coordinates over 1.
