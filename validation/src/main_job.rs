@@ -97,10 +97,15 @@ impl Results {
 
     /// What the other sections say in a line, each with its page.
     fn further(&self) -> Vec<(String, &'static str)> {
+        let casadi = self.casadi.as_ref().map(|outcome| {
+            let line =
+                format!("Referees that share no derivation with this program: {}.", casadi_job::headline(outcome));
+            (line, "scenes/sledge.md#referees")
+        });
         let random = (!self.records.is_empty()).then(|| (random_headline(&self.records), "random.md"));
         let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
         let audit = self.audit.as_ref().map(|report| (report.headline(), "paper-audit.md"));
-        random.into_iter().chain(realization).chain(audit).collect()
+        casadi.into_iter().chain(random).chain(realization).chain(audit).collect()
     }
 
     /// Pages and pictures of every section that ran.
@@ -153,9 +158,6 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
         let answer = answer(comparison);
         let first = answer.split_inclusive(". ").next().unwrap_or_default();
         let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
-    }
-    if let Some(casadi) = &results.casadi {
-        let _ = writeln!(told, "{:<24} {}", "CasADi", casadi_job::headline(casadi));
     }
     for (line, page) in results.further() {
         let _ = writeln!(told, "{page:<24} {line}");

@@ -34,6 +34,7 @@ pub fn overview(comparisons: &[Comparison], further: &[(String, &str)], provenan
     for (line, path) in further {
         let _ = writeln!(page, "- {line} [More]({path}).");
     }
+    page += "- What a physics engine makes of rolling balls: `cargo xtask engine` writes [engine.md](engine.md).\n";
     let _ = writeln!(
         page,
         "\n## How this was made\n\n`cargo run --release` writes this folder; `deltaq compare SCENE` makes one page for a scene of your own; \
