@@ -8,7 +8,7 @@ use crate::random::Kind;
 
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
 #[derive(Parser, Debug)]
-#[command(name = "deltaq", version, about, max_term_width = 100)]
+#[command(name = "deltaq", version, max_term_width = 100)]
 pub struct Cli {
     /// What to do; without it the main job runs: every scene in every formulation, reports written.
     #[command(subcommand)]
