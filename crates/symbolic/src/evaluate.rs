@@ -4,7 +4,7 @@ use crate::arena::{Arena, Node};
 use crate::number::Number;
 use crate::tape::Tape;
 use crate::{Expr, Graph, Symbol, lower};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::HashMap;
 
 /// Why an expression cannot be evaluated.
@@ -45,12 +45,49 @@ impl Graph {
         outputs: &[Expr],
         constants: &HashMap<Symbol, f64>,
     ) -> Result<Tape, CompileError> {
+        self.compile_with(inputs, &[], outputs, constants)
+    }
+
+    /// [`Graph::compile`] with intermediate quantities: each of `definitions` is computed once, from inputs, constants and earlier
+    /// definitions, and stands under its symbol for the later ones and the outputs. So a long recursion keeps its length, whatever
+    /// it would be with everything put in.
+    ///
+    /// ```
+    /// use std::collections::HashMap;
+    /// let g = symbolic::Graph::new();
+    /// let (x, s) = (g.symbol("x"), g.symbol("s"));
+    /// let square = g.powi(g.variable(x), 2);
+    /// let outputs = [g.add(g.variable(s), g.one())];
+    /// let tape = g.compile_with(&[x], &[(s, square)], &outputs, &HashMap::new())?;
+    /// let mut y = [0.0];
+    /// tape.evaluate(&[3.0], &mut tape.workspace(), &mut y);
+    /// assert_eq!(y, [10.0]);
+    /// # Ok::<(), symbolic::CompileError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Graph::compile`]; a definition that is used before its place has no value there.
+    pub fn compile_with(
+        &self,
+        inputs: &[Symbol],
+        definitions: &[(Symbol, Expr)],
+        outputs: &[Expr],
+        constants: &HashMap<Symbol, f64>,
+    ) -> Result<Tape, CompileError> {
+        let (symbols, defined): (Vec<Symbol>, Vec<Expr>) = definitions.iter().copied().unzip();
+        let originals = [&defined[..], outputs].concat();
+        let known: FxHashSet<Symbol> = inputs.iter().chain(&symbols).copied().collect();
         let mut values = self.as_numbers(constants);
-        values.retain(|s, _| !inputs.contains(s));
-        let folded = self.substitute_all(outputs, &values);
-        self.check_bound(&folded, |s| inputs.contains(&s))?;
+        values.retain(|s, _| !known.contains(s));
+        let folded = self.substitute_all(&originals, &values);
+        let mut bound: FxHashSet<Symbol> = inputs.iter().copied().collect();
+        for (i, e) in folded[..symbols.len()].iter().enumerate() {
+            self.check_bound(&[*e], |s| bound.contains(&s))?;
+            bound.insert(symbols[i]);
+        }
+        self.check_bound(&folded[symbols.len()..], |s| bound.contains(&s))?;
         let arena = self.arena.borrow();
-        for (e, original) in folded.iter().zip(outputs) {
+        for (e, original) in folded.iter().zip(&originals) {
             if let Some(n) = arena.as_number(*e)
                 && !n.is_finite()
             {
@@ -58,7 +95,9 @@ impl Graph {
                 return Err(self.not_finite(*original));
             }
         }
-        let (mut program, ids) = lower::lower(&arena, inputs, &folded);
+        let (defined, results) = folded.split_at(symbols.len());
+        let definitions: Vec<(Symbol, Expr)> = symbols.into_iter().zip(defined.iter().copied()).collect();
+        let (mut program, ids) = lower::lower(&arena, inputs, &definitions, results);
         program.fuse(&ids);
         let tape = Tape::assemble(&program, inputs.len(), &ids);
         // An intermediate power may overflow where its reciprocal is zero: the expressions decide.

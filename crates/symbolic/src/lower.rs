@@ -7,18 +7,25 @@ use crate::number::{Number, Rational};
 use crate::program::{Id, Program, Value};
 use rustc_hash::FxHashMap;
 
-/// The program that computes `outputs`, and the value of each.
-pub(crate) fn lower(arena: &Arena, inputs: &[Symbol], outputs: &[Expr]) -> (Program, Vec<Id>) {
+/// The program that computes `outputs` by way of `definitions`, and the value of each output.
+pub(crate) fn lower(
+    arena: &Arena,
+    inputs: &[Symbol],
+    definitions: &[(Symbol, Expr)],
+    outputs: &[Expr],
+) -> (Program, Vec<Id>) {
     let mut lowering = Lowering { arena, program: Program::default(), values: FxHashMap::default() };
     for (i, s) in inputs.iter().enumerate() {
         let index = u32::try_from(i).expect("fewer than 2^32 inputs");
         let input = lowering.program.push(Value::Input(index));
         lowering.values.entry(Leaf::Symbol(*s)).or_insert(Parts::of(input));
     }
-    for e in arena.reachable(outputs, |_| true) {
-        let parts = lowering.node(e);
-        lowering.values.insert(Leaf::Node(e), parts);
+    for (symbol, e) in definitions {
+        lowering.nodes(&[*e]);
+        let parts = lowering.values[&Leaf::Node(*e)];
+        lowering.values.entry(Leaf::Symbol(*symbol)).or_insert(parts);
     }
+    lowering.nodes(outputs);
     let outputs = outputs.iter().map(|e| lowering.whole(*e)).collect();
     (lowering.program, outputs)
 }
@@ -52,6 +59,13 @@ struct Lowering<'a> {
 }
 
 impl Lowering<'_> {
+    fn nodes(&mut self, roots: &[Expr]) {
+        for e in self.arena.reachable(roots, |e| !self.values.contains_key(&Leaf::Node(e))) {
+            let parts = self.node(e);
+            self.values.insert(Leaf::Node(e), parts);
+        }
+    }
+
     fn whole(&mut self, e: Expr) -> Id {
         match self.values[&Leaf::Node(e)] {
             Parts { constant: None, varying: None } => self.program.constant(Number::ONE),
