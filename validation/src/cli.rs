@@ -51,6 +51,8 @@ pub enum Section {
     Realization,
     /// The paper's equations, each shown to hold or not.
     PaperAudit,
+    /// Error against run time.
+    ErrorVsTime,
 }
 
 /// The subcommands.
@@ -66,6 +68,8 @@ pub enum Command {
     Compare(CompareArguments),
     /// Put the claims T1 to T14 to the test on random systems.
     Random(RandomArguments),
+    /// Measure error against run time, by every method at every tolerance.
+    Bench(BenchArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -160,20 +164,42 @@ pub struct RandomArguments {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Output format.
-    #[arg(long, value_enum, default_value_t = RandomFormat::Text)]
-    pub format: RandomFormat,
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
     /// No progress bar.
     #[arg(long)]
     pub quiet: bool,
 }
 
-/// Output formats of `deltaq random`.
+/// Output formats of `deltaq random` and `deltaq bench`.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RandomFormat {
+pub enum TextOrJson {
     /// Tables.
     Text,
     /// One object.
     Json,
+}
+
+/// `deltaq bench`.
+#[derive(Args, Debug)]
+pub struct BenchArguments {
+    /// Built-in names or paths of scene files; every built-in scene if left out.
+    pub scenes: Vec<String>,
+    /// Seconds over which the runs of one setting are repeated; the least time counts.
+    #[arg(long, default_value_t = 0.05)]
+    pub seconds: f64,
+    /// Replace a parameter or a start value.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub overrides: Vec<(String, f64)>,
+    /// Folder for the page and its pictures.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+    /// No progress bar.
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// `deltaq reports`.

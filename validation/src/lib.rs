@@ -1,6 +1,8 @@
 //! The harness behind the `deltaq` command: scenes, the control formulation, the commands, the reports.
 
 pub mod audit;
+pub mod bench;
+pub mod bench_command;
 pub mod casadi_job;
 pub mod catalogue;
 pub mod cli;

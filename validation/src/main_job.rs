@@ -10,13 +10,15 @@ use deltaq::{Comparison, Settings, compare};
 use mechanics::Scene;
 use serde_json::Value;
 
+use crate::bench::{Bench, Effort, bench};
 use crate::casadi_job::{self, Outcome};
 use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
 use crate::random::{Batch, Kind, Record};
 use crate::report::{
-    AuditReport, File, Provenance, RealizationReport, answer, difference_of_verdicts, overview, pictures, random_files,
-    random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all,
+    AuditReport, File, Provenance, RealizationReport, answer, bench_files, bench_headline, difference_of_verdicts,
+    overview, pictures, random_files, random_headline, random_verdicts, referees_section, scene_page, verdicts,
+    write_all,
 };
 use crate::{parallel, substitution};
 
@@ -56,6 +58,7 @@ struct Results {
     records: Vec<Record>,
     realization: Option<RealizationReport>,
     audit: Option<AuditReport>,
+    benches: Vec<Bench>,
 }
 
 impl Results {
@@ -77,7 +80,13 @@ impl Results {
             sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
         let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
-        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit })
+        // last, and one after the other: nothing else is to run beside what is timed
+        let benches = if sections.contains(&Section::ErrorVsTime) {
+            bench_all(names, &Effort::brief(), quiet)?
+        } else {
+            Vec::new()
+        };
+        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit, benches })
     }
 
     fn verdicts(&self) -> Value {
@@ -105,7 +114,8 @@ impl Results {
         let random = (!self.records.is_empty()).then(|| (random_headline(&self.records), "random.md"));
         let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
         let audit = self.audit.as_ref().map(|report| (report.headline(), "paper-audit.md"));
-        casadi.into_iter().chain(random).chain(realization).chain(audit).collect()
+        let benches = (!self.benches.is_empty()).then(|| (bench_headline(&self.benches), "error-vs-time.md"));
+        casadi.into_iter().chain(random).chain(realization).chain(audit).chain(benches).collect()
     }
 
     /// Pages and pictures of every section that ran.
@@ -118,6 +128,9 @@ impl Results {
             files.extend(realization.files()?);
         }
         files.extend(self.audit.iter().flat_map(AuditReport::files));
+        if !self.benches.is_empty() {
+            files.extend(bench_files(&self.benches)?);
+        }
         Ok(files)
     }
 }
@@ -177,7 +190,9 @@ pub fn check(arguments: &ReportsArguments) -> Result<String> {
     let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}; {MEND}", path.display()))?;
     let mut old: Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
     let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
-    let results = Results::of(Section::value_variants(), &names, true)?;
+    let sections: Vec<Section> =
+        Section::value_variants().iter().copied().filter(|s| *s != Section::ErrorVsTime).collect();
+    let results = Results::of(&sections, &names, true)?;
     for file in results.files()? {
         let path = arguments.out.join(&file.path);
         if !path.exists() {
@@ -210,6 +225,22 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     });
     bar.finish_and_clear();
     results.into_iter().collect()
+}
+
+/// Measures the scenes one after the other.
+///
+/// # Errors
+/// Where a scene cannot be read.
+pub fn bench_all(names: &[&str], effort: &Effort, quiet: bool) -> Result<Vec<Bench>> {
+    let bar = parallel::progress(names.len(), quiet);
+    let benches = names.iter().map(|name| {
+        let measured = bench(name, &[], effort, |words| bar.set_message(words.to_string()));
+        bar.inc(1);
+        measured
+    });
+    let benches = benches.collect();
+    bar.finish_and_clear();
+    benches
 }
 
 fn provenance(seconds: f64) -> Provenance {

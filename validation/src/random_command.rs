@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::Result;
 use serde_json::json;
 
-use crate::cli::{RandomArguments, RandomFormat};
+use crate::cli::{RandomArguments, TextOrJson};
 use crate::random::{Batch, Count, Kind, Record, Summary, milliseconds, theorem_title};
 use crate::report::{File, write_all};
 use crate::solve_command::Answer;
@@ -39,11 +39,11 @@ fn many(batch: &Batch, arguments: &RandomArguments) -> Result<Answer> {
     };
     let open: Vec<&Record> = records.iter().filter(|record| !record.open.is_empty()).collect();
     let text = match arguments.format {
-        RandomFormat::Json => {
+        TextOrJson::Json => {
             let value = json!({ "batch": batch, "summary": summary, "open": open, "counterexamples": files });
             serde_json::to_string_pretty(&value)? + "\n"
         }
-        RandomFormat::Text => {
+        TextOrJson::Text => {
             let mut text = tables(&summary);
             for record in &open {
                 text += &opened(&batch.name(record.index), record);
@@ -78,10 +78,10 @@ fn one(batch: &Batch, index: u64, arguments: &RandomArguments) -> Result<Answer>
     }
     let summary = Summary::of(std::slice::from_ref(&record));
     let text = match arguments.format {
-        RandomFormat::Json => {
+        TextOrJson::Json => {
             serde_json::to_string_pretty(&json!({ "batch": batch, "record": record, "scene": scene.to_toml() }))? + "\n"
         }
-        RandomFormat::Text => {
+        TextOrJson::Text => {
             let mut text = format!("{}: {}\n\n{}\n", scene.name, scene.title, scene.to_toml());
             for (theorem, claim, times) in &record.held {
                 let _ = writeln!(text, "{:<4} holds {times} times  {claim}", label(*theorem));

@@ -1,9 +1,10 @@
-//! Equations made ready for time integrators other than ours.
+//! Equations made ready for single runs of the time loop, and for other integrators than ours.
 
-use mechanics::{Compiled, ConstantsRule, Equations};
+use integrate::{Options, ProjectionReport, Start, Status, Work};
+use mechanics::{Compiled, ConstantsRule, Equations, Outputs};
 
 use crate::motion::resolve;
-use crate::run::Prepared;
+use crate::run::{Prepared, Trajectory, integrate_once};
 use crate::{Setting, Settings, SolveError};
 
 /// Equations compiled and started.
@@ -15,10 +16,55 @@ pub struct Ready {
     pub compiled: Compiled,
     /// Values of the free constants.
     pub constants: Vec<f64>,
+    /// `t₀`.
+    pub t: f64,
     /// `y(t₀)`.
     pub start: Vec<f64>,
     /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty where the derivation knows none.
     pub guess: Vec<f64>,
+}
+
+/// What a single run came to. No second run stands beside it: nothing is known of its error but what its tolerance says.
+pub struct SingleRun {
+    /// How it ended.
+    pub status: Status,
+    /// What it cost.
+    pub work: Work,
+    /// How far the projections moved the states.
+    pub projection: ProjectionReport,
+    trajectory: Trajectory,
+}
+
+impl SingleRun {
+    /// The time reached.
+    pub fn end(&self) -> f64 {
+        self.trajectory.dense.end()
+    }
+
+    /// Coordinates, velocities, multipliers and invariants at `t`, which has to be an end of the run where that kept its ends only.
+    ///
+    /// # Errors
+    /// [`SolveError::AtStart`] where the equations of the instant cannot be solved.
+    pub fn at(&self, ready: &mut Ready, t: f64) -> Result<Outputs, SolveError> {
+        let mut state = vec![0.0; ready.start.len()];
+        Ok(self.trajectory.outputs(&mut ready.compiled, t, &mut state)?)
+    }
+}
+
+impl Ready {
+    /// Integrates once from the start to `end`: half of what [`crate::solve`] does, for those who know the error from elsewhere.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the run cannot be started; how it ended is [`SingleRun::status`].
+    pub fn integrate(&mut self, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
+        if !self.guess.is_empty() {
+            self.compiled.set_guess(&self.guess);
+        }
+        let start = Start { t: self.t, y: self.start.clone() };
+        let run = integrate_once(&mut self.compiled, start, end, options)?;
+        let (status, work, projection) = (run.solution.status.clone(), run.solution.work, run.solution.projection);
+        Ok(SingleRun { status, work, projection, trajectory: run.trajectory() })
+    }
 }
 
 /// Compiles `equations`, Jacobian included, and computes what they start from. Nothing is integrated, unless the constants are natural at a
@@ -62,7 +108,7 @@ pub fn ready(
     let mut prepared = Prepared::new(setting, equations, settings)?;
     let constants = resolve(&mut prepared, constants, settings)?;
     let start = prepared.start(&constants);
-    let Prepared { equations, compiled, guess, .. } = prepared;
+    let Prepared { equations, compiled, guess, t, .. } = prepared;
     let compiled = if settings.method.is_implicit() { compiled } else { compiled.with_jacobian(&equations)? };
-    Ok(Ready { equations, compiled, constants, start, guess })
+    Ok(Ready { equations, compiled, constants, t, start, guess })
 }

@@ -99,16 +99,25 @@ impl Prepared {
         options.projection = settings.projection;
         options.max_steps = settings.max_steps;
         options.interrupt = settings.interrupt.clone();
-        let mut anchors = Vec::new();
-        let start = self.compiled.settle(self.t, &y)?.to_vec();
-        self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
-        if self.compiled.needs_guess() {
-            anchors.push((self.t, start));
-        }
-        let mut runner = Runner { compiled: &mut self.compiled, anchors };
-        let solution = integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?;
-        Ok(Run { solution, anchors: runner.anchors })
+        integrate_once(&mut self.compiled, Start { t: self.t, y }, end, &options)
     }
+}
+
+/// One run of the time loop from `start`; the constants and the guess of `compiled` are set.
+pub(crate) fn integrate_once(
+    compiled: &mut Compiled,
+    start: Start,
+    end: f64,
+    options: &Options,
+) -> Result<Run, SolveError> {
+    let mut anchors = Vec::new();
+    let unknowns = compiled.settle(start.t, &start.y)?.to_vec();
+    if compiled.needs_guess() {
+        anchors.push((start.t, unknowns));
+    }
+    let mut runner = Runner { compiled, anchors };
+    let solution = integrate::integrate(&mut runner, &start, end, options)?;
+    Ok(Run { solution, anchors: runner.anchors })
 }
 
 /// Compiled equations as the time integrator sees them.

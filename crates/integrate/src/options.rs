@@ -22,6 +22,17 @@ impl Method {
     /// Every method there is.
     pub const ALL: [Method; 5] = [Method::Dop853, Method::Tsit45, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
 
+    /// Its name, as on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Dop853 => "dop853",
+            Method::Tsit45 => "tsit45",
+            Method::Bdf => "bdf",
+            Method::TrBdf2 => "tr-bdf2",
+            Method::Esdirk34 => "esdirk34",
+        }
+    }
+
     /// Whether the method asks for [`crate::Problem::jacobian`].
     pub fn is_implicit(self) -> bool {
         matches!(self, Method::Bdf | Method::TrBdf2 | Method::Esdirk34)

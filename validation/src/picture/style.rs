@@ -20,6 +20,8 @@ pub enum Style {
     ChetaevRemovedConstraint,
     /// Gap between the vakonomic and the removed-constraint motion.
     VakonomicRemovedConstraint,
+    /// One of several of a kind, such as methods: four colours, and four dashes after them.
+    Member(u8),
     /// What the others are measured against (a grey band beneath them).
     Reference,
     /// Size of the errors, below which a gap means nothing (grey, thin, dotted).
@@ -79,6 +81,11 @@ impl Style {
             Self::ChetaevVakonomic => vec![stroke(BLUE, 4.8, ""), stroke(VERMILION, 4.8, "14 14")],
             Self::ChetaevRemovedConstraint => vec![stroke(BLUE, 3.2, ""), stroke(GREEN, 3.2, "8 8")],
             Self::VakonomicRemovedConstraint => vec![stroke(VERMILION, 1.8, ""), stroke(GREEN, 1.8, "4 4")],
+            Self::Member(n) => {
+                let colour = [BLUE, VERMILION, GREEN, PURPLE][usize::from(n) % 4];
+                let dash = ["", "7 3", "2 2.5", "9 3 2 3"][usize::from(n) / 4 % 4];
+                vec![stroke(colour, 2.2, dash)]
+            }
             Self::Reference => vec![Stroke { opacity: 0.4, ..stroke(INK, 9.0, "") }],
             Self::ErrorFloor => vec![stroke(INK, 1.6, "1.5 3")],
             Self::Threshold => vec![stroke(INK, 1.0, "7 4")],
@@ -98,6 +105,7 @@ impl Style {
             Self::Substituted => 7,
             Self::VakonomicRemovedConstraint => 8,
             Self::RemovedConstraint => 9,
+            Self::Member(_) => 10,
         }
     }
 }

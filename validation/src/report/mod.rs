@@ -1,6 +1,7 @@
 //! Reports: Markdown that reads well on a code host, SVG pictures by relative link, one JSON file for machines.
 
 mod audit_page;
+mod bench_page;
 mod files;
 mod numbers;
 mod overview;
@@ -13,6 +14,7 @@ mod tables;
 mod verdicts;
 
 pub use audit_page::AuditReport;
+pub use bench_page::{bench_files, bench_headline, bench_json, bench_table};
 pub use files::{File, write_all};
 pub use overview::{Provenance, overview};
 pub use pictures::pictures;

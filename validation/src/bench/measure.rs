@@ -1,0 +1,105 @@
+//! One setting measured, and one method over its tolerances.
+
+use std::time::Instant;
+
+use deltaq::{Metric, Ready, SingleRun};
+use integrate::{Method, Options, Status, Work};
+
+use super::{Effort, Truth};
+
+/// A setting and what it came to.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Relative and absolute tolerance.
+    pub tolerance: f64,
+    /// Time, error and work, or why there are none.
+    pub outcome: Result<Measured, String>,
+}
+
+/// Time, error and work of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Seconds, least of several runs.
+    pub seconds: f64,
+    /// Largest distance from the reference in the kinetic metric.
+    pub error: f64,
+    /// Steps and evaluations: the same on every machine.
+    pub work: Work,
+}
+
+/// A method over its tolerances, from loose to tight.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// The method.
+    pub method: Method,
+    /// Its settings.
+    pub points: Vec<Point>,
+}
+
+/// Runs of one setting, at least.
+const REPEATS: usize = 3;
+
+/// Tightest tolerance asked of a method.
+fn tightest(method: Method) -> i32 {
+    match method {
+        Method::Dop853 => 15,
+        Method::Tsit45 => 13,
+        Method::TrBdf2 => 8,
+        Method::Bdf | Method::Esdirk34 => 11,
+    }
+}
+
+impl Series {
+    pub(super) fn new(method: Method, ready: &mut Ready, truth: &Truth, metric: &mut Metric, effort: &Effort) -> Self {
+        let mut points = Vec::new();
+        for exponent in 3..=tightest(method) {
+            let mut options = Options::with_tolerance(10.0_f64.powi(-exponent));
+            options.method = method;
+            options.max_steps = effort.max_steps;
+            let outcome = measure(ready, &options, truth, metric, effort);
+            let slow = outcome.as_ref().map_or(0.0, |m| m.seconds) > effort.patience;
+            points.push(Point { tolerance: options.relative_tolerance, outcome });
+            if slow {
+                break;
+            }
+        }
+        Series { method, points }
+    }
+}
+
+fn measure(
+    ready: &mut Ready,
+    options: &Options,
+    truth: &Truth,
+    metric: &mut Metric,
+    effort: &Effort,
+) -> Result<Measured, String> {
+    let (mut seconds, mut total) = (f64::INFINITY, 0.0);
+    let mut repeats = 0;
+    loop {
+        let clock = Instant::now();
+        let run = ready.integrate(truth.end(), options).map_err(|error| error.to_string())?;
+        let elapsed = clock.elapsed().as_secs_f64();
+        if let Status::Stopped { t, cause } = &run.status {
+            return Err(format!("stopped at t = {t:.3}: {cause}"));
+        }
+        seconds = elapsed.min(seconds);
+        total += elapsed;
+        repeats += 1;
+        let enough = total >= effort.seconds && repeats >= REPEATS;
+        if enough || total > effort.patience {
+            let error = error(&run, ready, truth, metric)?;
+            return Ok(Measured { seconds, error, work: run.work });
+        }
+    }
+}
+
+fn error(run: &SingleRun, ready: &mut Ready, truth: &Truth, metric: &mut Metric) -> Result<f64, String> {
+    let mut largest = 0.0_f64;
+    for sample in &truth.samples {
+        let here = run.at(ready, sample.t).map_err(|error| error.to_string())?.coordinates;
+        let difference: Vec<f64> = here.iter().zip(&sample.q).map(|(a, b)| a - b).collect();
+        largest = largest.max(metric.length(sample.t, &sample.q, &sample.v, &difference));
+    }
+    Ok(largest)
+}

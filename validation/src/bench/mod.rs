@@ -1,0 +1,171 @@
+//! Error against run time: every formulation of a scene, by every method, at every tolerance, against a reference.
+//!
+//! One measurement is one run of the time loop (not the two of [`deltaq::solve`]), dense output included, from equations that are compiled
+//! already. Its time is the least of several; its error is the largest distance from the reference in the kinetic metric, over [`SAMPLES`]
+//! times. A run that fails is listed with its cause.
+
+mod measure;
+mod truth;
+
+pub use measure::{Measured, Point, Series};
+pub use truth::Truth;
+
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use deltaq::{Choice, Metric, Ready, Settings, choices, derive, ready, setting};
+use integrate::{Method, Work};
+use mechanics::Scene;
+
+use crate::catalogue;
+
+/// Times at which errors are taken, equidistant, the last at the end.
+pub const SAMPLES: usize = 20;
+
+/// Errors for which the fastest setting is named.
+pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
+
+/// How much is measured.
+#[derive(Clone, Debug)]
+pub struct Effort {
+    /// Runs of one setting are repeated until they took this many seconds together, three times at least.
+    pub seconds: f64,
+    /// A run that takes more steps than this counts as failed.
+    pub max_steps: usize,
+    /// A method's tolerances are not tightened further once a run took longer than this, in seconds.
+    pub patience: f64,
+}
+
+impl Effort {
+    /// For the main job, which has other things to do as well.
+    pub fn brief() -> Effort {
+        Effort { seconds: 0.004, max_steps: 50_000, patience: 0.05 }
+    }
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Effort { seconds: 0.02, max_steps: 200_000, patience: 0.5 }
+    }
+}
+
+/// What was measured on one scene.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    /// Name and title of the scene.
+    pub scene: String,
+    /// Its title.
+    pub title: String,
+    /// Seconds from the text of the scene to the system.
+    pub parse: f64,
+    /// One a formulation, in the order of the table.
+    pub entries: Vec<Entry>,
+}
+
+/// What was measured on one formulation of a scene.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What the reader sees.
+    pub label: String,
+    /// Name of the formulation.
+    pub formulation: &'static str,
+    /// The measurements, or why there are none.
+    pub outcome: Result<Measurements, String>,
+}
+
+/// Measurements against a reference.
+#[derive(Clone, Debug)]
+pub struct Measurements {
+    /// Seconds from the system to equations, and from those to tapes.
+    pub derive: f64,
+    /// Seconds from equations to tapes.
+    pub compile: f64,
+    /// Number of states.
+    pub states: usize,
+    /// Start and end of the measured runs.
+    pub span: (f64, f64),
+    /// Whether the motion ends at a singularity, and the runs therefore a little before it.
+    pub shortened: bool,
+    /// Error of the reference.
+    pub reference_error: f64,
+    /// How the reference was had.
+    pub reference: String,
+    /// One a method.
+    pub series: Vec<Series>,
+}
+
+/// A setting that reaches an error.
+#[derive(Clone, Copy, Debug)]
+pub struct Fastest {
+    /// The method.
+    pub method: Method,
+    /// Its tolerance.
+    pub tolerance: f64,
+    /// Seconds, least of several runs.
+    pub seconds: f64,
+    /// Error reached.
+    pub error: f64,
+    /// What it cost.
+    pub work: Work,
+}
+
+impl Measurements {
+    /// The fastest setting of all methods, or of one, whose error is at most `target`.
+    pub fn fastest(&self, target: f64, method: Option<Method>) -> Option<Fastest> {
+        let settings = self.series.iter().filter(|s| method.is_none_or(|m| m == s.method)).flat_map(|series| {
+            series.points.iter().filter_map(|point| {
+                let m = point.outcome.as_ref().ok()?;
+                let Measured { seconds, error, work } = *m;
+                (error <= target).then_some(Fastest {
+                    method: series.method,
+                    tolerance: point.tolerance,
+                    seconds,
+                    error,
+                    work,
+                })
+            })
+        });
+        settings.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+}
+
+/// Measures every formulation of `name`, a built-in scene or the path of a scene file.
+///
+/// # Errors
+/// Where the scene cannot be read. A formulation that cannot be measured is an [`Entry`] that says why.
+pub fn bench(name: &str, overrides: &[(String, f64)], effort: &Effort, tell: impl Fn(&str)) -> Result<Bench> {
+    let clock = Instant::now();
+    let scene = catalogue::find(name, overrides)?;
+    let parse = clock.elapsed().as_secs_f64();
+    let mut metric = Metric::new(&scene.system)?;
+    let entries = choices(&scene)
+        .into_iter()
+        .map(|choice| {
+            tell(&format!("{}, {}", scene.name, choice.label));
+            let outcome = measurements(&scene, &choice, &mut metric, effort).map_err(|error| format!("{error:#}"));
+            Entry { label: choice.label, formulation: choice.formulation, outcome }
+        })
+        .collect();
+    Ok(Bench { scene: scene.name.clone(), title: scene.title.clone(), parse, entries })
+}
+
+fn measurements(scene: &Scene, choice: &Choice, metric: &mut Metric, effort: &Effort) -> Result<Measurements> {
+    let clock = Instant::now();
+    let equations = derive(&scene.system, choice)?;
+    let derive = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    let mut ready: Ready = ready(setting(scene), equations, &choice.constants, &Settings::default())?;
+    let compile = clock.elapsed().as_secs_f64();
+    let truth = Truth::new(scene, &ready, SAMPLES).context("no reference")?;
+    let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, &truth, metric, effort)).collect();
+    Ok(Measurements {
+        derive,
+        compile,
+        states: ready.start.len(),
+        span: (ready.t, truth.end()),
+        shortened: truth.shortened,
+        reference_error: truth.error,
+        reference: truth.origin.clone(),
+        series,
+    })
+}

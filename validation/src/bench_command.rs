@@ -1,0 +1,36 @@
+//! `deltaq bench`.
+
+use anyhow::{Result, bail};
+
+use crate::bench::{Effort, bench};
+use crate::catalogue;
+use crate::cli::{BenchArguments, TextOrJson};
+use crate::parallel;
+use crate::report::{bench_files, bench_json, bench_table, write_all};
+
+/// Measures error against run time.
+///
+/// # Errors
+/// Where a scene cannot be read or the page cannot be written.
+pub fn run(arguments: &BenchArguments) -> Result<String> {
+    if !(arguments.seconds > 0.0 && arguments.seconds.is_finite()) {
+        bail!("--seconds is {}; it must be above 0", arguments.seconds);
+    }
+    let effort = Effort { seconds: arguments.seconds, ..Effort::default() };
+    let all: Vec<String> = catalogue::SCENES.iter().map(|(name, _)| name.to_string()).collect();
+    let names = if arguments.scenes.is_empty() { &all } else { &arguments.scenes };
+    let bar = parallel::progress(names.len(), arguments.quiet);
+    let mut benches = Vec::new();
+    for name in names {
+        benches.push(bench(name, &arguments.overrides, &effort, |words| bar.set_message(words.to_string()))?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if let Some(folder) = &arguments.out {
+        write_all(folder, &bench_files(&benches)?)?;
+    }
+    Ok(match arguments.format {
+        TextOrJson::Text => bench_table(&benches),
+        TextOrJson::Json => serde_json::to_string_pretty(&bench_json(&benches))? + "\n",
+    })
+}

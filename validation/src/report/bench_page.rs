@@ -1,0 +1,210 @@
+//! The page about error against run time.
+
+use std::fmt::Write;
+
+use anyhow::Result;
+use serde_json::{Value, json};
+
+use crate::bench::{Bench, Entry, Fastest, Measurements, Series, TARGETS};
+use crate::picture::{Axis, Curve, Panel, PictureError, SmallMultiples, Style};
+use crate::report::File;
+use crate::report::numbers::{enumerate, short};
+
+/// The error at which formulations are compared in the headline.
+const HEADLINE_TARGET: f64 = 1e-10;
+
+/// The first line of the page.
+pub fn bench_headline(benches: &[Bench]) -> String {
+    let all: Vec<&Measurements> =
+        benches.iter().flat_map(|b| &b.entries).filter_map(|e| e.outcome.as_ref().ok()).collect();
+    let winners: Vec<Fastest> = all.iter().filter_map(|m| m.fastest(HEADLINE_TARGET, None)).collect();
+    let mut names: Vec<(&str, usize)> = Vec::new();
+    for winner in &winners {
+        match names.iter_mut().find(|(name, _)| *name == winner.method.name()) {
+            Some((_, count)) => *count += 1,
+            None => names.push((winner.method.name(), 1)),
+        }
+    }
+    names.sort_by_key(|&(name, count)| (std::cmp::Reverse(count), name));
+    let words: Vec<String> = names.iter().map(|(name, count)| format!("{name} on {count}")).collect();
+    format!(
+        "An error of at most {HEADLINE_TARGET:.0e} is reached on {} of {} motions; fastest there: {}.",
+        winners.len(),
+        all.len(),
+        enumerate(&words)
+    )
+}
+
+/// Page and pictures.
+///
+/// # Errors
+/// Where a picture cannot be drawn.
+pub fn bench_files(benches: &[Bench]) -> Result<Vec<File>> {
+    let mut files = Vec::new();
+    let mut page = format!("# Error against run time\n\n**{}**\n\n", bench_headline(benches));
+    page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor; what it takes to get to the \
+             equations stands apart. The error is the largest distance from the reference in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine \
+             and from run to run; the numbers of evaluations do not. (`solve` and the other reports integrate every motion twice, for the sake of an error estimate.)\n\n\
+             ## The fastest setting\n\n";
+    page += &bench_table(benches);
+    for bench in benches {
+        let _ = writeln!(page, "\n## {}\n", bench.title);
+        match picture(bench) {
+            Ok(text) => {
+                files.push(File { path: format!("error-vs-time/{}.svg", bench.scene).into(), text });
+                let _ = writeln!(page, "![Error over run time](error-vs-time/{}.svg)\n", bench.scene);
+            }
+            Err(PictureError::NothingToDraw { .. }) => page += "Nothing could be measured.\n",
+            Err(error) => return Err(error.into()),
+        }
+        for entry in &bench.entries {
+            page += &section(entry);
+        }
+    }
+    files.push(File { path: "error-vs-time.md".into(), text: page });
+    Ok(files)
+}
+
+/// The fastest setting for every error, scene by scene.
+pub fn bench_table(benches: &[Bench]) -> String {
+    let mut table = String::from("| scene | formulation | read, derive, compile (ms) |");
+    for target in TARGETS {
+        let _ = write!(table, " error ≤ {target:.0e} |");
+    }
+    table += "\n|---|---|---:|---|---|---|---|\n";
+    for bench in benches {
+        for entry in &bench.entries {
+            let _ = write!(table, "| {} | {} |", bench.scene, entry.label);
+            match &entry.outcome {
+                Ok(m) => {
+                    let setup = [bench.parse, m.derive, m.compile].map(|s| short(1e3 * s)).join(", ");
+                    let _ = write!(table, " {setup} |");
+                    for target in TARGETS {
+                        let _ = write!(table, " {} |", fastest(m.fastest(target, None)));
+                    }
+                }
+                Err(reason) => {
+                    let _ = write!(table, " – | not measured: {reason} | | | |");
+                }
+            }
+            table += "\n";
+        }
+    }
+    table
+}
+
+fn fastest(found: Option<Fastest>) -> String {
+    found.map_or("not reached".into(), |f| {
+        format!("{} ms, {} at {:.0e}", short(1e3 * f.seconds), f.method.name(), f.tolerance)
+    })
+}
+
+fn section(entry: &Entry) -> String {
+    let mut text = format!("\n### {}\n\n", entry.label);
+    let m = match &entry.outcome {
+        Ok(m) => m,
+        Err(reason) => return text + "Not measured: " + reason + ".\n",
+    };
+    let shortened = if m.shortened { ", a little before the motion's own end" } else { "" };
+    let _ = writeln!(
+        text,
+        "{} states, t = {} to {}{shortened}. Reference: {}, error {:.1e}.\n",
+        m.states,
+        short(m.span.0),
+        short(m.span.1),
+        m.reference,
+        m.reference_error
+    );
+    text += "| method |";
+    for target in TARGETS {
+        let _ = write!(text, " ms to {target:.0e} | evaluations |");
+    }
+    text += " least error |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+    for series in &m.series {
+        let _ = write!(text, "| {} |", series.method.name());
+        for target in TARGETS {
+            match m.fastest(target, Some(series.method)) {
+                Some(f) => {
+                    let _ = write!(text, " {} | {} |", short(1e3 * f.seconds), f.work.evaluations);
+                }
+                None => text += " – | – |",
+            }
+        }
+        let least = series.points.iter().filter_map(|p| Some(p.outcome.as_ref().ok()?.error)).reduce(f64::min);
+        let _ = writeln!(text, " {} |", least.map_or("–".into(), |e| format!("{e:.1e}")));
+    }
+    let failures = m.series.iter().flat_map(failures).collect::<Vec<_>>();
+    if !failures.is_empty() {
+        let _ = writeln!(text, "\nFailed: {}.", failures.join("; "));
+    }
+    text
+}
+
+/// Failed settings of a method, those with the same cause together.
+fn failures(series: &Series) -> Vec<String> {
+    let mut causes: Vec<(&str, Vec<String>)> = Vec::new();
+    for point in &series.points {
+        if let Err(cause) = &point.outcome {
+            let tolerance = format!("{:.0e}", point.tolerance);
+            match causes.iter_mut().find(|(known, _)| known == cause) {
+                Some((_, tolerances)) => tolerances.push(tolerance),
+                None => causes.push((cause, vec![tolerance])),
+            }
+        }
+    }
+    let name = series.method.name();
+    causes.into_iter().map(|(cause, tolerances)| format!("{name} at {}: {cause}", enumerate(&tolerances))).collect()
+}
+
+fn picture(bench: &Bench) -> Result<String, PictureError> {
+    let panel = |entry: &Entry| -> Option<Panel> {
+        let m = entry.outcome.as_ref().ok()?;
+        let curves: Vec<Curve> = m.series.iter().enumerate().map(|(i, series)| curve(i, series)).collect();
+        let drawn = curves.iter().any(|curve| !curve.points.is_empty());
+        drawn.then(|| Panel { y: Axis::log(format!("error, {}", entry.label)), curves })
+    };
+    SmallMultiples {
+        title: format!("{}: error over run time", bench.title),
+        x: Axis::log("run time (ms)"),
+        panels: bench.entries.iter().filter_map(panel).collect(),
+        columns: 2,
+    }
+    .to_svg()
+    .map_err(|error| match error {
+        PictureError::NoPanels { title } => {
+            PictureError::NothingToDraw { title, axis: "run time (ms)".into(), not_finite: 0, not_positive: 0 }
+        }
+        other => other,
+    })
+}
+
+fn curve(index: usize, series: &Series) -> Curve {
+    let points = series.points.iter().filter_map(|p| {
+        let m = p.outcome.as_ref().ok()?;
+        Some((1e3 * m.seconds, m.error))
+    });
+    Curve { label: series.method.name().into(), style: Style::Member(index as u8), points: points.collect() }
+}
+
+/// Everything that was measured, for machines.
+pub fn bench_json(benches: &[Bench]) -> Value {
+    let point = |p: &crate::bench::Point| match &p.outcome {
+        Ok(m) => json!({
+            "tolerance": p.tolerance, "seconds": m.seconds, "error": m.error, "steps": m.work.steps,
+            "rejected": m.work.rejected, "evaluations": m.work.evaluations, "jacobians": m.work.jacobians,
+        }),
+        Err(cause) => json!({ "tolerance": p.tolerance, "failed": cause }),
+    };
+    let series =
+        |s: &Series| json!({ "method": s.method.name(), "points": s.points.iter().map(point).collect::<Vec<_>>() });
+    let entry = |e: &Entry| match &e.outcome {
+        Ok(m) => json!({
+            "label": e.label, "formulation": e.formulation, "derive": m.derive, "compile": m.compile,
+            "states": m.states, "start": m.span.0, "end": m.span.1, "reference": m.reference,
+            "reference error": m.reference_error, "series": m.series.iter().map(series).collect::<Vec<_>>(),
+        }),
+        Err(reason) => json!({ "label": e.label, "formulation": e.formulation, "not measured": reason }),
+    };
+    let bench = |b: &Bench| json!({ "scene": b.scene, "parse": b.parse, "motions": b.entries.iter().map(entry).collect::<Vec<_>>() });
+    json!({ "unit of times": "s", "scenes": benches.iter().map(bench).collect::<Vec<_>>() })
+}

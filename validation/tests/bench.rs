@@ -1,0 +1,34 @@
+//! `deltaq bench`: what is measured is right, and what fails is listed.
+
+use integrate::Method;
+use validation::bench::{Effort, bench};
+use validation::report::{bench_files, bench_json};
+
+fn effort(max_steps: usize) -> Effort {
+    Effort { seconds: 1e-6, max_steps, patience: 0.05 }
+}
+
+#[test]
+fn every_formulation_is_measured_by_every_method() {
+    let bench = bench("sledge", &[], &effort(20_000), |_| ()).unwrap();
+    assert!(bench.entries.len() >= 4);
+    for entry in &bench.entries {
+        let m = entry.outcome.as_ref().unwrap_or_else(|reason| panic!("{}: {reason}", entry.label));
+        assert_eq!(m.series.len(), Method::ALL.len());
+        assert!(m.reference_error < 1e-10, "{}: {:.1e}", entry.label, m.reference_error);
+        let best = m.fastest(1e-9, Some(Method::Dop853)).expect("an error of 1e-9");
+        assert!(best.error <= 1e-9 && best.seconds > 0.0 && best.work.evaluations > 12 * best.work.steps);
+        assert!(m.fastest(0.0, None).is_none(), "no run is exact");
+    }
+    let json = bench_json(&[bench]);
+    let point = &json["scenes"][0]["motions"][0]["series"][0]["points"][0];
+    assert!(point["error"].as_f64().unwrap() > 0.0 && point["evaluations"].as_u64().unwrap() > 0);
+}
+
+#[test]
+fn failures_are_listed_with_their_cause() {
+    let bench = bench("sledge", &[], &effort(20), |_| ()).unwrap();
+    let files = bench_files(&[bench]).unwrap();
+    let page = &files.iter().find(|f| f.path.ends_with("error-vs-time.md")).unwrap().text;
+    assert!(page.contains("more than 20 steps"), "{page}");
+}
