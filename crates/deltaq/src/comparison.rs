@@ -260,7 +260,7 @@ pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Com
             let (left, right) = runs.split_at_mut(second);
             let (Ok(one), Ok(two)) = (&mut left[first].outcome, &mut right[0].outcome) else { continue };
             let gap = compare_motions(one, two, &mut metric)?;
-            let limit = |t: f64| gap.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+            let limit = |t: f64| gap.limit_at(t);
             let growth = match gap.verdict {
                 Verdict::Different => growth(two, one, &mut metric, &limit)?,
                 _ => None,

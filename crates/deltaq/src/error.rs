@@ -21,7 +21,15 @@ pub enum SolveError {
     Compile(#[from] CompileError),
     /// The equations cannot be evaluated at the start.
     #[error("at the start: {0}")]
-    AtStart(#[from] EvaluationFailure),
+    AtStart(EvaluationFailure),
+    /// The equations cannot be evaluated where a motion is read off.
+    #[error("at t = {t}: {failure}")]
+    Reading {
+        /// The time asked for.
+        t: f64,
+        /// What is wrong there.
+        failure: EvaluationFailure,
+    },
     /// A wrong number of free constants.
     #[error(
         "{formulation} has {expected} free constants ({names}); {found} were given (the costate of a memory variable that L does not \

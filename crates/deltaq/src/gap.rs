@@ -186,6 +186,13 @@ pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(x, y)| x - y).collect()
 }
 
+impl Gap {
+    /// The certainty limit at `t`: that of the first sample from `t` on, infinite after the last.
+    pub fn limit_at(&self, t: f64) -> f64 {
+        self.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit)
+    }
+}
+
 /// Times dense near the start (geometric) and everywhere (equidistant), start left out.
 fn sample_times(start: f64, end: f64, instants: usize) -> Vec<f64> {
     let length = end - start;

@@ -107,9 +107,9 @@ impl Motion {
     /// Coordinates, velocities, multipliers and invariants at `t`.
     ///
     /// # Errors
-    /// [`SolveError::AtStart`] where the equations of the instant cannot be solved.
+    /// [`SolveError::Reading`] where the equations of the instant cannot be solved.
     pub fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
-        Ok(self.kept.outputs(&mut self.compiled, t, &mut self.state)?)
+        self.kept.outputs(&mut self.compiled, t, &mut self.state)
     }
 
     /// The states `y` at `t` from the kept run, in the order of the states of [`Motion::equations`].

@@ -44,10 +44,10 @@ impl SingleRun {
     /// Coordinates, velocities, multipliers and invariants at `t`, which has to be an end of the run where that kept its ends only.
     ///
     /// # Errors
-    /// [`SolveError::AtStart`] where the equations of the instant cannot be solved.
+    /// [`SolveError::Reading`] where the equations of the instant cannot be solved.
     pub fn at(&self, ready: &mut Ready, t: f64) -> Result<Outputs, SolveError> {
         let mut state = vec![0.0; ready.start.len()];
-        Ok(self.trajectory.outputs(&mut ready.compiled, t, &mut state)?)
+        self.trajectory.outputs(&mut ready.compiled, t, &mut state)
     }
 }
 

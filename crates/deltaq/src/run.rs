@@ -15,18 +15,13 @@ pub(crate) struct Trajectory {
 
 impl Trajectory {
     /// What is read off at `t`; `state` is room for the state there.
-    pub(crate) fn outputs(
-        &self,
-        compiled: &mut Compiled,
-        t: f64,
-        state: &mut [f64],
-    ) -> Result<Outputs, EvaluationFailure> {
+    pub(crate) fn outputs(&self, compiled: &mut Compiled, t: f64, state: &mut [f64]) -> Result<Outputs, SolveError> {
         let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
         if let Some((_, unknowns)) = nearest {
             compiled.set_guess(unknowns);
         }
         self.dense.evaluate(t, state);
-        compiled.outputs(t, state)
+        compiled.outputs(t, state).map_err(|failure| SolveError::Reading { t, failure })
     }
 }
 
@@ -111,7 +106,7 @@ pub(crate) fn integrate_once(
     options: &Options,
 ) -> Result<Run, SolveError> {
     let mut anchors = Vec::new();
-    let unknowns = compiled.settle(start.t, &start.y)?.to_vec();
+    let unknowns = compiled.settle(start.t, &start.y).map_err(SolveError::AtStart)?.to_vec();
     if compiled.needs_guess() {
         anchors.push((start.t, unknowns));
     }

@@ -19,7 +19,7 @@ fn leading_term_is_the_predicted_one() {
             let mut other = vakonomic(&scene, &mu0);
             let mut metric = Metric::new(&scene.system).expect("compiles");
             let gap = compare_motions(&mut reference, &mut other, &mut metric).expect("readable");
-            let limit = |t: f64| gap.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+            let limit = |t: f64| gap.limit_at(t);
             let measured = growth(&mut other, &mut reference, &mut metric, &limit).expect("readable");
             let measured = measured.unwrap_or_else(|| panic!("{name}, μ₀ = {mu0:?}: no growth measured"));
             println!(

@@ -80,7 +80,7 @@ fn divergence(case: &mut Case, first: Which, second: Which, names: &Divergence) 
         case.found.observe(1, names.passes, passes - case.scene.start.t);
     }
     if differs {
-        let limit = |t: f64| gap.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+        let limit = |t: f64| gap.limit_at(t);
         let (mut metric, mut other) = (case.metric.clone(), case.motion(second).clone());
         if let Some(growth) = growth(&mut other, case.motion(first), &mut metric, &limit)?
             && growth.uncertainty < CERTAIN_EXPONENT

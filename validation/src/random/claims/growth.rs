@@ -29,7 +29,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         return Ok(());
     }
     let gap = case.gap(Which::Chetaev, Which::Vakonomic)?;
-    let limit = |t: f64| gap.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit);
+    let limit = |t: f64| gap.limit_at(t);
     let claim = "the leading divergence is the predicted one";
     match growth(&mut case.vakonomic, &mut case.chetaev, &mut case.metric, &limit)? {
         None => case.found.undecided(5, claim, "the gap does not stand out from the errors near the start"),
