@@ -216,6 +216,8 @@ pub struct ReportsArguments {
 /// Names of the methods.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 pub enum MethodName {
+    /// Taylor series, of the order that the tolerance asks for.
+    Taylor,
     /// Explicit Runge–Kutta, order 8.
     Dop853,
     /// Explicit Runge–Kutta, order 5.
@@ -231,6 +233,7 @@ pub enum MethodName {
 impl From<MethodName> for integrate::Method {
     fn from(name: MethodName) -> Self {
         match name {
+            MethodName::Taylor => integrate::Method::Taylor,
             MethodName::Dop853 => integrate::Method::Dop853,
             MethodName::Tsit45 => integrate::Method::Tsit45,
             MethodName::Bdf => integrate::Method::Bdf,

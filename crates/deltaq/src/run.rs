@@ -53,6 +53,9 @@ impl Prepared {
         if settings.method.is_implicit() {
             compiled = compiled.with_jacobian(&equations)?;
         }
+        if settings.method == integrate::Method::Taylor {
+            compiled = compiled.with_series(&equations)?;
+        }
         let mut values = setting.system.values_at(setting.start);
         if let Some(removal) = &equations.removal {
             values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
@@ -134,6 +137,18 @@ impl Problem for Runner<'_> {
     }
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), integrate::EvaluationError> {
         self.compiled.jacobian(t, y, jacobian).map_err(refused)
+    }
+    fn has_taylor(&self) -> bool {
+        self.compiled.has_series()
+    }
+    fn taylor(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        unit: f64,
+        coefficients: &mut [f64],
+    ) -> Result<(), integrate::EvaluationError> {
+        self.compiled.taylor(t, y, unit, coefficients).map_err(refused)
     }
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, integrate::EvaluationError> {
         self.compiled.project(t, y).map_err(refused)

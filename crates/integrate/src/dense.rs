@@ -10,10 +10,11 @@ use crate::error::DenseError;
 /// y(θ) = c₀ + θ (c₁ + (1−θ) (c₂ + θ (c₃ + (1−θ) (c₄ + …))))
 /// ```
 ///
-/// whatever the method (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.10). It is continuous,
-/// also where a projection moved the state at the end of a step.
+/// (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.10), or `c₀ + θ (c₁ + θ (c₂ + …))` for [`crate::Method::Taylor`].
+/// It is continuous, also where a projection moved the state at the end of a step.
 #[derive(Clone, Debug)]
 pub struct DenseOutput {
+    basis: Basis,
     dimension: usize,
     /// Coefficients a component and step.
     terms: usize,
@@ -29,8 +30,9 @@ pub struct DenseOutput {
 }
 
 impl DenseOutput {
-    pub(crate) fn new(t: f64, y: &[f64], degree: usize) -> Self {
+    pub(crate) fn new(t: f64, y: &[f64], basis: Basis, degree: usize) -> Self {
         Self {
+            basis,
             dimension: y.len(),
             terms: degree + 1,
             start: t,
@@ -66,6 +68,10 @@ impl DenseOutput {
         self.widths.push(width);
         self.end = end;
         self.end_state.copy_from_slice(y);
+    }
+
+    pub(crate) fn basis(&self) -> Basis {
+        self.basis
     }
 
     /// Where the integration started.
@@ -146,20 +152,29 @@ impl DenseOutput {
             let step = self.begins.partition_point(|&begin| before(begin, t)).saturating_sub(1);
             let length = self.terms * self.dimension;
             let coefficients = &self.coefficients[step * length..(step + 1) * length];
-            evaluate_segment(coefficients, (t - self.begins[step]) / self.widths[step], y);
+            evaluate_segment(self.basis, coefficients, (t - self.begins[step]) / self.widths[step], y);
         }
         Ok(())
     }
 }
 
-/// The nested polynomial of one step at θ.
-pub(crate) fn evaluate_segment(coefficients: &[f64], theta: f64, y: &mut [f64]) {
+/// What the coefficients of a step are multiplied by.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Basis {
+    /// 1, θ, θ (1 − θ), θ² (1 − θ) …
+    Nested,
+    /// 1, θ, θ² …
+    Powers,
+}
+
+/// The polynomial of one step at θ.
+pub(crate) fn evaluate_segment(basis: Basis, coefficients: &[f64], theta: f64, y: &mut [f64]) {
     let dimension = y.len();
     let terms = coefficients.len() / dimension;
     y.copy_from_slice(&coefficients[(terms - 1) * dimension..]);
     for (j, row) in coefficients[..(terms - 1) * dimension].chunks_exact(dimension).enumerate().rev() {
         // c_{j+1} is multiplied by θ for even j, by 1 − θ for odd j.
-        let factor = if j % 2 == 0 { theta } else { 1.0 - theta };
+        let factor = if j % 2 == 0 || basis == Basis::Powers { theta } else { 1.0 - theta };
         for (y, c) in y.iter_mut().zip(row) {
             *y = c + factor * *y;
         }

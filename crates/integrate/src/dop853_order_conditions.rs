@@ -148,7 +148,7 @@ fn the_dense_output_has_order_seven_and_no_more() {
             }
         }
         let mut b = [0.0; STAGES];
-        crate::dense::evaluate_segment(&coefficients, theta, &mut b);
+        crate::dense::evaluate_segment(crate::dense::Basis::Nested, &coefficients, theta, &mut b);
         for size in 1..=7 {
             let violation = violation(&trees, size, &b, theta);
             assert!(violation < 1e-13, "θ = {theta}, trees of size {size}: {violation:e}");

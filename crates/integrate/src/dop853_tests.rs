@@ -1,6 +1,6 @@
 //! One step of DOP853 at a time: local orders of the step and of its dense output.
 
-use crate::dense::evaluate_segment;
+use crate::dense::{Basis, evaluate_segment};
 use crate::dop853::Dop853;
 use crate::options::Options;
 use crate::problem::{EvaluationError, Problem, Start};
@@ -39,7 +39,7 @@ fn local_errors(h: f64) -> (f64, f64) {
     let within = (1..100).map(|i| {
         let theta = f64::from(i) / 100.0;
         let mut y = [0.0];
-        evaluate_segment(&segment, theta, &mut y);
+        evaluate_segment(Basis::Nested, &segment, theta, &mut y);
         (y[0] - exact(0.3 + theta * h)).abs()
     });
     ((stepper.candidate()[0] - exact(0.3 + h)).abs(), within.fold(0.0, f64::max))

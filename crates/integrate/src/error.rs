@@ -64,6 +64,9 @@ pub enum CallError {
         /// The shortest length allowed there.
         limit: f64,
     },
+    /// [`crate::Method::Taylor`] was asked for, and the problem has no Taylor series.
+    #[error("the method needs Taylor series of the solution, which the problem does not have")]
+    NoTaylor,
     /// No step is allowed.
     #[error("at most {found} steps are allowed, at least {limit} is needed")]
     MaxSteps {

@@ -1,6 +1,6 @@
 //! Sign changes of the event functions.
 
-use crate::dense::evaluate_segment;
+use crate::dense::{Basis, evaluate_segment};
 use crate::root::find_root_between;
 use crate::system::{Failure, System};
 
@@ -25,6 +25,7 @@ pub(crate) struct Found {
 
 /// One step's polynomial with its place in time.
 pub(crate) struct Segment<'a> {
+    pub(crate) basis: Basis,
     pub(crate) coefficients: &'a [f64],
     pub(crate) begin: f64,
     pub(crate) width: f64,
@@ -60,7 +61,7 @@ impl EventWatch {
         let mut theta = 0.0;
         for part in 1..=PARTS {
             let next = part as f64 / PARTS as f64;
-            evaluate_segment(segment.coefficients, next, &mut self.state);
+            evaluate_segment(segment.basis, segment.coefficients, next, &mut self.state);
             system.event_values(segment.time(next), &self.state, &mut self.current)?;
             let mut first: Option<Found> = None;
             for index in 0..self.current.len() {
@@ -105,7 +106,7 @@ impl EventWatch {
         let mut failure = None;
         let state = &mut self.state;
         let mut event = |theta: f64| {
-            evaluate_segment(segment.coefficients, theta, state);
+            evaluate_segment(segment.basis, segment.coefficients, theta, state);
             match system.event_values(segment.time(theta), state, &mut values) {
                 Ok(()) => values[index],
                 Err(error) => {

@@ -18,6 +18,7 @@
 //!
 //! | method | order | order of the dense output | for |
 //! |---|---|---|---|
+//! | [`Method::Taylor`] | from the tolerance: 15 at 1e-12 | that of the step | smooth non-stiff problems with Taylor series, any accuracy |
 //! | [`Method::Dop853`] | 8 | 7 | non-stiff problems, high accuracy |
 //! | [`Method::Tsit45`] | 5 | 4 | non-stiff problems, low accuracy |
 //! | [`Method::Bdf`] | 1 to 5 | that of the step | stiff problems |
@@ -75,6 +76,7 @@ mod root;
 mod status;
 mod stepper;
 mod system;
+mod taylor;
 mod time_loop;
 
 pub use boundary::{BoundaryError, Residual, ShootOptions, Shot, fit, shoot};
@@ -97,8 +99,16 @@ use system::System;
 /// See [`CallError`].
 pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &Options) -> Result<Solution, CallError> {
     check_call(problem.dimension(), start, end, options)?;
+    if options.method == Method::Taylor && !problem.has_taylor() {
+        return Err(CallError::NoTaylor);
+    }
     let system = System::new(problem);
     Ok(match options.method {
+        Method::Taylor => {
+            let mut stepper = taylor::Taylor::new(&system, start, end, options).map_err(StopCause::from);
+            let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
+            time_loop::run(&system, stepper, start, end, options)
+        }
         Method::Dop853 => {
             let mut stepper = dop853::Dop853::new(&system, start, end, options).map_err(StopCause::from);
             let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());

@@ -6,6 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The time-stepping method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Method {
+    /// Taylor series of an order that follows from the tolerance, dense output of that order; for smooth non-stiff problems that
+    /// can be expanded ([`crate::Problem::taylor`]), at any accuracy.
+    Taylor,
     /// Dormand and Prince's explicit Runge–Kutta method of order 8(5,3), dense output of order 7; for non-stiff problems.
     Dop853,
     /// Tsitouras' explicit Runge–Kutta method of order 5(4) (diffsol).
@@ -20,7 +23,8 @@ pub enum Method {
 
 impl Method {
     /// Every method there is.
-    pub const ALL: [Method; 5] = [Method::Dop853, Method::Tsit45, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
+    pub const ALL: [Method; 6] =
+        [Method::Taylor, Method::Dop853, Method::Tsit45, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
 
     /// Its name, as on the command line and in reports.
     pub fn name(self) -> &'static str {

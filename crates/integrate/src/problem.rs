@@ -52,6 +52,25 @@ pub trait Problem {
     /// [`EvaluationError`] where it is not defined.
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError>;
 
+    /// Whether [`taylor`](Problem::taylor) is there, which [`crate::Method::Taylor`] asks for.
+    fn has_taylor(&self) -> bool {
+        false
+    }
+
+    /// Writes the coefficients of the solution through `(t, y)`, as many orders as there is room for:
+    ///
+    /// ```text
+    /// y_i(t + τ) = Σ_k coefficients[k n + i] (τ / unit)^k,   k = 0, 1, … coefficients.len() / n − 1,   unit > 0
+    /// ```
+    ///
+    /// A coefficient that overflows may be written as such.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where `F` is not defined at `(t, y)`, and always where [`has_taylor`](Problem::has_taylor) says no.
+    fn taylor(&mut self, _t: f64, _y: &[f64], _unit: f64, _coefficients: &mut [f64]) -> Result<(), EvaluationError> {
+        Err(EvaluationError { reason: "the problem has no Taylor series".into() })
+    }
+
     /// Moves `y` onto the invariant manifold; returns the Euclidean length of the move (0 where there is nothing to
     /// project onto).
     ///

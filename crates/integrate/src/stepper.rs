@@ -1,5 +1,6 @@
 //! What a method is to the time loop.
 
+use crate::dense::Basis;
 use crate::status::StopCause;
 use crate::system::Failure;
 
@@ -10,6 +11,11 @@ use crate::system::Failure;
 pub(crate) trait Stepper {
     /// Degree of the polynomials written by `finish`.
     fn degree(&self) -> usize;
+
+    /// What the coefficients of these polynomials belong to.
+    fn basis(&self) -> Basis {
+        Basis::Nested
+    }
 
     /// The time reached.
     fn time(&self) -> f64;

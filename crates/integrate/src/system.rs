@@ -102,6 +102,25 @@ impl<'p> System<'p> {
         check_finite(rates)
     }
 
+    /// Coefficients of the solution through `(t, y)`, finite or an error.
+    pub(crate) fn taylor(
+        &self,
+        t: f64,
+        y: &[f64],
+        unit: f64,
+        order: usize,
+        coefficients: &mut [f64],
+    ) -> Result<(), Failure> {
+        let inner = &mut *self.inner.borrow_mut();
+        inner.work.evaluations += 1;
+        inner.work.orders += order;
+        inner.problem.taylor(t, y, unit, coefficients)?;
+        check_finite(coefficients).map_err(|failure| match failure {
+            Failure::NotFinite { component } => Failure::NotFinite { component: component % y.len() },
+            other => other,
+        })
+    }
+
     /// F(t, y) for callers that take no errors: the failure is kept for [`System::take_failure`] and NaN is written.
     pub(crate) fn rates_or_nan(&self, t: f64, y: &[f64], rates: &mut [f64]) {
         if let Err(failure) = check_finite(y).and_then(|()| self.rates(t, y, rates)) {

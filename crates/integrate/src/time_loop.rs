@@ -1,6 +1,6 @@
 //! The one time loop: every method, forwards and backwards, with events, projection, checks and counters.
 
-use crate::dense::{DenseOutput, evaluate_segment};
+use crate::dense::{Basis, DenseOutput, evaluate_segment};
 use crate::events::{EventWatch, Segment};
 use crate::options::{Dense, Interrupt, Options, Projection};
 use crate::problem::Start;
@@ -19,10 +19,10 @@ pub(crate) fn run(
     end: f64,
     options: &Options,
 ) -> Solution {
-    let degree = stepper.as_ref().map_or(1, |stepper| stepper.degree());
+    let (basis, degree) = stepper.as_ref().map_or((Basis::Nested, 1), |stepper| (stepper.basis(), stepper.degree()));
     let mut record = Record {
         system,
-        dense: DenseOutput::new(start.t, &start.y, degree),
+        dense: DenseOutput::new(start.t, &start.y, basis, degree),
         projection: ProjectionReport::default(),
         options,
     };
@@ -106,7 +106,7 @@ impl Record<'_, '_> {
                 return Ok(None);
             }
             let coefficients = self.dense.last_room();
-            let segment = Segment { coefficients, begin, width: t - begin, end: t };
+            let segment = Segment { basis: self.dense.basis(), coefficients, begin, width: t - begin, end: t };
             let found = watch.look(self.system, &segment)?;
             Ok(found.map(|found| (found.index, found.theta, segment.time(found.theta))))
         });
@@ -128,7 +128,7 @@ impl Record<'_, '_> {
         let mut end = t;
         if let Some((_, theta, t_event)) = found {
             let mut state = vec![0.0; self.dense.dimension()];
-            evaluate_segment(self.dense.last_room(), theta, &mut state);
+            evaluate_segment(self.dense.basis(), self.dense.last_room(), theta, &mut state);
             stepper.candidate().copy_from_slice(&state);
             end = t_event;
         }

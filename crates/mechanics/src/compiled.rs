@@ -5,6 +5,7 @@ use symbolic::{CompileError, Expr};
 use crate::equations::Equations;
 use crate::instant::{CompiledBlock, EvaluationFailure, Program};
 use crate::projection::Projector;
+use crate::series::Series;
 
 /// Compiled equations of motion `ẏ = F(t, y)`.
 ///
@@ -17,6 +18,7 @@ pub struct Compiled {
     guards: Program,
     projector: Option<Projector>,
     derivatives: Option<Derivatives>,
+    series: Option<Series>,
     sizes: Sizes,
     /// `t, y, constants, z` in this order.
     inputs: Vec<f64>,
@@ -91,6 +93,7 @@ impl Compiled {
             guards: Program::new(equations, &known, &equations.guards)?,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             derivatives: None,
+            series: None,
             sizes: Sizes {
                 states: rates.len(),
                 constants: equations.free_constants.len(),
@@ -128,6 +131,23 @@ impl Compiled {
         });
         Ok(self)
     }
+
+    /// Adds the recurrences of Taylor coefficients, for [`Compiled::taylor`].
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn with_series(mut self, equations: &Equations) -> Result<Self, CompileError> {
+        self.series = Some(Series::new(equations)?);
+        Ok(self)
+    }
+
+    /// Whether [`Compiled::with_series`] was called.
+    pub fn has_series(&self) -> bool {
+        self.series.is_some()
+    }
+
+    /// TEMP
+    pub fn series_work(&self) -> String { let s = self.series.as_ref().unwrap(); format!("{:?} {:?}", s.tape.work(), s.tape.shape()) }
 
     /// Number of states.
     pub fn dimension(&self) -> usize {
@@ -252,6 +272,41 @@ impl Compiled {
             }
             by_state = &by_state[size * n..];
         }
+        Ok(())
+    }
+
+    /// Taylor coefficients of the motion through `(t, y)`, to the order for which there is room, `y_i(t + τ) = Σ_k coefficients[k n + i] (τ/unit)^k`.
+    ///
+    /// Unknowns of the instant are series, too: at order k a block is linear in `z_k`, with `∂R/∂z` of order 0 as its matrix.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    ///
+    /// # Panics
+    /// If [`Compiled::with_series`] was not called, or there is room for less than two orders.
+    pub fn taylor(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        unit: f64,
+        coefficients: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        let order = coefficients.len() / y.len() - 1;
+        let series = self.series.as_mut().expect("compiled with_series");
+        if series.workspace.order() != order {
+            series.workspace = series.tape.workspace(order);
+        }
+        let blocks = &mut self.equations_of_instant;
+        // The factors of a Newton iteration are those of the point before the last.
+        let sweeps = if blocks.iter().any(|block| !block.linear) { 2 } else { 1 };
+        series.tape.expand(&self.inputs, unit, &mut series.workspace, sweeps, &mut |block, residual| {
+            for x in residual.iter_mut() {
+                *x = -*x;
+            }
+            blocks[block].factors.solve(residual);
+        });
+        series.write(y, coefficients);
         Ok(())
     }
 

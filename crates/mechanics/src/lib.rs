@@ -15,6 +15,7 @@ mod rank;
 mod removal;
 mod scene;
 mod scene_error;
+mod series;
 mod start;
 mod system;
 

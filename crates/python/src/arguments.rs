@@ -11,7 +11,8 @@ use crate::arrays::FloatList;
 use crate::errors;
 
 /// Names of the methods.
-pub(crate) const METHODS: [(&str, Method); 5] = [
+pub(crate) const METHODS: [(&str, Method); 6] = [
+    ("taylor", Method::Taylor),
     ("dop853", Method::Dop853),
     ("tsit45", Method::Tsit45),
     ("bdf", Method::Bdf),

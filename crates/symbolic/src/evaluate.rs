@@ -2,8 +2,10 @@
 
 use crate::arena::{Arena, Node};
 use crate::number::Number;
+use crate::program::{Id, Program};
+use crate::series::{SeriesInput, SeriesTape};
 use crate::tape::Tape;
-use crate::{Expr, Graph, Symbol, lower};
+use crate::{Expr, Graph, Symbol, lower, series_build};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::HashMap;
 
@@ -74,6 +76,63 @@ impl Graph {
         outputs: &[Expr],
         constants: &HashMap<Symbol, f64>,
     ) -> Result<Tape, CompileError> {
+        self.lowered(inputs, definitions, outputs, constants, |mut program, ids| {
+            program.fuse(ids);
+            Tape::assemble(&program, inputs.len(), ids)
+        })
+    }
+
+    /// A program for the Taylor coefficients of `outputs`, and of the residuals of `blocks` of implicit equations, along a motion.
+    ///
+    /// `inputs` says what each symbol is as a function of time; states are integrated by the way. Definitions and constants are as in
+    /// [`Graph::compile_with`].
+    ///
+    /// ```
+    /// use std::collections::HashMap;
+    /// use symbolic::{Graph, SeriesInput};
+    /// let g = Graph::new();
+    /// let x = g.symbol("x");
+    /// let rate = g.powi(g.variable(x), 2); // x' = x², x(0) = 1: x = 1/(1 − t)
+    /// let tape = g.compile_series(&[(x, SeriesInput::State(0))], &[], &[rate], &[], &HashMap::new())?;
+    /// let mut workspace = tape.workspace::<f64>(5);
+    /// tape.expand(&[1.0], 1.0, &mut workspace, 0, &mut |_, _| {});
+    /// assert_eq!(tape.input(0, &workspace), Some(&[1.0; 6][..]));
+    /// # Ok::<(), symbolic::CompileError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Graph::compile_with`].
+    ///
+    /// # Panics
+    /// If an input is the state of an output, or the unknown of a block, that is not there.
+    pub fn compile_series(
+        &self,
+        inputs: &[(Symbol, SeriesInput)],
+        definitions: &[(Symbol, Expr)],
+        outputs: &[Expr],
+        blocks: &[Vec<Expr>],
+        constants: &HashMap<Symbol, f64>,
+    ) -> Result<SeriesTape, CompileError> {
+        let (symbols, kinds): (Vec<Symbol>, Vec<SeriesInput>) = inputs.iter().copied().unzip();
+        let sizes: Vec<usize> = blocks.iter().map(Vec::len).collect();
+        let all: Vec<Expr> = outputs.iter().chain(blocks.iter().flatten()).copied().collect();
+        let mut series = None;
+        self.lowered(&symbols, definitions, &all, constants, |program, ids| {
+            let tape = series.insert(series_build::build(program, &kinds, ids, outputs.len(), &sizes));
+            tape.first.clone()
+        })?;
+        Ok(series.expect("made where the program was lowered"))
+    }
+
+    /// What `assemble` makes of the program that computes `outputs`.
+    fn lowered(
+        &self,
+        inputs: &[Symbol],
+        definitions: &[(Symbol, Expr)],
+        outputs: &[Expr],
+        constants: &HashMap<Symbol, f64>,
+        assemble: impl FnOnce(Program, &[Id]) -> Tape,
+    ) -> Result<Tape, CompileError> {
         let (symbols, defined): (Vec<Symbol>, Vec<Expr>) = definitions.iter().copied().unzip();
         let originals = [&defined[..], outputs].concat();
         let known: FxHashSet<Symbol> = inputs.iter().chain(&symbols).copied().collect();
@@ -97,9 +156,8 @@ impl Graph {
         }
         let (defined, results) = folded.split_at(symbols.len());
         let definitions: Vec<(Symbol, Expr)> = symbols.into_iter().zip(defined.iter().copied()).collect();
-        let (mut program, ids) = lower::lower(&arena, inputs, &definitions, results);
-        program.fuse(&ids);
-        let tape = Tape::assemble(&program, inputs.len(), &ids);
+        let (program, ids) = lower::lower(&arena, inputs, &definitions, results);
+        let tape = assemble(program, &ids);
         // An intermediate power may overflow where its reciprocal is zero: the expressions decide.
         if !tape.workspace::<f64>().is_finite() {
             let constant = |e: Expr| arena.dependencies(e).is_empty();
