@@ -1,7 +1,7 @@
 //! Runs of the time loop: equations compiled and started, states over time.
 
 use integrate::{DenseOutput, Options, Problem, Solution, Start};
-use mechanics::{Compiled, Equations, EvaluationFailure, Outputs, complete_removal_start};
+use mechanics::{Compiled, Equations, EvaluationFailure, Form, Outputs, complete_removal_start};
 use symbolic::Symbol;
 
 use crate::{Setting, Settings, SolveError};
@@ -33,6 +33,8 @@ impl Trajectory {
 /// A run of the time loop.
 pub(crate) struct Run {
     pub(crate) solution: Solution,
+    /// Evaluations that fell back on the plain form.
+    pub(crate) fallbacks: usize,
     anchors: Vec<(f64, Vec<f64>)>,
 }
 
@@ -46,6 +48,8 @@ impl Run {
 pub(crate) struct Prepared {
     pub(crate) equations: Equations,
     pub(crate) compiled: Compiled,
+    /// Words about the form that was chosen.
+    pub(crate) form: Vec<String>,
     start_tape: symbolic::Tape,
     start_inputs: Vec<f64>,
     pub(crate) guess: Vec<f64>,
@@ -54,10 +58,6 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     pub(crate) fn new(setting: Setting, equations: Equations, settings: &Settings) -> Result<Self, SolveError> {
-        let mut compiled = Compiled::new(&equations)?;
-        if settings.method.is_implicit() {
-            compiled = compiled.with_jacobian(&equations)?;
-        }
         let mut values = setting.system.values_at(setting.start);
         if let Some(removal) = &equations.removal {
             values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
@@ -68,7 +68,25 @@ impl Prepared {
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
         let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
-        Ok(Prepared { equations, compiled, start_tape, start_inputs, guess: Vec::new(), t: setting.start.t })
+        let mut start = vec![0.0; start_tape.outputs()];
+        start_tape.evaluate(&start_inputs, &mut start_tape.workspace(), &mut start);
+        let mut point = vec![setting.start.t];
+        point.extend(&start[..equations.states.len()]);
+        point.resize(1 + equations.states.len() + equations.free_constants.len(), 0.0);
+        let form = Form::choose(&equations, Some(&point))?;
+        let mut compiled = Compiled::with_form(&equations, &form)?;
+        if settings.method.is_implicit() {
+            compiled = compiled.with_jacobian(&equations)?;
+        }
+        Ok(Prepared {
+            form: form.why,
+            equations,
+            compiled,
+            start_tape,
+            start_inputs,
+            guess: Vec::new(),
+            t: setting.start.t,
+        })
     }
 
     /// Sets the free constants and returns `y(t₀)`.
@@ -101,13 +119,14 @@ impl Prepared {
         options.interrupt = settings.interrupt.clone();
         let mut anchors = Vec::new();
         let start = self.compiled.settle(self.t, &y)?.to_vec();
-        self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
         if self.compiled.needs_guess() {
             anchors.push((self.t, start));
         }
+        let before = self.compiled.fallbacks();
         let mut runner = Runner { compiled: &mut self.compiled, anchors };
         let solution = integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?;
-        Ok(Run { solution, anchors: runner.anchors })
+        let anchors = runner.anchors;
+        Ok(Run { solution, anchors, fallbacks: self.compiled.fallbacks() - before })
     }
 }
 
