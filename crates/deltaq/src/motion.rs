@@ -60,6 +60,15 @@ pub struct Seconds {
     pub integrate: f64,
 }
 
+/// In which form the equations of a motion were evaluated, and how well that went.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FormReport {
+    /// What was chosen and why ([`mechanics::Form::why`]).
+    pub why: Vec<String>,
+    /// Evaluations of the kept run in which a pivot of the form was small, so that the plain form was evaluated instead.
+    pub fallbacks: usize,
+}
+
 /// A trajectory with everything that was learned on the way.
 #[derive(Clone)]
 pub struct Motion {
@@ -75,6 +84,8 @@ pub struct Motion {
     pub projection: ProjectionReport,
     /// Time spent.
     pub seconds: Seconds,
+    /// In which form the equations were evaluated.
+    pub form: FormReport,
     end: f64,
     compiled: Compiled,
     kept: Trajectory,
@@ -196,6 +207,7 @@ pub fn solve(
     let integrate = clock.elapsed().as_secs_f64();
     let ending = ending(&mut prepared, &kept.solution);
     let size = prepared.equations.states.len();
+    let form = FormReport { why: prepared.form.why.clone(), fallbacks: kept.fallbacks };
     let (work, projection) = (kept.solution.work, kept.solution.projection);
     let (kept, looser) = (kept.trajectory(), looser.trajectory());
     let end = readable_end(&mut prepared.compiled, &kept, &looser);
@@ -206,6 +218,7 @@ pub fn solve(
         work,
         projection,
         seconds: Seconds { derive: 0.0, compile, integrate },
+        form,
         kept,
         looser,
         state: vec![0.0; size],

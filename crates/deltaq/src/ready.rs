@@ -14,6 +14,8 @@ pub struct Ready {
     pub equations: Equations,
     /// `ẏ = F(t, y)` with its Jacobian; the constants and the guess are set.
     pub compiled: Compiled,
+    /// In which form it is evaluated and why ([`mechanics::Form::why`]).
+    pub form: Vec<String>,
     /// Values of the free constants.
     pub constants: Vec<f64>,
     /// `t₀`.
@@ -108,7 +110,7 @@ pub fn ready(
     let mut prepared = Prepared::new(setting, equations, settings)?;
     let constants = resolve(&mut prepared, constants, settings)?;
     let start = prepared.start(&constants);
-    let Prepared { equations, compiled, guess, t, .. } = prepared;
+    let Prepared { equations, compiled, form, guess, t, .. } = prepared;
     let compiled = if settings.method.is_implicit() { compiled } else { compiled.with_jacobian(&equations)? };
-    Ok(Ready { equations, compiled, constants, t, start, guess })
+    Ok(Ready { equations, compiled, form: form.why, constants, t, start, guess })
 }

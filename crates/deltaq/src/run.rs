@@ -1,7 +1,7 @@
 //! Runs of the time loop: equations compiled and started, states over time.
 
-use integrate::{DenseOutput, Options, Problem, Solution, Start};
-use mechanics::{Compiled, Equations, EvaluationFailure, Outputs, complete_removal_start};
+use integrate::{DenseOutput, Method, Options, Problem, Solution, Start};
+use mechanics::{Compiled, Equations, EvaluationFailure, Form, Outputs, complete_removal_start};
 use symbolic::Symbol;
 
 use crate::{Setting, Settings, SolveError};
@@ -28,6 +28,8 @@ impl Trajectory {
 /// A run of the time loop.
 pub(crate) struct Run {
     pub(crate) solution: Solution,
+    /// Evaluations that fell back on the plain form.
+    pub(crate) fallbacks: usize,
     anchors: Vec<(f64, Vec<f64>)>,
 }
 
@@ -41,6 +43,8 @@ impl Run {
 pub(crate) struct Prepared {
     pub(crate) equations: Equations,
     pub(crate) compiled: Compiled,
+    /// The form that was chosen.
+    pub(crate) form: Form,
     start_tape: symbolic::Tape,
     start_inputs: Vec<f64>,
     pub(crate) guess: Vec<f64>,
@@ -49,13 +53,6 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     pub(crate) fn new(setting: Setting, equations: Equations, settings: &Settings) -> Result<Self, SolveError> {
-        let mut compiled = Compiled::new(&equations)?;
-        if settings.method.is_implicit() {
-            compiled = compiled.with_jacobian(&equations)?;
-        }
-        if settings.method == integrate::Method::Taylor {
-            compiled = compiled.with_series(&equations)?;
-        }
         let mut values = setting.system.values_at(setting.start);
         if let Some(removal) = &equations.removal {
             values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
@@ -66,7 +63,28 @@ impl Prepared {
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
         let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
-        Ok(Prepared { equations, compiled, start_tape, start_inputs, guess: Vec::new(), t: setting.start.t })
+        let mut start = vec![0.0; start_tape.outputs()];
+        start_tape.evaluate(&start_inputs, &mut start_tape.workspace(), &mut start);
+        let mut point = vec![setting.start.t];
+        point.extend(&start[..equations.states.len()]);
+        point.resize(1 + equations.states.len() + equations.free_constants.len(), 0.0);
+        let form = Form::choose(&equations, Some(&point))?;
+        let mut compiled = Compiled::with_form(&equations, &form)?;
+        if settings.method.is_implicit() {
+            compiled = compiled.with_jacobian(&equations)?;
+        }
+        if settings.method == Method::Taylor {
+            compiled = compiled.with_series(&equations, &form)?;
+        }
+        Ok(Prepared {
+            form,
+            equations,
+            compiled,
+            start_tape,
+            start_inputs,
+            guess: Vec::new(),
+            t: setting.start.t,
+        })
     }
 
     /// Sets the free constants and returns `y(t₀)`.
@@ -113,9 +131,11 @@ pub(crate) fn integrate_once(
     if compiled.needs_guess() {
         anchors.push((start.t, unknowns));
     }
+    let before = compiled.fallbacks();
     let mut runner = Runner { compiled, anchors };
     let solution = integrate::integrate(&mut runner, &start, end, options)?;
-    Ok(Run { solution, anchors: runner.anchors })
+    let anchors = runner.anchors;
+    Ok(Run { solution, anchors, fallbacks: compiled.fallbacks() - before })
 }
 
 /// Compiled equations as the time integrator sees them.

@@ -30,6 +30,7 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Method::Dop853 => "dop853",
+            Method::Taylor => "taylor",
             Method::Tsit45 => "tsit45",
             Method::Bdf => "bdf",
             Method::TrBdf2 => "tr-bdf2",

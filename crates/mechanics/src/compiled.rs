@@ -3,9 +3,11 @@
 use symbolic::{CompileError, Expr};
 
 use crate::equations::Equations;
+use crate::form::Form;
 use crate::instant::{CompiledBlock, EvaluationFailure, Program};
 use crate::projection::Projector;
 use crate::series::Series;
+use crate::straight::Straight;
 
 /// Compiled equations of motion `ẏ = F(t, y)`.
 ///
@@ -15,10 +17,16 @@ pub struct Compiled {
     equations_of_instant: Vec<CompiledBlock>,
     rates: Program,
     outputs: Program,
+    /// The chosen form, where there is another than the plain one, and how often it was not to be trusted.
+    straight: Option<Straight>,
+    left: Vec<usize>,
+    fallbacks: usize,
     guards: Program,
     projector: Option<Projector>,
     derivatives: Option<Derivatives>,
+    /// Taylor coefficients in the chosen form, and in the plain one where that may be needed.
     series: Option<Series>,
+    plain_series: Option<Series>,
     sizes: Sizes,
     /// `t, y, constants, z` in this order.
     inputs: Vec<f64>,
@@ -39,6 +47,30 @@ impl Sizes {
     fn known(&self) -> usize {
         1 + self.states + self.constants
     }
+
+    fn outputs(&self, values: &[f64]) -> Outputs {
+        let (q, rest) = values.split_at(self.coordinates);
+        let (v, rest) = rest.split_at(self.coordinates);
+        let (m, i) = rest.split_at(self.multipliers);
+        debug_assert_eq!(i.len(), self.invariants);
+        Outputs { coordinates: q.to_vec(), velocities: v.to_vec(), multipliers: m.to_vec(), invariants: i.to_vec() }
+    }
+}
+
+/// Which blocks are solved numerically.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Blocks {
+    All,
+    Left,
+}
+
+/// What one evaluation of the rates takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Instructions of tapes.
+    pub instructions: usize,
+    /// Multiplications of LU factorization and substitution.
+    pub factorization: usize,
 }
 
 /// `∂F/∂y` by the implicit function theorem, exact derivatives from the graph.
@@ -64,14 +96,28 @@ pub struct Outputs {
 }
 
 impl Compiled {
-    /// Compiles everything that a time integrator asks for, Jacobian left out.
+    /// Compiles everything that a time integrator asks for, Jacobian left out, in a form chosen from structure.
     ///
     /// # Errors
     /// [`CompileError`] where an expression contains a symbol that is neither state, parameter, constant nor unknown: a fault of the derivation.
     pub fn new(equations: &Equations) -> Result<Self, CompileError> {
-        let mut known = vec![equations.time];
-        known.extend(equations.state_symbols());
-        known.extend(equations.constant_symbols());
+        Compiled::with_form(equations, &Form::choose(equations, None)?)
+    }
+
+    /// [`Compiled::new`] with every block solved by LU factorization.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn plain(equations: &Equations) -> Result<Self, CompileError> {
+        Compiled::with_form(equations, &Form::plain(equations))
+    }
+
+    /// [`Compiled::new`] in a form chosen before.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn with_form(equations: &Equations, form: &Form) -> Result<Self, CompileError> {
+        let known = equations.known_symbols();
         let mut all = known.clone();
         all.extend(equations.unknowns());
 
@@ -86,7 +132,13 @@ impl Compiled {
         let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
+        let straight = (form.left.len() < blocks.len())
+            .then(|| Straight::new(equations, form, known.len(), &all, &rates, &outputs))
+            .transpose()?;
         Ok(Compiled {
+            straight,
+            left: form.left.clone(),
+            fallbacks: 0,
             equations_of_instant: blocks,
             rates: Program::new(equations, &all, &rates)?,
             outputs: Program::new(equations, &all, &outputs)?,
@@ -94,6 +146,7 @@ impl Compiled {
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             derivatives: None,
             series: None,
+            plain_series: None,
             sizes: Sizes {
                 states: rates.len(),
                 constants: equations.free_constants.len(),
@@ -132,12 +185,15 @@ impl Compiled {
         Ok(self)
     }
 
-    /// Adds the recurrences of Taylor coefficients, for [`Compiled::taylor`].
+    /// Adds the recurrences of Taylor coefficients, for [`Compiled::taylor`]; `form` is the one that these equations were compiled in.
     ///
     /// # Errors
     /// As [`Compiled::new`].
-    pub fn with_series(mut self, equations: &Equations) -> Result<Self, CompileError> {
-        self.series = Some(Series::new(equations)?);
+    pub fn with_series(mut self, equations: &Equations, form: &Form) -> Result<Self, CompileError> {
+        self.series = Some(Series::new(equations, form)?);
+        if form.condition.is_some() {
+            self.plain_series = Some(Series::new(equations, &Form::plain(equations))?);
+        }
         Ok(self)
     }
 
@@ -145,9 +201,6 @@ impl Compiled {
     pub fn has_series(&self) -> bool {
         self.series.is_some()
     }
-
-    /// TEMP
-    pub fn series_work(&self) -> String { let s = self.series.as_ref().unwrap(); format!("{:?} {:?}", s.tape.work(), s.tape.shape()) }
 
     /// Number of states.
     pub fn dimension(&self) -> usize {
@@ -192,9 +245,40 @@ impl Compiled {
     /// # Errors
     /// [`EvaluationFailure`] where the equations of the instant cannot be solved.
     pub fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationFailure> {
+        if self.straight.is_some() {
+            self.load(t, y);
+            self.solve_blocks(Blocks::Left)?;
+            if let Some(values) = self.straight.as_mut().and_then(|s| s.rates(&self.inputs)) {
+                rates.copy_from_slice(values);
+                return Ok(());
+            }
+            self.fallbacks += 1;
+        }
         self.solve_instant(t, y)?;
         rates.copy_from_slice(self.rates.run(&self.inputs));
         Ok(())
+    }
+
+    /// How often rates were asked for where the chosen form could not be trusted ([`Form::LIMIT`]), so that the plain one was taken.
+    pub fn fallbacks(&self) -> usize {
+        self.fallbacks
+    }
+
+    /// What one evaluation of the rates costs, in the plain form and in the chosen one.
+    pub fn cost(&self) -> [Cost; 2] {
+        let plain = self.cost_of(&|_| true, self.rates.len());
+        let chosen = self.straight.as_ref().map(|s| self.cost_of(&|k| self.left.contains(&k), s.len()));
+        [plain, chosen.unwrap_or(plain)]
+    }
+
+    fn cost_of(&self, solved: &dyn Fn(usize) -> bool, rates: usize) -> Cost {
+        let blocks = self.equations_of_instant.iter().enumerate().filter(|(k, _)| solved(*k)).map(|(_, b)| b);
+        blocks.fold(Cost { instructions: rates, factorization: 0 }, |cost, block| Cost {
+            instructions: cost.instructions + block.program.len(),
+            factorization: cost.factorization
+                + block.size * (block.size * block.size - 1) / 3
+                + block.size * block.size,
+        })
     }
 
     /// Coordinates, velocities, multipliers and invariants at `(t, y)`.
@@ -202,14 +286,15 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn outputs(&mut self, t: f64, y: &[f64]) -> Result<Outputs, EvaluationFailure> {
+        if self.straight.is_some() {
+            self.load(t, y);
+            self.solve_blocks(Blocks::Left)?;
+            if let Some(values) = self.straight.as_mut().and_then(|s| s.outputs(&self.inputs)) {
+                return Ok(self.sizes.outputs(values));
+            }
+        }
         self.solve_instant(t, y)?;
-        let Sizes { coordinates: n, multipliers, invariants, .. } = self.sizes;
-        let values = self.outputs.run(&self.inputs);
-        let (q, rest) = values.split_at(n);
-        let (v, rest) = rest.split_at(n);
-        let (m, i) = rest.split_at(multipliers);
-        debug_assert_eq!(i.len(), invariants);
-        Ok(Outputs { coordinates: q.to_vec(), velocities: v.to_vec(), multipliers: m.to_vec(), invariants: i.to_vec() })
+        Ok(self.sizes.outputs(self.outputs.run(&self.inputs)))
     }
 
     /// Number of guards.
@@ -291,21 +376,20 @@ impl Compiled {
         unit: f64,
         coefficients: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
-        self.solve_instant(t, y)?;
+        self.load(t, y);
+        self.solve_blocks(Blocks::Left)?;
+        let trusted = self.straight.as_mut().is_none_or(|s| s.rates(&self.inputs).is_some());
+        let series = if trusted {
+            &mut self.series
+        } else {
+            self.fallbacks += 1;
+            self.solve_instant(t, y)?;
+            &mut self.plain_series
+        };
         let order = coefficients.len() / y.len() - 1;
-        let series = self.series.as_mut().expect("compiled with_series");
-        if series.workspace.order() != order {
-            series.workspace = series.tape.workspace(order);
-        }
+        let series = series.as_mut().expect("compiled with_series");
         let blocks = &mut self.equations_of_instant;
-        // The factors of a Newton iteration are those of the point before the last.
-        let sweeps = if blocks.iter().any(|block| !block.linear) { 2 } else { 1 };
-        series.tape.expand(&self.inputs, unit, &mut series.workspace, sweeps, &mut |block, residual| {
-            for x in residual.iter_mut() {
-                *x = -*x;
-            }
-            blocks[block].factors.solve(residual);
-        });
+        series.expand(&self.inputs, unit, order, blocks);
         series.write(y, coefficients);
         Ok(())
     }
@@ -317,8 +401,15 @@ impl Compiled {
 
     fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
         self.load(t, y);
+        self.solve_blocks(Blocks::All)
+    }
+
+    fn solve_blocks(&mut self, which: Blocks) -> Result<(), EvaluationFailure> {
         let known = self.sizes.known();
-        for block in &mut self.equations_of_instant {
+        for (k, block) in self.equations_of_instant.iter_mut().enumerate() {
+            if which == Blocks::Left && !self.left.contains(&k) {
+                continue;
+            }
             if block.linear {
                 block.step(&self.inputs[..known])?;
                 let (r, z) = (block.solution(), &mut self.inputs[known + block.first..]);

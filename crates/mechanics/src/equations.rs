@@ -203,6 +203,14 @@ impl Equations {
         self.free_constants.iter().map(|c| c.symbol).collect()
     }
 
+    /// Symbols of `t`, `y` and the free constants: what is known when an instant is solved.
+    pub fn known_symbols(&self) -> Vec<Symbol> {
+        let mut known = vec![self.time];
+        known.extend(self.state_symbols());
+        known.extend(self.constant_symbols());
+        known
+    }
+
     /// Leaves out what the motion does not need, and writes down what went.
     ///
     /// Blocks fall apart into independent ones; an unknown with a constant coefficient and an equation of its own is

@@ -46,8 +46,23 @@ pub(crate) struct Program {
 
 impl Program {
     pub(crate) fn new(equations: &Equations, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        let tape = equations.graph.compile(inputs, outputs, &equations.parameters)?;
+        Program::with_definitions(equations, inputs, &[], outputs)
+    }
+
+    /// By way of intermediate quantities.
+    pub(crate) fn with_definitions(
+        equations: &Equations,
+        inputs: &[Symbol],
+        definitions: &[(Symbol, Expr)],
+        outputs: &[Expr],
+    ) -> Result<Self, CompileError> {
+        let tape = equations.graph.compile_with(inputs, definitions, outputs, &equations.parameters)?;
         Ok(Program { registers: tape.workspace(), values: vec![0.0; outputs.len()], tape })
+    }
+
+    /// Number of instructions.
+    pub(crate) fn len(&self) -> usize {
+        self.tape.len()
     }
 
     pub(crate) fn run(&mut self, inputs: &[f64]) -> &[f64] {
@@ -63,7 +78,7 @@ pub(crate) struct CompiledBlock {
     pub(crate) first: usize,
     pub(crate) size: usize,
     /// Outputs: the matrix `∂R/∂z` row-major, then `R`; linear blocks at `z = 0`, others at the current `z`.
-    program: Program,
+    pub(crate) program: Program,
     pub(crate) linear: bool,
     pub(crate) factors: Factors,
     regular: &'static str,

@@ -5,6 +5,9 @@ mod automatic_removal;
 mod compiled;
 mod equations;
 mod error;
+mod form;
+mod form_elimination;
+mod form_pivots;
 mod formulation;
 mod instant;
 mod integrability;
@@ -17,13 +20,15 @@ mod scene;
 mod scene_error;
 mod series;
 mod start;
+mod straight;
 mod system;
 
-pub use compiled::{Compiled, Outputs};
+pub use compiled::{Compiled, Cost, Outputs};
 pub use equations::{
     Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
 pub use error::RemovalError;
+pub use form::Form;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
 pub use instant::EvaluationFailure;
 pub use integrability::{Integrability, integrability};

@@ -3,27 +3,62 @@
 use symbolic::{CompileError, Expr, SeriesInput, SeriesTape, SeriesWorkspace, Symbol};
 
 use crate::equations::Equations;
+use crate::form::Form;
+use crate::instant::CompiledBlock;
 
-/// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion, blocks included.
+/// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some form, blocks that are left in it included.
 #[derive(Clone)]
 pub(crate) struct Series {
-    pub(crate) tape: SeriesTape,
-    pub(crate) workspace: SeriesWorkspace<f64>,
+    tape: SeriesTape,
+    workspace: SeriesWorkspace<f64>,
+    /// Blocks that are solved numerically.
+    left: Vec<usize>,
+    /// Places in `(t, y, constants, z)` of what the tape takes.
+    places: Vec<usize>,
+    inputs: Vec<f64>,
 }
 
 impl Series {
-    pub(crate) fn new(equations: &Equations) -> Result<Self, CompileError> {
+    pub(crate) fn new(equations: &Equations, form: &Form) -> Result<Self, CompileError> {
         let steady = |symbol: Symbol| (symbol, SeriesInput::Steady);
         let mut inputs = vec![(equations.time, SeriesInput::Time)];
         inputs.extend(equations.states.iter().enumerate().map(|(i, y)| (y.symbol, SeriesInput::State(i))));
         inputs.extend(equations.constant_symbols().into_iter().map(steady));
-        for (i, block) in equations.blocks.iter().enumerate() {
-            inputs.extend(block.unknowns.iter().map(|&z| (z, SeriesInput::Unknown(i))));
+        let mut places: Vec<usize> = (0..inputs.len()).collect();
+        let mut first = inputs.len();
+        let mut residuals: Vec<Vec<Expr>> = Vec::new();
+        for (k, block) in equations.blocks.iter().enumerate() {
+            if form.left.contains(&k) {
+                inputs.extend(block.unknowns.iter().map(|&z| (z, SeriesInput::Unknown(residuals.len()))));
+                residuals.push(block.residuals.clone());
+                places.extend(first..first + block.unknowns.len());
+            }
+            first += block.unknowns.len();
         }
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let residuals: Vec<Vec<Expr>> = equations.blocks.iter().map(|b| b.residuals.clone()).collect();
-        let tape = equations.graph.compile_series(&inputs, &[], &rates, &residuals, &equations.parameters)?;
-        Ok(Series { workspace: tape.workspace(1), tape })
+        let tape =
+            equations.graph.compile_series(&inputs, &form.definitions, &rates, &residuals, &equations.parameters)?;
+        let (workspace, inputs) = (tape.workspace(1), vec![0.0; places.len()]);
+        Ok(Series { tape, workspace, left: form.left.clone(), places, inputs })
+    }
+
+    /// Expands to `order`, from `(t, y, constants, z)`, where `z` solves the blocks that are left and their factors are at hand.
+    pub(crate) fn expand(&mut self, values: &[f64], unit: f64, order: usize, blocks: &mut [CompiledBlock]) {
+        if self.workspace.order() != order {
+            self.workspace = self.tape.workspace(order);
+        }
+        for (x, &place) in self.inputs.iter_mut().zip(&self.places) {
+            *x = values[place];
+        }
+        let left = &self.left;
+        // The factors of a Newton iteration are those of the point before the last.
+        let sweeps = if left.iter().any(|&k| !blocks[k].linear) { 2 } else { 1 };
+        self.tape.expand(&self.inputs, unit, &mut self.workspace, sweeps, &mut |block, residual| {
+            for x in residual.iter_mut() {
+                *x = -*x;
+            }
+            blocks[left[block]].factors.solve(residual);
+        });
     }
 
     /// The coefficients of the states, `coefficients[k n + i]`, from the last expansion.

@@ -147,9 +147,6 @@ impl SeriesTape {
         (self.products[0].len() + self.products[1].len(), self.terms.len())
     }
 
-    /// TEMP
-    pub fn shape(&self) -> String { format!("pairs {}+{} defs {} rows {} slopes {} first {} ops {} outputs stages {:?}", self.products[0].len(), self.products[1].len(), self.definitions.len(), self.rows, self.slopes.len(), self.first.len(), self.first.outputs(), self.stages) }
-
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
         let order = order.max(1);

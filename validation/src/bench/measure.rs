@@ -43,6 +43,7 @@ const REPEATS: usize = 3;
 fn tightest(method: Method) -> i32 {
     match method {
         Method::Dop853 => 15,
+        Method::Taylor => 16,
         Method::Tsit45 => 13,
         Method::TrBdf2 => 8,
         Method::Bdf | Method::Esdirk34 => 11,

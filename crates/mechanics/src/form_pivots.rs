@@ -1,0 +1,221 @@
+//! The order in which a sparse linear block is eliminated: few operations, and no pivot that is small where it was tried.
+
+use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Points at which pivots are tried: at the first ones none may be small, at the others it is better if none is.
+pub(crate) const POINTS: usize = 10;
+pub(crate) const NEAR: usize = 2;
+
+/// A pivot is no smaller than this part of the largest entry under it, …
+const THRESHOLD: f64 = 0.1;
+
+/// … and than this in the scaled matrix, whose rows have a largest entry of 1.
+const SMALLEST: f64 = 1e-4;
+
+/// What a pivot that is no number costs beside its multiplications: a division and the watch on it.
+const MOVING: usize = 4;
+
+/// What it costs that it is small at a point far from the start. (On the diagonal of a mass matrix what is small against its column does no harm.)
+const SMALL: usize = 4;
+
+/// An entry in numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    /// Its values at the points.
+    pub(crate) values: [f64; POINTS],
+    /// Whether it is a number, parameters put in.
+    pub(crate) constant: bool,
+}
+
+/// By what the next pivot is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Strategy {
+    /// On the diagonal, both sides of which stay the same.
+    Symmetric,
+    /// Anywhere.
+    Sparse,
+    /// In the columns of unknowns that no rate needs before all others: so these are never computed.
+    UnneededFirst,
+}
+
+/// Pivots as (row, column), in order.
+#[derive(Clone, Debug)]
+pub(crate) struct Order {
+    pub(crate) pivots: Vec<(usize, usize)>,
+    /// Multiplications of elimination and back-substitution, about.
+    pub(crate) operations: usize,
+}
+
+/// A sparse matrix in numbers, scaled.
+#[derive(Clone, Debug)]
+pub(crate) struct Pattern {
+    rows: Vec<BTreeMap<usize, Entry>>,
+    /// Scale of each row at the first point, columns scaled before.
+    pub(crate) row_scale: Vec<f64>,
+}
+
+impl Pattern {
+    /// Scales columns, then rows, to a largest entry of 1, as the numerical solve does; `None` where that cannot be done near the start.
+    pub(crate) fn new(mut rows: Vec<BTreeMap<usize, Entry>>) -> Option<Self> {
+        let mut row_scale = Vec::new();
+        for point in 0..POINTS {
+            match scale(&mut rows, point) {
+                Some(scales) if point == 0 => row_scale = scales,
+                Some(_) => {}
+                None if point < NEAR => return None,
+                None => rows.iter_mut().flat_map(|row| row.values_mut()).for_each(|e| e.values[point] = e.values[0]),
+            }
+        }
+        Some(Pattern { rows, row_scale })
+    }
+
+    /// Finds pivots one after the other by what they cost (Markowitz' count), among those that are not small.
+    ///
+    /// `None` where all that are left are small, or the elimination takes more than `most` operations.
+    pub(crate) fn order(&self, strategy: Strategy, unneeded: &[bool], most: usize) -> Option<Order> {
+        let n = self.rows.len();
+        let mut rows: Vec<Option<BTreeMap<usize, Entry>>> = self.rows.iter().cloned().map(Some).collect();
+        let mut columns = vec![BTreeSet::new(); n];
+        for (i, row) in self.rows.iter().enumerate() {
+            row.keys().for_each(|&j| {
+                columns[j].insert(i);
+            });
+        }
+        let mut order = Order { pivots: Vec::with_capacity(n), operations: 0 };
+        for _ in 0..n {
+            let mut largest = vec![[0.0_f64; POINTS]; n];
+            for (&j, e) in rows.iter().flatten().flatten() {
+                for (a, x) in largest[j].iter_mut().zip(e.values) {
+                    *a = a.max(x.abs());
+                }
+            }
+            let small = |j: usize, e: &Entry, point: usize| {
+                e.values[point]
+                    .abs()
+                    .partial_cmp(&SMALLEST.max(THRESHOLD * largest[j][point]))
+                    .is_none_or(Ordering::is_lt)
+            };
+            let mut best: Option<((bool, usize), (usize, usize))> = None;
+            for (i, row) in rows.iter().enumerate() {
+                let Some(row) = row else { continue };
+                for (&j, e) in row.iter().filter(|(j, _)| strategy != Strategy::Symmetric || **j == i) {
+                    let late = strategy == Strategy::UnneededFirst && !unneeded[j];
+                    let score = (late, cost(strategy, row.len(), columns[j].len(), e.constant));
+                    if best.is_some_and(|(least, _)| score >= least) || (0..NEAR).any(|point| small(j, e, point)) {
+                        continue;
+                    }
+                    let far = (NEAR..POINTS).filter(|&point| strategy != Strategy::Symmetric && small(j, e, point));
+                    let far = far.count();
+                    let score = (late, score.1 + SMALL * far);
+                    if best.is_none_or(|(least, _)| score < least) {
+                        best = Some((score, (i, j)));
+                    }
+                }
+            }
+            let ((_, cost), (p, c)) = best?;
+            order.pivots.push((p, c));
+            order.operations += cost;
+            if order.operations > most {
+                return None;
+            }
+            eliminate(&mut rows, &mut columns, p, c);
+        }
+        Some(order)
+    }
+}
+
+/// Scales the matrix at one point; the scales of rows.
+fn scale(rows: &mut [BTreeMap<usize, Entry>], point: usize) -> Option<Vec<f64>> {
+    let mut column = vec![0.0_f64; rows.len()];
+    for (&j, e) in rows.iter().flatten() {
+        column[j] = column[j].max(e.values[point].abs());
+    }
+    let mut scales = Vec::with_capacity(rows.len());
+    for row in rows.iter_mut() {
+        let mut largest = 0.0_f64;
+        for (&j, e) in row.iter_mut() {
+            e.values[point] /= column[j];
+            largest = largest.max(e.values[point].abs());
+        }
+        if largest == 0.0 || !row.values().all(|e| e.values[point].is_finite()) {
+            return None;
+        }
+        row.values_mut().for_each(|e| e.values[point] /= largest);
+        scales.push(1.0 / largest);
+    }
+    Some(scales)
+}
+
+/// Multiplications for a pivot whose row and column have so many entries.
+fn cost(strategy: Strategy, row: usize, column: usize, constant: bool) -> usize {
+    let updates = if strategy == Strategy::Symmetric { (column - 1) * column / 2 } else { (row - 1) * (column - 1) };
+    updates + 2 * (column - 1) + row + if constant { 0 } else { MOVING }
+}
+
+/// Takes row `p` and column `c` out, in numbers.
+fn eliminate(rows: &mut [Option<BTreeMap<usize, Entry>>], columns: &mut [BTreeSet<usize>], p: usize, c: usize) {
+    let Some(pivot_row) = rows[p].take() else { return };
+    for j in pivot_row.keys() {
+        columns[*j].remove(&p);
+    }
+    let pivot = pivot_row[&c];
+    for i in std::mem::take(&mut columns[c]) {
+        let Some(row) = rows[i].as_mut() else { continue };
+        let Some(under) = row.remove(&c) else { continue };
+        for (&j, right) in pivot_row.iter().filter(|(j, _)| **j != c) {
+            let entry = row.entry(j).or_insert(Entry { values: [0.0; POINTS], constant: true });
+            for (k, x) in entry.values.iter_mut().enumerate() {
+                *x -= under.values[k] / pivot.values[k] * right.values[k];
+            }
+            entry.constant &= under.constant && right.constant && pivot.constant;
+            columns[j].insert(i);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pattern(rows: &[&[f64]]) -> Option<Pattern> {
+        let entry = |&x: &f64| Entry { values: [x; POINTS], constant: true };
+        let row =
+            |row: &&[f64]| row.iter().enumerate().filter(|(_, x)| **x != 0.0).map(|(j, x)| (j, entry(x))).collect();
+        Pattern::new(rows.iter().map(row).collect())
+    }
+
+    #[test]
+    fn a_band_is_eliminated_in_so_many_operations_as_it_has_rows() {
+        let operations = |n: usize| {
+            let row = |i: usize| (0..n).map(move |j| [2.1, -1.0][i.abs_diff(j).min(1)] * f64::from(i.abs_diff(j) < 2));
+            let rows: Vec<Vec<f64>> = (0..n).map(|i| row(i).collect()).collect();
+            let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+            pattern(&rows).unwrap().order(Strategy::Symmetric, &vec![false; n], usize::MAX).unwrap().operations
+        };
+        assert_eq!(operations(40) - operations(30), operations(30) - operations(20));
+    }
+
+    #[test]
+    fn small_pivots_are_left_alone() {
+        let light = pattern(&[&[1e-9, 0.0, 1.0], &[0.0, 1.0, 1.0], &[1.0, 1.0, 0.0]]).unwrap();
+        assert!(light.order(Strategy::Symmetric, &[false; 3], 1000).is_none());
+        let found = light.order(Strategy::Sparse, &[false; 3], 1000).unwrap();
+        assert!(!found.pivots.contains(&(0, 0)), "{found:?}");
+        let dependent = pattern(&[&[1.0, 2.0], &[0.5, 1.0]]).unwrap();
+        assert!(dependent.order(Strategy::Sparse, &[false; 2], 1000).is_none());
+        assert!(
+            pattern(&[&[1.0, 0.0], &[1.0, 0.0]])
+                .is_some_and(|p| p.order(Strategy::Sparse, &[false; 2], 1000).is_none())
+        );
+    }
+
+    #[test]
+    fn an_elimination_that_takes_too_long_is_given_up() {
+        let rows = [[3.0, 1.0, 1.0], [1.0, 3.0, 1.0], [1.0, 1.0, 3.0]];
+        let rows: Vec<&[f64]> = rows.iter().map(|r| &r[..]).collect();
+        let full = pattern(&rows).unwrap();
+        assert!(full.order(Strategy::Sparse, &[false; 3], 1000).is_some());
+        assert!(full.order(Strategy::Sparse, &[false; 3], 5).is_none());
+    }
+}

@@ -1,0 +1,86 @@
+//! Rates and outputs of a form, as straight-line programs.
+
+use symbolic::{CompileError, Expr, Symbol};
+
+use crate::equations::Equations;
+use crate::form::Form;
+use crate::instant::Program;
+
+/// Compiled definitions: rates and outputs each by a tape of their own, so that neither computes what only the other needs.
+#[derive(Clone)]
+pub(crate) struct Straight {
+    rates: Program,
+    outputs: Program,
+    watched: bool,
+    /// Places in `(t, y, constants, z)` of what the tapes take.
+    places: Vec<usize>,
+    inputs: Vec<f64>,
+}
+
+impl Straight {
+    /// `known`: symbols of `t, y` and the constants; `all`: those and the unknowns.
+    pub(crate) fn new(
+        equations: &Equations,
+        form: &Form,
+        known: usize,
+        all: &[Symbol],
+        rates: &[Expr],
+        outputs: &[Expr],
+    ) -> Result<Self, CompileError> {
+        let mut first = known;
+        let mut places: Vec<usize> = (0..known).collect();
+        for (k, block) in equations.blocks.iter().enumerate() {
+            if form.left.contains(&k) {
+                places.extend(first..first + block.unknowns.len());
+            }
+            first += block.unknowns.len();
+        }
+        let inputs: Vec<Symbol> = places.iter().map(|&i| all[i]).collect();
+        let program = |wanted: &[Expr]| {
+            let condition = form.condition.as_slice();
+            Program::with_definitions(equations, &inputs, &form.definitions, &[wanted, condition].concat())
+        };
+        Ok(Straight {
+            rates: program(rates)?,
+            outputs: program(outputs)?,
+            watched: form.condition.is_some(),
+            inputs: vec![0.0; places.len()],
+            places,
+        })
+    }
+
+    /// Number of instructions of one evaluation of the rates.
+    pub(crate) fn len(&self) -> usize {
+        self.rates.len()
+    }
+
+    /// The rates; `None` where they cannot be trusted.
+    pub(crate) fn rates(&mut self, values: &[f64]) -> Option<&[f64]> {
+        let inputs = gather(&mut self.inputs, &self.places, values);
+        trusted(self.rates.run(inputs), self.watched)
+    }
+
+    /// As [`Straight::rates`].
+    pub(crate) fn outputs(&mut self, values: &[f64]) -> Option<&[f64]> {
+        let inputs = gather(&mut self.inputs, &self.places, values);
+        trusted(self.outputs.run(inputs), self.watched)
+    }
+}
+
+/// What the tapes take; nothing is copied where it stands together.
+fn gather<'a>(room: &'a mut [f64], places: &[usize], values: &'a [f64]) -> &'a [f64] {
+    let count = places.len();
+    if places.last().is_none_or(|&last| last < count) {
+        return &values[..count];
+    }
+    for (x, &place) in room.iter_mut().zip(places) {
+        *x = values[place];
+    }
+    room
+}
+
+fn trusted(values: &[f64], watched: bool) -> Option<&[f64]> {
+    let (wanted, condition) = values.split_at(values.len() - usize::from(watched));
+    let safe = condition.iter().all(|&x| x <= Form::LIMIT) && wanted.iter().all(|x| x.is_finite());
+    safe.then_some(wanted)
+}
