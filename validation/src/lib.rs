@@ -15,3 +15,4 @@ pub mod report;
 pub mod show_command;
 pub mod solve_command;
 pub mod substitution;
+pub mod trailer;

@@ -67,7 +67,7 @@ impl Prepared {
         start_inputs.resize(symbols.len(), 0.0);
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
-        let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
+        let start_tape = equations.tape(&symbols, &outputs)?;
         Ok(Prepared { equations, compiled, start_tape, start_inputs, guess: Vec::new(), t: setting.start.t })
     }
 

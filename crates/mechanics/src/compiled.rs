@@ -2,6 +2,7 @@
 
 use symbolic::{CompileError, Expr};
 
+use crate::definitions::jacobian;
 use crate::equations::Equations;
 use crate::instant::{CompiledBlock, EvaluationFailure, Program};
 use crate::projection::Projector;
@@ -111,22 +112,30 @@ impl Compiled {
         let g = &equations.graph;
         let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let mut outputs = g.jacobian(&rates, &states).entries().to_vec();
+        let mut all = rates.clone();
+        all.extend(equations.blocks.iter().flat_map(|block| &block.residuals));
+        let (definitions, by_state) = jacobian(g, &equations.definitions, &all, &states);
+        let (direct, of_blocks) = by_state.split_at(rates.len() * states.len());
+        let mut outputs = direct.to_vec();
         outputs.extend(g.jacobian(&rates, &unknowns).entries());
-        for block in &equations.blocks {
-            outputs.extend(g.jacobian(&block.residuals, &states).entries());
-        }
+        outputs.extend(of_blocks);
         let mut inputs = vec![equations.time];
         inputs.extend(states);
         inputs.extend(equations.constant_symbols());
         inputs.extend(&unknowns);
         let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
         self.derivatives = Some(Derivatives {
-            program: Program::new(equations, &inputs, &outputs)?,
+            program: Program::by_way_of(equations, &definitions, &inputs, &outputs)?,
             unknowns: unknowns.len(),
             column: vec![0.0; largest],
         });
         Ok(self)
+    }
+
+    /// Number of operations of one [`Compiled::rates`], which does not depend on the machine: instructions of the tapes, and the
+    /// multiplications of one elimination a block.
+    pub fn operations(&self) -> usize {
+        self.rates.operations() + self.equations_of_instant.iter().map(|block| block.operations()).sum::<usize>()
     }
 
     /// Number of states.

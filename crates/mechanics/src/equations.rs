@@ -5,8 +5,9 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-use symbolic::{Expr, Graph, Matrix, Symbol};
+use symbolic::{CompileError, Expr, Graph, Matrix, Symbol, Tape};
 
+use crate::definitions::{needed, symbols_behind};
 use crate::{Removal, System};
 
 /// What a state variable is.
@@ -16,6 +17,8 @@ pub enum Role {
     Position,
     /// A velocity `v = q̇`.
     Velocity,
+    /// A quasi-velocity `w`, of which the velocities are linear functions.
+    QuasiVelocity,
     /// A displacement parameter `u`.
     DisplacementParameter,
     /// The rate `u̇` of a displacement parameter.
@@ -124,6 +127,8 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
+    /// Intermediate quantities in `(t, y)` and earlier ones, by way of which everything else may be written; see [`crate::Definitions`].
+    pub definitions: Vec<(Symbol, Expr)>,
     /// `y` with rates and start.
     pub states: Vec<StateVariable>,
     /// The equations of one instant.
@@ -158,6 +163,7 @@ impl Equations {
             graph: Graph::new(),
             time: system.time,
             parameters: system.parameter_values(),
+            definitions: Vec::new(),
             states: Vec::new(),
             blocks: Vec::new(),
             free_constants: Vec::new(),
@@ -186,6 +192,25 @@ impl Equations {
         for c in &system.coordinates {
             add(c.velocity, Role::Velocity, c.acceleration);
         }
+    }
+
+    /// A tape for `outputs`, with parameters folded in, by way of those definitions that it needs.
+    ///
+    /// # Errors
+    /// [`CompileError`] where a symbol is neither input nor parameter nor definition.
+    pub fn tape(&self, inputs: &[Symbol], outputs: &[Expr]) -> Result<Tape, CompileError> {
+        self.tape_by(&self.definitions, inputs, outputs)
+    }
+
+    /// [`Equations::tape`] with other definitions.
+    pub(crate) fn tape_by(
+        &self,
+        definitions: &[(Symbol, Expr)],
+        inputs: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Tape, CompileError> {
+        let definitions = needed(&self.graph, definitions, inputs, outputs);
+        self.graph.compile_with(inputs, &definitions, outputs, &self.parameters)
     }
 
     /// Symbols of `y`.
@@ -299,6 +324,8 @@ impl Equations {
 
     fn drop_unneeded(&mut self) {
         let g = self.graph.clone();
+        let definitions: HashMap<Symbol, Expr> = self.definitions.iter().copied().collect();
+        let rates: HashMap<Symbol, Expr> = self.states.iter().map(|y| (y.symbol, y.rate)).collect();
         let mut needed: HashSet<Symbol> = HashSet::new();
         let mut pending: Vec<Expr> = self.coordinates.iter().chain(&self.velocities).copied().collect();
         pending.extend(self.multipliers.iter().map(|m| m.expression));
@@ -307,7 +334,7 @@ impl Equations {
                 if !needed.insert(s) {
                     continue;
                 }
-                pending.extend(self.states.iter().filter(|y| y.symbol == s).map(|y| y.rate));
+                pending.extend(definitions.get(&s).into_iter().chain(rates.get(&s)));
                 for b in self.blocks.iter().filter(|b| b.unknowns.contains(&s)) {
                     pending.extend(&b.residuals);
                 }
@@ -322,21 +349,23 @@ impl Equations {
             self.states.iter().map(|y| y.symbol).chain(self.unknowns()).filter(|s| !needed.contains(s)).collect();
         self.states.retain(|y| !dropped.contains(&y.symbol));
         self.blocks.retain(|b| b.unknowns.iter().any(|z| !dropped.contains(z)));
-        self.invariants.retain(|i| g.symbols_of(i.expression).is_disjoint(&dropped.iter().copied().collect()));
+        if !dropped.is_empty() {
+            self.invariants.retain(|i| symbols_behind(&g, &self.definitions, [i.expression]).is_disjoint(&dropped));
+        }
         self.graph = g;
     }
 
     fn name_quadratures(&mut self) {
         let g = &self.graph;
+        let rates = self.states.iter().map(|y| y.rate);
+        let used =
+            symbols_behind(g, &self.definitions, rates.chain(self.blocks.iter().flat_map(|b| b.residuals.clone())));
         let quadratures: Vec<Symbol> = self
             .states
             .iter()
             .filter(|y| matches!(y.role, Role::Position | Role::Memory | Role::DisplacementParameter))
             .map(|y| y.symbol)
-            .filter(|&symbol| {
-                !self.states.iter().any(|other| g.depends_on(other.rate, symbol))
-                    && !self.blocks.iter().any(|b| b.residuals.iter().any(|&r| g.depends_on(r, symbol)))
-            })
+            .filter(|symbol| !used.contains(symbol))
             .collect();
         if !quadratures.is_empty() {
             let words = "in no equation of motion; found by quadrature along the way".into();

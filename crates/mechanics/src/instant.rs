@@ -46,8 +46,23 @@ pub(crate) struct Program {
 
 impl Program {
     pub(crate) fn new(equations: &Equations, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        let tape = equations.graph.compile(inputs, outputs, &equations.parameters)?;
+        Program::by_way_of(equations, &equations.definitions, inputs, outputs)
+    }
+
+    /// With definitions of its own.
+    pub(crate) fn by_way_of(
+        equations: &Equations,
+        definitions: &[(Symbol, Expr)],
+        inputs: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Self, CompileError> {
+        let tape = equations.tape_by(definitions, inputs, outputs)?;
         Ok(Program { registers: tape.workspace(), values: vec![0.0; outputs.len()], tape })
+    }
+
+    /// Instructions of one evaluation.
+    pub(crate) fn operations(&self) -> usize {
+        self.tape.len()
     }
 
     pub(crate) fn run(&mut self, inputs: &[f64]) -> &[f64] {
@@ -93,6 +108,11 @@ impl CompiledBlock {
         }
         self.factors.solve(residual);
         Ok(())
+    }
+
+    /// Operations of one step: the tape, and an elimination of n³/3 multiplications.
+    pub(crate) fn operations(&self) -> usize {
+        self.program.operations() + self.size.pow(3).div_ceil(3)
     }
 
     pub(crate) fn solution(&self) -> &[f64] {
