@@ -12,6 +12,8 @@ pub mod random;
 pub mod random_command;
 pub mod realization;
 pub mod report;
+pub mod scaling;
+pub mod scaling_command;
 pub mod show_command;
 pub mod solve_command;
 pub mod substitution;

@@ -3,7 +3,7 @@
 //! A state `y` moves by `ẏ = F(t, y, z)`, where `z` (accelerations, multipliers or their rates) solves one small block
 //! of equations `R(z; t, y) = 0` at every instant, nearly always linear in `z`. Nothing here says how time is stepped.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use symbolic::{CompileError, Expr, Graph, Matrix, Symbol, Tape};
 
@@ -244,29 +244,35 @@ impl Equations {
     fn split_blocks(&mut self) {
         let mut split = Vec::new();
         for block in std::mem::take(&mut self.blocks) {
-            let depends: Vec<Vec<bool>> = block
-                .residuals
-                .iter()
-                .map(|&r| block.unknowns.iter().map(|&z| self.graph.depends_on(r, z)).collect())
-                .collect();
+            let places: HashMap<Symbol, usize> = block.unknowns.iter().enumerate().map(|(i, &z)| (z, i)).collect();
+            let occurring =
+                |&r: &Expr| self.graph.symbols_of(r).iter().filter_map(|z| places.get(z).copied()).collect();
+            let depends: Vec<Vec<usize>> = block.residuals.iter().map(occurring).collect();
+            // each unknown points at one of its group with a smaller place, the first at itself
             let mut group: Vec<usize> = (0..block.unknowns.len()).collect();
+            let first = |group: &[usize], mut j: usize| {
+                while group[j] != j {
+                    j = group[j];
+                }
+                j
+            };
             for row in &depends {
-                let linked: Vec<usize> = (0..row.len()).filter(|&j| row[j]).map(|j| group[j]).collect();
+                let linked: Vec<usize> = row.iter().map(|&j| first(&group, j)).collect();
                 if let Some(&smallest) = linked.iter().min() {
-                    for g in group.iter_mut().filter(|g| linked.contains(g)) {
-                        *g = smallest;
-                    }
+                    linked.iter().for_each(|&j| group[j] = smallest);
+                    row.iter().for_each(|&j| group[j] = smallest);
                 }
             }
-            let names: BTreeSet<usize> = group.iter().copied().collect();
-            let parts: Vec<(Vec<usize>, Vec<usize>)> = names
-                .iter()
-                .map(|&name| {
-                    let columns: Vec<usize> = (0..group.len()).filter(|&j| group[j] == name).collect();
-                    let rows = (0..depends.len()).filter(|&i| columns.iter().any(|&j| depends[i][j])).collect();
-                    (rows, columns)
-                })
-                .collect();
+            let mut members: BTreeMap<usize, (Vec<usize>, Vec<usize>)> = BTreeMap::new();
+            for j in 0..group.len() {
+                members.entry(first(&group, j)).or_default().1.push(j);
+            }
+            for (i, row) in depends.iter().enumerate() {
+                if let Some(part) = row.first().and_then(|&j| members.get_mut(&first(&group, j))) {
+                    part.0.push(i);
+                }
+            }
+            let parts: Vec<(Vec<usize>, Vec<usize>)> = members.into_values().collect();
             if parts.iter().any(|(rows, columns)| rows.len() != columns.len()) {
                 split.push(block); // structurally singular: kept whole, refused with its name when it is solved
                 continue;
