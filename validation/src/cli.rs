@@ -184,7 +184,7 @@ pub struct ScalingArguments {
     /// Longest train.
     #[arg(long, default_value_t = 320)]
     pub longest: usize,
-    /// Seconds for one derivation or one solve; after a point that takes longer, longer trains are left out.
+    /// Seconds for one derivation or one solve: after a derivation that takes longer, longer trains are left out, and solves that would.
     #[arg(long, default_value_t = 2.0)]
     pub seconds: f64,
     /// Repeats of everything that is timed; the shortest time counts.

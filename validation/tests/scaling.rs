@@ -26,5 +26,5 @@ fn a_line_has_a_point_for_every_length_and_says_where_it_ends() {
     assert!(whole.ended.is_none() && whole.points.iter().all(|p| p.solve.is_some() && p.reached == 10.0));
     let cut = line("chetaev", &Limits { seconds: 0.0, ..limits }, &mut |_, _| {}).expect("has equations");
     assert_eq!(cut.points.len(), 1);
-    assert!(cut.ended.is_some() && cut.points[0].solve.is_none());
+    assert!(cut.ended.is_some(), "its derivation takes longer than no time at all");
 }
