@@ -142,8 +142,18 @@ pub fn line(name: &'static str, limits: &Limits, progress: &mut dyn FnMut(&str, 
         progress(name, trailers);
         let before = line.points.last().and_then(|p| p.evaluations);
         let solves = line.points.iter().all(|p| p.solve.is_some());
-        let point = point(name, trailers, limits, if solves { before.or(Some(0)) } else { None })
-            .with_context(|| format!("{name} with {trailers} trailers"))?;
+        let evaluations = if solves { before.or(Some(0)) } else { None };
+        let point = match point(name, trailers, limits, evaluations) {
+            Ok(point) => point,
+            Err(error) if line.points.is_empty() => {
+                return Err(error.context(format!("{name} with {trailers} trailers")));
+            }
+            // what works for short trains and is refused for this one is a result
+            Err(error) => {
+                line.ended = Some(format!("n = {trailers} is refused: {error}"));
+                break;
+            }
+        };
         let seconds = point.derivation;
         line.points.push(point);
         if seconds > limits.seconds && trailers < limits.trailers {
