@@ -4,6 +4,8 @@ use std::path::Path;
 
 use mechanics::{Scene, SceneError};
 
+use crate::trailer;
+
 /// Name and text of every built-in scene, in the order of reports: the paper's examples, then the classics.
 pub const SCENES: &[(&str, &str)] = &[
     ("sledge", include_str!("../scenes/sledge.toml")),
@@ -30,9 +32,12 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
     if let Some((name, text)) = SCENES.iter().find(|(name, _)| *name == name_or_path) {
         return Ok(Scene::parse_with(name, text, overrides)?);
     }
+    if let Some((trailers, coordinates)) = trailer::named(name_or_path) {
+        return Ok(Scene::parse_with(name_or_path, &trailer::text(trailers, coordinates), overrides)?);
+    }
     let path = Path::new(name_or_path);
     if !path.exists() {
-        let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
+        let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).chain(["n-trailer-N"]).collect();
         return Err(NotFound::Nothing { name: name_or_path.into(), known: known.join(", ") });
     }
     Ok(Scene::load_with(path, overrides)?)

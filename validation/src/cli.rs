@@ -70,6 +70,8 @@ pub enum Command {
     Random(RandomArguments),
     /// Measure error against run time, by every method at every tolerance.
     Bench(BenchArguments),
+    /// Measure how cost grows with the length of a train of trailers.
+    Scaling(ScalingArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -77,7 +79,7 @@ pub enum Command {
 /// `deltaq show`.
 #[derive(Args, Debug)]
 pub struct ShowArguments {
-    /// Built-in name or path of a scene file.
+    /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
     pub scene: String,
     /// Replace a parameter or a start value.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -90,9 +92,9 @@ pub struct ShowArguments {
 /// `deltaq solve`.
 #[derive(Args, Debug)]
 pub struct SolveArguments {
-    /// Built-in name or path of a scene file.
+    /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
     pub scene: String,
-    /// chetaev, vakonomic, vakonomic-costate or removed-constraint.
+    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate or removed-constraint.
     #[arg(long, short)]
     pub formulation: String,
     /// Vakonomic multipliers at the start, one a constraint.
@@ -171,7 +173,7 @@ pub struct RandomArguments {
     pub quiet: bool,
 }
 
-/// Output formats of `deltaq random` and `deltaq bench`.
+/// Output formats of commands with tables.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextOrJson {
     /// Tables.
@@ -192,6 +194,29 @@ pub struct BenchArguments {
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub overrides: Vec<(String, f64)>,
     /// Folder for the page and its pictures.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+    /// No progress bar.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// `deltaq scaling`.
+#[derive(Args, Debug)]
+pub struct ScalingArguments {
+    /// Longest train.
+    #[arg(long, default_value_t = 320)]
+    pub longest: usize,
+    /// Seconds for one derivation or one solve: after a derivation that takes longer, longer trains are left out, and solves that would.
+    #[arg(long, default_value_t = 2.0)]
+    pub seconds: f64,
+    /// Repeats of everything that is timed; the shortest time counts.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub repeats: u16,
+    /// Folder for the page `scaling.md` and its pictures.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Output format.

@@ -8,7 +8,9 @@ use anyhow::Result;
 use clap::Parser;
 use validation::cli::{Cli, Command};
 use validation::solve_command::Answer;
-use validation::{bench_command, compare_command, main_job, random_command, show_command, solve_command};
+use validation::{
+    bench_command, compare_command, main_job, random_command, scaling_command, show_command, solve_command,
+};
 
 fn main() -> ExitCode {
     let answer = match run(Cli::parse()) {
@@ -43,6 +45,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments)?,
+        Some(Command::Scaling(arguments)) => scaling_command::run(&arguments)?,
         Some(Command::Random(arguments)) => return random_command::run(&arguments),
         Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
     };

@@ -2,8 +2,8 @@
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, Ending, FORMULATIONS, Motion, Settings, default_constants, error_estimate, formulation, removals, setting,
-    solve_choice,
+    Choice, Ending, FORMS, FORMULATIONS, Motion, Settings, default_constants, error_estimate, formulation, removals,
+    setting, solve_choice,
 };
 use integrate::Projection;
 use mechanics::{ConstantsRule, Removal, Scene};
@@ -63,7 +63,7 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
 
 fn choice(scene: &Scene, arguments: &SolveArguments) -> Result<Choice> {
     let Some(entry) = formulation(&arguments.formulation) else {
-        let names: Vec<&str> = FORMULATIONS.iter().map(|f| f.name).collect();
+        let names: Vec<&str> = FORMULATIONS.iter().chain(FORMS).map(|f| f.name).collect();
         bail!("unknown formulation `{}`; known: {}", arguments.formulation, names.join(", "));
     };
     let removal = if entry.needs_removal { Some(pick_removal(scene, arguments.removal.as_deref())?) } else { None };

@@ -40,6 +40,10 @@
 //!
 //! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
+mod reduced;
+
+pub use reduced::{REDUCED_FORM, derive_reduced};
+
 use mechanics::{
     Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement, System,
     fresh_symbol,

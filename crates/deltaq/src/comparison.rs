@@ -160,9 +160,14 @@ pub fn default_constants(formulation: &Formulation, scene: &Scene) -> ConstantsR
 /// # Errors
 /// [`SolveError::Derivation`], [`SolveError::Removal`].
 pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
+    derive_from(system, None, choice)
+}
+
+/// [`derive()`] for a motion that starts at `start`, where pivots may have to be chosen.
+fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Result<Equations, SolveError> {
     let formulation: &Formulation = formulation(choice.formulation).unwrap_or(&FORMULATIONS[0]);
     let removal = choice.removal.as_ref();
-    let equations = (formulation.derive)(system, &Derivation { removal })?;
+    let equations = (formulation.derive)(system, &Derivation { removal, start })?;
     Ok(equations.leave_out_unneeded())
 }
 
@@ -200,7 +205,7 @@ pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Resu
         removals(scene)?;
     }
     let clock = Instant::now();
-    let equations = derive(&scene.system, choice)?;
+    let equations = derive_from(&scene.system, Some(&scene.start), choice)?;
     let derive = clock.elapsed().as_secs_f64();
     let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
     motion.seconds.derive = derive;

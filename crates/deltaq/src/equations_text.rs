@@ -22,6 +22,13 @@ pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     let g = &equations.graph;
     let mut sides: Vec<Expr> = equations.statements.iter().flat_map(|s| [s.left, s.right]).collect();
     let mut text = String::new();
+    if !equations.definitions.is_empty() {
+        text += "By way of:\n\n";
+        for &(symbol, value) in &equations.definitions {
+            line(&mut text, equations, style, g.variable(symbol), value);
+        }
+        text += "\nEquations:\n\n";
+    }
     if sides.iter().any(|&e| g.size(&[e]) > LONG) {
         let (definitions, short) = g.abbreviate(&sides, "s");
         sides = short;

@@ -38,4 +38,4 @@ pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
 pub use motion::{Ending, FormReport, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
 pub use ready::{Ready, SingleRun, ready};
-pub use table::{FORMULATIONS, formulation};
+pub use table::{FORMS, FORMULATIONS, formulation};

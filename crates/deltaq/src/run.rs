@@ -62,7 +62,7 @@ impl Prepared {
         start_inputs.resize(symbols.len(), 0.0);
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
-        let start_tape = equations.graph.compile(&symbols, &outputs, &equations.parameters)?;
+        let start_tape = equations.tape(&symbols, &outputs)?;
         let mut start = vec![0.0; start_tape.outputs()];
         start_tape.evaluate(&start_inputs, &mut start_tape.workspace(), &mut start);
         let mut point = vec![setting.start.t];
@@ -76,15 +76,7 @@ impl Prepared {
         if settings.method == Method::Taylor {
             compiled = compiled.with_series(&equations, &form)?;
         }
-        Ok(Prepared {
-            form,
-            equations,
-            compiled,
-            start_tape,
-            start_inputs,
-            guess: Vec::new(),
-            t: setting.start.t,
-        })
+        Ok(Prepared { form, equations, compiled, start_tape, start_inputs, guess: Vec::new(), t: setting.start.t })
     }
 
     /// Sets the free constants and returns `y(t₀)`.

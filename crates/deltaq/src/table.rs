@@ -6,7 +6,10 @@ use mechanics::Formulation;
 pub const FORMULATIONS: &[Formulation] =
     &[chetaev::FORMULATION, vakonomic::FORMULATION, vakonomic::COSTATE_FORM, removed_constraint::FORMULATION];
 
-/// The formulation of that name.
+/// Other forms of the same equations: solved by name, and in no report of their own.
+pub const FORMS: &[Formulation] = &[chetaev::REDUCED_FORM];
+
+/// The formulation or form of that name.
 pub fn formulation(name: &str) -> Option<&'static Formulation> {
-    FORMULATIONS.iter().find(|f| f.name == name)
+    FORMULATIONS.iter().chain(FORMS).find(|f| f.name == name)
 }

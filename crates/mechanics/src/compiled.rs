@@ -2,6 +2,7 @@
 
 use symbolic::{CompileError, Expr};
 
+use crate::definitions::jacobian;
 use crate::equations::Equations;
 use crate::form::Form;
 use crate::instant::{CompiledBlock, EvaluationFailure, Program};
@@ -71,6 +72,13 @@ pub struct Cost {
     pub instructions: usize,
     /// Multiplications of LU factorization and substitution.
     pub factorization: usize,
+}
+
+impl Cost {
+    /// Both together.
+    pub fn operations(self) -> usize {
+        self.instructions + self.factorization
+    }
 }
 
 /// `∂F/∂y` by the implicit function theorem, exact derivatives from the graph.
@@ -167,18 +175,20 @@ impl Compiled {
         let g = &equations.graph;
         let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let mut outputs = g.jacobian(&rates, &states).entries().to_vec();
+        let mut all = rates.clone();
+        all.extend(equations.blocks.iter().flat_map(|block| &block.residuals));
+        let (definitions, by_state) = jacobian(g, &equations.definitions, &all, &states);
+        let (direct, of_blocks) = by_state.split_at(rates.len() * states.len());
+        let mut outputs = direct.to_vec();
         outputs.extend(g.jacobian(&rates, &unknowns).entries());
-        for block in &equations.blocks {
-            outputs.extend(g.jacobian(&block.residuals, &states).entries());
-        }
+        outputs.extend(of_blocks);
         let mut inputs = vec![equations.time];
         inputs.extend(states);
         inputs.extend(equations.constant_symbols());
         inputs.extend(&unknowns);
         let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
         self.derivatives = Some(Derivatives {
-            program: Program::new(equations, &inputs, &outputs)?,
+            program: Program::by_way_of(equations, &definitions, &inputs, &outputs)?,
             unknowns: unknowns.len(),
             column: vec![0.0; largest],
         });
@@ -369,13 +379,7 @@ impl Compiled {
     ///
     /// # Panics
     /// If [`Compiled::with_series`] was not called, or there is room for less than two orders.
-    pub fn taylor(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        unit: f64,
-        coefficients: &mut [f64],
-    ) -> Result<(), EvaluationFailure> {
+    pub fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.load(t, y);
         self.solve_blocks(Blocks::Left)?;
         let trusted = self.straight.as_mut().is_none_or(|s| s.rates(&self.inputs).is_some());

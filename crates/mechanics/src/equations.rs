@@ -3,10 +3,11 @@
 //! A state `y` moves by `ẏ = F(t, y, z)`, where `z` (accelerations, multipliers or their rates) solves one small block
 //! of equations `R(z; t, y) = 0` at every instant, nearly always linear in `z`. Nothing here says how time is stepped.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
-use symbolic::{Expr, Graph, Matrix, Symbol};
+use symbolic::{CompileError, Expr, Graph, Matrix, Symbol, Tape};
 
+use crate::definitions::{needed, symbols_behind};
 use crate::{Removal, System};
 
 /// What a state variable is.
@@ -16,6 +17,8 @@ pub enum Role {
     Position,
     /// A velocity `v = q̇`.
     Velocity,
+    /// A quasi-velocity `w`, of which the velocities are linear functions.
+    QuasiVelocity,
     /// A displacement parameter `u`.
     DisplacementParameter,
     /// The rate `u̇` of a displacement parameter.
@@ -124,6 +127,8 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
+    /// Intermediate quantities in `(t, y)` and earlier ones, by way of which everything else may be written; see [`crate::Definitions`].
+    pub definitions: Vec<(Symbol, Expr)>,
     /// `y` with rates and start.
     pub states: Vec<StateVariable>,
     /// The equations of one instant.
@@ -158,6 +163,7 @@ impl Equations {
             graph: Graph::new(),
             time: system.time,
             parameters: system.parameter_values(),
+            definitions: Vec::new(),
             states: Vec::new(),
             blocks: Vec::new(),
             free_constants: Vec::new(),
@@ -186,6 +192,25 @@ impl Equations {
         for c in &system.coordinates {
             add(c.velocity, Role::Velocity, c.acceleration);
         }
+    }
+
+    /// A tape for `outputs`, with parameters folded in, by way of those definitions that it needs.
+    ///
+    /// # Errors
+    /// [`CompileError`] where a symbol is neither input nor parameter nor definition.
+    pub fn tape(&self, inputs: &[Symbol], outputs: &[Expr]) -> Result<Tape, CompileError> {
+        self.tape_by(&self.definitions, inputs, outputs)
+    }
+
+    /// [`Equations::tape`] with other definitions.
+    pub(crate) fn tape_by(
+        &self,
+        definitions: &[(Symbol, Expr)],
+        inputs: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Tape, CompileError> {
+        let definitions = needed(&self.graph, definitions, inputs, outputs);
+        self.graph.compile_with(inputs, &definitions, outputs, &self.parameters)
     }
 
     /// Symbols of `y`.
@@ -227,29 +252,35 @@ impl Equations {
     fn split_blocks(&mut self) {
         let mut split = Vec::new();
         for block in std::mem::take(&mut self.blocks) {
-            let depends: Vec<Vec<bool>> = block
-                .residuals
-                .iter()
-                .map(|&r| block.unknowns.iter().map(|&z| self.graph.depends_on(r, z)).collect())
-                .collect();
+            let places: HashMap<Symbol, usize> = block.unknowns.iter().enumerate().map(|(i, &z)| (z, i)).collect();
+            let occurring =
+                |&r: &Expr| self.graph.symbols_of(r).iter().filter_map(|z| places.get(z).copied()).collect();
+            let depends: Vec<Vec<usize>> = block.residuals.iter().map(occurring).collect();
+            // each unknown points at one of its group with a smaller place, the first at itself
             let mut group: Vec<usize> = (0..block.unknowns.len()).collect();
+            let first = |group: &[usize], mut j: usize| {
+                while group[j] != j {
+                    j = group[j];
+                }
+                j
+            };
             for row in &depends {
-                let linked: Vec<usize> = (0..row.len()).filter(|&j| row[j]).map(|j| group[j]).collect();
+                let linked: Vec<usize> = row.iter().map(|&j| first(&group, j)).collect();
                 if let Some(&smallest) = linked.iter().min() {
-                    for g in group.iter_mut().filter(|g| linked.contains(g)) {
-                        *g = smallest;
-                    }
+                    linked.iter().for_each(|&j| group[j] = smallest);
+                    row.iter().for_each(|&j| group[j] = smallest);
                 }
             }
-            let names: BTreeSet<usize> = group.iter().copied().collect();
-            let parts: Vec<(Vec<usize>, Vec<usize>)> = names
-                .iter()
-                .map(|&name| {
-                    let columns: Vec<usize> = (0..group.len()).filter(|&j| group[j] == name).collect();
-                    let rows = (0..depends.len()).filter(|&i| columns.iter().any(|&j| depends[i][j])).collect();
-                    (rows, columns)
-                })
-                .collect();
+            let mut members: BTreeMap<usize, (Vec<usize>, Vec<usize>)> = BTreeMap::new();
+            for j in 0..group.len() {
+                members.entry(first(&group, j)).or_default().1.push(j);
+            }
+            for (i, row) in depends.iter().enumerate() {
+                if let Some(part) = row.first().and_then(|&j| members.get_mut(&first(&group, j))) {
+                    part.0.push(i);
+                }
+            }
+            let parts: Vec<(Vec<usize>, Vec<usize>)> = members.into_values().collect();
             if parts.iter().any(|(rows, columns)| rows.len() != columns.len()) {
                 split.push(block); // structurally singular: kept whole, refused with its name when it is solved
                 continue;
@@ -307,6 +338,8 @@ impl Equations {
 
     fn drop_unneeded(&mut self) {
         let g = self.graph.clone();
+        let definitions: HashMap<Symbol, Expr> = self.definitions.iter().copied().collect();
+        let rates: HashMap<Symbol, Expr> = self.states.iter().map(|y| (y.symbol, y.rate)).collect();
         let mut needed: HashSet<Symbol> = HashSet::new();
         let mut pending: Vec<Expr> = self.coordinates.iter().chain(&self.velocities).copied().collect();
         pending.extend(self.multipliers.iter().map(|m| m.expression));
@@ -315,7 +348,7 @@ impl Equations {
                 if !needed.insert(s) {
                     continue;
                 }
-                pending.extend(self.states.iter().filter(|y| y.symbol == s).map(|y| y.rate));
+                pending.extend(definitions.get(&s).into_iter().chain(rates.get(&s)));
                 for b in self.blocks.iter().filter(|b| b.unknowns.contains(&s)) {
                     pending.extend(&b.residuals);
                 }
@@ -330,21 +363,23 @@ impl Equations {
             self.states.iter().map(|y| y.symbol).chain(self.unknowns()).filter(|s| !needed.contains(s)).collect();
         self.states.retain(|y| !dropped.contains(&y.symbol));
         self.blocks.retain(|b| b.unknowns.iter().any(|z| !dropped.contains(z)));
-        self.invariants.retain(|i| g.symbols_of(i.expression).is_disjoint(&dropped.iter().copied().collect()));
+        if !dropped.is_empty() {
+            self.invariants.retain(|i| symbols_behind(&g, &self.definitions, [i.expression]).is_disjoint(&dropped));
+        }
         self.graph = g;
     }
 
     fn name_quadratures(&mut self) {
         let g = &self.graph;
+        let rates = self.states.iter().map(|y| y.rate);
+        let used =
+            symbols_behind(g, &self.definitions, rates.chain(self.blocks.iter().flat_map(|b| b.residuals.clone())));
         let quadratures: Vec<Symbol> = self
             .states
             .iter()
             .filter(|y| matches!(y.role, Role::Position | Role::Memory | Role::DisplacementParameter))
             .map(|y| y.symbol)
-            .filter(|&symbol| {
-                !self.states.iter().any(|other| g.depends_on(other.rate, symbol))
-                    && !self.blocks.iter().any(|b| b.residuals.iter().any(|&r| g.depends_on(r, symbol)))
-            })
+            .filter(|symbol| !used.contains(symbol))
             .collect();
         if !quadratures.is_empty() {
             let words = "in no equation of motion; found by quadrature along the way".into();

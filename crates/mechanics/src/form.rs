@@ -47,6 +47,11 @@ impl Form {
     /// Largest condition with which the definitions are used. A multiplier of 1000 takes three digits at most.
     pub const LIMIT: f64 = 1e6;
 
+    /// Those of the equations, then those of the form.
+    pub(crate) fn all_definitions(&self, equations: &Equations) -> Vec<(Symbol, Expr)> {
+        [&equations.definitions[..], &self.definitions].concat()
+    }
+
     /// All blocks are solved by LU factorization.
     pub fn plain(equations: &Equations) -> Form {
         Form { left: (0..equations.blocks.len()).collect(), ..Form::default() }
@@ -60,8 +65,10 @@ impl Form {
     /// # Panics
     /// If the point has not one entry for time and each state and free constant.
     pub fn choose(equations: &Equations, point: Option<&[f64]>) -> Result<Form, CompileError> {
-        let known = equations.known_symbols();
-        let points = points(known.len(), point);
+        let mut known = equations.known_symbols();
+        let mut points = points(known.len(), point);
+        let mut around = around(&points[0]);
+        add_definitions(equations, &mut known, points.iter_mut().chain(&mut around))?;
         let mut form = Form::default();
         let mut watched = Vec::new();
         let unknowns: HashSet<Symbol> = equations.unknowns().into_iter().collect();
@@ -80,7 +87,7 @@ impl Form {
         }
         for (k, block) in equations.blocks.iter().enumerate() {
             let names = form.definitions.len();
-            match eliminated(equations, block, &known, &points, names)? {
+            match eliminated(equations, block, &known, &points, &around, names)? {
                 Ok((found, words)) => {
                     form.definitions.extend(found.list);
                     watched.extend(found.watched);
@@ -109,6 +116,26 @@ fn points(size: usize, given: Option<&[f64]>) -> [Vec<f64>; POINTS] {
     points
 }
 
+/// Adds the definitions of the equations to the symbols, and their values to the points.
+fn add_definitions<'a>(
+    equations: &Equations,
+    known: &mut Vec<Symbol>,
+    points: impl Iterator<Item = &'a mut Vec<f64>>,
+) -> Result<(), CompileError> {
+    let symbols: Vec<Symbol> = equations.definitions.iter().map(|d| d.0).collect();
+    if symbols.is_empty() {
+        return Ok(());
+    }
+    let tape = equations.tape(known, &equations.graph.variables(&symbols))?;
+    let (mut registers, mut values) = (tape.workspace(), vec![0.0; symbols.len()]);
+    for point in points {
+        tape.evaluate(point, &mut registers, &mut values);
+        point.extend(&values);
+    }
+    known.extend(symbols);
+    Ok(())
+}
+
 /// Multiples of the golden section, which fill the interval from 0 to 1 evenly.
 fn golden(i: usize) -> f64 {
     (0.618_033_988_749_894_9 * i as f64).fract()
@@ -131,7 +158,7 @@ struct Trial<'a> {
     wanted: Vec<Expr>,
     linear: &'a LinearBlock,
     pattern: &'a Pattern,
-    around: Vec<Vec<f64>>,
+    around: &'a [Vec<f64>],
     names: usize,
     best: Option<(usize, Definitions, Strategy)>,
 }
@@ -167,6 +194,7 @@ fn eliminated(
     block: &Block,
     known: &[Symbol],
     points: &[Vec<f64>; POINTS],
+    around: &[Vec<f64>],
     names: usize,
 ) -> Result<Outcome, CompileError> {
     let g = &equations.graph;
@@ -195,16 +223,7 @@ fn eliminated(
     if orders.first().is_some_and(|(_, order)| order.operations > LONG) {
         orders.truncate(1);
     }
-    let mut trial = Trial {
-        equations,
-        known,
-        wanted,
-        linear: &linear,
-        pattern: &pattern,
-        around: around(&points[0]),
-        names,
-        best: None,
-    };
+    let mut trial = Trial { equations, known, wanted, linear: &linear, pattern: &pattern, around, names, best: None };
     for (way, order) in &orders {
         trial.make(*way, order, LONG_PARTS)?;
     }

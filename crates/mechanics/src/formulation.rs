@@ -2,13 +2,15 @@
 
 use symbolic::{Graph, Symbol};
 
-use crate::{Equations, Removal, System};
+use crate::{Equations, Removal, RemovalError, State, System};
 
 /// What a derivation may depend on besides the system.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Derivation<'a> {
     /// The parametrization that removes the constraints, for formulations that need one.
     pub removal: Option<&'a Removal>,
+    /// The start of the motion, for forms that choose pivots by their size there.
+    pub start: Option<&'a State>,
 }
 
 /// A system for which a formulation has no equations.
@@ -30,6 +32,14 @@ pub enum DerivationError {
     RemovalMissing {
         /// Name of the formulation.
         formulation: &'static str,
+    },
+    /// The constraints cannot be solved for the velocities.
+    #[error("{formulation}: {error}")]
+    Reduction {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// Why not.
+        error: RemovalError,
     },
     /// `∂²G/∂ü²` is singular although `L` contains `ü`.
     #[error(

@@ -46,17 +46,17 @@ pub(crate) struct Program {
 
 impl Program {
     pub(crate) fn new(equations: &Equations, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        Program::with_definitions(equations, inputs, &[], outputs)
+        Program::by_way_of(equations, &equations.definitions, inputs, outputs)
     }
 
-    /// By way of intermediate quantities.
-    pub(crate) fn with_definitions(
+    /// With definitions of its own.
+    pub(crate) fn by_way_of(
         equations: &Equations,
-        inputs: &[Symbol],
         definitions: &[(Symbol, Expr)],
+        inputs: &[Symbol],
         outputs: &[Expr],
     ) -> Result<Self, CompileError> {
-        let tape = equations.graph.compile_with(inputs, definitions, outputs, &equations.parameters)?;
+        let tape = equations.tape_by(definitions, inputs, outputs)?;
         Ok(Program { registers: tape.workspace(), values: vec![0.0; outputs.len()], tape })
     }
 

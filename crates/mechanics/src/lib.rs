@@ -3,6 +3,7 @@
 
 mod automatic_removal;
 mod compiled;
+mod definitions;
 mod equations;
 mod error;
 mod form;
@@ -14,6 +15,7 @@ mod integrability;
 mod linear;
 pub mod newton;
 mod projection;
+mod quasi_velocities;
 mod rank;
 mod removal;
 mod scene;
@@ -24,6 +26,7 @@ mod straight;
 mod system;
 
 pub use compiled::{Compiled, Cost, Outputs};
+pub use definitions::Definitions;
 pub use equations::{
     Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
@@ -32,6 +35,7 @@ pub use form::Form;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
 pub use instant::EvaluationFailure;
 pub use integrability::{Integrability, integrability};
+pub use quasi_velocities::{DependentVelocity, QuasiVelocities, QuasiVelocity};
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use scene::{SIZE_LIMIT, Scene};

@@ -36,8 +36,8 @@ impl Series {
             first += block.unknowns.len();
         }
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let tape =
-            equations.graph.compile_series(&inputs, &form.definitions, &rates, &residuals, &equations.parameters)?;
+        let definitions = form.all_definitions(equations);
+        let tape = equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)?;
         let (workspace, inputs) = (tape.workspace(1), vec![0.0; places.len()]);
         Ok(Series { tape, workspace, left: form.left.clone(), places, inputs })
     }

@@ -36,9 +36,10 @@ impl Straight {
             first += block.unknowns.len();
         }
         let inputs: Vec<Symbol> = places.iter().map(|&i| all[i]).collect();
+        let definitions = form.all_definitions(equations);
         let program = |wanted: &[Expr]| {
             let condition = form.condition.as_slice();
-            Program::with_definitions(equations, &inputs, &form.definitions, &[wanted, condition].concat())
+            Program::by_way_of(equations, &definitions, &inputs, &[wanted, condition].concat())
         };
         Ok(Straight {
             rates: program(rates)?,

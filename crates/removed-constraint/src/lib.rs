@@ -91,7 +91,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// # duration = 1
 /// # "#)?;
 /// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u'*cos(phi), y' = u'*sin(phi)
-/// let derivation = mechanics::Derivation { removal: Some(&scene.removals[0]) };
+/// let derivation = mechanics::Derivation { removal: Some(&scene.removals[0]), start: None };
 /// let equations = removed_constraint::derive(&scene.system, &derivation)?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "u'' - phi'*P_x*sin(phi) - cos(phi)");

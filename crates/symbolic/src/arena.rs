@@ -75,6 +75,10 @@ impl Arena {
         &self.nodes[e.0 as usize]
     }
 
+    pub(crate) fn count(&self) -> usize {
+        self.nodes.len()
+    }
+
     pub(crate) fn intern(&mut self, node: Node) -> Expr {
         if let Some(&e) = self.ids.get(&node) {
             return e;

@@ -21,14 +21,48 @@ impl Graph {
     }
 
     /// (∂e/∂s for s in `symbols`)
+    ///
+    /// Of a sum, only the terms that contain a symbol are looked at for it.
     pub fn gradient(&self, e: Expr, symbols: &[Symbol]) -> Vec<Expr> {
+        let mut gradient = vec![self.zero(); symbols.len()];
+        for (place, derivative) in self.arena.borrow_mut().gradient(e, &Places::new(symbols)) {
+            gradient[place] = derivative;
+        }
+        gradient
+    }
+
+    /// The derivatives of `e` by those of `symbols` that occur in it, with the symbols in the order given.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let symbols = ["x", "y", "z"].map(|name| g.symbol(name));
+    /// let e = g.mul(g.integer(2), g.variable(symbols[2]));
+    /// assert_eq!(g.sparse_gradient(e, &symbols), [(symbols[2], g.integer(2))]);
+    /// ```
+    pub fn sparse_gradient(&self, e: Expr, symbols: &[Symbol]) -> Vec<(Symbol, Expr)> {
+        let found = self.arena.borrow_mut().gradient(e, &Places::new(symbols));
+        found.into_iter().map(|(place, derivative)| (symbols[place], derivative)).collect()
+    }
+
+    /// [`Graph::sparse_gradient`] of several expressions.
+    pub fn sparse_jacobian(&self, es: &[Expr], symbols: &[Symbol]) -> Vec<Vec<(Symbol, Expr)>> {
+        let places = Places::new(symbols);
         let mut arena = self.arena.borrow_mut();
-        symbols.iter().map(|s| arena.derivative(e, *s)).collect()
+        let row = |e: &Expr| arena.gradient(*e, &places).into_iter().map(|(place, d)| (symbols[place], d)).collect();
+        es.iter().map(row).collect()
     }
 
     /// The matrix ∂eᵢ/∂sⱼ: a row for each expression, a column for each symbol.
     pub fn jacobian(&self, es: &[Expr], symbols: &[Symbol]) -> Matrix {
-        Matrix::from_fn(es.len(), symbols.len(), |i, j| self.derivative(es[i], symbols[j]))
+        let places = Places::new(symbols);
+        let mut entries = vec![self.zero(); es.len() * symbols.len()];
+        let mut arena = self.arena.borrow_mut();
+        for (row, e) in es.iter().enumerate() {
+            for (place, derivative) in arena.gradient(*e, &places) {
+                entries[row * symbols.len() + place] = derivative;
+            }
+        }
+        Matrix::new(es.len(), symbols.len(), entries)
     }
 
     /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs. Explicit time has to be among
@@ -42,12 +76,22 @@ impl Graph {
     /// assert_eq!(g.total_derivative(energy, &[(x, g.variable(v))]), power);
     /// ```
     pub fn total_derivative(&self, e: Expr, rates: &[(Symbol, Expr)]) -> Expr {
-        let terms: Vec<Expr> = rates
-            .iter()
-            .filter(|(s, _)| self.depends_on(e, *s))
-            .map(|(s, rate)| self.mul(self.derivative(e, *s), *rate))
-            .collect();
-        self.sum(&terms)
+        self.total_derivatives(&[e], rates)[0]
+    }
+
+    /// [`Graph::total_derivative`] of several expressions: the work grows with what each contains, not with the number of rates.
+    pub fn total_derivatives(&self, es: &[Expr], rates: &[(Symbol, Expr)]) -> Vec<Expr> {
+        let symbols: Vec<Symbol> = rates.iter().map(|(s, _)| *s).collect();
+        let places = Places::new(&symbols);
+        let along = |e: &Expr| {
+            let occurring = places.within(self.arena.borrow().dependencies(*e));
+            let terms: Vec<Expr> = occurring
+                .into_iter()
+                .map(|place| self.mul(self.derivative(*e, symbols[place]), rates[place].1))
+                .collect();
+            self.sum(&terms)
+        };
+        es.iter().map(along).collect()
     }
 
     /// `e` with every symbol of `map` replaced, all at once.
@@ -80,7 +124,62 @@ impl Graph {
     }
 }
 
+/// A list of symbols and where each stands in it.
+struct Places<'a> {
+    list: &'a [Symbol],
+    of: FxHashMap<Symbol, Vec<usize>>,
+}
+
+impl<'a> Places<'a> {
+    fn new(list: &'a [Symbol]) -> Self {
+        let mut of: FxHashMap<Symbol, Vec<usize>> = FxHashMap::default();
+        for (place, symbol) in list.iter().enumerate() {
+            of.entry(*symbol).or_default().push(place);
+        }
+        Places { list, of }
+    }
+
+    /// The places of those symbols that are in `occurring`, in rising order.
+    fn within(&self, occurring: &[Symbol]) -> Vec<usize> {
+        let mut found: Vec<usize> = occurring.iter().filter_map(|s| self.of.get(s)).flatten().copied().collect();
+        found.sort_unstable();
+        found
+    }
+}
+
 impl Arena {
+    /// The derivatives of `e` by the symbols in it, with their places in rising order.
+    fn gradient(&mut self, e: Expr, places: &Places) -> Vec<(usize, Expr)> {
+        let wanted = places.within(self.dependencies(e));
+        if wanted.len() > 1
+            && let Node::Sum(_, terms) = self.node(e).clone()
+        {
+            self.differentiate_sum(e, &terms, &wanted, places);
+        }
+        wanted.into_iter().map(|place| (place, self.derivative(e, places.list[place]))).collect()
+    }
+
+    /// Writes down the derivatives of a sum. For each symbol only the terms that contain it are walked through.
+    fn differentiate_sum(&mut self, e: Expr, terms: &[(Expr, Number)], wanted: &[usize], places: &Places) {
+        let mut containing: FxHashMap<Symbol, Vec<(Expr, Number)>> = FxHashMap::default();
+        for (t, c) in terms {
+            for s in self.dependencies(*t).iter().filter(|s| places.of.contains_key(s)) {
+                containing.entry(*s).or_default().push((*t, *c));
+            }
+        }
+        for s in wanted.iter().map(|place| places.list[*place]) {
+            if self.derivatives.contains_key(&(e, s)) {
+                continue;
+            }
+            let terms = &containing[&s];
+            let roots: Vec<Expr> = terms.iter().map(|(t, _)| *t).collect();
+            self.differentiate(&roots, s);
+            let parts = terms.iter().map(|(t, c)| (self.known(*t, s), *c)).collect();
+            let derivative = self.linear(Number::ZERO, parts);
+            self.derivatives.insert((e, s), derivative);
+        }
+    }
+
     pub(crate) fn derivative(&mut self, e: Expr, s: Symbol) -> Expr {
         if !self.depends_on(e, s) {
             return Self::ZERO;
@@ -88,12 +187,17 @@ impl Arena {
         if let Some(d) = self.derivatives.get(&(e, s)) {
             return *d;
         }
-        let open = self.reachable(&[e], |n| self.depends_on(n, s) && !self.derivatives.contains_key(&(n, s)));
+        self.differentiate(&[e], s);
+        self.derivatives[&(e, s)]
+    }
+
+    /// Writes down the derivatives of everything in `roots` that contains `s`.
+    fn differentiate(&mut self, roots: &[Expr], s: Symbol) {
+        let open = self.reachable(roots, |n| self.depends_on(n, s) && !self.derivatives.contains_key(&(n, s)));
         for n in open {
             let d = self.derivative_of_node(n, s);
             self.derivatives.insert((n, s), d);
         }
-        self.derivatives[&(e, s)]
     }
 
     /// ∂e/∂s, given those of the children.

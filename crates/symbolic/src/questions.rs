@@ -65,6 +65,11 @@ impl Graph {
         arena.reachable(es, |_| true).into_iter().filter_map(argument).collect()
     }
 
+    /// Number of expressions made so far: what building and differentiating has cost, on any machine.
+    pub fn nodes(&self) -> usize {
+        self.arena.borrow().count()
+    }
+
     /// Number of distinct nodes reachable from `es`.
     pub fn size(&self, es: &[Expr]) -> usize {
         self.arena.borrow().reachable(es, |_| true).len()

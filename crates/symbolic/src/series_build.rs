@@ -319,11 +319,9 @@ impl<'i> Builder<'i> {
             Value::Call(function, a) => self.call(id, function, a),
             Value::Pow(a, b) => self.power(id, a, b),
             Value::Atan2(y, x) => self.angle(id, y, x),
-            Value::Constant(_)
-            | Value::MulAdd(..)
-            | Value::MulSub(..)
-            | Value::NegMulAdd(..)
-            | Value::Mul3(..) => unreachable!("{value:?} does not vary, or is made later"),
+            Value::Constant(_) | Value::MulAdd(..) | Value::MulSub(..) | Value::NegMulAdd(..) | Value::Mul3(..) => {
+                unreachable!("{value:?} does not vary, or is made later")
+            }
         }
     }
 
@@ -393,11 +391,7 @@ impl<'i> Builder<'i> {
         let argument = self.row(a);
         let slope = self.slope(argument);
         let row = self.fresh(Some(id));
-        let sum = Sum {
-            terms: vec![(id, argument)],
-            pairs_over_k: vec![(self.one, slope, row)],
-            ..Sum::default()
-        };
+        let sum = Sum { terms: vec![(id, argument)], pairs_over_k: vec![(self.one, slope, row)], ..Sum::default() };
         self.definitions.push((row, sum));
         row
     }
@@ -410,8 +404,7 @@ impl<'i> Builder<'i> {
         let rows = (self.fresh(Some(s)), self.fresh(Some(c)));
         let (one, minus_one) = (self.one, self.number(-1));
         let (sign, weight) = if circle { (minus_one, self.minus(s)) } else { (one, s) };
-        let of_sine =
-            Sum { terms: vec![(c, argument)], pairs_over_k: vec![(one, slope, rows.1)], ..Sum::default() };
+        let of_sine = Sum { terms: vec![(c, argument)], pairs_over_k: vec![(one, slope, rows.1)], ..Sum::default() };
         let of_cosine =
             Sum { terms: vec![(weight, argument)], pairs_over_k: vec![(sign, slope, rows.0)], ..Sum::default() };
         self.definitions.push((rows.0, of_sine));
@@ -497,13 +490,7 @@ impl<'i> Builder<'i> {
         row
     }
 
-    fn finish(
-        mut self,
-        inputs: &[SeriesInput],
-        outputs: &[Id],
-        own_outputs: usize,
-        blocks: &[usize],
-    ) -> SeriesTape {
+    fn finish(mut self, inputs: &[SeriesInput], outputs: &[Id], own_outputs: usize, blocks: &[usize]) -> SeriesTape {
         let input_ids: Vec<Id> = (0..inputs.len()).map(|i| self.push(Value::Input(i as u32))).collect();
         let input_rows: Vec<Option<Row>> =
             input_ids.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();
@@ -514,8 +501,7 @@ impl<'i> Builder<'i> {
         let mut definitions = std::mem::take(&mut self.definitions);
         let stage = |row: Row| self.of_row[row as usize].map_or(1, |id| self.stages[id as usize]);
         definitions.sort_by_key(|(row, _)| stage(*row));
-        let stages =
-            (0..=blocks.len()).map(|b| definitions.partition_point(|(row, _)| stage(*row) <= 1 + b)).collect();
+        let stages = (0..=blocks.len()).map(|b| definitions.partition_point(|(row, _)| stage(*row) <= 1 + b)).collect();
 
         for (_, sum) in &mut definitions {
             self.merge(sum);

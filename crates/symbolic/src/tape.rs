@@ -193,7 +193,7 @@ impl Assembly<'_> {
             }
         }
         let needed: FxHashMap<Value, Id> = order.iter().map(|id| (program.value(*id), *id)).collect();
-        let mut busy: Vec<Id> = Vec::new();
+        let mut busy = vec![false; program.len()];
         for (step, id) in order.iter().copied().enumerate() {
             if self.place[id as usize].is_some() {
                 self.release(&mut busy, id, step, &last_use);
@@ -222,9 +222,7 @@ impl Assembly<'_> {
                 self.tape.body.push(Instruction::SinCos(to[0], to[1], angle));
                 self.release(&mut busy, id, step, &last_use);
                 for v in [sine, cosine] {
-                    if !home.contains_key(&v) {
-                        busy.push(v);
-                    }
+                    busy[v as usize] = !home.contains_key(&v);
                 }
                 continue;
             }
@@ -236,9 +234,7 @@ impl Assembly<'_> {
             debug_assert!(at[..count].iter().all(Option::is_some));
             let instruction = self.instruction(value, to);
             self.tape.body.push(instruction);
-            if !home.contains_key(&id) {
-                busy.push(id);
-            }
+            busy[id as usize] = !home.contains_key(&id);
         }
         for (slot, id) in outputs.iter().enumerate() {
             let to = register(self.tape.inputs + slot);
@@ -265,13 +261,11 @@ impl Assembly<'_> {
     }
 
     /// Frees the registers of those operands of `id` that nothing needs after `step`.
-    fn release(&mut self, busy: &mut Vec<Id>, id: Id, step: usize, last_use: &[usize]) {
+    fn release(&mut self, busy: &mut [bool], id: Id, step: usize, last_use: &[usize]) {
         let (operands, count) = self.program.value(id).operands();
         for o in &operands[..count] {
-            if last_use[*o as usize] == step
-                && let Some(index) = busy.iter().rposition(|b| b == o)
-            {
-                busy.swap_remove(index);
+            if last_use[*o as usize] == step && busy[*o as usize] {
+                busy[*o as usize] = false;
                 self.free.push(self.at(*o));
             }
         }

@@ -9,6 +9,7 @@ mod leading_term;
 mod matching;
 mod numerics;
 mod planar_body;
+mod reduced_form;
 mod references;
 mod second_rates;
 mod support;

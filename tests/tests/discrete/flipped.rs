@@ -83,7 +83,7 @@ impl Trial {
 
     fn equations(&self) -> Equations {
         let entry = formulation(self.formulation).unwrap_or_else(|| panic!("no {}", self.formulation));
-        let derived = (entry.derive)(&self.scene.system, &Derivation { removal: self.removal.as_ref() });
+        let derived = (entry.derive)(&self.scene.system, &Derivation { removal: self.removal.as_ref(), start: None });
         derived.unwrap_or_else(|e| panic!("{}: {e}", self.what))
     }
 
@@ -131,7 +131,7 @@ impl Trial {
             None if self.formulation == "chetaev" => self.maggi(judged, end),
             None => {
                 let entry = formulation("vakonomic-costate").unwrap_or_else(|| panic!("no costate form"));
-                let equations = (entry.derive)(system, &Derivation { removal: None });
+                let equations = (entry.derive)(system, &Derivation::default());
                 let equations = equations.unwrap_or_else(|e| panic!("{}: {e}", self.what));
                 let other = motion(&self.what, system, start, equations, self.constants.clone());
                 against("costate form", judged, other, end)
@@ -139,7 +139,7 @@ impl Trial {
             Some(removal) => {
                 let (system, start, multipliers) = self.augmented(removal, &self.costates(&judged.equations));
                 let entry = formulation("vakonomic").unwrap_or_else(|| panic!("no vakonomic"));
-                let equations = (entry.derive)(&system, &Derivation { removal: None });
+                let equations = (entry.derive)(&system, &Derivation::default());
                 let mut equations = equations.unwrap_or_else(|e| panic!("{}: {e}", self.what));
                 equations.coordinates.truncate(self.scene.system.dimension());
                 equations.velocities.truncate(self.scene.system.dimension());

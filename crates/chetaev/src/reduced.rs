@@ -1,0 +1,295 @@
+//! # Chetaev's equations in quasi-velocities
+//!
+//! For constraints linear in the velocities, `A(q, t) v + b(q, t) = 0`, every admissible velocity is
+//!
+//! ```text
+//! v = S(q, t) w + s(q, t) ,      A S = 0 ,   A s + b = 0 ,
+//! ```
+//!
+//! with n − h quasi-velocities `w`. Virtual displacements are `δq = S ε` with `ε` free, so that the principle becomes
+//!
+//! ```text
+//! Sᵀ ( d/dt ∂L/∂v − ∂L/∂q − Q ) = 0 ,      q̇ = S w + s :
+//! ```
+//!
+//! n − h equations without multipliers. With `v̇ = S ẇ + γ`, `γ = Ṡ w + ṡ`, they are
+//!
+//! ```text
+//! SᵀMS ẇ = Sᵀ ( L_q + Q − L_vq v − L_vt − M γ ) .
+//! ```
+//!
+//! The constraint holds in every state `(q, w)`: there is nothing to drift from and nothing to project.
+//!
+//! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and so are its columns, `γ` and the two sides of the equation: each
+//! quantity is a short expression in those before. For a chain of n bodies that is O(n) in all, where `S` put in would be O(n²) or more.
+//!
+//! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use mechanics::{
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, QuasiVelocities, Role,
+    StateVariable, Statement, System,
+};
+use symbolic::{Expr, Graph, Symbol};
+
+/// The same motion in quasi-velocities; for constraints linear in the velocities.
+pub const REDUCED_FORM: Formulation = Formulation {
+    name: "chetaev-reduced",
+    title: "Chetaev, quasi-velocities",
+    needs_removal: false,
+    starts_multipliers: false,
+    derive: derive_reduced,
+};
+
+/// Nodes of an expression that gets no name of its own.
+const SHORT: usize = 8;
+/// The same for the two sides of the reduced equations.
+const SIDE: usize = 24;
+
+/// A sparse vector.
+type Sparse = BTreeMap<usize, Expr>;
+
+/// Derives the Chetaev equations with states `(q, w)` and unknowns `ẇ`. Multipliers are not computed: at a state of the motion
+/// they are an output of the equations of [`crate::derive()`].
+///
+/// # Errors
+/// [`DerivationError::Reduction`] where a constraint is not linear in the velocities, or constraints are dependent.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
+/// let equations = chetaev::derive_reduced(&scene.system, &mechanics::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].right);
+/// // the speed along the blade, and the turn; x' and y' follow
+/// assert_eq!(line(0), "w_x*cos(phi)");
+/// assert_eq!(line(1), "w_x*sin(phi)");
+/// let balance = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// assert_eq!(balance(2), "phi''");
+/// assert_eq!(balance(3), "w_x' - cos(phi)");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    let system = system.clone();
+    let g = &system.graph;
+    let quasi = QuasiVelocities::new(&system, derivation.start)
+        .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
+    let mut equations = Equations::new(REDUCED_FORM.name, &system);
+    let mut definitions = quasi.coefficients.clone();
+    for d in &quasi.dependent {
+        let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
+        let velocity = g.sum(&terms);
+        definitions.define(d.symbol, velocity);
+        let left = g.variable(d.symbol);
+        equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
+    }
+    let columns = columns(g, &quasi, &mut definitions);
+    let gamma = drift(&system, &quasi, &mut definitions);
+    let Balance { mass, force, momenta } = balance(&system, &gamma, &mut definitions);
+
+    // SᵀMS ẇ + Sᵀ force = 0
+    let products: Vec<Sparse> = columns
+        .iter()
+        .map(|column| {
+            multiply(g, &mass, column).into_iter().map(|(i, e)| (i, definitions.short(g, "m", SHORT, e))).collect()
+        })
+        .collect();
+    let count = quasi.free.len();
+    let mut reduced = vec![vec![g.zero(); count]; count];
+    for (i, column) in columns.iter().enumerate() {
+        for (j, product) in products.iter().enumerate().take(i + 1) {
+            let entry = definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, column, product)));
+            (reduced[i][j], reduced[j][i]) = (entry, entry);
+        }
+    }
+    let rates: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.rate)).collect();
+    let force: Sparse = force.into_iter().enumerate().collect();
+    let residuals: Vec<Expr> = (0..count)
+        .map(|i| {
+            let applied = definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, &columns[i], &force)));
+            g.add(g.dot(&reduced[i], &rates), applied)
+        })
+        .collect();
+    for (w, &residual) in quasi.free.iter().zip(&residuals) {
+        let meaning = format!("balance for {}", g.name(w.symbol));
+        equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
+    }
+    equations.blocks = vec![Block {
+        unknowns: quasi.free.iter().map(|w| w.rate).collect(),
+        residuals,
+        guess: Vec::new(),
+        regular: "mass matrix regular on the admissible velocities",
+    }];
+    hand_over(&mut equations, &system, quasi, &momenta);
+    equations.definitions = definitions.into_list();
+    equations.graph = system.graph;
+    Ok(equations)
+}
+
+/// The columns of `S` by coordinate.
+fn columns(g: &Graph, quasi: &QuasiVelocities, definitions: &mut Definitions) -> Vec<Sparse> {
+    let mut columns = vec![Sparse::new(); quasi.free.len()];
+    // row by row: which column has what entry
+    let mut rows: HashMap<Symbol, Sparse> = HashMap::new();
+    for (column, w) in quasi.free.iter().enumerate() {
+        rows.insert(w.symbol, Sparse::from([(column, g.one())]));
+        if let Some(i) = w.coordinate {
+            columns[column].insert(i, g.one());
+        }
+    }
+    for d in &quasi.dependent {
+        let mut entries: BTreeMap<usize, Vec<Expr>> = BTreeMap::new();
+        for (s, coefficient) in &d.terms {
+            for (&column, &e) in &rows[s] {
+                entries.entry(column).or_default().push(g.mul(*coefficient, e));
+            }
+        }
+        let sum = |terms: Vec<Expr>| g.sum(&terms);
+        let entries = entries.into_iter().map(|(column, terms)| (column, sum(terms))).filter(|(_, e)| !g.is_zero(*e));
+        let row: Sparse = entries.map(|(column, e)| (column, definitions.short(g, "S", SHORT, e))).collect();
+        if let Some(i) = d.coordinate {
+            for (&column, &e) in &row {
+                columns[column].insert(i, e);
+            }
+        }
+        rows.insert(d.symbol, row);
+    }
+    columns
+}
+
+/// `γ`, the accelerations at `ẇ = 0`, by coordinate.
+fn drift(system: &System, quasi: &QuasiVelocities, definitions: &mut Definitions) -> Vec<Expr> {
+    let g = &system.graph;
+    let mut flow: Vec<(Symbol, Expr)> =
+        system.coordinates.iter().map(|c| (c.position, g.variable(c.velocity))).collect();
+    flow.push((system.time, g.one()));
+    let mut rates: HashMap<Symbol, Expr> = flow.into_iter().collect();
+    let along = |rates: &HashMap<Symbol, Expr>, e: Expr| {
+        let symbols = g.symbols_of(e).into_iter().filter_map(|s| Some((s, *rates.get(&s)?)));
+        g.total_derivative(e, &symbols.collect::<Vec<(Symbol, Expr)>>())
+    };
+    for &(symbol, e) in quasi.coefficients.list() {
+        let rate = definitions.short(g, "dc", SHORT, along(&rates, e));
+        rates.insert(symbol, rate);
+    }
+    let mut gamma = vec![g.zero(); system.dimension()];
+    let mut by_symbol: HashMap<Symbol, Expr> = HashMap::new();
+    for d in &quasi.dependent {
+        let mut terms = vec![along(&rates, d.offset)];
+        for &(s, coefficient) in &d.terms {
+            terms.push(g.mul(along(&rates, coefficient), g.variable(s)));
+            terms.extend(by_symbol.get(&s).map(|&rate| g.mul(coefficient, rate)));
+        }
+        let rate = definitions.short(g, "a", SHORT, g.sum(&terms));
+        by_symbol.insert(d.symbol, rate);
+        if let Some(i) = d.coordinate {
+            gamma[i] = rate;
+        }
+    }
+    gamma
+}
+
+/// The unreduced balance at `ẇ = 0`.
+struct Balance {
+    /// Rows of `M`.
+    mass: Vec<Sparse>,
+    /// `d/dt L_v − L_q − Q` with `v̇ = γ`, by coordinate.
+    force: Vec<Expr>,
+    /// `L_v`.
+    momenta: Vec<Expr>,
+}
+
+fn balance(system: &System, gamma: &[Expr], definitions: &mut Definitions) -> Balance {
+    let g = &system.graph;
+    let (q, v) = (system.positions(), system.velocities());
+    let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
+    let momenta = g.gradient(system.lagrangian, &v);
+    let gradient = g.gradient(system.lagrangian, &q);
+    let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
+    flow.extend(v.iter().copied().zip(gamma.iter().copied()));
+    flow.push((system.time, g.one()));
+    let inertia = g.total_derivatives(&momenta, &flow);
+    let force = (0..q.len()).map(|i| {
+        let rest = g.sub(inertia[i], g.add(gradient[i], system.forces[i]));
+        definitions.short(g, "r", SHORT, rest)
+    });
+    let force = force.collect();
+    let row = |row: Vec<(Symbol, Expr)>| row.into_iter().map(|(s, e)| (places[&s], e)).collect::<Sparse>();
+    let mass = g.sparse_jacobian(&momenta, &v).into_iter().map(row).collect();
+    Balance { mass, force, momenta }
+}
+
+/// `rows · column`
+fn multiply(g: &Graph, rows: &[Sparse], column: &Sparse) -> Sparse {
+    let mut product = Sparse::new();
+    for &i in &reach(rows, column) {
+        let e = dot(g, &rows[i], column);
+        if !g.is_zero(e) {
+            product.insert(i, e);
+        }
+    }
+    product
+}
+
+/// The rows of a symmetric matrix that meet an entry of `column`.
+fn reach(rows: &[Sparse], column: &Sparse) -> BTreeSet<usize> {
+    column.keys().flat_map(|&j| rows[j].keys().copied()).collect()
+}
+
+/// `Σ aᵢ bᵢ`
+fn dot(g: &Graph, a: &Sparse, b: &Sparse) -> Expr {
+    let terms: Vec<Expr> = a.iter().filter_map(|(i, &x)| Some(g.mul(x, *b.get(i)?))).collect();
+    g.sum(&terms)
+}
+
+/// `e` multiplied out, if that makes it shorter: what the columns of `S` have in common with `γ` cancels.
+fn multiplied_out(g: &Graph, e: Expr) -> Expr {
+    let size = g.size(&[e]);
+    if size > 4 * SIDE {
+        return e;
+    }
+    let expanded = g.expand(e);
+    if g.size(&[expanded]) < size { expanded } else { e }
+}
+
+/// States, outputs, invariants and guards.
+fn hand_over(equations: &mut Equations, system: &System, quasi: QuasiVelocities, momenta: &[Expr]) {
+    let g = &system.graph;
+    for c in &system.coordinates {
+        let (rate, start) = (g.variable(c.velocity), g.variable(c.position));
+        equations.states.push(StateVariable { symbol: c.position, role: Role::Position, rate, start });
+    }
+    for w in &quasi.free {
+        let role = if w.coordinate.is_some() { Role::Velocity } else { Role::QuasiVelocity };
+        equations.states.push(StateVariable { symbol: w.symbol, role, rate: g.variable(w.rate), start: w.start });
+    }
+    equations.coordinates = g.variables(&system.positions());
+    equations.velocities = g.variables(&system.velocities());
+    // the energy is constant where the motion itself is a virtual displacement, and momenta on which no reaction acts
+    if quasi.homogeneous && system.is_autonomous() && !system.has_forces() {
+        let power = g.dot(&g.variables(&system.velocities()), momenta);
+        equations.invariants.push(Named { name: "energy".into(), expression: g.sub(power, system.lagrangian) });
+    }
+    let bound: BTreeSet<Symbol> = system.constraints.iter().flat_map(|&f| g.symbols_of(f)).collect();
+    for (i, c) in system.coordinates.iter().enumerate() {
+        let free = !g.depends_on(system.lagrangian, c.position) && g.is_zero(system.forces[i]);
+        if free && !bound.contains(&c.velocity) {
+            equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: momenta[i] });
+        }
+    }
+    equations.guards = quasi.guards;
+}

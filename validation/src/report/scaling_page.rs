@@ -1,0 +1,108 @@
+//! The page about how cost grows with size.
+
+use std::fmt::Write;
+
+use anyhow::Result;
+
+use crate::picture::{Aspect, Axis, Curve, Picture, Style};
+use crate::report::File;
+use crate::report::numbers::short;
+use crate::scaling::{Cost, Exponent, FROM, Line, Point};
+
+/// Largest exponents that are asked for: of one right-hand side, and of the derivation.
+const RIGHT_HAND_SIDE: f64 = 1.2;
+const DERIVATION: f64 = 1.5;
+
+/// Page and pictures.
+///
+/// # Errors
+/// Where a picture cannot be drawn.
+pub fn scaling_files(lines: &[Line]) -> Result<Vec<File>> {
+    let derivation = picture(lines, "Derivation", "derivation (s)", |p| Some(p.derivation))?;
+    let side = picture(lines, "One right-hand side", "right-hand side (s)", |p| Some(p.right_hand_side))?;
+    let solve = picture(lines, "Solve over 10 s", "solve (s)", |p| p.solve)?;
+    let mut page = String::from("# Cost over size: the car with n trailers\n\n");
+    page += "Written by `deltaq scaling --out reports`. One knife edge a body: two degrees of freedom however long the train. In maximal \
+             coordinates (x, y, heading of every body) every constraint touches neighbours only; that is what all rows use that do not say otherwise. \
+             Times are the shortest of some repeats on one machine; *expressions* (made for derivation and compilation), *operations* (of one right-hand \
+             side: instructions, and n³/3 for each dense elimination, an upper bound where it meets zeros) and *evaluations* are the same on every machine.\n\n";
+    page += "![Derivation](scaling-derivation.svg)\n\n![Right-hand side](scaling-right-hand-side.svg)\n\n![Solve](scaling-solve.svg)\n\n";
+    page += &scaling_text(lines);
+    Ok(vec![
+        File { path: "scaling.md".into(), text: page },
+        File { path: "scaling-derivation.svg".into(), text: derivation },
+        File { path: "scaling-right-hand-side.svg".into(), text: side },
+        File { path: "scaling-solve.svg".into(), text: solve },
+    ])
+}
+
+/// The tables.
+pub fn scaling_text(lines: &[Line]) -> String {
+    let mut text = format!(
+        "## Exponents from n = {FROM}\n\nCost ∝ nᵖ, fitted to logarithms, with the standard error of p. Asked for: at most \
+         {RIGHT_HAND_SIDE} for a right-hand side, at most {DERIVATION} for the derivation.\n\n\
+         | formulation | to n | derivation, s | expressions | right-hand side, s | operations | solve, s |\n|---|--:|--:|--:|--:|--:|--:|\n"
+    );
+    for line in lines {
+        let longest = line.points.last().map_or(0, |p| p.trailers);
+        let _ = write!(text, "| {} | {longest} |", line.formulation);
+        for cost in [Cost::Derivation, Cost::Expressions, Cost::RightHandSide, Cost::Operations, Cost::Solve] {
+            let _ = write!(text, " {} |", line.exponent(cost).map_or("–".into(), fitted));
+        }
+        text += "\n";
+    }
+    for line in lines {
+        let _ = write!(
+            text,
+            "\n## {}\n\n| n | states | expressions | derivation, ms | operations | right-hand side, µs | evaluations | solve, ms |\n\
+             |--:|--:|--:|--:|--:|--:|--:|--:|\n",
+            line.formulation
+        );
+        for p in &line.points {
+            let evaluations = p.evaluations.map_or("–".into(), |n| n.to_string());
+            let solve = p.solve.map_or("–".into(), |s| short(1e3 * s));
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} | {} | {} | {evaluations} | {solve} |",
+                p.trailers,
+                p.states,
+                p.expressions,
+                short(1e3 * p.derivation),
+                p.operations,
+                short(1e6 * p.right_hand_side),
+            );
+        }
+        if let Some(reason) = &line.ended {
+            let _ = writeln!(text, "\nEnds here: {reason}.");
+        }
+        for p in line.points.iter().filter(|p| p.solve.is_some() && p.reached < 10.0) {
+            let _ = writeln!(text, "\nn = {}: the motion stopped at t = {}.", p.trailers, short(p.reached));
+        }
+    }
+    text
+}
+
+fn fitted(exponent: Exponent) -> String {
+    format!("{:.2} ± {:.2}", exponent.value, exponent.error)
+}
+
+fn picture(lines: &[Line], title: &str, label: &str, cost: impl Fn(&Point) -> Option<f64>) -> Result<String> {
+    let style = |name: &str| match name {
+        name if name.starts_with("chetaev") => Style::Chetaev,
+        name if name.starts_with("vakonomic") => Style::Vakonomic,
+        _ => Style::RemovedConstraint,
+    };
+    let curve = |line: &Line| Curve {
+        label: line.formulation.into(),
+        style: style(line.formulation),
+        points: line.points.iter().filter_map(|p| Some((p.trailers as f64, cost(p)?))).collect(),
+    };
+    let picture = Picture {
+        title: format!("{title} of a car with n trailers"),
+        x: Axis::log("n"),
+        y: Axis::log(label),
+        aspect: Aspect::Fill,
+        curves: lines.iter().map(curve).collect(),
+    };
+    Ok(picture.to_svg()?)
+}

@@ -1,0 +1,291 @@
+//! How cost grows with the size of a system: the train with n trailers, in every formulation.
+//!
+//! Three costs are measured: the derivation (from `System` to compiled tape, a removal found on the way included), one right-hand side, and a solve over the
+//! duration of the scene. Beside each time stands a count that does not depend on the machine: expressions made, operations of a right-hand
+//! side, evaluations. A formulation is followed to longer trains until a derivation takes longer than [`Limits::seconds`]; solves that
+//! would are left out.
+
+mod fit;
+
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use deltaq::{Setting, Settings, default_constants, formulation, setting, solve};
+use mechanics::{
+    Compiled, ConstantsRule, Derivation, Equations, Removal, Scene, State, System, complete_removal_start,
+};
+use serde::Serialize;
+use symbolic::{Expr, Symbol};
+
+pub use fit::{Exponent, exponent};
+
+use crate::trailer::{Coordinates, scene};
+
+/// Numbers of trailers.
+pub const TRAILERS: [usize; 9] = [1, 2, 5, 10, 20, 40, 80, 160, 320];
+
+/// Exponents are fitted from here.
+pub const FROM: usize = 20;
+
+/// Formulations that are measured, with the coordinates of the train in each.
+pub const FORMULATIONS: [&str; 6] = [
+    "chetaev-reduced",
+    "chetaev",
+    "vakonomic",
+    "vakonomic-costate",
+    "removed-constraint",
+    "removed-constraint (minimal coordinates)",
+];
+
+/// Tolerance of solves.
+const TOLERANCE: f64 = 1e-10;
+
+/// Limit on the steps of one run: a motion that runs into a singularity ends there.
+const STEPS: usize = 20_000;
+
+/// How far measurements go.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Longest train.
+    pub trailers: usize,
+    /// After a derivation that took longer than this, longer trains are left out; and solves that would take longer.
+    pub seconds: f64,
+    /// Repeats of everything that is timed; the shortest time counts.
+    pub repeats: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits { trailers: 320, seconds: 2.0, repeats: 5 }
+    }
+}
+
+/// One formulation at one length.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// n.
+    pub trailers: usize,
+    /// Number of states.
+    pub states: usize,
+    /// Expressions in the graph after derivation and compilation.
+    pub expressions: usize,
+    /// Seconds from `System` to compiled tape.
+    pub derivation: f64,
+    /// [`Compiled::operations`].
+    pub operations: usize,
+    /// Seconds of one right-hand side.
+    pub right_hand_side: f64,
+    /// Seconds of a solve over the duration of the scene, both runs; none where it was not affordable.
+    pub solve: Option<f64>,
+    /// Right-hand sides of the kept run of that solve.
+    pub evaluations: Option<usize>,
+    /// How far the solve came; less than the duration where the motion stopped.
+    pub reached: f64,
+}
+
+/// One formulation.
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
+    /// Name of the formulation.
+    pub formulation: &'static str,
+    /// By rising length.
+    pub points: Vec<Point>,
+    /// Why longer trains are missing, where they are.
+    pub ended: Option<String>,
+}
+
+/// Costs that are fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    /// Seconds of the derivation.
+    Derivation,
+    /// Expressions made.
+    Expressions,
+    /// Seconds of one right-hand side.
+    RightHandSide,
+    /// Operations of one right-hand side.
+    Operations,
+    /// Seconds of the solve.
+    Solve,
+}
+
+impl Line {
+    /// The exponent of a cost over n from [`FROM`] on; none with fewer than three points.
+    pub fn exponent(&self, cost: Cost) -> Option<Exponent> {
+        let of = |p: &Point| match cost {
+            Cost::Derivation => Some(p.derivation),
+            Cost::Expressions => Some(p.expressions as f64),
+            Cost::RightHandSide => Some(p.right_hand_side),
+            Cost::Operations => Some(p.operations as f64),
+            Cost::Solve => p.solve,
+        };
+        let points = self.points.iter().filter(|p| p.trailers >= FROM);
+        exponent(&points.filter_map(|p| Some((p.trailers as f64, of(p)?))).collect::<Vec<(f64, f64)>>())
+    }
+}
+
+/// Every formulation, as far as it goes.
+///
+/// # Errors
+/// Where a train has no equations or no motion.
+pub fn measure(limits: &Limits, progress: &mut dyn FnMut(&str, usize)) -> Result<Vec<Line>> {
+    FORMULATIONS.into_iter().map(|name| line(name, limits, progress)).collect()
+}
+
+/// One formulation.
+///
+/// # Errors
+/// As [`measure`].
+pub fn line(name: &'static str, limits: &Limits, progress: &mut dyn FnMut(&str, usize)) -> Result<Line> {
+    let mut line = Line { formulation: name, points: Vec::new(), ended: None };
+    for trailers in TRAILERS.into_iter().filter(|&n| n <= limits.trailers) {
+        progress(name, trailers);
+        let before = line.points.last().and_then(|p| p.evaluations);
+        let solves = line.points.iter().all(|p| p.solve.is_some());
+        let evaluations = if solves { before.or(Some(0)) } else { None };
+        let point = match point(name, trailers, limits, evaluations) {
+            Ok(point) => point,
+            Err(error) if line.points.is_empty() => {
+                return Err(error.context(format!("{name} with {trailers} trailers")));
+            }
+            // what works for short trains and is refused for this one is a result
+            Err(error) => {
+                line.ended = Some(format!("n = {trailers} is refused: {error}"));
+                break;
+            }
+        };
+        let seconds = point.derivation;
+        line.points.push(point);
+        if seconds > limits.seconds && trailers < limits.trailers {
+            line.ended = Some(format!("the derivation for n = {trailers} took {seconds:.1} s"));
+            break;
+        }
+    }
+    Ok(line)
+}
+
+/// The counts of one formulation at one length, without timing anything: expressions made, operations of a right-hand side.
+///
+/// # Errors
+/// As [`measure`].
+pub fn counts(name: &str, trailers: usize) -> Result<(usize, usize)> {
+    let scene = train(name, trailers)?;
+    let derived = derivation(name, &scene)?;
+    Ok((derived.equations.graph.nodes(), derived.compiled.cost()[1].operations()))
+}
+
+fn train(name: &str, trailers: usize) -> Result<Scene> {
+    let minimal = name.contains("minimal");
+    Ok(scene(trailers, if minimal { Coordinates::Minimal } else { Coordinates::Maximal })?)
+}
+
+/// What a derivation comes to. The removal's expressions live in the graph of `system`.
+struct Derived {
+    system: System,
+    equations: Equations,
+    compiled: Compiled,
+    constants: ConstantsRule,
+}
+
+/// From `System` to compiled tape.
+fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
+    let name = name.split(' ').next().unwrap_or(name);
+    let entry = formulation(name).with_context(|| format!("no formulation {name}"))?;
+    // on a graph of its own: what was derived before is in that of the scene
+    let system = scene.system.clone();
+    let removal = if entry.needs_removal { Some(Removal::by_quasi_velocities(&system, &scene.start)?) } else { None };
+    let constants = match &removal {
+        Some(removal) => removal.constants.clone(),
+        None => default_constants(entry, scene),
+    };
+    let derived = (entry.derive)(&system, &Derivation { removal: removal.as_ref(), start: Some(&scene.start) })?;
+    let equations = derived.leave_out_unneeded();
+    let compiled = Compiled::new(&equations)?;
+    Ok(Derived { system, equations, compiled, constants })
+}
+
+/// `evaluations` is how many a shorter train took; none where its solve already was too long.
+fn point(name: &str, trailers: usize, limits: &Limits, evaluations: Option<usize>) -> Result<Point> {
+    let scene = train(name, trailers)?;
+    let mut derived = None;
+    let mut best = f64::INFINITY;
+    for _ in 0..limits.repeats {
+        let clock = Instant::now();
+        derived = Some(derivation(name, &scene)?);
+        let seconds = clock.elapsed().as_secs_f64();
+        best = best.min(seconds);
+        if seconds > limits.seconds {
+            break;
+        }
+    }
+    let Derived { system, equations, mut compiled, constants } = derived.context("at least one repeat")?;
+    let y = start(&system, &scene.start, &equations, &constants)?;
+    let seconds = right_hand_side(&mut compiled, scene.start.t, &y, limits.repeats)?;
+    let mut point = Point {
+        trailers,
+        states: y.len(),
+        expressions: equations.graph.nodes(),
+        derivation: best,
+        operations: compiled.cost()[1].operations(),
+        right_hand_side: seconds,
+        solve: None,
+        evaluations: None,
+        reached: scene.start.t,
+    };
+    // two runs
+    if evaluations.is_none_or(|count| 2.0 * seconds * count as f64 > limits.seconds) {
+        return Ok(point);
+    }
+    let settings = Settings { tolerance: TOLERANCE, max_steps: STEPS, ..Settings::default() };
+    for _ in 0..limits.repeats {
+        let motion = solve(Setting { system: &system, ..setting(&scene) }, equations.clone(), &constants, &settings)?;
+        let seconds = motion.seconds.integrate;
+        point.solve = Some(point.solve.map_or(seconds, |other: f64| other.min(seconds)));
+        point.evaluations = Some(motion.work.evaluations);
+        point.reached = motion.end();
+        if seconds > limits.seconds {
+            break;
+        }
+    }
+    Ok(point)
+}
+
+/// `y(t₀)`.
+fn start(system: &System, state: &State, equations: &Equations, constants: &ConstantsRule) -> Result<Vec<f64>> {
+    let mut values = system.values_at(state);
+    if let Some(removal) = &equations.removal {
+        values.extend(complete_removal_start(system, removal, state)?.values());
+    }
+    let (mut symbols, mut inputs): (Vec<Symbol>, Vec<f64>) = values.into_iter().unzip();
+    symbols.extend(equations.constant_symbols());
+    let mut given = match constants {
+        ConstantsRule::Given(given) => given.clone(),
+        _ => Vec::new(),
+    };
+    given.resize(equations.free_constants.len(), 0.0);
+    inputs.extend(given);
+    let starts: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
+    let mut y = vec![0.0; starts.len()];
+    let tape = equations.tape(&symbols, &starts)?;
+    tape.evaluate(&inputs, &mut tape.workspace(), &mut y);
+    Ok(y)
+}
+
+/// Seconds of one right-hand side: the shortest of some batches.
+fn right_hand_side(compiled: &mut Compiled, t: f64, y: &[f64], repeats: usize) -> Result<f64> {
+    /// s, what one batch should take
+    const BATCH: f64 = 2e-3;
+    let mut rates = vec![0.0; y.len()];
+    let mut best = f64::INFINITY;
+    let mut count = 1;
+    for _ in 0..repeats + 2 {
+        let clock = Instant::now();
+        for _ in 0..count {
+            compiled.rates(t, y, &mut rates)?;
+        }
+        let seconds = clock.elapsed().as_secs_f64() / f64::from(count);
+        best = best.min(seconds);
+        count = ((BATCH / best) as u32).clamp(1, 10_000);
+    }
+    Ok(best)
+}

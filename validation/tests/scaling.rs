@@ -1,0 +1,30 @@
+//! How cost grows: counts that do not depend on the machine.
+
+use validation::scaling::{FROM, Limits, TRAILERS, counts, exponent, line};
+
+#[test]
+fn a_train_costs_what_its_length_costs() {
+    let long: Vec<usize> = TRAILERS.into_iter().filter(|&n| n >= FROM).collect();
+    let counts: Vec<(f64, (usize, usize))> =
+        long.iter().map(|&n| (n as f64, counts("chetaev-reduced", n).expect("has equations"))).collect();
+    assert_eq!(counts.len(), 5);
+    let fit = |of: fn(&(usize, usize)) -> usize| {
+        exponent(&counts.iter().map(|(n, c)| (*n, of(c) as f64)).collect::<Vec<_>>()).expect("five points")
+    };
+    let (derivation, side) = (fit(|c| c.0), fit(|c| c.1));
+    println!("expressions {derivation:?}, operations {side:?}: {counts:?}");
+    assert!(derivation.value < 1.5, "expressions made: exponent {derivation:?}");
+    assert!(side.value < 1.2, "operations of a right-hand side: exponent {side:?}");
+    assert!(derivation.value > 0.9 && side.value > 0.9, "a longer train costs more: {derivation:?}, {side:?}");
+}
+
+#[test]
+fn a_line_has_a_point_for_every_length_and_says_where_it_ends() {
+    let limits = Limits { trailers: 5, repeats: 1, ..Limits::default() };
+    let whole = line("chetaev-reduced", &limits, &mut |_, _| {}).expect("has motions");
+    assert_eq!(whole.points.iter().map(|p| p.trailers).collect::<Vec<_>>(), [1, 2, 5]);
+    assert!(whole.ended.is_none() && whole.points.iter().all(|p| p.solve.is_some() && p.reached == 10.0));
+    let cut = line("chetaev", &Limits { seconds: 0.0, ..limits }, &mut |_, _| {}).expect("has equations");
+    assert_eq!(cut.points.len(), 1);
+    assert!(cut.ended.is_some(), "its derivation takes longer than no time at all");
+}
