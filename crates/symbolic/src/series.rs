@@ -41,6 +41,8 @@ pub(crate) struct Bilinear {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Definition {
     pub(crate) row: Row,
+    /// Where its products are added up; a row of zeros if it has none.
+    pub(crate) products: Row,
     /// End of its terms; they begin where those of the definition before end.
     pub(crate) end: usize,
 }
@@ -109,12 +111,20 @@ pub struct SeriesWorkspace<T> {
     weights: Vec<T>,
     /// First coefficient of the operand of each term.
     operands: Vec<usize>,
+    definitions: Vec<Placed>,
     /// Weights of pairs, `stride` a newest order, without and with 1/k.
     halves: [Vec<T>; 2],
     /// 1/k
     reciprocals: Vec<T>,
-    held: Vec<T>,
     residual: Vec<T>,
+}
+
+/// A [`Definition`] with the places of first coefficients.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    row: usize,
+    products: usize,
+    end: usize,
 }
 
 impl<T: SeriesScalar> SeriesWorkspace<T> {
@@ -174,10 +184,14 @@ impl SeriesTape {
             products: [0, 1].map(|i: usize| self.products[i].iter().map(place).collect()),
             scales: [0, 1].map(|i: usize| vec![zero; self.products[i].len()]),
             weights: vec![zero; self.terms.len()],
+            definitions: self
+                .definitions
+                .iter()
+                .map(|d| Placed { row: at(d.row), products: at(d.products), end: d.end })
+                .collect(),
             operands: self.terms.iter().map(|(_, row)| at(*row)).collect(),
             halves,
             reciprocals: (0..=order).map(|k| T::from_f64(1.0) / T::from_f64(k as f64)).collect(),
-            held: vec![zero; self.definitions.len()],
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
         }
     }
@@ -259,13 +273,12 @@ impl SeriesTape {
     #[inline(always)]
     fn add_terms<T: SeriesScalar>(&self, w: &mut SeriesWorkspace<T>, k: usize, from: usize, to: usize) {
         let mut begin = if from == 0 { 0 } else { self.definitions[from - 1].end };
-        for definition in &self.definitions[from..to] {
-            let at = definition.row as usize * w.stride + k;
-            let mut sum = w.rows[at];
+        for definition in &w.definitions[from..to] {
+            let mut sum = w.rows[definition.products + k];
             for (weight, operand) in w.weights[begin..definition.end].iter().zip(&w.operands[begin..definition.end]) {
                 sum = sum + *weight * w.rows[operand + k];
             }
-            w.rows[at] = sum;
+            w.rows[definition.row + k] = sum;
             begin = definition.end;
         }
     }
@@ -276,10 +289,6 @@ impl SeriesTape {
         let (from, to) = (self.stages[block], self.stages[block + 1]);
         let Expansion { workspace: w, sweeps, correct, .. } = e;
         let Implicit { unknowns, residuals } = &self.blocks[block];
-        let place = |definition: &Definition| definition.row as usize * w.stride + k;
-        for (held, definition) in w.held.iter_mut().zip(&self.definitions[from..to]) {
-            *held = w.rows[place(definition)];
-        }
         for _ in 0..*sweeps {
             self.add_terms(w, k, from, to);
             for (i, source) in residuals.iter().enumerate() {
@@ -289,9 +298,6 @@ impl SeriesTape {
             for (unknown, change) in unknowns.iter().zip(&w.residual) {
                 let at = *unknown as usize * w.stride + k;
                 w.rows[at] = w.rows[at] + *change;
-            }
-            for (held, definition) in w.held.iter().zip(&self.definitions[from..to]) {
-                w.rows[definition.row as usize * w.stride + k] = *held;
             }
         }
         self.add_terms(w, k, from, to);
