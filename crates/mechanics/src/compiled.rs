@@ -146,9 +146,6 @@ impl Compiled {
         self.series.is_some()
     }
 
-    /// TEMP
-    pub fn series_work(&self) -> String { let s = self.series.as_ref().unwrap(); format!("{:?} {:?}", s.tape.work(), s.tape.shape()) }
-
     /// Number of states.
     pub fn dimension(&self) -> usize {
         self.sizes.states
