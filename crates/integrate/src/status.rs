@@ -53,6 +53,12 @@ pub enum StopCause {
         /// Which one, counted from 0.
         component: usize,
     },
+    /// The rates at the end of a step were not those of the Taylor series there, however small the step.
+    #[error("component {component} of the rates leaves its Taylor series however short the step: it is not smooth here")]
+    NotSmooth {
+        /// Which one, counted from 0.
+        component: usize,
+    },
     /// The error estimate asked for a step that no longer moves the time.
     #[error("a step of length {step} is asked for, the shortest possible is {limit}")]
     StepTooSmall {

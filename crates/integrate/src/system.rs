@@ -10,6 +10,7 @@ use crate::status::{StopCause, Work};
 pub(crate) enum Failure {
     Evaluation { reason: String },
     NotFinite { component: usize },
+    NotSmooth { component: usize },
 }
 
 impl From<EvaluationError> for Failure {
@@ -23,6 +24,7 @@ impl From<Failure> for StopCause {
         match failure {
             Failure::Evaluation { reason } => StopCause::Evaluation { reason },
             Failure::NotFinite { component } => StopCause::NotFinite { component },
+            Failure::NotSmooth { component } => StopCause::NotSmooth { component },
         }
     }
 }

@@ -9,12 +9,16 @@
 //!
 //! the last term is at most an eighth of the tolerance. That presumes that coefficients fall off by the same factor, about e² a step, as they do. Where
 //! they come in groups with zeros between, the last two say little; so no earlier term may be over 1000 times what such a fall gives it.
-//! No step is ever rejected for its error: coefficients do not depend on the step, which is shortened until the terms are small.
+//! Coefficients do not depend on the step, which is shortened until the terms are small.
+//!
+//! A series knows nothing of what lies behind a branch point that it passes: that of √(1 + y) along y = (1 − t/2)² − 1 goes on as 1 − t/2
+//! where the root is t/2 − 1. So the slope of the polynomial at the end of the step is compared with the rates there, which the next
+//! expansion needs anyway; if they differ, the step is tried at half its length.
 //!
 //! Source: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order Taylor methods*,
 //! Experimental Mathematics 14 (2005), section 3; there c = 1/2, which suits a cost that grows with the square of the order.
 
-use crate::dense::{Basis, evaluate_segment};
+use crate::dense::Basis;
 use crate::options::Options;
 use crate::problem::Start;
 use crate::status::StopCause;
@@ -22,12 +26,18 @@ use crate::stepper::{Attempt, Stepper, shortest_step};
 use crate::system::{Failure, System};
 
 /// Orders per factor e of the tolerance.
-const ORDERS: f64 = 0.5;
+fn orders() -> f64 { std::env::var("ORDERS").map_or(1.0, |s| s.parse().unwrap()) }
 /// Tolerances below are for the order as this one.
 const TIGHTEST: f64 = 1e-18;
 const LEAST_ORDER: f64 = 4.0;
+/// The last term, in tolerances.
+const LAST: f64 = 0.135;
 /// So much may a term before the last two be over the geometric sequence.
 const SLACK: f64 = 1e3;
+/// The slope of the polynomial at the end of a step, times the step, may differ from the rates by so many tolerances, and by as many moves
+/// of a projection; a relative tolerance below round-off is read as that.
+const DEFECT: f64 = 100.0;
+const ROUND_OFF: f64 = 1e-14;
 /// Where coefficients overflow, the unit of time is shortened by this factor, so many times.
 const SHORTER_UNIT: f64 = 1e-8;
 const UNITS: usize = 30;
@@ -46,10 +56,17 @@ pub(crate) struct Taylor<'s, 'p> {
     next_coefficients: Vec<f64>,
     next_unit: f64,
     candidate: Vec<f64>,
-    /// The candidate before it was moved.
+    /// The candidate before it was moved, and the polynomial's slope there times the step.
     reached: Vec<f64>,
+    slope: Vec<f64>,
     /// Length of the step to try next.
     step: f64,
+    /// Largest coefficient of each order, in tolerances.
+    sizes: Vec<f64>,
+    /// What one tolerance is of each component, inverted.
+    scale: Vec<f64>,
+    /// By this factor terms are to fall from one order to the next.
+    fall: f64,
     /// The step of the candidate, of either sign, and its end.
     taken: f64,
     taken_to: f64,
@@ -60,7 +77,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
     pub(crate) fn new(system: &'s System<'p>, start: &Start, end: f64, options: &Options) -> Result<Self, Failure> {
         let n = system.dimension();
         let tolerance = options.relative_tolerance.max(TIGHTEST);
-        let order = (1.0 - ORDERS * tolerance.ln()).ceil().max(LEAST_ORDER) as usize;
+        let order = (1.0 - orders() * tolerance.ln()).ceil().max(LEAST_ORDER) as usize;
         let mut taylor = Self {
             system,
             end,
@@ -74,7 +91,11 @@ impl<'s, 'p> Taylor<'s, 'p> {
             next_unit: (end - start.t).abs(),
             candidate: start.y.clone(),
             reached: vec![0.0; n],
+            slope: vec![0.0; n],
             step: 0.0,
+            sizes: vec![0.0; order + 1],
+            scale: vec![0.0; n],
+            fall: (-1.0 / orders()).exp(),
             taken: 0.0,
             taken_to: start.t,
         };
@@ -108,35 +129,70 @@ impl<'s, 'p> Taylor<'s, 'p> {
         self.step = self.choose_step();
     }
 
-    /// The longest step, of positive length, whose last terms are below the tolerance; infinite for a polynomial.
-    fn choose_step(&self) -> f64 {
+    /// Candidate and slope, in one pass.
+    fn evaluate(&mut self, theta: f64) {
         let n = self.candidate.len();
-        let (y, rest) = self.coefficients.split_at(n);
-        let p = self.order;
-        let size = |k: usize| {
-            let row = &rest[(k - 1) * n..][..n];
-            row.iter().zip(y).fold(0.0, |largest: f64, (c, y)| {
-                largest.max(c.abs() / (self.absolute_tolerance + self.relative_tolerance * y.abs()))
-            })
-        };
-        let (last, before) = (size(p), size(p - 1));
-        let e = std::f64::consts::E;
-        let mut theta = f64::INFINITY;
-        if last > 0.0 {
-            theta = (e * e * last).powf(-1.0 / p as f64);
-        }
-        if before > 0.0 {
-            theta = theta.min(before.powf(-1.0 / (p - 1) as f64));
-        }
-        theta *= (-0.7 / (p - 1) as f64).exp();
-        // Largest term of order k: SLACK e^(2 (p − k) − 2) tolerances.
-        let mut allowed = SLACK * e * e;
-        for k in (1..p - 1).rev() {
-            let size = size(k);
-            if size > 0.0 && (theta == f64::INFINITY || size * theta.powi(k as i32) > allowed) {
-                theta = theta.min((allowed / size).powf(1.0 / k as f64));
+        self.slope.fill(0.0);
+        self.candidate.copy_from_slice(&self.coefficients[self.order * n..]);
+        for row in self.coefficients[..self.order * n].chunks_exact(n).rev() {
+            for ((y, slope), c) in self.candidate.iter_mut().zip(&mut self.slope).zip(row) {
+                *slope = *slope * theta + *y;
+                *y = *y * theta + c;
             }
-            allowed *= e * e;
+        }
+        for slope in &mut self.slope {
+            *slope *= theta;
+        }
+        self.reached.copy_from_slice(&self.candidate);
+    }
+
+    /// Compares the slope of the polynomial at the end with the rates there.
+    fn check_slope(&self) -> Result<(), Failure> {
+        let n = self.candidate.len();
+        let rates = &self.next_coefficients[n..2 * n];
+        let by = self.taken / self.next_unit;
+        let relative = self.relative_tolerance.max(ROUND_OFF);
+        let excess = |i: usize| {
+            let (y, move_) = (self.candidate[i], (self.candidate[i] - self.reached[i]).abs());
+            let size = y.abs().max(self.slope[i].abs());
+            let allowed = DEFECT * (self.absolute_tolerance + relative * size);
+            ((self.slope[i] - rates[i] * by).abs() / allowed, move_ / allowed)
+        };
+        let (mut worst, mut moved) = ((0.0, 0), 0.0_f64);
+        for i in 0..n {
+            let (defect, by) = excess(i);
+            moved = moved.max(by);
+            if defect > worst.0 {
+                worst = (defect, i);
+            }
+        }
+        if worst.0 > 1.0 + DEFECT * moved { Err(Failure::NotSmooth { component: worst.1 }) } else { Ok(()) }
+    }
+
+    /// The longest step, of positive length, whose last terms are below the tolerance; infinite for a constant.
+    fn choose_step(&mut self) -> f64 {
+        let n = self.scale.len();
+        let (y, rest) = self.coefficients.split_at(n);
+        for (scale, y) in self.scale.iter_mut().zip(y) {
+            *scale = 1.0 / (self.absolute_tolerance + self.relative_tolerance * y.abs());
+        }
+        for (size, row) in self.sizes[1..].iter_mut().zip(rest.chunks_exact(n)) {
+            *size = row.iter().zip(&self.scale).fold(0.0, |largest, (c, scale)| f64::max(largest, c.abs() * scale));
+        }
+        let p = self.order;
+        let root = |size: f64, k: usize| (-size.ln() / k as f64).exp();
+        let mut theta = root(self.sizes[p] / LAST, p).min(root(self.sizes[p - 1] * self.fall / LAST, p - 1));
+        theta *= (-0.7 / (p - 1) as f64).exp();
+        let mut allowed = SLACK * LAST / self.fall.powi(p as i32 - 1);
+        let mut power = theta;
+        for k in 1..p - 1 {
+            let size = self.sizes[k];
+            if size * power > allowed {
+                theta = root(size / allowed, k);
+                power = theta.powi(k as i32);
+            }
+            allowed *= self.fall;
+            power *= theta;
         }
         theta * self.unit
     }
@@ -164,8 +220,7 @@ impl Stepper for Taylor<'_, '_> {
         }
         self.taken = if last { remaining } else { self.step * remaining.signum() };
         self.taken_to = if last { self.end } else { self.t + self.taken };
-        evaluate_segment(Basis::Powers, &self.coefficients, self.taken / self.unit, &mut self.candidate);
-        self.reached.copy_from_slice(&self.candidate);
+        self.evaluate(self.taken / self.unit);
         Attempt::Candidate { t: self.taken_to, rejected: 0 }
     }
 
@@ -178,6 +233,7 @@ impl Stepper for Taylor<'_, '_> {
     fn finish(&mut self, moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure> {
         self.next_unit = self.taken.abs();
         self.expand()?;
+        self.check_slope()?;
         let Some(segment) = segment else { return Ok(()) };
         let n = self.candidate.len();
         let theta = self.taken / self.unit;

@@ -122,6 +122,11 @@ fn projection_holds_what_would_run_away() {
             j[3] = push + 2.0 * y[1] * y[1] / cubed;
         },
     )
+    .with_series(|_, y| {
+        let radius = (&(&y[0] * &y[0]) + &(&y[1] * &y[1])).powf(-0.5);
+        let push = &(&radius.number(1.0) - &radius) * 2.0;
+        vec![&y[1] + &(&push * &y[0]), &(&push * &y[1]) - &y[0]]
+    })
     .with_projection(onto_circle);
     for method in Method::ALL {
         let options = Options { method, ..Options::with_tolerance(1e-7) };

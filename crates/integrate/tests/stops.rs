@@ -50,7 +50,8 @@ fn rates_that_are_not_finite_are_named() {
                 Ok(())
             },
             |_, _, j| j.fill(0.0),
-        );
+        )
+        .with_series(|_, y| vec![y[0].number(0.0), y[0].number(f64::NAN)]);
         let start = Start { t: 0.0, y: vec![1.0, 1.0] };
         let status = integrate(&mut nan, &start, 1.0, &options(method)).unwrap().status;
         let not_finite = StopCause::NotFinite { component: 1 };
@@ -63,7 +64,8 @@ fn rates_that_are_not_finite_are_named() {
                 Ok(())
             },
             |_, _, j| j.fill(0.0),
-        );
+        )
+        .with_series(|_, y| vec![y[0].number(1.0), y[0].number(-1.0)]);
         let solution = integrate(&mut wall, &start, 1.0, &options(method)).unwrap();
         match solution.status {
             Status::Stopped { t, ref cause } => {
@@ -90,7 +92,8 @@ fn a_wall_is_walked_up_to_and_reported_in_the_problems_words() {
             Ok(())
         },
         |_, y, j| j[0] = -0.5 / (1.0 + y[0]).sqrt(),
-    );
+    )
+    .with_series(|_, y| vec![-&(&y[0] + &y[0].number(1.0)).powf(0.5)]);
     let steep = Case::new(
         1,
         |_, y, r| {
@@ -101,7 +104,8 @@ fn a_wall_is_walked_up_to_and_reported_in_the_problems_words() {
             Ok(())
         },
         |_, y, j| j[0] = 1.0 / (y[0] * y[0]),
-    );
+    )
+    .with_series(|_, y| vec![-&y[0].powf(-1.0)]);
     for method in Method::ALL {
         let solution = integrate(&mut gentle.clone(), &Start { t: 0.0, y: vec![0.0] }, 9.0, &options(method)).unwrap();
         match solution.status {
@@ -135,7 +139,8 @@ fn a_wall_next_to_the_start_is_no_hindrance_on_the_way_away() {
                 Ok(())
             },
             |_, _, j| j[0] = 1.0,
-        );
+        )
+        .with_series(|_, y| vec![y[0].clone()]);
         let solution = integrate(&mut case, &one(0.0), 1.0, &options(method)).unwrap();
         assert_eq!(solution.status, Status::Completed, "{method:?}");
         assert!((solution.dense.end_state()[0] - std::f64::consts::E).abs() < 1e-4);
@@ -258,6 +263,8 @@ fn every_bad_call() {
     assert!(matches!(call(&start, 0.0, &good), Some(CallError::EmptyInterval { start: 0.0, end: 0.0, .. })));
     let late = Start { t: 1.0, y: vec![1.0, 0.0] };
     assert!(matches!(call(&late, 1.0f64.next_up(), &good), Some(CallError::EmptyInterval { .. })));
+    let taylor = Options { method: Method::Taylor, ..good.clone() };
+    assert_eq!(integrate(&mut robertson(), &Start { t: 0.0, y: vec![1.0; 3] }, 1.0, &taylor).err(), Some(CallError::NoTaylor));
     let options = Options { max_steps: 0, ..good };
     assert_eq!(call(&start, 1.0, &options), Some(CallError::MaxSteps { found: 0, limit: 1 }));
 }
@@ -280,6 +287,15 @@ impl Problem for Interrupting {
     }
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
         self.case.jacobian(t, y, jacobian)
+    }
+    fn has_taylor(&self) -> bool {
+        true
+    }
+    fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationError> {
+        if t > 1.0 {
+            self.interrupt.raise();
+        }
+        self.case.taylor(t, y, unit, coefficients)
     }
 }
 
@@ -318,6 +334,13 @@ impl Problem for Diary {
     }
     fn jacobian(&mut self, _: f64, _: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
         jacobian[0] = 0.0;
+        Ok(())
+    }
+    fn has_taylor(&self) -> bool {
+        true
+    }
+    fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationError> {
+        solution(|t, _| vec![t.cos()], t, y, unit, coefficients);
         Ok(())
     }
     fn accepted(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationError> {

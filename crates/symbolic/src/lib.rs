@@ -72,5 +72,5 @@ pub use parse_error::{ParseError, ParseErrorKind};
 pub use range::Range;
 pub use scalar::Scalar;
 pub use series::{Correct, SeriesInput, SeriesTape, SeriesWorkspace};
-pub use series_scalar::{Product, SeriesScalar, Task, Weights};
+pub use series_scalar::{Product, SeriesScalar, Store, Task, Weights};
 pub use tape::{Tape, Workspace};

@@ -1,6 +1,6 @@
 //! Power series of expressions along a motion: Taylor coefficients order by order.
 
-use crate::series_scalar::{LANES, Product, SeriesScalar, Task, Weights};
+use crate::series_scalar::{LANES, Product, SeriesScalar, Store, Task, Weights};
 use crate::tape::{Tape, Workspace};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
@@ -41,6 +41,8 @@ pub(crate) struct Bilinear {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Definition {
     pub(crate) row: Row,
+    /// Where its products are added up; a row of zeros if it has none.
+    pub(crate) products: Row,
     /// End of its terms; they begin where those of the definition before end.
     pub(crate) end: usize,
 }
@@ -97,34 +99,49 @@ pub struct SeriesTape {
 /// The series of one thread that works with one [`SeriesTape`].
 #[derive(Clone, Debug)]
 pub struct SeriesWorkspace<T> {
+    /// Coefficients, series after series.
+    rows: Vec<T>,
+    plan: Plan<T>,
+}
+
+/// The tape with places instead of numbers of rows, for one order, and what order 0 gives.
+#[derive(Clone, Debug)]
+struct Plan<T> {
     order: usize,
     stride: usize,
     registers: Workspace<T>,
     /// Outputs of order 0.
     values: Vec<T>,
-    /// Coefficients, series after series.
-    rows: Vec<T>,
-    products: [Vec<Product>; 2],
-    scales: [Vec<T>; 2],
-    weights: Vec<T>,
-    /// First coefficient of the operand of each term.
-    operands: Vec<usize>,
+    products: [Vec<Product<T>>; 2],
+    definitions: Vec<Placed>,
+    /// Weight and place of the operand.
+    terms: Vec<(T, usize)>,
+    /// State and rate.
+    states: Vec<(usize, usize)>,
+    slopes: Vec<(usize, usize)>,
     /// Weights of pairs, `stride` a newest order, without and with 1/k.
     halves: [Vec<T>; 2],
-    /// 1/k
-    reciprocals: Vec<T>,
-    held: Vec<T>,
+    /// k and 1/k
+    orders: Vec<(T, T)>,
     residual: Vec<T>,
+}
+
+/// A [`Definition`] with the places of first coefficients.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    row: usize,
+    products: usize,
+    terms: usize,
 }
 
 impl<T: SeriesScalar> SeriesWorkspace<T> {
     /// The highest order of the states.
     pub fn order(&self) -> usize {
-        self.order
+        self.plan.order
     }
 
     fn row(&self, row: Row) -> &[T] {
-        &self.rows[row as usize * self.stride..][..=self.order]
+        &self.rows[row as usize * self.plan.stride..][..=self.plan.order]
     }
 }
 
@@ -150,10 +167,11 @@ impl SeriesTape {
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
         let order = order.max(1);
-        let stride = (order + 1 + 2 * LANES).next_multiple_of(LANES);
+        let stride = (order + 1 + LANES).next_multiple_of(LANES);
         let zero = T::from_f64(0.0);
         let at = |row: Row| row as usize * stride;
-        let place = |p: &Bilinear| Product { target: at(p.target), left: at(p.left), right: at(p.right) };
+        let place =
+            |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
         let mut halves = [vec![zero; order * stride], vec![zero; order * stride]];
         for newest in 1..order {
             for j in 1..=newest {
@@ -162,21 +180,31 @@ impl SeriesTape {
                 halves[1][newest * stride + j] = half / T::from_f64((newest + j) as f64);
             }
         }
-        SeriesWorkspace {
+        let mut begin = 0;
+        let definitions = self.definitions.iter().map(|d| {
+            let terms = d.end - begin;
+            begin = d.end;
+            Placed { row: at(d.row), products: at(d.products), terms }
+        });
+        let moving = self.states.iter().filter_map(|(state, rate)| match rate {
+            Source::Row(rate) => Some((at(*state), at(*rate))),
+            Source::Steady(_) => None,
+        });
+        let plan = Plan {
             order,
             stride,
             registers: self.first.workspace(),
             values: vec![zero; self.first.outputs()],
-            rows: vec![zero; self.rows * stride],
             products: [0, 1].map(|i: usize| self.products[i].iter().map(place).collect()),
-            scales: [0, 1].map(|i: usize| vec![zero; self.products[i].len()]),
-            weights: vec![zero; self.terms.len()],
-            operands: self.terms.iter().map(|(_, row)| at(*row)).collect(),
+            definitions: definitions.collect(),
+            terms: self.terms.iter().map(|(_, row)| (zero, at(*row))).collect(),
+            states: moving.collect(),
+            slopes: self.slopes.iter().map(|(slope, of)| (at(*slope), at(*of))).collect(),
             halves,
-            reciprocals: (0..=order).map(|k| T::from_f64(1.0) / T::from_f64(k as f64)).collect(),
-            held: vec![zero; self.definitions.len()],
+            orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
-        }
+        };
+        SeriesWorkspace { rows: vec![zero; T::room(self.rows * stride + LANES)], plan }
     }
 
     /// Computes the coefficients of all orders, from the inputs at order 0; unknowns must solve their equations there.
@@ -196,8 +224,13 @@ impl SeriesTape {
         sweeps: usize,
         correct: Correct<T>,
     ) {
-        assert_eq!(workspace.rows.len(), self.rows * workspace.stride, "the workspace of another tape");
-        T::dispatch(Expansion { tape: self, inputs, unit, workspace, sweeps, correct });
+        let SeriesWorkspace { rows, plan } = workspace;
+        assert!(
+            plan.values.len() == self.first.outputs() && plan.terms.len() == self.terms.len(),
+            "the workspace of another tape"
+        );
+        self.start(inputs, unit, rows, plan);
+        T::dispatch(rows, Expansion { tape: self, unit, plan, sweeps, correct });
     }
 
     /// The coefficients of an input, orders 0 to that of the workspace; `None` if it is constant in time.
@@ -207,131 +240,127 @@ impl SeriesTape {
 
     /// The coefficient of an output; orders up to one less than that of the workspace.
     pub fn output<T: SeriesScalar>(&self, index: usize, order: usize, workspace: &SeriesWorkspace<T>) -> T {
-        self.coefficient(self.outputs[index], order, workspace)
-    }
-
-    #[inline(always)]
-    fn coefficient<T: SeriesScalar>(&self, source: Source, order: usize, workspace: &SeriesWorkspace<T>) -> T {
-        match source {
-            Source::Row(row) => workspace.rows[row as usize * workspace.stride + order],
-            Source::Steady(slot) if order == 0 => workspace.values[slot as usize],
+        match self.outputs[index] {
+            Source::Row(row) => workspace.row(row)[order],
+            Source::Steady(slot) if order == 0 => workspace.plan.values[slot as usize],
             Source::Steady(_) => T::from_f64(0.0),
         }
     }
 
-    #[inline(always)]
-    fn start<T: SeriesScalar>(&self, inputs: &[T], unit: T, w: &mut SeriesWorkspace<T>) {
-        self.first.evaluate(inputs, &mut w.registers, &mut w.values);
-        w.rows.fill(T::from_f64(0.0));
-        for (row, value) in w.rows.chunks_exact_mut(w.stride).zip(&w.values) {
+    /// Order 0, and all that is known from it.
+    fn start<T: SeriesScalar>(&self, inputs: &[T], unit: T, rows: &mut [T], plan: &mut Plan<T>) {
+        self.first.evaluate(inputs, &mut plan.registers, &mut plan.values);
+        let values = &plan.values;
+        let rows = &mut rows[..self.rows * plan.stride];
+        rows.fill(T::from_f64(0.0));
+        for (row, value) in rows.chunks_exact_mut(plan.stride).zip(values) {
             row[0] = *value;
         }
         if let Some(time) = self.time {
-            w.rows[time as usize * w.stride + 1] = unit;
+            rows[time as usize * plan.stride + 1] = unit;
         }
-        for (scales, products) in w.scales.iter_mut().zip(&self.products) {
-            for (scale, product) in scales.iter_mut().zip(products) {
-                *scale = w.values[product.scale as usize];
+        for (state, rate) in &self.states {
+            if let Source::Steady(slot) = rate {
+                rows[*state as usize * plan.stride + 1] = values[*slot as usize] * unit;
             }
         }
-        for (weight, (slot, _)) in w.weights.iter_mut().zip(&self.terms) {
-            *weight = w.values[*slot as usize];
+        for (placed, products) in plan.products.iter_mut().zip(&self.products) {
+            for (placed, product) in placed.iter_mut().zip(products) {
+                placed.scale = values[product.scale as usize];
+            }
+        }
+        for (placed, (slot, _)) in plan.terms.iter_mut().zip(&self.terms) {
+            placed.0 = values[*slot as usize];
         }
     }
+}
 
+impl<T: SeriesScalar> Plan<T> {
     /// Pairs with a coefficient of order `k − 1`.
     #[inline(always)]
-    fn multiply<T: SeriesScalar>(&self, w: &mut SeriesWorkspace<T>, k: usize) {
+    fn multiply<S: Store<T> + ?Sized>(&self, rows: &mut S, k: usize) {
         let newest = k - 1;
         if newest == 0 {
             return;
         }
         for i in 0..2 {
-            let weights = Weights { of: &w.halves[i][newest * w.stride..][..w.stride], plain: i == 0 };
-            T::multiply(&mut w.rows, &w.products[i], &w.scales[i], weights, newest, w.order - 1);
+            let weights = Weights { of: &self.halves[i][newest * self.stride..][..self.stride], plain: i == 0 };
+            rows.multiply(&self.products[i], weights, newest, self.order - 1);
         }
     }
 
-    /// Linear terms of order `k` of the definitions from `from` to `to`.
+    /// Order `k` of `definitions`, whose terms are the first of `terms`.
     #[inline(always)]
-    fn add_terms<T: SeriesScalar>(&self, w: &mut SeriesWorkspace<T>, k: usize, from: usize, to: usize) {
-        let mut begin = if from == 0 { 0 } else { self.definitions[from - 1].end };
-        for definition in &self.definitions[from..to] {
-            let at = definition.row as usize * w.stride + k;
-            let mut sum = w.rows[at];
-            for (weight, operand) in w.weights[begin..definition.end].iter().zip(&w.operands[begin..definition.end]) {
-                sum = sum + *weight * w.rows[operand + k];
+    fn add_terms<S: Store<T> + ?Sized>(rows: &mut S, k: usize, definitions: &[Placed], terms: &[(T, usize)]) {
+        let mut terms = terms.iter();
+        for definition in definitions {
+            let mut sum = rows.get(definition.products + k);
+            for (weight, operand) in terms.by_ref().take(definition.terms) {
+                sum = sum + *weight * rows.get(operand + k);
             }
-            w.rows[at] = sum;
-            begin = definition.end;
+            rows.set(definition.row + k, sum);
         }
-    }
-
-    /// The unknowns of one block at order `k`, and what depends on them.
-    #[inline(always)]
-    fn solve<T: SeriesScalar>(&self, e: &mut Expansion<T>, k: usize, block: usize) {
-        let (from, to) = (self.stages[block], self.stages[block + 1]);
-        let Expansion { workspace: w, sweeps, correct, .. } = e;
-        let Implicit { unknowns, residuals } = &self.blocks[block];
-        let place = |definition: &Definition| definition.row as usize * w.stride + k;
-        for (held, definition) in w.held.iter_mut().zip(&self.definitions[from..to]) {
-            *held = w.rows[place(definition)];
-        }
-        for _ in 0..*sweeps {
-            self.add_terms(w, k, from, to);
-            for (i, source) in residuals.iter().enumerate() {
-                w.residual[i] = self.coefficient(*source, k, w);
-            }
-            correct(block, &mut w.residual[..residuals.len()]);
-            for (unknown, change) in unknowns.iter().zip(&w.residual) {
-                let at = *unknown as usize * w.stride + k;
-                w.rows[at] = w.rows[at] + *change;
-            }
-            for (held, definition) in w.held.iter().zip(&self.definitions[from..to]) {
-                w.rows[definition.row as usize * w.stride + k] = *held;
-            }
-        }
-        self.add_terms(w, k, from, to);
     }
 }
 
 struct Expansion<'a, 'c, T> {
     tape: &'a SeriesTape,
-    inputs: &'a [T],
     unit: T,
-    workspace: &'a mut SeriesWorkspace<T>,
+    plan: &'a mut Plan<T>,
     sweeps: usize,
     correct: Correct<'c, T>,
 }
 
-impl<T: SeriesScalar> Task for Expansion<'_, '_, T> {
-    type Result = ();
-
+impl<T: SeriesScalar> Expansion<'_, '_, T> {
+    /// The unknowns of one block at order `k`, and what depends on them.
     #[inline(always)]
-    fn run(mut self) {
-        let tape = self.tape;
-        tape.start(self.inputs, self.unit, self.workspace);
-        for k in 1..=self.workspace.order {
-            if k < self.workspace.order {
-                tape.multiply(self.workspace, k);
+    fn solve<S: Store<T> + ?Sized>(&mut self, rows: &mut S, k: usize, block: usize) {
+        let (tape, plan) = (self.tape, &mut *self.plan);
+        let (from, to) = (tape.stages[block], tape.stages[block + 1]);
+        let Implicit { unknowns, residuals } = &tape.blocks[block];
+        let first = if from == 0 { 0 } else { tape.definitions[from - 1].end };
+        for _ in 0..self.sweeps {
+            Plan::add_terms(rows, k, &plan.definitions[from..to], &plan.terms[first..]);
+            for (residual, source) in plan.residual.iter_mut().zip(residuals) {
+                *residual = match source {
+                    Source::Row(row) => rows.get(*row as usize * plan.stride + k),
+                    Source::Steady(_) => T::from_f64(0.0),
+                };
+            }
+            (self.correct)(block, &mut plan.residual[..residuals.len()]);
+            for (unknown, change) in unknowns.iter().zip(&plan.residual) {
+                let at = *unknown as usize * plan.stride + k;
+                rows.set(at, rows.get(at) + *change);
+            }
+        }
+        Plan::add_terms(rows, k, &plan.definitions[from..to], &plan.terms[first..]);
+    }
+}
+
+impl<T: SeriesScalar> Task<T> for Expansion<'_, '_, T> {
+    #[inline(always)]
+    fn run<S: Store<T> + ?Sized>(mut self, rows: &mut S) {
+        let order = self.plan.order;
+        let explicit = self.tape.stages[0];
+        for k in 1..=order {
+            if k < order {
+                self.plan.multiply(rows, k);
             }
             // Only now, so that no product waits for a coefficient that was just written.
-            let w = &mut *self.workspace;
-            let share = self.unit * w.reciprocals[k];
-            for (state, rate) in &tape.states {
-                let rate = tape.coefficient(*rate, k - 1, w);
-                w.rows[*state as usize * w.stride + k] = rate * share;
+            let share = self.unit * self.plan.orders[k].1;
+            for (state, rate) in &self.plan.states {
+                rows.set(state + k, rows.get(rate + k - 1) * share);
             }
-            if k == self.workspace.order {
+            if k == order {
                 return;
             }
-            tape.add_terms(self.workspace, k, 0, tape.stages[0]);
-            for block in 0..tape.blocks.len() {
-                tape.solve(&mut self, k, block);
+            Plan::add_terms(rows, k, &self.plan.definitions[..explicit], &self.plan.terms);
+            for block in 0..self.tape.blocks.len() {
+                self.solve(rows, k, block);
             }
-            let w = &mut *self.workspace;
-            for (slope, of) in &tape.slopes {
-                w.rows[*slope as usize * w.stride + k] = w.rows[*of as usize * w.stride + k] * T::from_f64(k as f64);
+            let factor = self.plan.orders[k].0;
+            for (slope, of) in &self.plan.slopes {
+                rows.set(slope + k, rows.get(of + k) * factor);
             }
         }
     }

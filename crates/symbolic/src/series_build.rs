@@ -503,8 +503,13 @@ impl<'i> Builder<'i> {
         definitions.sort_by_key(|(row, _)| stage(*row));
         let stages = (0..=blocks.len()).map(|b| definitions.partition_point(|(row, _)| stage(*row) <= 1 + b)).collect();
 
+        let none = self.fresh(None);
+        let mut totals: Vec<Row> = Vec::new();
         for (_, sum) in &mut definitions {
-            self.merge(sum);
+            let bare = sum.pairs.is_empty() && sum.pairs_over_k.is_empty();
+            totals.push(if bare { none } else { self.fresh(None) });
+            let terms = std::mem::take(&mut sum.terms);
+            sum.terms = self.merged(terms);
         }
         let zero = self.push(Value::Constant(Number::ZERO));
         let mut first: Vec<Id> = self.of_row.iter().map(|id| id.unwrap_or(zero)).collect();
@@ -517,12 +522,12 @@ impl<'i> Builder<'i> {
         };
         let mut products = [Vec::new(), Vec::new()];
         let (mut terms, mut ends) = (Vec::new(), Vec::new());
-        for (row, sum) in &definitions {
+        for ((row, sum), total) in definitions.iter().zip(&totals) {
             terms.extend(sum.terms.iter().map(|(weight, operand)| (slot(*weight), *operand)));
-            ends.push(Definition { row: *row, end: terms.len() });
+            ends.push(Definition { row: *row, products: *total, end: terms.len() });
             for (list, pairs) in products.iter_mut().zip([&sum.pairs, &sum.pairs_over_k]) {
                 list.extend(pairs.iter().enumerate().map(|(i, (scale, left, right))| {
-                    (i, Bilinear { scale: slot(*scale), target: *row, left: *left, right: *right })
+                    (i, Bilinear { scale: slot(*scale), target: *total, left: *left, right: *right })
                 }));
             }
         }
@@ -571,15 +576,15 @@ impl<'i> Builder<'i> {
     }
 
     /// Terms with the same operand become one.
-    fn merge(&mut self, sum: &mut Sum) {
+    fn merged(&mut self, terms: Vec<(Id, Row)>) -> Vec<(Id, Row)> {
         let mut merged: Vec<(Id, Row)> = Vec::new();
-        for (weight, row) in std::mem::take(&mut sum.terms) {
+        for (weight, row) in terms {
             match merged.iter_mut().find(|(_, other)| *other == row) {
                 Some((total, _)) => *total = self.push(Value::Add(*total, weight)),
                 None => merged.push((weight, row)),
             }
         }
-        sum.terms = merged;
+        merged
     }
 }
 
