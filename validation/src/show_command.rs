@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{EquationStyle, choices, derive, equations_text};
-use mechanics::{Scene, integrability};
+use deltaq::{Choice, EquationStyle, Settings, choices, derive, equations_text, ready, setting};
+use mechanics::{ConstantsRule, Cost, Equations, Scene, integrability};
 
 use crate::catalogue;
 use crate::cli::ShowArguments;
@@ -37,11 +37,45 @@ pub fn run(arguments: &ShowArguments) -> Result<String> {
     for choice in choices(&scene) {
         let _ = writeln!(text, "\n## {}\n", choice.label);
         match derive(&scene.system, &choice) {
-            Ok(equations) => text += &equations_text(&equations, style),
+            Ok(equations) => {
+                text += &equations_text(&equations, style);
+                text += &form(&scene, equations, &choice)?;
+            }
             Err(error) => {
                 let _ = writeln!(text, "refused: {error}");
             }
         }
     }
     Ok(text)
+}
+
+/// In which form the equations are evaluated, why, and what that costs.
+fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> {
+    // the start is needed, not the constants that are natural at a horizon: zero stands for them
+    let constants = match &choice.constants {
+        ConstantsRule::Natural { .. } => &ConstantsRule::Zero,
+        given => given,
+    };
+    let ready = match ready(setting(scene), equations, constants, &Settings::default()) {
+        Ok(ready) => ready,
+        Err(error) => return Ok(format!("\nNot started: {error}\n")),
+    };
+    let mut text = "\nEvaluated:\n\n".to_string();
+    for words in &ready.form {
+        let _ = writeln!(text, "- {words}");
+    }
+    let [plain, chosen] = ready.compiled.cost();
+    let Cost { instructions, factorization } = chosen;
+    let _ = write!(text, "- rates in {instructions} instructions");
+    if factorization > 0 {
+        let _ = write!(text, " and LU factorizations of {factorization} multiplications");
+    }
+    if plain != chosen {
+        let Cost { instructions, factorization } = plain;
+        let _ = write!(
+            text,
+            "; the plain form takes {instructions} and LU factorizations of {factorization} multiplications"
+        );
+    }
+    Ok(text + "\n")
 }

@@ -202,6 +202,7 @@ fn json_text(
         "invariants": invariants,
         "projection": { "count": motion.projection.projections, "largest": motion.projection.largest },
         "work": { "steps": motion.work.steps, "rejected": motion.work.rejected, "evaluations": motion.work.evaluations },
+        "form": { "why": motion.form.why, "fallbacks": motion.form.fallbacks },
         "seconds": {
             "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
         },

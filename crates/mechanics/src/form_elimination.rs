@@ -27,6 +27,16 @@ pub(crate) struct Definitions {
     pub(crate) moving: usize,
 }
 
+/// The row of a pivot: what is left of it when the rows before are taken out.
+struct Solved {
+    unknown: usize,
+    /// One over the pivot.
+    reciprocal: Expr,
+    /// Entries of unknowns that are eliminated later.
+    others: Vec<(usize, Expr)>,
+    right: Expr,
+}
+
 /// Expressions on their way into definitions.
 pub(crate) struct Elimination<'a> {
     pub(crate) graph: &'a Graph,
@@ -102,18 +112,18 @@ impl<'a> Elimination<'a> {
                 }
             }
             self.watch(&terms, pivot, reciprocal, &growth);
-            solved.push((c, reciprocal, others, b));
+            solved.push(Solved { unknown: c, reciprocal, others, right: b });
         }
         self.substitute_back(block, solved);
         Some(self.found)
     }
 
     /// `z_c = (b − Σ a_cj z_j)/a_cc`, last pivot first.
-    fn substitute_back(&mut self, block: &LinearBlock, solved: Vec<(usize, Expr, Vec<(usize, Expr)>, Expr)>) {
+    fn substitute_back(&mut self, block: &LinearBlock, solved: Vec<Solved>) {
         let g = self.graph;
         let mut values: HashMap<usize, Expr> = HashMap::new();
-        for (c, reciprocal, others, b) in solved.into_iter().rev() {
-            let mut terms = vec![b];
+        for Solved { unknown: c, reciprocal, others, right } in solved.into_iter().rev() {
+            let mut terms = vec![right];
             terms.extend(others.into_iter().map(|(j, e)| g.neg(g.mul(e, values[&j]))));
             let value = g.mul(self.total(&terms), reciprocal);
             self.found.list.push((block.unknowns[c], value));

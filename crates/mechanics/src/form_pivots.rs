@@ -199,9 +199,10 @@ mod tests {
     #[test]
     fn small_pivots_are_left_alone() {
         let light = pattern(&[&[1e-9, 0.0, 1.0], &[0.0, 1.0, 1.0], &[1.0, 1.0, 0.0]]).unwrap();
-        assert!(light.order(Strategy::Symmetric, &[false; 3], 1000).is_none());
-        let found = light.order(Strategy::Sparse, &[false; 3], 1000).unwrap();
-        assert!(!found.pivots.contains(&(0, 0)), "{found:?}");
+        for strategy in [Strategy::Symmetric, Strategy::Sparse] {
+            let found = light.order(strategy, &[false; 3], 1000).unwrap();
+            assert_ne!(found.pivots[0], (0, 0), "{strategy:?}");
+        }
         let dependent = pattern(&[&[1.0, 2.0], &[0.5, 1.0]]).unwrap();
         assert!(dependent.order(Strategy::Sparse, &[false; 2], 1000).is_none());
         assert!(

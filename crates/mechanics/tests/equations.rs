@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use mechanics::{Block, Compiled, Equations, EvaluationFailure, FreeConstant, Named, Role, StateVariable, System};
+use mechanics::{
+    Block, Compiled, Equations, EvaluationFailure, Form, FreeConstant, Named, Role, StateVariable, System,
+};
 use symbolic::{Expr, Graph};
 
 const REGULAR: &str = "whatever the test needs";
@@ -242,4 +244,75 @@ fn a_block_with_two_roots_keeps_to_the_one_it_was_settled_on() {
     compiled.set_guess(&[0.05]);
     let failure = compiled.rates(0.0, &[-0.01], &mut rate).unwrap_err();
     assert!(matches!(failure, EvaluationFailure::NotConverged { .. }), "{failure}");
+}
+
+/// `[x, e; e, −(3 + y²)] (vx, ay) = (y, 1)` with `e = 2 + x`, eliminated by way of the pivot `x`, which goes through zero where the matrix is regular.
+#[test]
+fn where_a_pivot_of_the_form_is_zero_the_plain_form_takes_over() {
+    let states = [("x", Role::Position, "vx"), ("y", Role::Position, "vy"), ("vy", Role::Velocity, "ay")];
+    let residuals: [&str; 2] = ["x*vx + (2 + x)*ay - y", "(2 + x)*vx - (3 + y^2)*ay - 1"];
+    let blocks: [(&[&str], &[&str]); 1] = [(&["vx", "ay"], &residuals)];
+    let equations = equations(&[], &states, &blocks, &["x", "y"], &["vx", "vy"]);
+    let g = &equations.graph;
+    let define = |name: &str, text: &str| (g.symbol(name), parse(g, text));
+    let form = Form {
+        definitions: vec![
+            define("l", "(2 + x)/x"),
+            define("ay", "(1 - l*y)/(-(3 + y^2) - l*(2 + x))"),
+            define("vx", "(y - (2 + x)*ay)/x"),
+        ],
+        condition: Some(parse(g, "l^2")),
+        ..Form::default()
+    };
+    let mut chosen = Compiled::with_form(&equations, &form).unwrap();
+    let mut plain = Compiled::plain(&equations).unwrap();
+    let mut worst = 0.0_f64;
+    // evenly, and ever closer to zero from both sides
+    let near = (1..=300).flat_map(|k| [1.0, -1.0].map(|s| s * 10.0_f64.powi(-k)));
+    for x in (-50..=50).map(|i| 0.01 * f64::from(i)).chain(near) {
+        let y = [x, 0.7, -0.2];
+        let mut rates = [[0.0; 3]; 2];
+        chosen.rates(0.0, &y, &mut rates[0]).unwrap();
+        plain.rates(0.0, &y, &mut rates[1]).unwrap();
+        worst = rates[0].iter().zip(&rates[1]).fold(worst, |a, (one, two)| a.max((one - two).abs()));
+        assert_eq!(chosen.outputs(0.0, &y).unwrap().velocities.len(), 2);
+    }
+    assert!(worst < 1e-12, "{worst:.1e}");
+    // |l| > 1000 where |x| < 0.002
+    assert_eq!(chosen.fallbacks(), 1 + 2 * 298);
+    // without the condition the same form is wrong
+    let mut careless = Compiled::with_form(&equations, &Form { condition: None, ..form }).unwrap();
+    let mut rates = [[0.0; 3]; 2];
+    careless.rates(0.0, &[1e-13, 0.7, -0.2], &mut rates[0]).unwrap();
+    plain.rates(0.0, &[1e-13, 0.7, -0.2], &mut rates[1]).unwrap();
+    assert!((rates[0][0] - rates[1][0]).abs() > 1e-6);
+}
+
+/// Six coupled unknowns in a chain: the elimination is as long as the chain, whatever the chosen pivots.
+#[test]
+fn a_chain_is_eliminated_in_definitions_and_dependent_rows_are_left_to_be_refused() {
+    let states = [("x", Role::Position, "z1"), ("y", Role::Position, "z6")];
+    let unknowns: [&str; 6] = ["z1", "z2", "z3", "z4", "z5", "z6"];
+    let residuals = [
+        "(3 + x^2)*z1 + y*z2 - 1",
+        "y*z1 + (3 + y^2)*z2 + x*z3",
+        "x*z2 + 4*z3 - z4 - y",
+        "5*z4 - z3 + x*z5",
+        "x*z4 + (3 + x^2)*z5 - z6",
+        "7*z6 - z5 - x",
+    ];
+    let chain = equations(&[], &states, &[(&unknowns, &residuals)], &["x", "y"], &["z1", "z6"]);
+    let form = Form::choose(&chain, Some(&[0.0, 0.4, -0.3])).unwrap();
+    assert!(form.left.is_empty() && form.why[0].contains("eliminated beforehand"), "{:?}", form.why);
+    let y = [0.9, 0.8];
+    let (mut one, mut two) = ([0.0; 2], [0.0; 2]);
+    Compiled::with_form(&chain, &form).unwrap().rates(0.0, &y, &mut one).unwrap();
+    Compiled::plain(&chain).unwrap().rates(0.0, &y, &mut two).unwrap();
+    assert!((one[0] - two[0]).abs() < 1e-15 && (one[1] - two[1]).abs() < 1e-15, "{one:?} {two:?}");
+    let twice =
+        equations(&[], &states, &[(&["z1", "z6"], &["x*z1 + y*z6 - 1", "2*x*z1 + 2*y*z6 - 2"])], &["x"], &["z1"]);
+    let form = Form::choose(&twice, Some(&[0.0, 0.4, -0.3])).unwrap();
+    assert_eq!(form.left, [0]);
+    let failure = Compiled::with_form(&twice, &form).unwrap().rates(0.0, &y, &mut one).unwrap_err();
+    assert!(matches!(failure, EvaluationFailure::Singular { .. }), "{failure}");
 }

@@ -4,6 +4,7 @@
 //! What fails is shrunk to the smallest system that still fails and printed as a scene file, and its seed is kept in `properties.seeds`.
 
 mod claims;
+mod forms;
 mod generator;
 mod invariants;
 mod support;

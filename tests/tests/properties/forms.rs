@@ -1,0 +1,153 @@
+//! The chosen form of the equations has the rates of the plain one.
+
+use deltaq::Motion;
+use integrate::{EvaluationError, Options, Problem, Start, integrate};
+use mechanics::{Compiled, Equations, Form};
+use nalgebra::DMatrix;
+use proptest::test_runner::TestCaseError;
+use validation::random::{Case, Kind, Recipe, Which, recipes_of};
+
+use crate::support::for_all;
+
+/// Instants of a motion at which rates are compared.
+const INSTANTS: usize = 8;
+
+/// Round-off over the condition of the block, relative to the largest unknown.
+const ROUND_OFF: f64 = 2e-14;
+
+/// Largest condition number of the blocks at `inputs = (t, y, constants)`, rows and columns scaled.
+fn condition(equations: &Equations, inputs: &[f64]) -> f64 {
+    let g = &equations.graph;
+    let mut largest = 1.0_f64;
+    for block in &equations.blocks {
+        let n = block.unknowns.len();
+        let jacobian = g.jacobian(&block.residuals, &block.unknowns);
+        let tape = g.compile(&equations.known_symbols(), jacobian.entries(), &equations.parameters).expect("linear");
+        let mut values = vec![0.0; n * n];
+        tape.evaluate(inputs, &mut tape.workspace(), &mut values);
+        let mut matrix = DMatrix::from_row_slice(n, n, &values);
+        matrix.column_iter_mut().for_each(|mut c| c /= c.amax());
+        matrix.row_iter_mut().for_each(|mut r| r /= r.amax());
+        let singular = matrix.singular_values();
+        largest = largest.max(singular[0] / singular[n - 1]);
+    }
+    largest
+}
+
+/// What the comparison along a motion found.
+struct Found {
+    /// Largest difference over what round-off allows.
+    worst: f64,
+    /// Blocks that are solved numerically all the same.
+    left: usize,
+}
+
+/// Compares rates and outputs of the form that is chosen at the start with those of the plain one; `None` where a block is not linear.
+fn compare(motion: &mut Motion) -> Option<Found> {
+    let equations = motion.equations.clone();
+    let constants = motion.constants.clone();
+    let mut plain = Compiled::plain(&equations).expect("compiles");
+    if plain.needs_guess() {
+        return None;
+    }
+    let inputs = |t: f64, y: &[f64]| [&[t], y, &constants].concat();
+    let start = motion.start();
+    let form = Form::choose(&equations, Some(&inputs(start, &motion.states_at(start)))).expect("compiles");
+    let mut chosen = Compiled::with_form(&equations, &form).expect("compiles");
+    plain.set_constants(&constants);
+    chosen.set_constants(&constants);
+    let mut worst = 0.0_f64;
+    for t in motion.grid(INSTANTS) {
+        let y = motion.states_at(t);
+        let mut rates = [vec![0.0; y.len()], vec![0.0; y.len()]];
+        chosen.rates(t, &y, &mut rates[0]).expect("regular");
+        plain.rates(t, &y, &mut rates[1]).expect("regular");
+        let outputs = [&mut chosen, &mut plain].map(|c| c.outputs(t, &y).expect("regular"));
+        let unknowns = plain.settle(t, &y).expect("regular");
+        let largest = |list: &[f64]| list.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+        let size = 1.0 + largest(unknowns) + largest(&rates[1]);
+        let [mut one, mut two] = rates;
+        one.extend(&outputs[0].multipliers);
+        two.extend(&outputs[1].multipliers);
+        assert_eq!(outputs[0].coordinates, outputs[1].coordinates);
+        let difference = one.iter().zip(&two).fold(0.0_f64, |a, (x, y)| a.max((x - y).abs()));
+        worst = worst.max(difference / (ROUND_OFF * condition(&equations, &inputs(t, &y)) * size));
+    }
+    Some(Found { worst, left: form.left.len() })
+}
+
+#[test]
+fn rates_of_the_chosen_form_are_those_of_the_plain_one_on_random_systems() {
+    for_all(96, &recipes_of(&Kind::ALL), |recipe: Recipe| {
+        let mut case = Case::new(recipe, "random").map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let removed: Vec<Which> = (0..case.removed.len()).map(Which::Removed).collect();
+        for which in [Which::Chetaev, Which::Vakonomic].into_iter().chain(removed) {
+            let Some(found) = compare(case.motion(which)) else { continue };
+            if found.worst.is_nan() || found.worst > 1.0 {
+                let words = format!("{which:?}: {:.1e} times round-off\n{}", found.worst, case.scene.to_toml());
+                return Err(TestCaseError::fail(words));
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
+    let mut count = 0;
+    for (name, text) in validation::catalogue::SCENES {
+        let scene = mechanics::Scene::parse(name, text).expect("a scene");
+        for choice in deltaq::choices(&scene) {
+            let Ok(mut motion) = deltaq::solve_choice(&scene, &choice, &deltaq::Settings::default()) else { continue };
+            let Some(found) = compare(&mut motion) else { continue };
+            assert!(found.worst <= 1.0, "{name}, {}: {:.1e}", choice.label, found.worst);
+            assert_eq!(found.left, 0, "{name}, {}: a block is left", choice.label);
+            count += 1;
+        }
+    }
+    assert!(count > 50, "{count}");
+}
+
+/// Equations in the plain form, as the time integrator sees them.
+struct Plain<'a>(&'a mut Compiled);
+
+impl Problem for Plain<'_> {
+    fn dimension(&self) -> usize {
+        self.0.dimension()
+    }
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
+        self.0.rates(t, y, rates).map_err(|e| EvaluationError { reason: e.to_string() })
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
+        self.0.jacobian(t, y, jacobian).map_err(|e| EvaluationError { reason: e.to_string() })
+    }
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, EvaluationError> {
+        self.0.project(t, y).map_err(|e| EvaluationError { reason: e.to_string() })
+    }
+}
+
+#[test]
+fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
+    for (name, formulation) in [("trailer", "vakonomic"), ("ball-in-cone", "removed-constraint")] {
+        let scene = validation::catalogue::find(name, &[]).expect("a scene");
+        let choices = deltaq::choices(&scene);
+        let choice = choices.iter().find(|c| c.formulation == formulation).expect("a choice");
+        let mut motion = deltaq::solve_choice(&scene, choice, &deltaq::Settings::default()).expect("a motion");
+        let (evaluations, fallbacks) = (motion.work.evaluations, motion.form.fallbacks);
+        assert!(fallbacks > 0 && 20 * fallbacks < evaluations, "{name}: {fallbacks} of {evaluations}");
+        let mut plain = Compiled::plain(&motion.equations).expect("compiles");
+        plain.set_constants(&motion.constants);
+        let (t, end) = (motion.start(), motion.end());
+        let start = Start { t, y: motion.states_at(t) };
+        let solution = integrate(&mut Plain(&mut plain), &start, end, &Options::with_tolerance(1e-13)).expect("a call");
+        let mut y = vec![0.0; start.y.len()];
+        for t in motion.grid(20) {
+            solution.dense.evaluate(t, &mut y);
+            let other = plain.outputs(t, &y).expect("regular").coordinates;
+            let allowed = motion.difference_of_runs(t).expect("readable").iter().fold(1e-11_f64, |a, d| a.max(d.abs()));
+            let ours = motion.at(t).expect("readable").coordinates;
+            let gap = ours.iter().zip(&other).fold(0.0_f64, |a, (x, y)| a.max((x - y).abs()));
+            assert!(gap <= allowed, "{name} at {t}: {gap:.1e}, allowed {allowed:.1e}");
+        }
+    }
+}
