@@ -8,7 +8,7 @@ mod error;
 mod formulation;
 mod instant;
 mod integrability;
-mod linear;
+pub mod linear;
 pub mod newton;
 mod projection;
 mod rank;

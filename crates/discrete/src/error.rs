@@ -1,11 +1,11 @@
-//! What the referee says when it cannot answer.
+//! Why there is no discrete motion.
 
 use mechanics::StartError;
 use symbolic::CompileError;
 use thiserror::Error;
 
-/// The referee cannot answer.
-#[derive(Debug, Error)]
+/// There is no discrete motion, or it ends before its time.
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DiscreteError {
     /// `L`, `f`, `Q` or the removal contains a name without a value, or something that is not finite.
@@ -65,7 +65,7 @@ pub enum DiscreteError {
     OffConstraint {
         /// Largest `|f_i| / (|A_i| (1 + |v|))`.
         found: f64,
-        /// [`super::START_LIMIT`].
+        /// [`crate::START_LIMIT`].
         limit: f64,
     },
     /// The matrix of a step is singular.
