@@ -74,9 +74,9 @@ pub enum DiscreteError {
         /// Time of the node where the step starts.
         t: f64,
     },
-    /// Newton's method does not settle.
+    /// Newton's method does not settle, or not at once, so that its root may be another one: the step is too long for the motion.
     #[error(
-        "the step from t = {t} is not solved after {iterations} iterations: the last changed it by {found}, limit {limit}"
+        "the step from t = {t} is too long: its equations are not solved after {iterations} iterations, of which the last changed them by {found:.1e}, limit {limit:.0e}"
     )]
     NotConverged {
         /// Time of the node where the step starts.

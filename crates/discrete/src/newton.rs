@@ -19,6 +19,9 @@ const UNNOTICED: f64 = 2e-17;
 /// Iterations of one step.
 const ITERATIONS: usize = 40;
 
+/// A correction over this part of the one before, while corrections are over [`ROUND_OFF`], may lead to another root: the step is refused.
+const CONTRACTION: f64 = 0.5;
+
 /// A tape with its registers and outputs.
 #[derive(Clone, Debug)]
 pub(crate) struct Program {
@@ -92,7 +95,7 @@ impl Iteration {
         let count = self.correction.len();
         let first = self.inputs.len() - count;
         let (mut before, mut found) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..ITERATIONS {
+        for iterations in 1..=ITERATIONS {
             let outputs = self.program.evaluate(&self.inputs);
             check_finite("an equation of a step", t, &outputs[..count])?;
             let (residuals, jacobian) = outputs.split_at(count);
@@ -110,10 +113,11 @@ impl Iteration {
             if self.linear || found <= SOLVED || (before.is_finite() && next <= UNNOTICED) {
                 return Ok(());
             }
-            if found <= ROUND_OFF && found >= 0.5 * before {
-                return Ok(());
+            match (found >= CONTRACTION * before, found <= ROUND_OFF) {
+                (true, true) => return Ok(()),
+                (true, false) => return Err(DiscreteError::NotConverged { t, iterations, found, limit: SOLVED }),
+                (false, _) => before = found,
             }
-            before = found;
         }
         Err(DiscreteError::NotConverged { t, iterations: ITERATIONS, found, limit: SOLVED })
     }

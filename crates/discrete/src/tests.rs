@@ -84,8 +84,12 @@ fn every_error_is_said() {
     twice.constraints.push(twice.constraints[0]);
     let e = Discrete::chetaev(&twice, start, 1.0).unwrap().positions(3).unwrap_err();
     assert!(matches!(e, DiscreteError::Singular { t: 0.0 }), "{e}");
-    // z'² = a²(x'² + y'²) at rest has no direction
     let hamel = scene("appell-hamel");
+    let heading = hamel.removals.iter().find(|r| r.name == "by-heading").unwrap();
+    let at = RemovedStart::at(&hamel.system, heading, &hamel.start, &[0.1; 3]).unwrap();
+    let e = Discrete::removed(&hamel.system, heading, &at, 1.0, Ends::GivenStart).unwrap().positions(100).unwrap_err();
+    assert!(matches!(e, DiscreteError::Singular { t: 0.0 }), "{e}");
+    // z'² = a²(x'² + y'²) at rest has no direction
     let rest = State { v: vec![0.0; 3], ..hamel.start.clone() };
     let e = refused(Discrete::chetaev(&hamel.system, &rest, 1.0));
     assert!(matches!(e, DiscreteError::OffConstraint { found, .. } if found.is_nan()), "{e}");
