@@ -19,8 +19,11 @@ const UNNOTICED: f64 = 2e-17;
 /// Iterations of one step.
 const ITERATIONS: usize = 40;
 
-/// A correction over this part of the one before, while corrections are over [`ROUND_OFF`], may lead to another root: the step is refused.
+/// A correction over this part of the one before, while corrections are over [`FAR`], may lead to another root: the step is refused.
 const CONTRACTION: f64 = 0.5;
+
+/// What corrections under this part of the unknowns lead to is near.
+const FAR: f64 = 1e-2;
 
 /// A tape with its registers and outputs.
 #[derive(Clone, Debug)]
@@ -113,11 +116,14 @@ impl Iteration {
             if self.linear || found <= SOLVED || (before.is_finite() && next <= UNNOTICED) {
                 return Ok(());
             }
-            match (found >= CONTRACTION * before, found <= ROUND_OFF) {
-                (true, true) => return Ok(()),
-                (true, false) => return Err(DiscreteError::NotConverged { t, iterations, found, limit: SOLVED }),
-                (false, _) => before = found,
+            let shrinks = found < CONTRACTION * before;
+            if !shrinks && found <= ROUND_OFF {
+                return Ok(());
             }
+            if !shrinks && found > FAR {
+                return Err(DiscreteError::NotConverged { t, iterations, found, limit: SOLVED });
+            }
+            before = found;
         }
         Err(DiscreteError::NotConverged { t, iterations: ITERATIONS, found, limit: SOLVED })
     }
