@@ -63,6 +63,31 @@ fn a_step_back_undoes_a_step() {
 }
 
 #[test]
+fn motions_are_read_off_between_nodes_as_well_as_at_them() {
+    let exact = |t: f64| 0.3 + 1.1 * t;
+    for (name, what) in [("sledge", "Chetaev"), ("heisenberg", "vakonomic")] {
+        let discrete = motions(name).into_iter().find(|m| m.0 == what).unwrap().1.composed(Composition::Sixth);
+        let mut fine = discrete.trajectory(64).unwrap();
+        let mut coarse = discrete.trajectory(20).unwrap();
+        let h = coarse.step();
+        for k in 0..=20 {
+            for part in [0.0, 1e-17, 1e-15, 1e-12, 1e-6, 0.06, 0.07, 0.5, 0.99, 1.0 - 1e-14] {
+                let t = ((f64::from(k) + part) * h).min(1.0);
+                let (one, two) = (coarse.at(t).unwrap(), fine.at(t).unwrap());
+                for (a, b) in [(&one.x, &two.x), (&one.v, &two.v)] {
+                    let found = newton::largest(&difference(a, b));
+                    assert!(found < 1e-8, "{name} at {t}: {found:e}");
+                }
+                if name == "sledge" {
+                    assert!((one.x[2] - exact(t)).abs() < 1e-14, "{t}");
+                    assert!((one.v[1] * one.x[2].cos() - one.v[0] * one.x[2].sin()).abs() < 1e-14, "{t}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn steps_of_stationary_action_are_symplectic() {
     let mut count = 0;
     for name in ["sledge", "particle", "ball-in-cone", "heisenberg"] {

@@ -4,6 +4,9 @@ use crate::step::Node;
 use crate::sum::Compensated;
 use crate::{Discrete, DiscreteError};
 
+/// A part of a step that is too short to be a step of its own.
+const SHORT: f64 = 1.0 / 16.0;
+
 /// A discrete motion at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
@@ -78,20 +81,31 @@ impl Trajectory {
         self.times[self.times.len() - 1]
     }
 
-    /// The motion at `t`: at a node what stands there, between nodes one step of the method, of length `t − t_k`, from the node before. So the
-    /// order is the same everywhere. A `t` outside is answered from the nearest node as well.
+    /// The motion at `t`: at a node what stands there, between nodes one step of the method from the node before, so that the order is the
+    /// same everywhere. Just behind a node the step is taken from the one before that, and just behind the start back from the next: reactions
+    /// over a very short step would be quotients of round-off. A `t` outside is answered from the nearest node as well.
     ///
     /// # Errors
     /// Those of a step.
     pub fn at(&mut self, t: f64) -> Result<Sample, DiscreteError> {
         let before = |time: f64| if self.h >= 0.0 { time <= t } else { time >= t };
+        let last = self.times.len() - 1;
         let k = self.times.partition_point(|&time| before(time)).saturating_sub(1);
-        let mut node = self.node(k);
-        self.discrete.step.forget();
-        if t != node.t {
-            let h = t - node.t;
-            self.discrete.composed_step(&mut node, h, t)?;
+        let near = |k: usize, share: f64| (t - self.times[k]).abs() <= share;
+        let round_off = 4.0 * f64::EPSILON * self.times[0].abs().max(self.end().abs());
+        if let Some(k) = [k, (k + 1).min(last)].into_iter().find(|&k| near(k, round_off)) {
+            let node = self.node(k);
+            return self.discrete.sample(node);
         }
+        let from = match near(k, SHORT * self.h.abs()) {
+            false => k,
+            true if k > 0 => k - 1,
+            true => 1.min(last),
+        };
+        let mut node = self.node(from);
+        self.discrete.step.forget();
+        let h = t - node.t;
+        self.discrete.composed_step(&mut node, h, t)?;
         self.discrete.sample(node)
     }
 
