@@ -4,7 +4,8 @@
 //! transformed so that one real and one complex matrix of n rows are factorized, `(γ/h) − J` and `((α + iβ)/h) − J`; Jacobian and factors are
 //! kept while the iteration contracts well. Dense output is the collocation polynomial, of degree 3. The estimate has order 3 too, and unlike in RADAU5,
 //! which asks for `0.1 · tolerance^(2/3)` of it, it is held under the tolerance as it stands: so the dense output is as good as the tolerance,
-//! and the ends of the steps are better by orders.
+//! and the ends of the steps are better by orders. That estimate does not see what is stiff, whose polynomial may be wrong between collocation points;
+//! so a second one compares the ends of the steps with where the polynomial before leads.
 //!
 //! E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, IV.8.
 
@@ -39,6 +40,8 @@ const SAFETY: f64 = 0.9;
 /// Steps shrink at most by 8 and grow at most by 8, before that by 5 where the estimate was the reason (RADAU5's `FACL`, `FACR`).
 const SLOWEST: f64 = 5.0;
 const FASTEST: f64 = 0.125;
+/// Largest `θ (θ − c₁)(θ − c₂)(1 − θ)` on a step.
+const BETWEEN: f64 = 0.018;
 /// Newton iterations of one step.
 const ITERATIONS: usize = 7;
 /// The Jacobian is kept while the iteration contracts by this.
@@ -81,6 +84,8 @@ pub(crate) struct Radau5<'s, 'p> {
     /// The last step's length and its polynomial without the constant, for starting values.
     last: Option<(f64, [Vec<f64>; 3])>,
     contraction: f64,
+    /// `z₃` as guessed.
+    guessed_end: Vec<f64>,
     /// `Θ/(1 − Θ)`, kept from step to step.
     margin: f64,
     candidate: Vec<f64>,
@@ -127,6 +132,7 @@ impl<'s, 'p> Radau5<'s, 'p> {
             argument: vec![0.0; n],
             last: None,
             contraction: 1.0,
+            guessed_end: vec![0.0; n],
             margin: 1.0,
             candidate: vec![0.0; n],
             candidate_raw: vec![0.0; n],
@@ -182,6 +188,7 @@ impl<'s, 'p> Radau5<'s, 'p> {
                 });
             }
         }
+        self.guessed_end.copy_from_slice(&self.z[2]);
         for i in 0..n {
             for (row, w) in T_INVERSE.iter().zip(&mut self.w) {
                 w[i] = row[0] * self.z[0][i] + row[1] * self.z[1][i] + row[2] * self.z[2][i];
@@ -253,6 +260,16 @@ impl<'s, 'p> Radau5<'s, 'p> {
         Ok(Err(0.5))
     }
 
+    /// The error of the polynomial between collocation points in units of the tolerance: both it and that of its predecessor's continuation are
+    /// `h⁴ y⁗/24` times the product of the distances from the points.
+    fn estimate_between(&self, h: f64) -> f64 {
+        let Some((before, _)) = &self.last else { return 0.0 };
+        let ratio = h / before;
+        let reach: f64 = NODES.iter().map(|c| (1.0 + ratio - c) / ratio).product::<f64>() * (1.0 + ratio) / ratio;
+        let differences = (0..self.y.len()).map(|i| (self.z[2][i] - self.guessed_end[i]) / self.scale(i));
+        BETWEEN * rms(differences) / reach
+    }
+
     /// The error of the candidate in units of the tolerance.
     fn estimate(&mut self, h: f64) -> Result<f64, Failure> {
         let n = self.y.len();
@@ -315,7 +332,7 @@ impl Stepper for Radau5<'_, '_> {
             }
         };
         let error = match self.estimate(h) {
-            Ok(error) => error,
+            Ok(error) => error.max(self.estimate_between(h)),
             Err(failure) => return Attempt::Failed(failure),
         };
         for i in 0..self.y.len() {
