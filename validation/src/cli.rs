@@ -113,6 +113,12 @@ pub struct SolveArguments {
     /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
     #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
     pub tolerance: f64,
+    /// Longest step of `--method leapfrog`. A second run has steps twice as long; the difference is the error estimate.
+    #[arg(long, value_name = "H", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
+    #[arg(long, value_parser = ["2", "4", "6", "8"])]
+    pub order: Option<String>,
     /// Times to print: `a,b,c` or `from:to:count`. 101 equidistant ones if left out.
     #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
     pub times: Option<String>,
@@ -239,7 +245,7 @@ pub struct ReportsArguments {
 }
 
 /// Names of the methods.
-#[derive(ValueEnum, Clone, Copy, Debug)]
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodName {
     /// Taylor series, of the order that the tolerance asks for.
     Taylor,
@@ -253,18 +259,25 @@ pub enum MethodName {
     TrBdf2,
     /// Implicit Runge–Kutta, order 4.
     Esdirk34,
+    /// Implicit Runge–Kutta, Radau IIA of order 5.
+    Radau5,
+    /// Discrete variational principle in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
+    Leapfrog,
 }
 
-impl From<MethodName> for integrate::Method {
-    fn from(name: MethodName) -> Self {
-        match name {
+impl MethodName {
+    /// The method of the time loop; none for the one that has no time loop.
+    pub fn of_time_loop(self) -> Option<integrate::Method> {
+        Some(match self {
             MethodName::Taylor => integrate::Method::Taylor,
             MethodName::Dop853 => integrate::Method::Dop853,
             MethodName::Tsit45 => integrate::Method::Tsit45,
             MethodName::Bdf => integrate::Method::Bdf,
             MethodName::TrBdf2 => integrate::Method::TrBdf2,
             MethodName::Esdirk34 => integrate::Method::Esdirk34,
-        }
+            MethodName::Radau5 => integrate::Method::Radau5,
+            MethodName::Leapfrog => return None,
+        })
     }
 }
 

@@ -2,15 +2,16 @@
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, Ending, FORMS, FORMULATIONS, Motion, Settings, default_constants, error_estimate, formulation, removals,
-    setting, solve_choice,
+    Choice, Ending, FORMS, FORMULATIONS, Motion, Settings, Steps, default_constants, error_estimate, formulation,
+    removals, setting, solve_by_steps, solve_choice,
 };
+use discrete::Composition;
 use integrate::Projection;
 use mechanics::{ConstantsRule, Removal, Scene};
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
-use crate::cli::{Format, SolveArguments};
+use crate::cli::{Format, MethodName, SolveArguments};
 
 /// Relative error estimate over which a trajectory is not trusted.
 const TRUSTED: f64 = 1e-3;
@@ -36,20 +37,25 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
     }
     let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
     let choice = choice(&scene, arguments)?;
+    let defaults = Settings::default();
     let settings = Settings {
         tolerance: arguments.tolerance,
-        method: arguments.method.into(),
+        method: arguments.method.of_time_loop().unwrap_or(defaults.method),
         projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
-        ..Settings::default()
+        ..defaults
     };
     let wanted = times(arguments.times.as_deref(), &scene)?;
-    let mut motion = solve_choice(&scene, &choice, &settings)?;
+    let mut motion = match steps(arguments)? {
+        None => solve_choice(&scene, &choice, &settings)?,
+        Some(steps) => solve_by_steps(&scene, &choice, steps, &settings)?,
+    };
     let estimate = error_estimate(&mut motion, setting(&scene))?;
     let complaint = match &motion.ending {
         Ending::Stopped { t, cause } => Some(format!("stopped at t = {t}: {cause}")),
         Ending::Completed if estimate.relative.is_nan() || estimate.relative > TRUSTED => Some(format!(
-            "not to be trusted: relative error estimate {:.1e}, limit {TRUSTED:.0e}; ask for a smaller --tolerance",
-            estimate.relative
+            "not to be trusted: relative error estimate {:.1e}, limit {TRUSTED:.0e}; ask for a smaller {}",
+            estimate.relative,
+            if arguments.step.is_some() { "--step" } else { "--tolerance" }
         )),
         Ending::Completed => None,
     };
@@ -59,6 +65,25 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
         Format::Json => json_text(&scene, &choice, &mut motion, &reached, estimate.absolute, complaint.as_deref())?,
     };
     Ok(Answer { text, complaint })
+}
+
+/// The steps of the method that has no time loop; none for the others.
+fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
+    if arguments.method != MethodName::Leapfrog {
+        if arguments.step.is_some() || arguments.order.is_some() {
+            bail!(
+                "--step and --order belong to --method leapfrog; the other methods choose their steps by --tolerance"
+            );
+        }
+        return Ok(None);
+    }
+    if arguments.no_projection {
+        bail!("--no-projection is for the other methods: every step of leapfrog ends on the constraint");
+    }
+    let step = arguments.step.context("--method leapfrog takes equal steps: say how long with --step")?;
+    let order = arguments.order.as_deref().unwrap_or("2");
+    let composition = order.parse().ok().and_then(Composition::of_order);
+    Ok(Some(Steps { step, composition: composition.with_context(|| format!("there is no order {order}"))? }))
 }
 
 fn choice(scene: &Scene, arguments: &SolveArguments) -> Result<Choice> {

@@ -144,7 +144,14 @@ fn multipliers_and_constants_choose_the_motion() {
 #[test]
 fn options_of_the_integration_are_heard() {
     let reference = column(&json(&["sledge", "-f", "chetaev", "--times", "10"]), "coordinates", "y")[0];
-    let methods = [("dop853", "1e-8"), ("tsit45", "1e-8"), ("bdf", "1e-7"), ("tr-bdf2", "1e-6"), ("esdirk34", "1e-7")];
+    let methods = [
+        ("dop853", "1e-8"),
+        ("tsit45", "1e-8"),
+        ("bdf", "1e-7"),
+        ("tr-bdf2", "1e-6"),
+        ("esdirk34", "1e-7"),
+        ("radau5", "1e-7"),
+    ];
     for (method, tolerance) in methods {
         let value = json(&["sledge", "-f", "chetaev", "--times", "10", "--method", method, "--tolerance", tolerance]);
         let error = (column(&value, "coordinates", "y")[0] - reference).abs();
@@ -162,6 +169,49 @@ fn options_of_the_integration_are_heard() {
     assert_eq!(column(&moon, "coordinates", "x")[0], 2.0);
     let free = json(&["sledge", "-f", "chetaev", "--no-projection"]);
     assert_eq!(free["projection"]["count"], 0);
+}
+
+#[test]
+fn equal_steps_keep_the_constraint_and_have_their_order() {
+    // φ = 0.3 + 1.1 t; x = (c sin φ + k sin²φ/2)/ω − …, of which the step's error is measured
+    let (omega, k) = (1.1_f64, 9.81 * 0.4_f64.sin() / 1.1);
+    let x = |phi: f64| ((0.5 - k * 0.3_f64.sin()) * phi.sin() + k * phi.sin().powi(2) / 2.0) / omega;
+    for (order, limit) in [("2", 2e-3), ("4", 2e-6), ("6", 2e-9), ("8", 1e-11)] {
+        let leapfrog = ["--method", "leapfrog", "--step", "0.025", "--order", order];
+        let value = json(&[&["sledge", "-f", "chetaev", "--times", "9.987,10"], &leapfrog[..]].concat());
+        let error = (column(&value, "coordinates", "x")[1] - (x(11.3) - x(0.3))).abs();
+        let estimate = value["error_estimate"].as_f64().expect("a number");
+        println!("leapfrog of order {order}: error {error:.1e}, estimate {estimate:.1e}, {}", value["work"]);
+        assert!(error < limit && error < estimate + 1e-12, "order {order}: {error:e}, estimate {estimate:e}");
+        assert_eq!(value["work"]["steps"], 400);
+        for i in 0..2 {
+            let phi = column(&value, "coordinates", "phi")[i];
+            let [vx, vy] = ["x", "y"].map(|name| column(&value, "velocities", name)[i]);
+            assert!((vy * phi.cos() - vx * phi.sin()).abs() < 4e-15, "order {order}");
+        }
+    }
+    for formulation in ["vakonomic", "vakonomic-costate", "removed-constraint"] {
+        let leapfrog = ["--method", "leapfrog", "--step", "0.005", "--order", "6", "--times", "0,0.501,1"];
+        let one = json(&[&["sledge", "-f", formulation], &leapfrog[..]].concat());
+        let two = json(&["sledge", "-f", formulation, "--times", "0,0.501,1"]);
+        for group in ["coordinates", "velocities", "multipliers"] {
+            for name in keys(&two[group]) {
+                for (a, b) in column(&one, group, name).iter().zip(column(&two, group, name)) {
+                    assert!((a - b).abs() < 1e-8 * (1.0 + b.abs()), "{formulation}, {group}.{name}: {a} {b}");
+                }
+            }
+        }
+    }
+    let solve = ["solve", "sledge", "-f", "chetaev"];
+    let leapfrog = ["--method", "leapfrog"];
+    refused(&[&solve[..], &leapfrog].concat(), &["--step"]);
+    refused(&[&solve[..], &["--step", "0.1"]].concat(), &["--method leapfrog"]);
+    refused(&[&solve[..], &leapfrog, &["--step", "0.1", "--order", "3"]].concat(), &["3", "4"]);
+    refused(&[&solve[..], &leapfrog, &["--step", "-0.1"]].concat(), &["-0.1"]);
+    refused(&[&solve[..], &leapfrog, &["--step", "1e-9"]].concat(), &["10000000 steps"]);
+    refused(&[&solve[..], &leapfrog, &["--step", "0.1", "--no-projection"]].concat(), &["constraint"]);
+    let three = ["solve", "three-cylinders", "-f", "removed-constraint", "--removal", "paper"];
+    refused(&[&three[..], &leapfrog, &["--step", "0.01"]].concat(), &["first order", "u'"]);
 }
 
 #[test]

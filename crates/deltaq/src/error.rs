@@ -1,5 +1,6 @@
 //! Why a motion could not be computed.
 
+use discrete::DiscreteError;
 use integrate::{BoundaryError, CallError};
 use mechanics::{DerivationError, EvaluationFailure, RemovalError, StartError};
 use symbolic::CompileError;
@@ -74,6 +75,27 @@ pub enum SolveError {
         horizon: f64,
         /// What the boundary-value solver says.
         error: BoundaryError,
+    },
+    /// There is no discrete motion, or it cannot be read off.
+    #[error(transparent)]
+    Discrete(#[from] DiscreteError),
+    /// The formulation has no discrete principle.
+    #[error("{formulation} has no discrete principle to step by")]
+    NoPrinciple {
+        /// Name of the formulation.
+        formulation: String,
+    },
+    /// The length of a step makes no sense.
+    #[error(
+        "a step of {step} over a time of {length}: 1 to {limit} steps are possible, and the step must be finite and above 0"
+    )]
+    Step {
+        /// The step asked for.
+        step: f64,
+        /// The time to go.
+        length: f64,
+        /// Largest number of steps.
+        limit: usize,
     },
     /// The time integrator was called wrongly.
     #[error(transparent)]

@@ -59,7 +59,7 @@ pub fn best_fit(
             let broken = |reason: String| BoundaryError::Residual { reason };
             let run = prepared.run(constants, end, tolerance, limits).map_err(|e| broken(e.to_string()))?;
             run.solution.completed()?;
-            let run = run.trajectory();
+            let mut run = run.trajectory();
             let mut y = vec![0.0; prepared.equations.states.len()];
             for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
                 let outputs = run.outputs(&mut prepared.compiled, *t, &mut y).map_err(|e| broken(e.to_string()))?;

@@ -6,6 +6,7 @@
 //!
 //! - [`FORMULATIONS`]: the table.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate.
+//! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
 //! - [`ready()`]: the equations compiled, for other integrators.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
@@ -19,8 +20,10 @@ mod growth;
 mod horizon;
 mod metric;
 mod motion;
+mod nodes;
 mod ready;
 mod run;
+mod steps;
 mod table;
 
 pub use comparison::{
@@ -38,4 +41,5 @@ pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
 pub use motion::{Ending, FormReport, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
 pub use ready::{Ready, SingleRun, ready};
+pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
 pub use table::{FORMS, FORMULATIONS, formulation};

@@ -97,7 +97,7 @@ pub struct Motion {
 impl Motion {
     /// Time of the start.
     pub fn start(&self) -> f64 {
-        self.kept.dense.start()
+        self.kept.ends()[0]
     }
 
     /// Last time that both runs reached and at which both can be read off: where a motion stops at a singularity, a little before it.
@@ -112,7 +112,7 @@ impl Motion {
 
     /// End points of the steps of the kept run.
     pub fn step_times(&self) -> Vec<f64> {
-        self.kept.dense.step_times()
+        self.kept.step_times()
     }
 
     /// Coordinates, velocities, multipliers and invariants at `t`.
@@ -124,9 +124,12 @@ impl Motion {
     }
 
     /// The states `y` at `t` from the kept run, in the order of the states of [`Motion::equations`].
-    pub fn states_at(&mut self, t: f64) -> Vec<f64> {
-        self.kept.dense.evaluate(t, &mut self.state);
-        self.state.clone()
+    ///
+    /// # Errors
+    /// As [`Motion::at`].
+    pub fn states_at(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
+        self.kept.state(&mut self.compiled, t, &mut self.state)?;
+        Ok(self.state.clone())
     }
 
     /// Difference of the coordinates of the two runs at `t`: what the looser run was wrong by, and a bound in practice for the kept one.
@@ -206,37 +209,53 @@ pub fn solve(
     let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
     let ending = ending(&mut prepared, &kept.solution);
-    let size = prepared.equations.states.len();
-    let form = FormReport { why: prepared.form.why.clone(), fallbacks: kept.fallbacks };
     let (work, projection) = (kept.solution.work, kept.solution.projection);
-    let (kept, looser) = (kept.trajectory(), looser.trajectory());
-    let end = readable_end(&mut prepared.compiled, &kept, &looser);
-    Ok(Motion {
-        end,
-        ending,
-        constants,
-        work,
-        projection,
-        seconds: Seconds { derive: 0.0, compile, integrate },
-        form,
-        kept,
-        looser,
-        state: vec![0.0; size],
-        other: vec![0.0; size],
-        equations: prepared.equations,
-        compiled: prepared.compiled,
-    })
+    let fallbacks = kept.fallbacks;
+    let runs = [kept.trajectory(), looser.trajectory()];
+    let seconds = Seconds { derive: 0.0, compile, integrate };
+    let mut motion = Motion { work, projection, ..Motion::of(prepared, constants, ending, runs, seconds) };
+    motion.form.fallbacks = fallbacks;
+    Ok(motion)
+}
+
+impl Motion {
+    /// Of the `kept` and the looser run, which are told apart by nothing but their order; no work and no projections.
+    pub(crate) fn of(
+        mut prepared: Prepared,
+        constants: Vec<f64>,
+        ending: Ending,
+        [mut kept, mut looser]: [Trajectory; 2],
+        seconds: Seconds,
+    ) -> Self {
+        let size = prepared.equations.states.len();
+        Motion {
+            end: readable_end(&mut prepared.compiled, &mut kept, &mut looser, size),
+            ending,
+            constants,
+            work: Work::default(),
+            projection: ProjectionReport::default(),
+            seconds,
+            form: FormReport { why: prepared.form.why, fallbacks: 0 },
+            kept,
+            looser,
+            state: vec![0.0; size],
+            other: vec![0.0; size],
+            equations: prepared.equations,
+            compiled: prepared.compiled,
+        }
+    }
 }
 
 /// How far before a singularity a motion is read off, as fractions of its length.
 const BEFORE_A_STOP: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
 
-fn readable_end(compiled: &mut Compiled, kept: &Trajectory, looser: &Trajectory) -> f64 {
-    let start = kept.dense.start();
-    let length = (kept.dense.end() - start).abs().min((looser.dense.end() - start).abs());
-    let direction = (kept.dense.end() - start).signum();
-    let mut y = vec![0.0; kept.dense.dimension()];
-    let mut readable = |t: f64| [kept, looser].iter().all(|run| run.outputs(compiled, t, &mut y).is_ok());
+fn readable_end(compiled: &mut Compiled, kept: &mut Trajectory, looser: &mut Trajectory, size: usize) -> f64 {
+    let ([start, end], [_, other]) = (kept.ends(), looser.ends());
+    let length = (end - start).abs().min((other - start).abs());
+    let direction = (end - start).signum();
+    let mut y = vec![0.0; size];
+    let mut readable =
+        |t: f64| [&mut *kept, &mut *looser].into_iter().all(|run| run.outputs(compiled, t, &mut y).is_ok());
     let ends = BEFORE_A_STOP.map(|fraction| start + direction * length * (1.0 - fraction));
     ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
 }

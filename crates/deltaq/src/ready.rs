@@ -40,14 +40,14 @@ pub struct SingleRun {
 impl SingleRun {
     /// The time reached.
     pub fn end(&self) -> f64 {
-        self.trajectory.dense.end()
+        self.trajectory.ends()[1]
     }
 
     /// Coordinates, velocities, multipliers and invariants at `t`, which has to be an end of the run where that kept its ends only.
     ///
     /// # Errors
     /// [`SolveError::Reading`] where the equations of the instant cannot be solved.
-    pub fn at(&self, ready: &mut Ready, t: f64) -> Result<Outputs, SolveError> {
+    pub fn at(&mut self, ready: &mut Ready, t: f64) -> Result<Outputs, SolveError> {
         let mut state = vec![0.0; ready.start.len()];
         self.trajectory.outputs(&mut ready.compiled, t, &mut state)
     }

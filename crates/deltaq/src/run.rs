@@ -4,23 +4,69 @@ use integrate::{DenseOutput, Method, Options, Problem, Solution, Start};
 use mechanics::{Compiled, Equations, EvaluationFailure, Form, Outputs, complete_removal_start};
 use symbolic::Symbol;
 
+use crate::nodes::Nodes;
 use crate::{Setting, Settings, SolveError};
 
 /// States over time, and the unknowns `z` along the way where the equations of an instant have several roots.
 #[derive(Clone)]
 pub(crate) struct Trajectory {
-    pub(crate) dense: DenseOutput,
+    path: Path,
     anchors: Vec<(f64, Vec<f64>)>,
 }
 
+/// Where states come from.
+#[derive(Clone)]
+enum Path {
+    /// The polynomials of the time loop.
+    Dense(DenseOutput),
+    /// The nodes of a discrete motion.
+    Nodes(Box<Nodes>),
+}
+
 impl Trajectory {
-    /// What is read off at `t`; `state` is room for the state there.
-    pub(crate) fn outputs(&self, compiled: &mut Compiled, t: f64, state: &mut [f64]) -> Result<Outputs, SolveError> {
-        let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
-        if let Some((_, unknowns)) = nearest {
-            compiled.set_guess(unknowns);
+    pub(crate) fn of_nodes(nodes: Nodes) -> Self {
+        Trajectory { path: Path::Nodes(Box::new(nodes)), anchors: Vec::new() }
+    }
+
+    /// Times of the start and of the end.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        match &self.path {
+            Path::Dense(dense) => [dense.start(), dense.end()],
+            Path::Nodes(nodes) => nodes.ends(),
         }
-        self.dense.evaluate(t, state);
+    }
+
+    /// End points of the steps.
+    pub(crate) fn step_times(&self) -> Vec<f64> {
+        match &self.path {
+            Path::Dense(dense) => dense.step_times(),
+            Path::Nodes(nodes) => nodes.times().to_vec(),
+        }
+    }
+
+    /// The state at `t`. Where the equations of the instant have several roots, they are solved from the right one after this.
+    pub(crate) fn state(&mut self, compiled: &mut Compiled, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
+        match &mut self.path {
+            Path::Dense(dense) => {
+                let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
+                if let Some((_, unknowns)) = nearest {
+                    compiled.set_guess(unknowns);
+                }
+                dense.evaluate(t, state);
+                Ok(())
+            }
+            Path::Nodes(nodes) => nodes.state(compiled, t, state),
+        }
+    }
+
+    /// What is read off at `t`; `state` is room for the state there.
+    pub(crate) fn outputs(
+        &mut self,
+        compiled: &mut Compiled,
+        t: f64,
+        state: &mut [f64],
+    ) -> Result<Outputs, SolveError> {
+        self.state(compiled, t, state)?;
         compiled.outputs(t, state).map_err(|failure| SolveError::Reading { t, failure })
     }
 }
@@ -35,7 +81,7 @@ pub(crate) struct Run {
 
 impl Run {
     pub(crate) fn trajectory(self) -> Trajectory {
-        Trajectory { dense: self.solution.dense, anchors: self.anchors }
+        Trajectory { path: Path::Dense(self.solution.dense), anchors: self.anchors }
     }
 }
 
@@ -45,8 +91,10 @@ pub(crate) struct Prepared {
     pub(crate) compiled: Compiled,
     /// The form that was chosen.
     pub(crate) form: Form,
-    start_tape: symbolic::Tape,
-    start_inputs: Vec<f64>,
+    /// `t, q, v`, what belongs to a removal, the free constants → the states, guesses for the unknowns of the instant.
+    pub(crate) start_tape: symbolic::Tape,
+    pub(crate) start_symbols: Vec<Symbol>,
+    pub(crate) start_inputs: Vec<f64>,
     pub(crate) guess: Vec<f64>,
     pub(crate) t: f64,
 }
@@ -76,7 +124,16 @@ impl Prepared {
         if settings.method == Method::Taylor {
             compiled = compiled.with_series(&equations, &form)?;
         }
-        Ok(Prepared { form, equations, compiled, start_tape, start_inputs, guess: Vec::new(), t: setting.start.t })
+        Ok(Prepared {
+            form,
+            equations,
+            compiled,
+            start_tape,
+            start_symbols: symbols,
+            start_inputs,
+            guess: Vec::new(),
+            t: setting.start.t,
+        })
     }
 
     /// Sets the free constants and returns `y(t₀)`.

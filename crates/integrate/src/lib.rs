@@ -24,6 +24,7 @@
 //! | [`Method::Bdf`] | 1 to 5 | that of the step | stiff problems |
 //! | [`Method::TrBdf2`] | 2 | 2 | stiff problems, low accuracy |
 //! | [`Method::Esdirk34`] | 3 | 3 | stiff problems |
+//! | [`Method::Radau5`] | 5 | 3 | stiff problems, down to tight tolerances |
 //!
 //! # What the tolerance means
 //! It bounds the estimated error *of one step* (see [`Options`]). The error at the end is larger by what the problem
@@ -72,6 +73,9 @@ mod error;
 mod events;
 mod options;
 mod problem;
+mod radau5;
+#[cfg(test)]
+mod radau5_tests;
 mod root;
 mod status;
 mod stepper;
@@ -111,6 +115,11 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
         }
         Method::Dop853 => {
             let mut stepper = dop853::Dop853::new(&system, start, end, options).map_err(StopCause::from);
+            let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
+            time_loop::run(&system, stepper, start, end, options)
+        }
+        Method::Radau5 => {
+            let mut stepper = radau5::Radau5::new(&system, start, end, options).map_err(StopCause::from);
             let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
             time_loop::run(&system, stepper, start, end, options)
         }

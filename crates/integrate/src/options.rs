@@ -19,12 +19,14 @@ pub enum Method {
     TrBdf2,
     /// Singly diagonally implicit Runge–Kutta method of order 3(4), L-stable (diffsol); for stiff problems.
     Esdirk34,
+    /// Radau IIA of order 5, three stages, L-stable; for stiff problems, down to tight tolerances. Dense output of order 3.
+    Radau5,
 }
 
 impl Method {
     /// Every method there is.
-    pub const ALL: [Method; 6] =
-        [Method::Taylor, Method::Dop853, Method::Tsit45, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
+    pub const ALL: [Method; 7] =
+        [Method::Taylor, Method::Dop853, Method::Tsit45, Method::Radau5, Method::Bdf, Method::TrBdf2, Method::Esdirk34];
 
     /// Its name, as on the command line and in reports.
     pub fn name(self) -> &'static str {
@@ -35,12 +37,13 @@ impl Method {
             Method::Bdf => "bdf",
             Method::TrBdf2 => "tr-bdf2",
             Method::Esdirk34 => "esdirk34",
+            Method::Radau5 => "radau5",
         }
     }
 
     /// Whether the method asks for [`crate::Problem::jacobian`].
     pub fn is_implicit(self) -> bool {
-        matches!(self, Method::Bdf | Method::TrBdf2 | Method::Esdirk34)
+        matches!(self, Method::Bdf | Method::TrBdf2 | Method::Esdirk34 | Method::Radau5)
     }
 }
 

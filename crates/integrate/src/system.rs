@@ -131,6 +131,17 @@ impl<'p> System<'p> {
         }
     }
 
+    /// ∂F/∂y(t, y), row-major, finite or an error.
+    pub(crate) fn jacobian(&self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), Failure> {
+        let inner = &mut *self.inner.borrow_mut();
+        if let Err(failure) = inner.evaluate_jacobian(t, y) {
+            inner.jacobian_y.clear();
+            return Err(failure);
+        }
+        jacobian.copy_from_slice(&inner.jacobian);
+        Ok(())
+    }
+
     /// `product = ∂F/∂y(t, y) · v`. The matrix is evaluated once a point, however many products are asked for.
     pub(crate) fn jacobian_product_or_nan(&self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) {
         let inner = &mut *self.inner.borrow_mut();

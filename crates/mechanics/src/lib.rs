@@ -12,7 +12,7 @@ mod form_pivots;
 mod formulation;
 mod instant;
 mod integrability;
-mod linear;
+pub mod linear;
 pub mod newton;
 mod projection;
 mod quasi_velocities;

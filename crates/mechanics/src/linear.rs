@@ -5,16 +5,17 @@
 
 /// A matrix that cannot be solved with: the smallest pivot over the largest after scaling, and the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Singular {
-    pub(crate) reciprocal: f64,
+pub struct Singular {
+    /// Smallest pivot over the largest.
+    pub reciprocal: f64,
 }
 
 /// Pivots under this fraction of the scaled matrix are taken for zero.
-pub(crate) const PIVOT_LIMIT: f64 = 1e-13;
+pub const PIVOT_LIMIT: f64 = 1e-13;
 
 /// LU factors of an n×n matrix, row-major, with partial pivoting; rows and columns scaled so that units do not matter.
 #[derive(Clone, Debug)]
-pub(crate) struct Factors {
+pub struct Factors {
     n: usize,
     lu: Vec<f64>,
     rows: Vec<usize>,
@@ -24,13 +25,14 @@ pub(crate) struct Factors {
 }
 
 impl Factors {
-    pub(crate) fn new(n: usize) -> Self {
+    /// Room for n×n.
+    pub fn new(n: usize) -> Self {
         let (lu, rows) = (vec![0.0; n * n], vec![0; n]);
         Factors { n, lu, rows, row_scale: vec![1.0; n], column_scale: vec![1.0; n], work: vec![0.0; n] }
     }
 
     /// Factorizes `matrix` (row-major, n×n).
-    pub(crate) fn factorize(&mut self, matrix: &[f64]) -> Result<(), Singular> {
+    pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), Singular> {
         let n = self.n;
         self.lu.copy_from_slice(matrix);
         self.scale()?;
@@ -98,7 +100,7 @@ impl Factors {
     }
 
     /// Overwrites `b` by the solution.
-    pub(crate) fn solve(&mut self, b: &mut [f64]) {
+    pub fn solve(&mut self, b: &mut [f64]) {
         let n = self.n;
         for i in 0..n {
             let row = self.rows[i];

@@ -11,13 +11,14 @@ use crate::arrays::FloatList;
 use crate::errors;
 
 /// Names of the methods.
-pub(crate) const METHODS: [(&str, Method); 6] = [
+pub(crate) const METHODS: [(&str, Method); 7] = [
     ("taylor", Method::Taylor),
     ("dop853", Method::Dop853),
     ("tsit45", Method::Tsit45),
     ("bdf", Method::Bdf),
     ("tr-bdf2", Method::TrBdf2),
     ("esdirk34", Method::Esdirk34),
+    ("radau5", Method::Radau5),
 ];
 
 /// How to integrate, and the flag that ends it.

@@ -46,7 +46,10 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         Error::ConstantCount { .. }
         | Error::ConstantNotFinite { .. }
         | Error::NoNaturalCondition { .. }
-        | Error::Horizon { .. } => SolveError::new_err(text),
+        | Error::Horizon { .. }
+        | Error::Discrete(_)
+        | Error::NoPrinciple { .. }
+        | Error::Step { .. } => SolveError::new_err(text),
     }
 }
 

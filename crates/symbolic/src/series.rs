@@ -170,8 +170,7 @@ impl SeriesTape {
         let stride = (order + 1 + LANES).next_multiple_of(LANES);
         let zero = T::from_f64(0.0);
         let at = |row: Row| row as usize * stride;
-        let place =
-            |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
+        let place = |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
         let mut halves = [vec![zero; order * stride], vec![zero; order * stride]];
         for newest in 1..order {
             for j in 1..=newest {

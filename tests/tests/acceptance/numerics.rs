@@ -31,6 +31,7 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
         (Method::Bdf, 1e-6, 1000.0),
         (Method::TrBdf2, 1e-5, 100.0),
         (Method::Esdirk34, 1e-6, 100.0),
+        (Method::Radau5, 1e-6, 100.0),
     ] {
         let settings = Settings { method, tolerance, ..Settings::default() };
         let mut motion = motion_of(&scene, equations(&scene.system, "chetaev", None), &[], &settings);

@@ -47,6 +47,7 @@ fn tightest(method: Method) -> i32 {
         Method::Tsit45 => 13,
         Method::TrBdf2 => 8,
         Method::Bdf | Method::Esdirk34 => 11,
+        Method::Radau5 => 12,
     }
 }
 
@@ -79,7 +80,7 @@ fn measure(
     let mut repeats = 0;
     loop {
         let clock = Instant::now();
-        let run = ready.integrate(truth.end(), options).map_err(|error| error.to_string())?;
+        let mut run = ready.integrate(truth.end(), options).map_err(|error| error.to_string())?;
         let elapsed = clock.elapsed().as_secs_f64();
         if let Status::Stopped { t, cause } = &run.status {
             return Err(format!("stopped at t = {t:.3}: {cause}"));
@@ -89,13 +90,13 @@ fn measure(
         repeats += 1;
         let enough = total >= effort.seconds && repeats >= REPEATS;
         if enough || total > effort.patience {
-            let error = error(&run, ready, truth, metric)?;
+            let error = error(&mut run, ready, truth, metric)?;
             return Ok(Measured { seconds, error, work: run.work });
         }
     }
 }
 
-fn error(run: &SingleRun, ready: &mut Ready, truth: &Truth, metric: &mut Metric) -> Result<f64, String> {
+fn error(run: &mut SingleRun, ready: &mut Ready, truth: &Truth, metric: &mut Metric) -> Result<f64, String> {
     let mut largest = 0.0_f64;
     for sample in &truth.samples {
         let here = run.at(ready, sample.t).map_err(|error| error.to_string())?.coordinates;

@@ -42,7 +42,7 @@ impl Truth {
         let end = scene.start.t + scene.duration;
         let runs = [1e-13, 2e-15].map(|tolerance| ready.integrate(end, &Options::with_tolerance(tolerance)));
         let [looser, tighter] = runs;
-        let (looser, tighter) = (looser?, tighter?);
+        let (mut looser, mut tighter) = (looser?, tighter?);
         let shortened = [&looser, &tighter].iter().any(|run| run.status != Status::Completed);
         let reached = tighter.end().min(looser.end());
         let end = if shortened { ready.t + PART * (reached - ready.t) } else { end };

@@ -309,7 +309,7 @@ fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: u
     let vakonomic = motion.equations.formulation.starts_with("vakonomic");
     let (tags, start) = if motion.equations.removal.is_some() {
         let tags = names(&motion.equations).iter().filter_map(|name| all.get(name).cloned()).collect();
-        (tags, motion.states_at(times[0]))
+        (tags, motion.states_at(times[0])?)
     } else {
         let of = |kind: &'static str| system.coordinates.iter().map(move |c| (kind.to_string(), c.name.clone()));
         let mut tags: Vec<Tag> = of("q").chain(of("v")).collect();
@@ -346,7 +346,7 @@ fn transcription(scene: &Scene, choice: &Choice, horizon: f64, intervals: usize)
         return Ok(None);
     }
     let times = motion.grid(2 * intervals);
-    let states = times.iter().map(|&t| motion.states_at(t)).collect();
+    let states = times.iter().map(|&t| motion.states_at(t)).collect::<Result<_, _>>()?;
     Ok(Some(Transcription {
         label: choice.label.clone(),
         formulation: choice.formulation,

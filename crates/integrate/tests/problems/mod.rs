@@ -29,7 +29,16 @@ pub struct Case {
 impl Case {
     pub fn new(dimension: usize, rates: Rates, jacobian: Jacobian) -> Self {
         let events: (usize, Events) = (0, |_, _, _| Ok(()));
-        Self { dimension, rates, series: None, jacobian, events, projection: |_, _| Ok(0.0), evaluations: 0, jacobians: 0 }
+        Self {
+            dimension,
+            rates,
+            series: None,
+            jacobian,
+            events,
+            projection: |_, _| Ok(0.0),
+            evaluations: 0,
+            jacobians: 0,
+        }
     }
     pub fn with_series(mut self, series: Series) -> Self {
         self.series = Some(series);

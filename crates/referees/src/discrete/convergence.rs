@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use super::{Discrete, DiscreteError, step::largest};
+use discrete::{Discrete, DiscreteError};
 
 /// Errors over halvings of the step, plain and extrapolated.
 ///
@@ -67,7 +67,7 @@ pub fn convergence<E: Display>(
         (0..expected[0].len()).map(|i| expected.iter().fold(1.0_f64, |a, q| a.max(q[i].abs()))).collect();
     let distance = |one: &[Vec<f64>], two: &[Vec<f64>]| {
         let nodes = one.iter().zip(two).flat_map(|(a, b)| a.iter().zip(b).zip(&size));
-        largest(&nodes.map(|((a, b), size)| (a - b) / size).collect::<Vec<_>>())
+        nodes.map(|((a, b), size)| ((a - b) / size).abs()).fold(0.0, f64::max)
     };
     let mut rows: Vec<Vec<Vec<Vec<f64>>>> = Vec::with_capacity(levels);
     for level in 0..levels {

@@ -1,11 +1,11 @@
-//! What the referee says when it cannot answer.
+//! Why there is no discrete motion.
 
 use mechanics::StartError;
 use symbolic::CompileError;
 use thiserror::Error;
 
-/// The referee cannot answer.
-#[derive(Debug, Error)]
+/// There is no discrete motion, or it ends before its time.
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DiscreteError {
     /// `L`, `f`, `Q` or the removal contains a name without a value, or something that is not finite.
@@ -65,7 +65,7 @@ pub enum DiscreteError {
     OffConstraint {
         /// Largest `|f_i| / (|A_i| (1 + |v|))`.
         found: f64,
-        /// [`super::START_LIMIT`].
+        /// [`crate::START_LIMIT`].
         limit: f64,
     },
     /// The matrix of a step is singular.
@@ -74,9 +74,9 @@ pub enum DiscreteError {
         /// Time of the node where the step starts.
         t: f64,
     },
-    /// Newton's method does not settle.
+    /// Newton's method does not settle, or not at once, so that its root may be another one: the step is too long for the motion.
     #[error(
-        "the step from t = {t} is not solved after {iterations} iterations: the last changed it by {found}, limit {limit}"
+        "the step from t = {t} is too long: its equations are not solved after {iterations} iterations, of which the last changed them by {found:.1e}, limit {limit:.0e}"
     )]
     NotConverged {
         /// Time of the node where the step starts.

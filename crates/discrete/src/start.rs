@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use mechanics::{MemoryVariable, Removal, State, System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
 
-use super::step::{check_finite, largest};
-use super::{DiscreteError, START_LIMIT};
+use crate::newton::{check_finite, largest};
+use crate::{DiscreteError, START_LIMIT};
 
 /// `L` in `(u̇, u, w, t)`; no rate may be too high.
-pub(super) fn substituted_lagrangian(system: &System, removal: &Removal) -> Result<Expr, DiscreteError> {
+pub(crate) fn substituted_lagrangian(system: &System, removal: &Removal) -> Result<Expr, DiscreteError> {
     let g = &system.graph;
     let refuse = |what: &'static str, es: &[Expr], symbol: Symbol| match es.iter().any(|&e| g.depends_on(e, symbol)) {
         true => Err(DiscreteError::HighRate { removal: removal.name.clone(), what, symbol: g.name(symbol) }),
@@ -33,7 +33,7 @@ pub(super) fn substituted_lagrangian(system: &System, removal: &Removal) -> Resu
 }
 
 /// Lengths, `h < n`, and `f = 0`.
-pub(super) fn check_start(system: &System, start: &State) -> Result<(), DiscreteError> {
+pub(crate) fn check_start(system: &System, start: &State) -> Result<(), DiscreteError> {
     let (n, h) = (system.dimension(), system.constraints.len());
     if h >= n {
         return Err(DiscreteError::NoFreedom { found: h, limit: n });
@@ -56,32 +56,32 @@ pub(super) fn check_start(system: &System, start: &State) -> Result<(), Discrete
     Ok(())
 }
 
-pub(super) fn refuse_forces(system: &System) -> Result<(), DiscreteError> {
+pub(crate) fn refuse_forces(system: &System) -> Result<(), DiscreteError> {
     match system.forces.iter().position(|&force| !system.graph.is_zero(force)) {
         None => Ok(()),
         Some(i) => Err(DiscreteError::Force { number: i + 1 }),
     }
 }
 
-pub(super) fn check_length(what: &'static str, values: &[f64], expected: usize) -> Result<(), DiscreteError> {
+pub(crate) fn check_length(what: &'static str, values: &[f64], expected: usize) -> Result<(), DiscreteError> {
     let found = values.len();
     if found == expected { Ok(()) } else { Err(DiscreteError::Length { what, found, expected }) }
 }
 
-pub(super) fn fresh_symbols(g: &Graph, stem: &str, count: usize) -> Vec<Symbol> {
+pub(crate) fn fresh_symbols(g: &Graph, stem: &str, count: usize) -> Vec<Symbol> {
     (0..count).map(|i| fresh_symbol(g, &format!("{stem}{i}"))).collect()
 }
 
-pub(super) fn values(system: &System, state: &State) -> HashMap<Symbol, f64> {
+pub(crate) fn values(system: &System, state: &State) -> HashMap<Symbol, f64> {
     let mut values = system.parameter_values();
     values.extend(system.values_at(state));
     values
 }
 
-pub(super) fn numbers(g: &Graph, es: &[Expr], values: &HashMap<Symbol, f64>) -> Result<Vec<f64>, DiscreteError> {
+pub(crate) fn numbers(g: &Graph, es: &[Expr], values: &HashMap<Symbol, f64>) -> Result<Vec<f64>, DiscreteError> {
     Ok(es.iter().map(|&e| g.evaluate(e, values)).collect::<Result<_, _>>()?)
 }
 
-pub(super) fn with_zeros(values: &[f64], count: usize) -> Vec<f64> {
+pub(crate) fn with_zeros(values: &[f64], count: usize) -> Vec<f64> {
     values.iter().copied().chain(std::iter::repeat_n(0.0, count)).collect()
 }

@@ -2,8 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::step::{Node, largest};
-use super::{Discrete, DiscreteError};
+use crate::newton::largest;
+use crate::step::Node;
+use crate::sum::Compensated;
+use crate::{Discrete, DiscreteError};
 
 /// `|P_N|` relative to `1 + |P₀|` under which the end counts as natural.
 const NATURAL: f64 = 1e-14;
@@ -33,7 +35,7 @@ impl Natural {
     pub(super) fn shoot(&self, discrete: &mut Discrete, steps: usize) -> Result<Vec<Node>, DiscreteError> {
         let (count, mut costates, mut before) = (self.first.len(), self.first.clone(), f64::INFINITY);
         for _ in 0..ATTEMPTS {
-            let nodes = discrete.march(self.node(&discrete.start, &costates), steps)?;
+            let nodes = discrete.nodes_from(self.node(&discrete.start, &costates), steps)?;
             let end = self.end(&nodes);
             let scale = 1.0 + largest(&costates);
             let found = largest(end.as_slice()) / scale;
@@ -45,7 +47,7 @@ impl Natural {
             for i in 0..count {
                 let mut moved = costates.clone();
                 moved[i] += DIFFERENCE * scale;
-                let other = self.end(&discrete.march(self.node(&discrete.start, &moved), steps)?);
+                let other = self.end(&discrete.nodes_from(self.node(&discrete.start, &moved), steps)?);
                 jacobian.set_column(i, &((other - &end) / (DIFFERENCE * scale)));
             }
             let correction = jacobian.full_piv_lu().solve(&end).ok_or(DiscreteError::Singular { t: discrete.end })?;
@@ -59,12 +61,13 @@ impl Natural {
         let change =
             DVector::from_iterator(costates.len(), costates.iter().zip(&self.first).map(|(p, first)| p - first));
         let moved = &self.slopes * change;
-        Node { p: start.p.iter().zip(moved.iter()).map(|(p, dp)| p + dp).collect(), ..start.clone() }
+        let p = start.p.value.iter().zip(moved.iter()).map(|(p, dp)| p + dp).collect();
+        Node { p: Compensated::new(p), multipliers: costates.to_vec(), ..start.clone() }
     }
 
     /// `P_N`.
     fn end(&self, nodes: &[Node]) -> DVector<f64> {
-        let p = &nodes[nodes.len() - 1].p;
+        let p = &nodes[nodes.len() - 1].p.value;
         DVector::from_iterator(self.first.len(), p[p.len() - self.first.len()..].iter().map(|p| -p))
     }
 }

@@ -1,4 +1,4 @@
-//! Discrete variational principles: the three formulations without one equation of motion.
+//! Discrete variational principles: time-stepping that keeps the structure of a motion, without one equation of motion.
 //!
 //! Time is cut into steps `h`; on the interval from node `k` to node `k+1` every function is taken at the midpoint, with
 //! `x̄ = (x_k + x_{k+1})/2`, `ẋ ≈ (x_{k+1} − x_k)/h`, `t̄ = t_k + h/2`. What is differentiated is a sum over the intervals, with respect to
@@ -10,7 +10,10 @@
 //! D₂L_d(k−1,k) + D₁L_d(k,k+1) + ½ Q_d(k−1,k) + ½ Q_d(k,k+1) + A_kᵀ κ_k = 0 ,      f_d(k,k+1) = 0 ,      κ_k ≈ h λ .
 //! ```
 //!
-//! `A_k = ∂f/∂v` (h×n) stands at the node: `v ≈ (q_{k+1} − q_{k−1})/2h` where `f` is not linear in `v`.
+//! `A_k = ∂f/∂v` (h×n) stands at the node, at `(q_k, v_k)`. The reaction is split between the two steps that meet there,
+//! `κ_k = (h/2)(λ⁻ + λ⁺)`: the first half brings the state onto the constraint, `p_k = L_v(q_k, v_k)` with `f(q_k, v_k) = 0`, the second
+//! makes the constraint hold on the next interval. So the step maps `{f = 0}` onto itself, as RATTLE and the nonholonomic leapfrog of
+//! McLachlan and Perlmutter do.
 //!
 //! **Vakonomic** ([`Discrete::vakonomic`]). `S = Σ h (L + μ_{k+½}·f)` is stationary in all inner `q_k` and in all `μ_{k+½}` (h):
 //!
@@ -22,46 +25,64 @@
 //! and `w_k` (k), and in all `P_{k+½}` (k). At the last node `w_N` is free, `D₂S(N−1,N) = 0` there, which is `P_N = 0` with
 //! `P_{k+1} = P_{k+½} − ½h G_w`, `G = L + P·B`. Not for removals that bring `ü` into `L` or `B`, or `u̇` into `q`.
 //!
-//! All three are marched with node momenta, `p_{k+1} = D₂S(k,k+1)` and `p_k + D₁S(k,k+1) [+ A_kᵀκ] = 0`, from `p₀ = L_v + Aᵀμ₀` (Chetaev:
-//! `L_v`) and `p₀ = (G_u̇, −P₀)`.
+//! All three are marched with node momenta, `p_{k+1} = D₂S(k,k+1)` and `p_k + D₁S(k,k+1) = 0` (Chetaev: with the reactions), from
+//! `p₀ = L_v + Aᵀμ₀` (Chetaev: `L_v`) and `p₀ = (G_u̇, −P₀)`. Velocities and multipliers at a node are those with `𝓛_ẋ = p_k` and
+//! `f = 0`.
 //!
-//! **Order 2, with an error that is a power series in `h²`.** Exchange the nodes of an interval and the sign of `h`: the midpoint, the
-//! difference quotient, `S` up to its sign, and so all equations stay as they are. A two-sided sequence of nodes is then its own mirror,
-//! and the difference equation is solved by curves `x(t) = Σ h²ʲ x_j(t)`. The vakonomic and the removed equations are the implicit midpoint
-//! rule in `(x, p)`, a symmetric map from node to node, and nothing more is to be shown. Chetaev's start has to fit: with `κ₀` left open,
-//! `p₀` fixes `D₁L_d(0,1)` up to `range A₀ᵀ`, as it does `D₂L_d(−1,0)` for the step backwards with `−h`; both steps together solve the
-//! equation of node 0 with some reaction, so that the start is symmetric too. For nonlinear `f` this holds only if both have the same `A₀`.
-//! With `A(q₀, v₀)` it would not be the `A₀` of the difference equation, `v₀ − (q₁ − q₋₁)/2h = O(h²)`, times `κ₀ = O(h)`, and put a term
-//! `h³` into the error (order 3 after one extrapolation instead of 4). So there `q₋₁` is solved for together with `q₁`. `A` is not taken
-//! at the midpoints, because the momenta across the constraint would then alternate from node to node.
+//! # What is kept
+//! - The constraint, to round-off at all times: `f = 0` at the nodes in the velocities there, and `f_d = 0` on every interval.
+//! - Reversibility. Exchange the nodes of an interval and the sign of `h`: the midpoint, the difference quotient, `S` up to its sign,
+//!   and so all equations stay as they are, `Φ_{−h} Φ_h = 1`. So the error is a power series in `h²`, and on integrable reversible motions the
+//!   energy error stays bounded. On others it may wander: a nonholonomic flow is not symplectic, and no step makes it so.
+//! - Vakonomic and removed: `Φ_h` is the implicit midpoint rule in `(x, p)`, hence symplectic; `p` of a cyclic coordinate is constant to
+//!   round-off. Chetaev: so is the momentum of a symmetry of `L` and `Q` whose direction the constraint allows for, where it is constant in `q`.
 //!
-//! Hence Richardson's extrapolation over halvings of `h` gains two orders a level: [`convergence`].
+//! # Order
+//! 2, and 4, 6, 8 by [`Composition`] of steps, some of them back in time; or by Richardson's extrapolation over halvings of `h`, which gains two
+//! orders a level. States are those of the nodes; between nodes, [`Trajectory::at`] takes one shorter step from the node before.
+//!
+//! # Round-off
+//! Each step is solved to round-off; positions and momenta are sums of increments of size `h`, compensated: what a million steps lose is the
+//! round-off of the increments and not that of the sums.
 //!
 //! Sources: J. E. Marsden, M. West, *Discrete mechanics and variational integrators*, Acta Numerica 10 (2001); J. Cortés, S. Martínez,
-//! *Non-holonomic integrators*, Nonlinearity 14 (2001); M. de León, J. C. Marrero, D. Martín de Diego, *Vakonomic
-//! mechanics versus non-holonomic mechanics*, J. Geom. Phys. 35 (2000); R. Benito, D. Martín de Diego, *Discrete vakonomic mechanics*,
-//! J. Math. Phys. 46 (2005); for the symmetry argument E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, chapter V. The
-//! discrete removed action is derived here.
+//! *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter, *Integrators for nonholonomic mechanical systems*,
+//! J. Nonlinear Sci. 16 (2006); M. de León, J. C. Marrero, D. Martín de Diego, *Vakonomic mechanics versus non-holonomic mechanics*,
+//! J. Geom. Phys. 35 (2000); R. Benito, D. Martín de Diego, *Discrete vakonomic mechanics*, J. Math. Phys. 46 (2005); for symmetry and
+//! compositions E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, chapters II and V. The discrete removed action is
+//! derived here.
 
-use mechanics::{Removal, State, System, complete_removal_start};
+use mechanics::{Removal, State, System};
 use nalgebra::DMatrix;
 use symbolic::{Expr, Symbol, Tape};
 
-mod convergence;
+mod composition;
+mod drift;
 mod error;
 mod natural;
+mod newton;
+mod removed_start;
 mod start;
 mod step;
 #[cfg(test)]
+mod structure_tests;
+mod sum;
+#[cfg(test)]
 mod tests;
+mod trajectory;
 
-pub use convergence::{Convergence, convergence};
+pub use composition::Composition;
+pub use drift::{Drift, Spread};
 pub use error::DiscreteError;
 use natural::Natural;
+use newton::check_finite;
+pub use removed_start::{Ends, RemovedStart};
 use start::{
     check_length, check_start, fresh_symbols, numbers, refuse_forces, substituted_lagrangian, values, with_zeros,
 };
-use step::{Interval, Node, Principle, Step, check_finite};
+use step::{Interval, Node, Principle, Step};
+use sum::Compensated;
+pub use trajectory::{Sample, Trajectory};
 
 /// Largest `|f_i| / (|A_i| (1 + |v|))` of a start.
 pub const START_LIMIT: f64 = 1e-9;
@@ -69,8 +90,8 @@ pub const START_LIMIT: f64 = 1e-9;
 /// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), for any number of steps. Clone it for another thread.
 ///
 /// ```
-/// use referees::discrete::Discrete;
-/// let scene = mechanics::Scene::parse("sledge", include_str!("../../../../validation/scenes/sledge.toml"))?;
+/// use discrete::Discrete;
+/// let scene = mechanics::Scene::parse("sledge", include_str!("../../../validation/scenes/sledge.toml"))?;
 /// let mut discrete = Discrete::chetaev(&scene.system, &scene.start, 1.0)?;
 /// let q = discrete.positions(200)?;
 /// // φ = 0.3 + 1.1 t exactly, x by its integral to order h²
@@ -82,59 +103,14 @@ pub const START_LIMIT: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub struct Discrete {
     step: Step,
+    composition: Composition,
     start: Node,
     end: f64,
-    /// First guess for rates and multipliers.
-    guess: Vec<f64>,
     /// `q` from `(t, u, w)`, for removals.
     coordinates: Option<Tape>,
     /// How the start depends on `P₀`, for removals.
     costates: Option<Natural>,
     ends: Ends,
-}
-
-/// What holds at the ends of a removed motion; the other motions know only the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ends {
-    /// `P₀` as given.
-    GivenStart,
-    /// `w_N` is free: `P_N = 0`, and `P₀` follows from it.
-    Natural,
-}
-
-/// Where a removed motion starts.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RemovedStart {
-    /// `t₀`.
-    pub t: f64,
-    /// `u₀`, length m.
-    pub parameters: Vec<f64>,
-    /// `u̇₀`, length m.
-    pub rates: Vec<f64>,
-    /// `w₀`, length k.
-    pub memory: Vec<f64>,
-    /// `P₀`, length k; with [`Ends::Natural`] a first guess.
-    pub costates: Vec<f64>,
-}
-
-impl RemovedStart {
-    /// The values of `(u, u̇, w)` that belong to `state`, with `costates` one a memory variable.
-    ///
-    /// # Errors
-    /// [`DiscreteError::Removal`].
-    pub fn at(system: &System, removal: &Removal, state: &State, costates: &[f64]) -> Result<Self, DiscreteError> {
-        let values = complete_removal_start(system, removal, state)?.values();
-        let read = |symbols: &mut dyn Iterator<Item = Symbol>| -> Vec<f64> {
-            symbols.map(|s| values.get(&s).copied().unwrap_or(f64::NAN)).collect()
-        };
-        Ok(RemovedStart {
-            t: state.t,
-            parameters: read(&mut removal.parameters.iter().map(|u| u.symbol)),
-            rates: read(&mut removal.parameters.iter().map(|u| u.rate)),
-            memory: read(&mut removal.memory.iter().map(|w| w.symbol)),
-            costates: costates.to_vec(),
-        })
-    }
 }
 
 impl Discrete {
@@ -148,25 +124,21 @@ impl Discrete {
         check_start(&system, start)?;
         let (g, x, v) = (&system.graph, system.positions(), system.velocities());
         let interval = Interval::new(g, system.time, x.len());
-        let (midpoint, node) = (interval.midpoint(g, &x, &v), interval.node(g, &x, &v));
-        let h = g.variable(interval.h);
-        let half = g.mul(g.ratio(1, 2), h);
         let multipliers = fresh_symbols(g, "reaction", system.constraints.len());
         let jacobian = g.jacobian(&system.constraints, &v);
-        let reaction = g.substitute_all(&g.transpose_vec(&jacobian, &g.variables(&multipliers)), &node);
-        let forces = g.substitute_all(&system.forces, &midpoint);
         let principle = Principle {
-            action: g.mul(h, g.substitute(system.lagrangian, &midpoint)),
-            impulse: forces.into_iter().map(|force| g.mul(half, force)).collect(),
-            reaction,
-            conditions: g.substitute_all(&system.constraints, &midpoint),
+            lagrangian: system.lagrangian,
+            forces: system.forces.clone(),
+            reaction: Some(g.transpose_vec(&jacobian, &g.variables(&multipliers))),
+            conditions: system.constraints.clone(),
             multipliers,
+            x,
+            rates: v.clone(),
         };
         let p = numbers(g, &g.gradient(system.lagrangian, &v), &values(&system, start))?;
         let guess = with_zeros(&start.v, system.constraints.len());
-        let step = Step::new(g, &system.parameter_values(), &interval, &principle)?;
-        let start = Node { t: start.t, x: start.q.clone(), p, rate_before: start.v.clone() };
-        Discrete::new(step, start, end, guess, None)
+        let step = Step::new(g, &system.parameter_values(), &interval, &principle, &guess)?;
+        Discrete::new(step, start.t, start.q.clone(), p, guess, end)
     }
 
     /// The motion of stationary discrete vakonomic action from `start` and the multipliers `μ₀` (h) to the time `end`.
@@ -180,23 +152,23 @@ impl Discrete {
         check_length("multipliers", multipliers, system.constraints.len())?;
         let (g, x, v) = (&system.graph, system.positions(), system.velocities());
         let interval = Interval::new(g, system.time, x.len());
-        let midpoint = interval.midpoint(g, &x, &v);
         let symbols = fresh_symbols(g, "multiplier", multipliers.len());
         let augmented = g.add(system.lagrangian, g.dot(&g.variables(&symbols), &system.constraints));
-        let principle = Principle {
-            action: g.mul(g.variable(interval.h), g.substitute(augmented, &midpoint)),
-            impulse: vec![g.zero(); x.len()],
-            reaction: vec![g.zero(); x.len()],
-            conditions: g.substitute_all(&system.constraints, &midpoint),
-            multipliers: symbols.clone(),
-        };
         let mut at_start = values(&system, start);
         at_start.extend(symbols.iter().copied().zip(multipliers.iter().copied()));
         let p = numbers(g, &g.gradient(augmented, &v), &at_start)?;
-        let guess = start.v.iter().chain(multipliers).copied().collect();
-        let step = Step::new(g, &system.parameter_values(), &interval, &principle)?;
-        let start = Node { t: start.t, x: start.q.clone(), p, rate_before: start.v.clone() };
-        Discrete::new(step, start, end, guess, None)
+        let principle = Principle {
+            lagrangian: augmented,
+            forces: vec![g.zero(); x.len()],
+            reaction: None,
+            conditions: system.constraints.clone(),
+            multipliers: symbols,
+            x,
+            rates: v,
+        };
+        let guess: Vec<f64> = start.v.iter().chain(multipliers).copied().collect();
+        let step = Step::new(g, &system.parameter_values(), &interval, &principle, &guess)?;
+        Discrete::new(step, start.t, start.q.clone(), p, guess, end)
     }
 
     /// The motion of stationary discrete action in `(u, w)` of a removal, from `start` to the time `end`, which is the horizon of
@@ -227,17 +199,9 @@ impl Discrete {
         rates.extend(fresh_symbols(g, "memory_rate", k));
         let costates = fresh_symbols(g, "costate", k);
         let interval = Interval::new(g, system.time, m + k);
-        let midpoint = interval.midpoint(g, &x, &rates);
         // h L + P·(h B − (w_{k+1} − w_k)) = h (L + P·(B − ẇ))
         let slips: Vec<Expr> = (0..k).map(|i| g.sub(removal.memory[i].rate, g.variable(rates[m + i]))).collect();
         let augmented = g.add(lagrangian, g.dot(&g.variables(&costates), &slips));
-        let principle = Principle {
-            action: g.mul(g.variable(interval.h), g.substitute(augmented, &midpoint)),
-            impulse: vec![g.zero(); m + k],
-            reaction: vec![g.zero(); m + k],
-            conditions: g.substitute_all(&slips, &midpoint),
-            multipliers: costates.clone(),
-        };
         let mut values = system.parameter_values();
         values.insert(system.time, start.t);
         let rest: Vec<f64> = start.parameters.iter().chain(&start.memory).copied().collect();
@@ -252,32 +216,41 @@ impl Discrete {
         let slopes = numbers(g, g.jacobian(&momenta, &costates).entries(), &values)?;
         check_finite("a slope of a momentum", start.t, &slopes)?;
         let slopes = DMatrix::from_row_slice(m + k, k, &slopes);
-        let first: Vec<f64> = start.rates.iter().chain(&memory_rates).copied().collect();
-        let guess = first.iter().chain(&start.costates).copied().collect();
-        let step = Step::new(g, &system.parameter_values(), &interval, &principle)?;
-        let inputs: Vec<Symbol> = std::iter::once(system.time).chain(x).collect();
+        let guess: Vec<f64> = [&start.rates[..], &memory_rates, &start.costates].concat();
+        let inputs: Vec<Symbol> = std::iter::once(system.time).chain(x.iter().copied()).collect();
         let coordinates = g.compile(&inputs, &removal.coordinates, &system.parameter_values())?;
-        let node = Node { t: start.t, x: rest, p, rate_before: first };
+        let principle = Principle {
+            lagrangian: augmented,
+            forces: vec![g.zero(); m + k],
+            reaction: None,
+            conditions: slips,
+            multipliers: costates,
+            x,
+            rates,
+        };
+        let step = Step::new(g, &system.parameter_values(), &interval, &principle, &guess)?;
         let costates = Some(Natural { first: start.costates.clone(), slopes });
-        Ok(Discrete { costates, ends, ..Discrete::new(step, node, end, guess, Some(coordinates))? })
+        let discrete = Discrete::new(step, start.t, rest, p, guess, end)?;
+        Ok(Discrete { costates, ends, coordinates: Some(coordinates), ..discrete })
     }
 
-    fn new(
-        step: Step,
-        start: Node,
-        end: f64,
-        guess: Vec<f64>,
-        coordinates: Option<Tape>,
-    ) -> Result<Self, DiscreteError> {
-        for (what, values) in [
-            ("a time", [start.t, end].as_slice()),
-            ("a start value", &start.x),
-            ("a momentum", &start.p),
-            ("a start value", &guess),
-        ] {
-            check_finite(what, start.t, values)?;
+    /// `guess` are the rates and multipliers at the start.
+    fn new(step: Step, t: f64, x: Vec<f64>, p: Vec<f64>, guess: Vec<f64>, end: f64) -> Result<Self, DiscreteError> {
+        for (what, values) in
+            [("a time", [t, end].as_slice()), ("a start value", &x), ("a momentum", &p), ("a start value", &guess)]
+        {
+            check_finite(what, t, values)?;
         }
-        Ok(Discrete { step, start, end, guess, coordinates, costates: None, ends: Ends::GivenStart })
+        let (v, multipliers) = guess.split_at(step.size);
+        let (v, multipliers) = (v.to_vec(), multipliers.to_vec());
+        let start = Node { t, x: Compensated::new(x), p: Compensated::new(p), v, multipliers };
+        let (composition, ends) = (Composition::Second, Ends::GivenStart);
+        Ok(Discrete { step, composition, start, end, coordinates: None, costates: None, ends })
+    }
+
+    /// The same motion in steps of the order of `composition`; without this, of order 2.
+    pub fn composed(self, composition: Composition) -> Self {
+        Discrete { composition, ..self }
     }
 
     /// Time of the node `k` of `steps`.
@@ -292,11 +265,11 @@ impl Discrete {
     /// [`DiscreteError::NoNaturalEnd`].
     pub fn positions(&mut self, steps: usize) -> Result<Vec<Vec<f64>>, DiscreteError> {
         let nodes = self.nodes(steps)?;
-        let Some(tape) = &self.coordinates else { return Ok(nodes.into_iter().map(|node| node.x).collect()) };
+        let Some(tape) = &self.coordinates else { return Ok(nodes.into_iter().map(|node| node.x.value).collect()) };
         let mut workspace = tape.workspace();
         let mut positions = Vec::with_capacity(nodes.len());
         for node in nodes {
-            let inputs: Vec<f64> = std::iter::once(node.t).chain(node.x).collect();
+            let inputs: Vec<f64> = std::iter::once(node.t).chain(node.x.value).collect();
             let mut q = vec![0.0; tape.outputs()];
             tape.evaluate(&inputs, &mut workspace, &mut q);
             check_finite("a coordinate", node.t, &q)?;
@@ -305,13 +278,13 @@ impl Discrete {
         Ok(positions)
     }
 
-    /// The momenta `p_0, …, p_N` at the nodes: `D₂S` of the interval before (the start has that of `(q₀, v₀)`). Length n; for a removal
-    /// `(p_u, −P)`, length m + k.
+    /// The momenta `p_0, …, p_N` at the nodes: `D₂S` of the interval before, with the reaction that brings it onto the constraint (the start
+    /// has that of `(q₀, v₀)`). Length n; for a removal `(p_u, −P)`, length m + k.
     ///
     /// # Errors
     /// As [`Discrete::positions`].
     pub fn momenta(&mut self, steps: usize) -> Result<Vec<Vec<f64>>, DiscreteError> {
-        Ok(self.nodes(steps)?.into_iter().map(|node| node.p).collect())
+        Ok(self.nodes(steps)?.into_iter().map(|node| node.p.value).collect())
     }
 
     fn nodes(&mut self, steps: usize) -> Result<Vec<Node>, DiscreteError> {
@@ -320,23 +293,48 @@ impl Discrete {
         }
         match (&self.costates, self.ends) {
             (Some(natural), Ends::Natural) => natural.clone().shoot(self, steps),
-            _ => self.march(self.start.clone(), steps),
+            _ => self.nodes_from(self.start.clone(), steps),
         }
     }
 
-    fn march(&mut self, mut node: Node, steps: usize) -> Result<Vec<Node>, DiscreteError> {
-        let h = (self.end - self.start.t) / steps as f64;
-        let mut unknowns = self.guess.clone();
+    fn nodes_from(&mut self, start: Node, steps: usize) -> Result<Vec<Node>, DiscreteError> {
         let mut nodes = Vec::with_capacity(steps + 1);
-        self.step.start(&mut node, h, &mut unknowns)?;
-        for k in 1..=steps {
-            if k > 1 {
-                self.step.solve(&node, h, &mut unknowns)?;
-            }
-            let next = self.step.next(&node, h, &unknowns, self.time(k, steps))?;
-            nodes.push(std::mem::replace(&mut node, next));
-        }
-        nodes.push(node);
+        self.march(start, steps, |_, node| {
+            nodes.push(node.clone());
+            Ok(())
+        })?;
         Ok(nodes)
+    }
+
+    /// Calls `visit` at every node, the start included.
+    fn march(
+        &mut self,
+        mut node: Node,
+        steps: usize,
+        mut visit: impl FnMut(&mut Step, &Node) -> Result<(), DiscreteError>,
+    ) -> Result<(), DiscreteError> {
+        let h = (self.end - self.start.t) / steps as f64;
+        self.step.forget();
+        // momenta that leave a velocity open make no motion, though a step of finite length may have a solution
+        self.step.read(&mut node.clone(), h)?;
+        visit(&mut self.step, &node)?;
+        for k in 1..=steps {
+            let t = self.time(k, steps);
+            self.composed_step(&mut node, h, t)?;
+            visit(&mut self.step, &node)?;
+        }
+        Ok(())
+    }
+
+    /// Moves `node` by `h` to the time `t`.
+    fn composed_step(&mut self, node: &mut Node, h: f64, t: f64) -> Result<(), DiscreteError> {
+        let (lengths, begin) = (self.composition.lengths(), node.t);
+        let mut done = 0.0;
+        for (i, length) in lengths.iter().enumerate() {
+            done += length;
+            let to = if i + 1 == lengths.len() { t } else { begin + done * h };
+            self.step.advance(node, length * h, to)?;
+        }
+        Ok(())
     }
 }

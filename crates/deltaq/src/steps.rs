@@ -1,0 +1,118 @@
+//! One motion by a discrete principle, in equal steps.
+
+use std::time::Instant;
+
+use discrete::{Composition, Discrete, Ends, RemovedStart};
+use integrate::Work;
+use mechanics::Scene;
+
+use crate::motion::resolve;
+use crate::nodes::Nodes;
+use crate::run::{Prepared, Trajectory};
+use crate::{Choice, Ending, Motion, Seconds, Settings, SolveError, derive, setting};
+
+/// Largest number of steps of a motion that is kept.
+pub const STEP_LIMIT: usize = 10_000_000;
+
+/// How a motion is stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// Longest step; the time to go is cut into as few equal steps as that allows. Above 0, in the scene's unit of time.
+    pub step: f64,
+    /// Order 2, 4, 6 or 8.
+    pub composition: Composition,
+}
+
+/// The discrete motion of a choice from the start of the scene, with these free constants (one each of the derived equations).
+///
+/// # Errors
+/// [`SolveError::NoPrinciple`], [`SolveError::Discrete`].
+pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<Discrete, SolveError> {
+    let (system, start) = (&scene.system, &scene.start);
+    let end = start.t + scene.duration;
+    let named = |formulation: &mechanics::Formulation| formulation.name == choice.formulation;
+    match &choice.removal {
+        None if named(&chetaev::FORMULATION) => Ok(Discrete::chetaev(system, start, end)?),
+        None if named(&vakonomic::FORMULATION) || named(&vakonomic::COSTATE_FORM) => {
+            Ok(Discrete::vakonomic(system, start, constants, end)?)
+        }
+        Some(removal) if named(&removed_constraint::FORMULATION) => {
+            let equations = derive(system, choice)?;
+            let mut costates = vec![0.0; removal.memory.len()];
+            for (constant, &value) in equations.free_constants.iter().zip(constants) {
+                if let Some(i) = constant.memory {
+                    costates[i] = value;
+                }
+            }
+            let at = RemovedStart::at(system, removal, start, &costates)?;
+            Ok(Discrete::removed(system, removal, &at, end, Ends::GivenStart)?)
+        }
+        _ => Err(SolveError::NoPrinciple { formulation: choice.formulation.into() }),
+    }
+}
+
+/// Steps a choice from the start of the scene to its end, twice: as `steps` say, which is kept, and in steps twice as long. The difference of
+/// the two estimates the error of the longer ones. What is read off at a time, multipliers too, are the derived equations' outputs at the
+/// positions, velocities (and multipliers or costates) of the discrete motion.
+///
+/// Free constants that are natural at a horizon are found by the time loop, as `settings` say.
+///
+/// # Errors
+/// [`SolveError::Step`], those of [`discrete_of`] and of [`crate::solve`].
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// use deltaq::{Settings, Steps, choices, solve_by_steps};
+/// use discrete::Composition;
+/// let chetaev = choices(&scene).remove(0);
+/// let steps = Steps { step: 0.01, composition: Composition::Fourth };
+/// let mut motion = solve_by_steps(&scene, &chetaev, steps, &Settings::default())?;
+/// assert_eq!(motion.step_times().len(), 101);
+/// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
+/// assert!(motion.difference_of_runs(1.0)?.iter().all(|e| e.abs() < 1e-8));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &Settings) -> Result<Motion, SolveError> {
+    // a step that divides the time up to round-off divides it
+    let count = (scene.duration.abs() / steps.step - 1e-9).ceil().max(1.0);
+    if !(steps.step > 0.0 && steps.step.is_finite() && count <= STEP_LIMIT as f64) {
+        return Err(SolveError::Step { step: steps.step, length: scene.duration, limit: STEP_LIMIT });
+    }
+    let count = count as usize;
+    let clock = Instant::now();
+    let equations = derive(&scene.system, choice)?;
+    let derive = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    let mut prepared = Prepared::new(setting(scene), equations, settings)?;
+    let compile = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    let constants = resolve(&mut prepared, &choice.constants, settings)?;
+    prepared.start(&constants);
+    let discrete = discrete_of(scene, choice, &constants)?.composed(steps.composition);
+    let kept = discrete.trajectory(count)?;
+    let looser = discrete.trajectory(count.div_ceil(2))?;
+    let integrate = clock.elapsed().as_secs_f64();
+    let ending = match kept.stop.as_ref().or(looser.stop.as_ref()) {
+        None => Ending::Completed,
+        Some(error) => Ending::Stopped { t: kept.end().min(looser.end()), cause: error.to_string() },
+    };
+    let work = Work { steps: kept.times().len() - 1, ..Work::default() };
+    let runs = [kept, looser].map(|run| Trajectory::of_nodes(Nodes::new(run, &prepared, &scene.system)));
+    let mut motion = Motion::of(prepared, constants, ending, runs, Seconds { derive, compile, integrate });
+    motion.work = work;
+    Ok(motion)
+}

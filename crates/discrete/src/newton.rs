@@ -1,0 +1,149 @@
+//! Newton's method for one step, without allocation.
+
+use std::collections::HashMap;
+
+use mechanics::linear::Factors;
+use symbolic::{Expr, Graph, Symbol, Tape, Workspace};
+
+use crate::DiscreteError;
+
+/// A correction relative to the largest unknown under which an iteration has converged.
+const SOLVED: f64 = 4e-15;
+
+/// Round-off of ill-conditioned steps: corrections under this that have stopped to shrink are accepted.
+const ROUND_OFF: f64 = 1e-8;
+
+/// A correction that the next one, by quadratic convergence, would not be noticed after.
+const UNNOTICED: f64 = 2e-17;
+
+/// Iterations of one step.
+const ITERATIONS: usize = 40;
+
+/// A correction over this part of the one before, while corrections are over [`FAR`], may lead to another root: the step is refused.
+const CONTRACTION: f64 = 0.5;
+
+/// What corrections under this part of the unknowns lead to is near.
+const FAR: f64 = 1e-2;
+
+/// A tape with its registers and outputs.
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    tape: Tape,
+    workspace: Workspace<f64>,
+    pub(crate) outputs: Vec<f64>,
+}
+
+impl Program {
+    pub(crate) fn new(
+        g: &Graph,
+        inputs: &[Symbol],
+        outputs: &[Expr],
+        parameters: &HashMap<Symbol, f64>,
+    ) -> Result<Self, DiscreteError> {
+        let tape = g.compile(inputs, outputs, parameters)?;
+        Ok(Program { workspace: tape.workspace(), outputs: vec![0.0; tape.outputs()], tape })
+    }
+
+    pub(crate) fn evaluate(&mut self, inputs: &[f64]) -> &[f64] {
+        self.tape.evaluate(inputs, &mut self.workspace, &mut self.outputs);
+        &self.outputs
+    }
+}
+
+/// As many equations as unknowns, the unknowns being the last inputs.
+#[derive(Clone, Debug)]
+pub(crate) struct Iteration {
+    pub(crate) inputs: Vec<f64>,
+    /// Residuals, then their Jacobian row by row.
+    program: Program,
+    factors: Factors,
+    correction: Vec<f64>,
+    /// Whether one correction solves the equations.
+    linear: bool,
+    /// Rates come first, then multipliers; the two have units of their own.
+    rates: usize,
+    /// The least sizes of either that corrections are compared with.
+    floor: [f64; 2],
+}
+
+impl Iteration {
+    /// `residuals` in the last of `inputs`, of which `rates` are rates and the rest multipliers. `guess` has their sizes.
+    pub(crate) fn new(
+        g: &Graph,
+        inputs: &[Symbol],
+        residuals: &[Expr],
+        parameters: &HashMap<Symbol, f64>,
+        guess: &[f64],
+        rates: usize,
+    ) -> Result<Self, DiscreteError> {
+        let count = residuals.len();
+        let unknowns = &inputs[inputs.len() - count..];
+        let jacobian = g.jacobian(residuals, unknowns);
+        let linear = !jacobian.entries().iter().any(|&e| unknowns.iter().any(|&z| g.depends_on(e, z)));
+        let outputs = [residuals, jacobian.entries()].concat();
+        let floor = |values: &[f64]| Some(largest(values)).filter(|&x| x > 0.0).unwrap_or(1.0);
+        Ok(Iteration {
+            inputs: vec![0.0; inputs.len()],
+            program: Program::new(g, inputs, &outputs, parameters)?,
+            factors: Factors::new(count),
+            correction: vec![0.0; count],
+            linear,
+            rates,
+            floor: [floor(&guess[..rates]), floor(&guess[rates..])],
+        })
+    }
+
+    /// Solves from the unknowns that stand in `inputs`, and leaves the solution there. `t` is for errors.
+    pub(crate) fn solve(&mut self, t: f64) -> Result<(), DiscreteError> {
+        let count = self.correction.len();
+        let first = self.inputs.len() - count;
+        let (mut before, mut found) = (f64::INFINITY, f64::INFINITY);
+        for iterations in 1..=ITERATIONS {
+            let outputs = self.program.evaluate(&self.inputs);
+            check_finite("an equation of a step", t, &outputs[..count])?;
+            let (residuals, jacobian) = outputs.split_at(count);
+            self.factors.factorize(jacobian).map_err(|_| DiscreteError::Singular { t })?;
+            self.correction.copy_from_slice(residuals);
+            self.factors.solve(&mut self.correction);
+            check_finite("a correction", t, &self.correction)?;
+            let unknowns = &mut self.inputs[first..];
+            for (z, change) in unknowns.iter_mut().zip(&self.correction) {
+                *z -= change;
+            }
+            found = self.relative_correction(first);
+            // of a quadratically convergent sequence the next term is found · (found / before)²
+            let next = found * (found / before).powi(2);
+            if self.linear || found <= SOLVED || (before.is_finite() && next <= UNNOTICED) {
+                return Ok(());
+            }
+            let shrinks = found < CONTRACTION * before;
+            if !shrinks && found <= ROUND_OFF {
+                return Ok(());
+            }
+            if !shrinks && found > FAR {
+                return Err(DiscreteError::NotConverged { t, iterations, found, limit: SOLVED });
+            }
+            before = found;
+        }
+        Err(DiscreteError::NotConverged { t, iterations: ITERATIONS, found, limit: SOLVED })
+    }
+
+    fn relative_correction(&self, first: usize) -> f64 {
+        let (z_rates, z_multipliers) = self.inputs[first..].split_at(self.rates);
+        let (d_rates, d_multipliers) = self.correction.split_at(self.rates);
+        let ratio = |d: &[f64], z: &[f64], floor: f64| largest(d) / largest(z).max(floor);
+        ratio(d_rates, z_rates, self.floor[0]).max(ratio(d_multipliers, z_multipliers, self.floor[1]))
+    }
+}
+
+pub(crate) fn check_finite(what: &'static str, t: f64, values: &[f64]) -> Result<(), DiscreteError> {
+    match values.iter().find(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(&found) => Err(DiscreteError::NotFinite { what, found, t }),
+    }
+}
+
+/// `max |a_i|`, 0 for none.
+pub(crate) fn largest(a: &[f64]) -> f64 {
+    a.iter().fold(0.0, |m, x| m.max(x.abs()))
+}

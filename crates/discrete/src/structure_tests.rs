@@ -1,0 +1,161 @@
+//! What a step keeps: its mirror, the symplectic form, and what sums of increments would lose.
+
+use mechanics::Scene;
+
+use super::*;
+
+const SCENES: [&str; 6] = ["sledge", "particle", "ball-in-cone", "heisenberg", "trailer", "appell-hamel"];
+
+fn scene(name: &str) -> Scene {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/scenes");
+    Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
+}
+
+/// The motions of a scene that there are, over a time of 1.
+fn motions(name: &str) -> Vec<(String, Discrete)> {
+    let scene = scene(name);
+    let end = scene.start.t + 1.0;
+    let multipliers: Vec<f64> = (0..scene.system.constraints.len()).map(|i| 0.3 - 0.2 * i as f64).collect();
+    let mut found = vec![("Chetaev".to_string(), Discrete::chetaev(&scene.system, &scene.start, end).unwrap())];
+    let vakonomic = Discrete::vakonomic(&scene.system, &scene.start, &multipliers, end);
+    found.push(("vakonomic".to_string(), vakonomic.unwrap()));
+    // L does not contain the rate of the heading
+    for removal in scene.removals.iter().filter(|removal| removal.name != "by-heading") {
+        let costates = vec![0.1; removal.memory.len()];
+        let start = RemovedStart::at(&scene.system, removal, &scene.start, &costates).unwrap();
+        match Discrete::removed(&scene.system, removal, &start, end, Ends::GivenStart) {
+            Ok(discrete) => found.push((format!("removed, {}", removal.name), discrete)),
+            Err(error) => assert!(matches!(error, DiscreteError::HighRate { .. }), "{error}"),
+        }
+    }
+    found
+}
+
+#[test]
+fn a_step_back_undoes_a_step() {
+    let mut count = 0;
+    for name in SCENES {
+        for (what, discrete) in motions(name) {
+            for composition in Composition::ALL {
+                let mut discrete = discrete.clone().composed(composition);
+                let mut node = discrete.start.clone();
+                let h = 0.01;
+                for k in 1..=5 {
+                    discrete.composed_step(&mut node, h, f64::from(k) * h).unwrap();
+                }
+                let moved = newton::largest(&difference(&node.x.value, &discrete.start.x.value));
+                for k in (0..5).rev() {
+                    discrete.step.forget();
+                    discrete.composed_step(&mut node, -h, f64::from(k) * h).unwrap();
+                }
+                for (back, start) in [(&node.x, &discrete.start.x), (&node.p, &discrete.start.p)] {
+                    let size = newton::largest(&start.value).max(1.0);
+                    let found = newton::largest(&difference(&back.value, &start.value)) / size;
+                    // the conditioning of the cone's chart is of the order of 100
+                    assert!(found < 1e-13, "{name}, {what}, {composition:?}: {found:e} after moving by {moved:e}");
+                }
+                assert!(moved > 1e-3, "{name}, {what}");
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 60, "{count}");
+}
+
+#[test]
+fn motions_are_read_off_between_nodes_as_well_as_at_them() {
+    let exact = |t: f64| 0.3 + 1.1 * t;
+    for (name, what) in [("sledge", "Chetaev"), ("heisenberg", "vakonomic")] {
+        let discrete = motions(name).into_iter().find(|m| m.0 == what).unwrap().1.composed(Composition::Sixth);
+        let mut fine = discrete.trajectory(64).unwrap();
+        let mut coarse = discrete.trajectory(20).unwrap();
+        let h = coarse.step();
+        for k in 0..=20 {
+            for part in [0.0, 1e-17, 1e-15, 1e-12, 1e-6, 0.06, 0.07, 0.5, 0.99, 1.0 - 1e-14] {
+                let t = ((f64::from(k) + part) * h).min(1.0);
+                let (one, two) = (coarse.at(t).unwrap(), fine.at(t).unwrap());
+                for (a, b) in [(&one.x, &two.x), (&one.v, &two.v)] {
+                    let found = newton::largest(&difference(a, b));
+                    assert!(found < 1e-8, "{name} at {t}: {found:e}");
+                }
+                if name == "sledge" {
+                    assert!((one.x[2] - exact(t)).abs() < 1e-14, "{t}");
+                    assert!((one.v[1] * one.x[2].cos() - one.v[0] * one.x[2].sin()).abs() < 1e-14, "{t}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn steps_of_stationary_action_are_symplectic() {
+    let mut count = 0;
+    for name in ["sledge", "particle", "ball-in-cone", "heisenberg"] {
+        for (what, discrete) in motions(name).into_iter().skip(1) {
+            for (composition, h) in [(Composition::Second, 0.05), (Composition::Fourth, 0.05)] {
+                let mut discrete = discrete.clone().composed(composition);
+                let n = discrete.step.size;
+                let mut column = |i: usize, change: f64| {
+                    let mut node = discrete.start.clone();
+                    let part = if i < n { &mut node.x } else { &mut node.p };
+                    part.value[i % n] += change;
+                    discrete.step.forget();
+                    discrete.composed_step(&mut node, h, h).unwrap();
+                    [node.x.value, node.p.value].concat()
+                };
+                // the differences are of order 6
+                let d = 4e-3;
+                let columns: Vec<Vec<f64>> = (0..2 * n)
+                    .map(|i| {
+                        let mut sum = vec![0.0; 2 * n];
+                        for (times, weight) in [(1.0, 45.0), (2.0, -9.0), (3.0, 1.0)] {
+                            let (up, down) = (column(i, times * d), column(i, -times * d));
+                            for (s, (a, b)) in sum.iter_mut().zip(up.iter().zip(&down)) {
+                                *s += weight * (a - b) / (60.0 * d);
+                            }
+                        }
+                        sum
+                    })
+                    .collect();
+                // Ω = Σ dx ∧ dp
+                let form = |a: &[f64], b: &[f64]| (0..n).map(|k| a[k] * b[n + k] - a[n + k] * b[k]).sum::<f64>();
+                let mut worst = 0.0_f64;
+                for i in 0..2 * n {
+                    for j in 0..2 * n {
+                        let unit = f64::from(u8::from(j == i + n)) - f64::from(u8::from(i == j + n));
+                        worst = worst.max((form(&columns[i], &columns[j]) - unit).abs());
+                    }
+                }
+                println!("{name}, {what}, {composition:?}: {worst:.1e}");
+                assert!(worst < 1e-7, "{name}, {what}, {composition:?}: {worst:e}");
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 16, "{count}");
+}
+
+#[test]
+fn compensated_sums_lose_less_than_plain_ones() {
+    // vakonomic circles on the Heisenberg group: x and y stay on a circle, so that every loss is one of sums
+    let scene = scene("heisenberg");
+    let (steps, h) = (200_000, 0.02);
+    let discrete = Discrete::vakonomic(&scene.system, &scene.start, &[0.8], h * f64::from(steps))
+        .unwrap()
+        .composed(Composition::Sixth);
+    let lost = |plain: bool| {
+        let mut discrete = discrete.clone();
+        (discrete.start.x.plain, discrete.start.p.plain) = (plain, plain);
+        let drift = discrete.drift(steps as usize, 10).unwrap();
+        println!("plain: {plain}, {:?}", drift.energy);
+        drift.relative_energy()
+    };
+    let (plain, compensated) = (lost(true), lost(false));
+    println!("energy lost in {steps} steps: plain {plain:.1e}, compensated {compensated:.1e}");
+    assert!(plain > 10.0 * compensated, "{plain:e} {compensated:e}");
+    assert!(compensated < 1e-14, "{compensated:e}");
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}

@@ -1,0 +1,144 @@
+//! A discrete motion that is kept and read off at any time.
+
+use crate::step::Node;
+use crate::sum::Compensated;
+use crate::{Discrete, DiscreteError};
+
+/// A part of a step that is too short to be a step of its own.
+const SHORT: f64 = 1.0 / 16.0;
+
+/// A discrete motion at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// Time.
+    pub t: f64,
+    /// `q`; for a removal `(u, w)`.
+    pub x: Vec<f64>,
+    /// `q̇`; for a removal `(u̇, ẇ)`. On the constraint to round-off.
+    pub v: Vec<f64>,
+    /// `μ`; for a removal `P`; for Chetaev the half `λ⁻` of the reaction of the last step, which is `λ` to order 1 only.
+    pub multipliers: Vec<f64>,
+    /// `v·p − 𝓛`: the energy where constraints are homogeneous in the velocities.
+    pub energy: f64,
+}
+
+/// A discrete motion with all its nodes, as far as it came.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    discrete: Discrete,
+    h: f64,
+    times: Vec<f64>,
+    /// `x, p, v, ν`, node after node.
+    rows: Vec<f64>,
+    /// Why it ends before its time.
+    pub stop: Option<DiscreteError>,
+}
+
+impl Discrete {
+    /// The motion over `steps` equal steps. Where a step cannot be taken the trajectory ends, and [`Trajectory::stop`] says why.
+    ///
+    /// ```
+    /// use discrete::{Composition, Discrete};
+    /// let scene = mechanics::Scene::parse("sledge", include_str!("../../../validation/scenes/sledge.toml"))?;
+    /// let discrete = Discrete::chetaev(&scene.system, &scene.start, 1.0)?.composed(Composition::Sixth);
+    /// let mut trajectory = discrete.trajectory(40)?;
+    /// let now = trajectory.at(0.777)?;
+    /// assert!((now.v[0] * now.x[2].sin() - now.v[1] * now.x[2].cos()).abs() < 1e-15);
+    /// assert!((now.x[2] - (0.3 + 1.1 * 0.777)).abs() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`DiscreteError::TooFew`]; with [`crate::Ends::Natural`] those of [`Discrete::positions`].
+    pub fn trajectory(&self, steps: usize) -> Result<Trajectory, DiscreteError> {
+        let mut discrete = self.clone();
+        let (start, h) = (discrete.first_node(steps)?, (discrete.end - discrete.start.t) / steps as f64);
+        let (mut times, mut rows) = (Vec::with_capacity(steps + 1), Vec::new());
+        let stop = discrete.march(start, steps, |_, node| {
+            times.push(node.t);
+            for part in [&node.x.value, &node.p.value, &node.v, &node.multipliers] {
+                rows.extend_from_slice(part);
+            }
+            Ok(())
+        });
+        Ok(Trajectory { discrete, h, times, rows, stop: stop.err() })
+    }
+}
+
+impl Trajectory {
+    /// Times of the nodes, the start first.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The length of its steps, negative backwards.
+    pub fn step(&self) -> f64 {
+        self.h
+    }
+
+    /// The last time.
+    pub fn end(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+
+    /// The motion at `t`: at a node what stands there, between nodes one step of the method from the node before, so that the order is the
+    /// same everywhere. Just behind a node the step is taken from the one before that, and just behind the start back from the next: reactions
+    /// over a very short step would be quotients of round-off. A `t` outside is answered from the nearest node as well.
+    ///
+    /// # Errors
+    /// Those of a step.
+    pub fn at(&mut self, t: f64) -> Result<Sample, DiscreteError> {
+        let before = |time: f64| if self.h >= 0.0 { time <= t } else { time >= t };
+        let last = self.times.len() - 1;
+        let k = self.times.partition_point(|&time| before(time)).saturating_sub(1);
+        let near = |k: usize, share: f64| (t - self.times[k]).abs() <= share;
+        let round_off = 4.0 * f64::EPSILON * self.times[0].abs().max(self.end().abs());
+        if let Some(k) = [k, (k + 1).min(last)].into_iter().find(|&k| near(k, round_off)) {
+            let node = self.node(k);
+            return self.discrete.sample(node);
+        }
+        let from = match near(k, SHORT * self.h.abs()) {
+            false => k,
+            true if k > 0 => k - 1,
+            true => 1.min(last),
+        };
+        let mut node = self.node(from);
+        self.discrete.step.forget();
+        let h = t - node.t;
+        self.discrete.composed_step(&mut node, h, t)?;
+        self.discrete.sample(node)
+    }
+
+    fn node(&self, k: usize) -> Node {
+        let length = self.rows.len() / self.times.len();
+        let n = self.discrete.step.size;
+        let row = &self.rows[k * length..(k + 1) * length];
+        Node {
+            t: self.times[k],
+            x: Compensated::new(row[..n].to_vec()),
+            p: Compensated::new(row[n..2 * n].to_vec()),
+            v: row[2 * n..3 * n].to_vec(),
+            multipliers: row[3 * n..].to_vec(),
+        }
+    }
+}
+
+impl Discrete {
+    /// Reads a node off.
+    pub(crate) fn sample(&mut self, mut node: Node) -> Result<Sample, DiscreteError> {
+        let h = (self.end - self.start.t).signum();
+        if !self.step.reacts {
+            self.step.read(&mut node, h)?;
+        }
+        let energy = self.step.readings(&node)[0];
+        Ok(Sample { t: node.t, x: node.x.value, v: node.v, multipliers: node.multipliers, energy })
+    }
+
+    /// The node that a march of so many steps starts from.
+    pub(crate) fn first_node(&mut self, steps: usize) -> Result<Node, DiscreteError> {
+        match self.ends {
+            crate::Ends::GivenStart if steps > 0 => Ok(self.start.clone()),
+            _ => Ok(self.nodes(steps)?.swap_remove(0)),
+        }
+    }
+}

@@ -1,0 +1,419 @@
+//! Radau IIA of order 5: three stages, collocation at `c = (4 − √6)/10, (4 + √6)/10, 1`, L-stable; for stiff problems.
+//!
+//! Newton iteration, error estimate, step control and starting values as in E. Hairer's and G. Wanner's code RADAU5: the three stages are
+//! transformed so that one real and one complex matrix of n rows are factorized, `(γ/h) − J` and `((α + iβ)/h) − J`; Jacobian and factors are
+//! kept while the iteration contracts well. Dense output is the collocation polynomial, of degree 3. The estimate has order 3 too, and unlike in RADAU5,
+//! which asks for `0.1 · tolerance^(2/3)` of it, it is held under the tolerance as it stands: so the dense output is as good as the tolerance,
+//! and the ends of the steps are better by orders. That estimate does not see what is stiff, whose polynomial may be wrong between collocation points;
+//! so a second one compares the ends of the steps with where the polynomial before leads.
+//!
+//! E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, IV.8.
+
+use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+
+use crate::options::Options;
+use crate::problem::Start;
+use crate::status::StopCause;
+use crate::stepper::{Attempt, Stepper, shortest_step};
+use crate::system::{Failure, System, check_finite};
+
+/// √6
+const ROOT_6: f64 = 2.449_489_742_783_178;
+const NODES: [f64; 3] = [(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.0, 1.0];
+/// The error estimate, `h⁻¹ Σ e_i z_i + F`, is solved with the real factors.
+const ERROR: [f64; 3] = [-(13.0 + 7.0 * ROOT_6) / 3.0, (-13.0 + 7.0 * ROOT_6) / 3.0, -1.0 / 3.0];
+/// `A⁻¹ = T diag(γ, [α −β; β α]) T⁻¹`.
+pub(crate) const T: [[f64; 3]; 3] = [
+    [9.123_239_487_089_295e-2, -0.141_255_295_020_954_2, -3.002_919_410_514_742_4e-2],
+    [0.241_717_932_707_107_02, 0.204_129_352_293_799_93, 0.382_942_112_757_261_94],
+    [0.966_048_182_615_092_9, 1.0, 0.0],
+];
+pub(crate) const T_INVERSE: [[f64; 3]; 3] = [
+    [4.325_579_890_063_155, 0.339_199_251_815_809_87, 0.541_770_539_935_874_9],
+    [-4.178_718_591_551_905, -0.327_682_820_761_062_4, 0.476_623_554_500_550_45],
+    [-0.502_872_634_945_786_9, 2.571_926_949_855_605_4, -0.596_039_204_828_224_9],
+];
+
+/// Below this the error estimate measures round-off.
+const TIGHTEST: f64 = 1e-14;
+const SAFETY: f64 = 0.9;
+/// Steps shrink at most by 8 and grow at most by 8, before that by 5 where the estimate was the reason (RADAU5's `FACL`, `FACR`).
+const SLOWEST: f64 = 5.0;
+const FASTEST: f64 = 0.125;
+/// Largest `θ (θ − c₁)(θ − c₂)(1 − θ)` on a step.
+const BETWEEN: f64 = 0.018;
+/// Newton iterations of one step.
+const ITERATIONS: usize = 7;
+/// The Jacobian is kept while the iteration contracts by this.
+const GOOD_CONTRACTION: f64 = 1e-3;
+/// The step is kept, and the factors with it, if the new one would be up to so many times as long.
+const SAME_STEP: f64 = 1.2;
+
+/// `γ`, `α`, `β`: the eigenvalues of `A⁻¹` are `γ` and `α ± iβ`.
+pub(crate) fn eigenvalues() -> [f64; 3] {
+    let (a, b) = (81.0_f64.cbrt(), 9.0_f64.cbrt());
+    let (alpha, beta) = ((12.0 - a + b) / 60.0, (a + b) * 3.0_f64.sqrt() / 60.0);
+    let size = alpha * alpha + beta * beta;
+    [30.0 / (6.0 + a - b), alpha / size, beta / size]
+}
+
+struct Factors {
+    step: f64,
+    real: LU<f64, Dyn, Dyn>,
+    complex: LU<Complex<f64>, Dyn, Dyn>,
+}
+
+pub(crate) struct Radau5<'s, 'p> {
+    system: &'s System<'p>,
+    end: f64,
+    relative: f64,
+    absolute: f64,
+    newton_tolerance: f64,
+    t: f64,
+    y: Vec<f64>,
+    rates: Vec<f64>,
+    jacobian: Vec<f64>,
+    /// Whether the Jacobian was evaluated at `(t, y)`.
+    jacobian_is_new: bool,
+    factors: Option<Factors>,
+    /// `z_i = Y_i − y` of the three stages, and their transforms.
+    z: [Vec<f64>; 3],
+    w: [Vec<f64>; 3],
+    stages: [Vec<f64>; 3],
+    argument: Vec<f64>,
+    /// The last step's length and its polynomial without the constant, for starting values.
+    last: Option<(f64, [Vec<f64>; 3])>,
+    contraction: f64,
+    /// `z₃` as guessed.
+    guessed_end: Vec<f64>,
+    /// `Θ/(1 − Θ)`, kept from step to step.
+    margin: f64,
+    candidate: Vec<f64>,
+    candidate_raw: Vec<f64>,
+    step: f64,
+    taken: f64,
+    taken_to: f64,
+    next: f64,
+    /// Length and error of the last accepted step.
+    accepted: Option<(f64, f64)>,
+    error: f64,
+    failed: bool,
+}
+
+impl<'s, 'p> Radau5<'s, 'p> {
+    /// Evaluates F at the start.
+    pub(crate) fn new(system: &'s System<'p>, start: &Start, end: f64, options: &Options) -> Result<Self, Failure> {
+        let n = system.dimension();
+        let mut rates = vec![0.0; n];
+        system.rates(start.t, &start.y, &mut rates)?;
+        let relative = options.relative_tolerance.max(TIGHTEST);
+        let absolute = options.absolute_tolerance;
+        let scale = |y: f64| absolute + relative * y.abs();
+        let norm = |v: &[f64]| rms(v.iter().zip(&start.y).map(|(x, y)| x / scale(*y)));
+        let (size, slope) = (norm(&start.y), norm(&rates));
+        let first = if size > 1e-5 && slope > 1e-5 { 1e-3 * size / slope } else { 1e-6 };
+        let length = end - start.t;
+        let empty = || [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+        Ok(Self {
+            system,
+            end,
+            relative,
+            absolute,
+            newton_tolerance: (10.0 * f64::EPSILON / relative).max(relative.sqrt().min(0.03)),
+            t: start.t,
+            y: start.y.clone(),
+            rates,
+            jacobian: vec![0.0; n * n],
+            jacobian_is_new: false,
+            factors: None,
+            z: empty(),
+            w: empty(),
+            stages: empty(),
+            argument: vec![0.0; n],
+            last: None,
+            contraction: 1.0,
+            guessed_end: vec![0.0; n],
+            margin: 1.0,
+            candidate: vec![0.0; n],
+            candidate_raw: vec![0.0; n],
+            step: length.signum() * first.min(length.abs()),
+            taken: 0.0,
+            taken_to: start.t,
+            next: 0.0,
+            accepted: None,
+            error: 0.0,
+            failed: false,
+        })
+    }
+
+    fn scale(&self, i: usize) -> f64 {
+        self.absolute + self.relative * self.y[i].abs()
+    }
+
+    /// Jacobian and factors for steps of length `h`, as far as they are not there.
+    fn prepare(&mut self, h: f64) -> Result<(), Failure> {
+        if !self.jacobian_is_new && (self.factors.is_none() || self.contraction > GOOD_CONTRACTION) {
+            self.system.jacobian(self.t, &self.y, &mut self.jacobian)?;
+            self.jacobian_is_new = true;
+            self.factors = None;
+        }
+        if self.factors.as_ref().is_some_and(|factors| factors.step == h) {
+            return Ok(());
+        }
+        let n = self.y.len();
+        let [gamma, alpha, beta] = eigenvalues();
+        let mut real = DMatrix::from_row_iterator(n, n, self.jacobian.iter().map(|j| -j));
+        let mut complex = real.map(|x| Complex::new(x, 0.0));
+        for i in 0..n {
+            real[(i, i)] += gamma / h;
+            complex[(i, i)] += Complex::new(alpha / h, beta / h);
+        }
+        let (real, complex) = (real.lu(), complex.lu());
+        if !(real.is_invertible() && complex.is_invertible()) {
+            return Err(Failure::Evaluation { reason: format!("γ/h − ∂F/∂y is singular at t = {}", self.t) });
+        }
+        self.factors = Some(Factors { step: h, real, complex });
+        Ok(())
+    }
+
+    /// The last step's polynomial beyond its end, or zero.
+    fn guess(&mut self, h: f64) {
+        let n = self.y.len();
+        for (stage, c) in NODES.into_iter().enumerate() {
+            for i in 0..n {
+                self.z[stage][i] = self.last.as_ref().map_or(0.0, |(before, [one, two, three])| {
+                    let s = c * h / before;
+                    let inner = two[i] + (s - (NODES[0] - 1.0)) * three[i];
+                    s * (one[i] + (s - (NODES[1] - 1.0)) * inner)
+                });
+            }
+        }
+        self.guessed_end.copy_from_slice(&self.z[2]);
+        for i in 0..n {
+            for (row, w) in T_INVERSE.iter().zip(&mut self.w) {
+                w[i] = row[0] * self.z[0][i] + row[1] * self.z[1][i] + row[2] * self.z[2][i];
+            }
+        }
+    }
+
+    /// Solves the stages; the number of iterations, or by what the step is to be shortened.
+    fn newton(&mut self, h: f64) -> Result<Result<usize, f64>, Failure> {
+        let n = self.y.len();
+        let [gamma, alpha, beta] = eigenvalues().map(|x| x / h);
+        self.margin = self.margin.max(f64::EPSILON).powf(0.8);
+        self.contraction = GOOD_CONTRACTION;
+        let (mut before, mut ratio_before) = (0.0, 0.0);
+        for iteration in 1..=ITERATIONS {
+            for (stage, c) in NODES.into_iter().enumerate() {
+                for i in 0..n {
+                    self.argument[i] = self.y[i] + self.z[stage][i];
+                }
+                self.system.rates(self.t + c * h, &self.argument, &mut self.stages[stage])?;
+            }
+            let Some(factors) = &self.factors else { return Ok(Err(0.5)) };
+            let transformed = |row: usize, i: usize| -> f64 {
+                (0..3).map(|stage| T_INVERSE[row][stage] * self.stages[stage][i]).sum()
+            };
+            let mut real = DVector::from_fn(n, |i, _| transformed(0, i) - gamma * self.w[0][i]);
+            let mut complex = DVector::from_fn(n, |i, _| {
+                let (u, v) = (self.w[1][i], self.w[2][i]);
+                Complex::new(transformed(1, i) - alpha * u + beta * v, transformed(2, i) - alpha * v - beta * u)
+            });
+            if !(factors.real.solve_mut(&mut real) && factors.complex.solve_mut(&mut complex)) {
+                return Ok(Err(0.5));
+            }
+            let mut sum = 0.0;
+            for i in 0..n {
+                let changes = [real[i], complex[i].re, complex[i].im];
+                for (w, change) in self.w.iter_mut().zip(changes) {
+                    w[i] += change;
+                }
+                let scale = self.absolute + self.relative * self.y[i].abs();
+                sum += changes.iter().map(|x| (x / scale).powi(2)).sum::<f64>();
+                for (row, z) in T.iter().zip(&mut self.z) {
+                    z[i] = row[0] * self.w[0][i] + row[1] * self.w[1][i] + row[2] * self.w[2][i];
+                }
+            }
+            let size = (sum / (3 * n) as f64).sqrt();
+            if !size.is_finite() {
+                return Ok(Err(0.5));
+            }
+            if iteration > 1 && iteration < ITERATIONS {
+                let ratio = size / before;
+                self.contraction = if iteration == 2 { ratio } else { (ratio * ratio_before).sqrt() };
+                ratio_before = ratio;
+                if self.contraction >= 0.99 {
+                    return Ok(Err(0.5));
+                }
+                self.margin = self.contraction / (1.0 - self.contraction);
+                let left = (ITERATIONS - 1 - iteration) as i32;
+                let at_last = self.margin * size * self.contraction.powi(left) / self.newton_tolerance;
+                if at_last >= 1.0 {
+                    return Ok(Err(0.8 * at_last.clamp(1e-4, 20.0).powf(-1.0 / (4.0 + f64::from(left)))));
+                }
+            }
+            before = size.max(f64::EPSILON);
+            if self.margin * size <= self.newton_tolerance {
+                return Ok(Ok(iteration));
+            }
+        }
+        Ok(Err(0.5))
+    }
+
+    /// The error of the polynomial between collocation points in units of the tolerance: both it and that of its predecessor's continuation are
+    /// `h⁴ y⁗/24` times the product of the distances from the points.
+    fn estimate_between(&self, h: f64) -> f64 {
+        let Some((before, _)) = &self.last else { return 0.0 };
+        let ratio = h / before;
+        let reach: f64 = NODES.iter().map(|c| (1.0 + ratio - c) / ratio).product::<f64>() * (1.0 + ratio) / ratio;
+        let differences = (0..self.y.len()).map(|i| (self.z[2][i] - self.guessed_end[i]) / self.scale(i));
+        BETWEEN * rms(differences) / reach
+    }
+
+    /// The error of the candidate in units of the tolerance.
+    fn estimate(&mut self, h: f64) -> Result<f64, Failure> {
+        let n = self.y.len();
+        let Some(factors) = &self.factors else { return Ok(f64::INFINITY) };
+        let stages: Vec<f64> = (0..n).map(|i| (0..3).map(|s| ERROR[s] / h * self.z[s][i]).sum()).collect();
+        let solve = |rates: &[f64]| {
+            let mut right = DVector::from_fn(n, |i, _| stages[i] + rates[i]);
+            factors.real.solve_mut(&mut right);
+            right
+        };
+        let size = |v: &DVector<f64>| rms((0..n).map(|i| v[i] / self.scale(i))).max(1e-10);
+        let found = solve(&self.rates);
+        let error = size(&found);
+        if error < 1.0 || !(self.accepted.is_none() || self.failed) {
+            return Ok(error);
+        }
+        // the stiff part of the first estimate is too large; once more through the equations
+        let moved: Vec<f64> = self.y.iter().zip(found.iter()).map(|(y, e)| y + e).collect();
+        let mut rates = vec![0.0; n];
+        self.system.rates(self.t, &moved, &mut rates)?;
+        Ok(size(&solve(&rates)))
+    }
+}
+
+fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len() as f64;
+    (values.map(|x| x * x).sum::<f64>() / n).sqrt()
+}
+
+impl Stepper for Radau5<'_, '_> {
+    fn degree(&self) -> usize {
+        3
+    }
+
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn attempt(&mut self) -> Attempt {
+        let remaining = self.end - self.t;
+        let last = 1.0001 * self.step.abs() >= remaining.abs();
+        let h = if last { remaining } else { self.step };
+        let limit = shortest_step(self.t);
+        if self.step.abs() <= limit && !last {
+            return Attempt::GaveUp(StopCause::StepTooSmall { step: self.step.abs(), limit });
+        }
+        (self.taken, self.taken_to) = (h, if last { self.end } else { self.t + h });
+        if let Err(failure) = self.prepare(h) {
+            return Attempt::Failed(failure);
+        }
+        self.guess(h);
+        let iterations = match self.newton(h) {
+            Err(failure) => return Attempt::Failed(failure),
+            Ok(Ok(iterations)) => iterations,
+            Ok(Err(factor)) => {
+                self.step = factor * h;
+                self.failed = true;
+                self.contraction = 1.0;
+                return Attempt::Rejected;
+            }
+        };
+        let error = match self.estimate(h) {
+            Ok(error) => error.max(self.estimate_between(h)),
+            Err(failure) => return Attempt::Failed(failure),
+        };
+        for i in 0..self.y.len() {
+            self.candidate[i] = self.y[i] + self.z[2][i];
+        }
+        self.candidate_raw.copy_from_slice(&self.candidate);
+        if let Err(failure) = check_finite(&self.candidate) {
+            return Attempt::Failed(failure);
+        }
+        let turns = 2.0 * ITERATIONS as f64;
+        let safety = SAFETY.min(SAFETY * (1.0 + turns) / (iterations as f64 + turns));
+        let mut quotient = (error.powf(0.25) / safety).clamp(FASTEST, SLOWEST);
+        if error >= 1.0 {
+            self.step = if self.accepted.is_none() { 0.1 * h } else { h / quotient };
+            self.failed = true;
+            return Attempt::Rejected;
+        }
+        if let Some((before, error_before)) = self.accepted {
+            let predicted = (before / h) * (error * error / error_before).powf(0.25) / SAFETY;
+            quotient = quotient.max(predicted.clamp(FASTEST, SLOWEST));
+        }
+        let longest = if self.failed { h.abs() } else { f64::INFINITY };
+        self.next = h.signum() * (h / quotient).abs().min(longest);
+        self.error = error;
+        Attempt::Candidate { t: self.taken_to, rejected: 0 }
+    }
+
+    fn candidate(&mut self) -> &mut [f64] {
+        &mut self.candidate
+    }
+
+    // The move of a projection is spread over the step in proportion to time.
+    fn finish(&mut self, _moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure> {
+        let n = self.y.len();
+        self.system.rates(self.taken_to, &self.candidate, &mut self.argument)?;
+        let Some(segment) = segment else { return Ok(()) };
+        let [a, b, _] = NODES;
+        for i in 0..n {
+            // what is left of the polynomial after its chord, over θ (1 − θ), is linear in θ
+            let end = self.z[2][i];
+            let at_a = (self.z[0][i] - a * end) / (a * (1.0 - a));
+            let at_b = (self.z[1][i] - b * end) / (b * (1.0 - b));
+            let slope = (at_b - at_a) / (b - a);
+            segment[i] = self.y[i];
+            segment[n + i] = self.candidate[i] - self.y[i];
+            segment[2 * n + i] = at_a - a * slope;
+            segment[3 * n + i] = slope;
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self) -> Result<(), StopCause> {
+        let n = self.y.len();
+        let [a, b, _] = NODES;
+        let (_, parts) = self.last.get_or_insert_with(|| (0.0, [vec![0.0; n], vec![0.0; n], vec![0.0; n]]));
+        for i in 0..n {
+            let [z1, z2, z3] = [self.z[0][i], self.z[1][i], self.z[2][i]];
+            parts[0][i] = (z2 - z3) / (b - 1.0);
+            let slope = (z1 - z2) / (a - b);
+            parts[1][i] = (slope - parts[0][i]) / (a - 1.0);
+            parts[2][i] = parts[1][i] - (slope - z1 / a) / b;
+        }
+        if let Some((length, _)) = &mut self.last {
+            *length = self.taken;
+        }
+        self.t = self.taken_to;
+        std::mem::swap(&mut self.y, &mut self.candidate);
+        std::mem::swap(&mut self.rates, &mut self.argument);
+        self.accepted = Some((self.taken, self.error.max(1e-2)));
+        self.failed = false;
+        self.jacobian_is_new = false;
+        let growth = self.next / self.taken;
+        let keep = self.contraction <= GOOD_CONTRACTION && (1.0..=SAME_STEP).contains(&growth);
+        self.step = if keep { self.taken } else { self.next };
+        Ok(())
+    }
+
+    fn shrink(&mut self) -> Result<(), StopCause> {
+        self.step = 0.5 * self.taken;
+        self.failed = true;
+        self.last = None;
+        Ok(())
+    }
+}

@@ -1,0 +1,105 @@
+//! Orders of the discrete principles and their compositions: error against step, above the plateau of round-off.
+
+use deltaq::{Choice, Motion, Settings, Steps, choices, solve_by_steps, solve_choice};
+use discrete::Composition;
+use mechanics::{ConstantsRule, Scene};
+use validation::catalogue::find;
+
+/// An error under this times the size of the motion is round-off; what is over [`COARSE`] says nothing of the order yet.
+const PLATEAU: f64 = 2e-13;
+const COARSE: f64 = 1e-4;
+
+/// Steps of the longest grid.
+const STEPS: f64 = 4.0;
+
+/// Grids; each step is 2^(1/4) times shorter than the one before.
+const GRIDS: u32 = 48;
+
+/// So many of the finest grids over the plateau give the slope.
+const POINTS: usize = 3;
+
+fn choice(scene: &Scene, formulation: &str, constants: Option<Vec<f64>>) -> Choice {
+    let found = choices(scene).into_iter().find(|c| c.formulation == formulation).expect("a formulation");
+    let constants = constants.map_or(found.constants.clone(), ConstantsRule::Given);
+    Choice { constants, ..found }
+}
+
+fn end_of(mut motion: Motion, t: f64) -> Vec<f64> {
+    assert!(motion.is_complete(), "{:?}", motion.ending);
+    let now = motion.at(t).unwrap();
+    [now.coordinates, now.velocities].concat()
+}
+
+/// The slope of log error over log step, of the [`POINTS`] finest grids over the plateau, by least squares.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(h, e)| (h.ln(), e.ln())).unzip();
+    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let top: f64 = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum();
+    top / x.iter().map(|x| (x - mx).powi(2)).sum::<f64>()
+}
+
+fn measure(scene: &Scene, choice: &Choice, composition: Composition) {
+    let end = scene.start.t + scene.duration;
+    let settings = Settings { tolerance: 1e-13, ..Settings::default() };
+    let reference = end_of(solve_choice(scene, choice, &settings).unwrap(), end);
+    let size = reference.iter().fold(1.0_f64, |a, x| a.max(x.abs()));
+    let mut points = Vec::new();
+    for k in 0..GRIDS {
+        let count = (STEPS * f64::from(k).mul_add(0.25, 0.0).exp2()).round();
+        let step = scene.duration / count;
+        // a step that is too long is refused
+        let Ok(motion) = solve_by_steps(scene, choice, Steps { step, composition }, &settings) else { continue };
+        if !motion.is_complete() {
+            continue;
+        }
+        let found = end_of(motion, end);
+        let error = found.iter().zip(&reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
+        if error < PLATEAU {
+            break;
+        }
+        if error < COARSE {
+            points.push((step, error));
+        }
+        if count > 3000.0 {
+            break;
+        }
+    }
+    let what = format!("{}, {}, order {}", scene.name, choice.label, composition.order());
+    let last = &points[points.len().saturating_sub(POINTS)..];
+    assert!(last.len() == POINTS, "{what}: {points:?}");
+    let (order, nominal) = (slope(last), f64::from(composition.order()));
+    let (first, end) = (last[0], last[POINTS - 1]);
+    println!("{what}: {order:.3}, from {:.1e} at h = {:.4} to {:.1e} at h = {:.4}", first.1, first.0, end.1, end.0);
+    let limit = if nominal < 8.0 { 0.1 } else { 0.3 };
+    assert!((order - nominal).abs() < limit, "{what}: {order}; {points:?}");
+}
+
+fn measure_all(name: &str, duration: f64, formulation: &str, constants: Option<Vec<f64>>) {
+    let mut scene = find(name, &[]).unwrap();
+    scene.duration = duration;
+    let choice = choice(&scene, formulation, constants);
+    for composition in Composition::ALL {
+        measure(&scene, &choice, composition);
+    }
+}
+
+#[test]
+fn chetaev_has_its_orders() {
+    measure_all("sledge", 2.0, "chetaev", None);
+    measure_all("ball-in-cone", 0.2, "chetaev", None);
+    measure_all("particle", 4.0, "chetaev", None);
+}
+
+#[test]
+fn vakonomic_has_its_orders() {
+    measure_all("sledge", 2.0, "vakonomic", Some(vec![0.5]));
+    measure_all("ball-in-cone", 0.2, "vakonomic", Some(vec![0.2, -0.1]));
+    measure_all("particle", 4.0, "vakonomic", Some(vec![0.7]));
+}
+
+#[test]
+fn removed_constraint_has_its_orders() {
+    measure_all("sledge", 2.0, "removed-constraint", Some(vec![2.0]));
+    measure_all("ball-in-cone", 0.2, "removed-constraint", Some(vec![0.3]));
+}
