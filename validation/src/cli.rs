@@ -66,6 +66,8 @@ pub enum Command {
     Compare(CompareArguments),
     /// Put the claims T1 to T14 to the test on random systems.
     Random(RandomArguments),
+    /// Put every method to the test on stiff and extreme cases: is what comes back right, and where it is not, does it say so?
+    Stability(StabilityArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -167,7 +169,21 @@ pub struct RandomArguments {
     pub quiet: bool,
 }
 
-/// Output formats of `deltaq random`.
+/// `deltaq stability`.
+#[derive(Args, Debug)]
+pub struct StabilityArguments {
+    /// Cases to run, all if left out.
+    #[arg(long = "case", value_name = "NAME,…", value_delimiter = ',')]
+    pub cases: Vec<String>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = RandomFormat::Text)]
+    pub format: RandomFormat,
+    /// No progress bar.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Output formats of `deltaq random` and `deltaq stability`.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RandomFormat {
     /// Tables.

@@ -14,4 +14,6 @@ pub mod realization;
 pub mod report;
 pub mod show_command;
 pub mod solve_command;
+pub mod stability;
+pub mod stability_command;
 pub mod substitution;

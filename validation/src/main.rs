@@ -8,7 +8,7 @@ use anyhow::Result;
 use clap::Parser;
 use validation::cli::{Cli, Command};
 use validation::solve_command::Answer;
-use validation::{compare_command, main_job, random_command, show_command, solve_command};
+use validation::{compare_command, main_job, random_command, show_command, solve_command, stability_command};
 
 fn main() -> ExitCode {
     let answer = match run(Cli::parse()) {
@@ -43,6 +43,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Random(arguments)) => return random_command::run(&arguments),
+        Some(Command::Stability(arguments)) => return stability_command::run(&arguments),
         Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
     };
     Ok(Answer { text, complaint: None })

@@ -12,9 +12,6 @@ use serde_json::{Map, Value, json};
 use crate::catalogue;
 use crate::cli::{Format, SolveArguments};
 
-/// Relative error estimate over which a trajectory is not trusted.
-const TRUSTED: f64 = 1e-3;
-
 /// Times at which invariants are sampled.
 const SAMPLES: usize = 200;
 
@@ -47,11 +44,7 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
     let estimate = error_estimate(&mut motion, setting(&scene))?;
     let complaint = match &motion.ending {
         Ending::Stopped { t, cause } => Some(format!("stopped at t = {t}: {cause}")),
-        Ending::Completed if estimate.relative.is_nan() || estimate.relative > TRUSTED => Some(format!(
-            "not to be trusted: relative error estimate {:.1e}, limit {TRUSTED:.0e}; ask for a smaller --tolerance",
-            estimate.relative
-        )),
-        Ending::Completed => None,
+        Ending::Completed => estimate.complaint().map(|words| words + "; ask for a smaller --tolerance"),
     };
     let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();
     let text = match arguments.format {

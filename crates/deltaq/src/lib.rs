@@ -29,7 +29,7 @@ pub use comparison::{
 };
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
-pub use estimate::{ErrorEstimate, error_estimate};
+pub use estimate::{ErrorEstimate, TRUSTED, error_estimate};
 pub use fit::best_fit;
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,

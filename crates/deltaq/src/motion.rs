@@ -8,7 +8,7 @@ use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System};
 use crate::SolveError;
 use crate::gap::subtract;
 use crate::horizon::natural_constants;
-use crate::run::{Prepared, Trajectory};
+use crate::run::{Origin, Prepared, Trajectory};
 
 /// The tolerance of the second run over that of the first.
 pub const TIGHTER: f64 = 1e-2;
@@ -191,10 +191,16 @@ pub fn solve(
     let compile = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     let constants = resolve(&mut prepared, constants, settings)?;
-    let looser = prepared.run(&constants, setting.end, settings.tolerance, settings)?;
-    let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, settings)?;
+    let looser = prepared.run(&constants, setting.end, settings.tolerance, Origin::LastDigit, settings)?;
+    let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, Origin::Start, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
-    let ending = ending(&mut prepared, &kept.solution);
+    let ending = match (ending(&mut prepared, &kept.solution), ending(&mut prepared, &looser.solution)) {
+        (Ending::Completed, Ending::Stopped { t, cause }) => Ending::Stopped { t, cause: unconfirmed(&cause) },
+        (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later, setting) => {
+            Ending::Stopped { t, cause: unconfirmed(&cause) }
+        }
+        (ending, _) => ending,
+    };
     let size = prepared.equations.states.len();
     let (work, projection) = (kept.solution.work, kept.solution.projection);
     let (kept, looser) = (kept.trajectory(), looser.trajectory());
@@ -213,6 +219,17 @@ pub fn solve(
         equations: prepared.equations,
         compiled: prepared.compiled,
     })
+}
+
+/// Where only the tighter run goes on, there is no error estimate, and so no motion.
+fn unconfirmed(cause: &str) -> String {
+    format!("the run that estimates the error stops here: {cause}")
+}
+
+/// Both runs stop near the same singularity, or for different causes.
+fn much_before(t: f64, later: f64, setting: Setting) -> bool {
+    const NEAR: f64 = 1e-3;
+    (later - t) * (setting.end - setting.start.t).signum() > NEAR * (later - setting.start.t).abs()
 }
 
 /// How far before a singularity a motion is read off, as fractions of its length.
