@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{EquationStyle, choices, derive, equations_text};
+use deltaq::{EquationStyle, choices, derive_at, equations_text};
 use mechanics::{Scene, integrability};
 
 use crate::catalogue;
@@ -36,7 +36,7 @@ pub fn run(arguments: &ShowArguments) -> Result<String> {
     let _ = writeln!(text, "\nConstraint: {}", integrability(&scene.system, &scene.start)?);
     for choice in choices(&scene) {
         let _ = writeln!(text, "\n## {}\n", choice.label);
-        match derive(&scene.system, &choice) {
+        match derive_at(&scene.system, &scene.start, &choice) {
             Ok(equations) => text += &equations_text(&equations, style),
             Err(error) => {
                 let _ = writeln!(text, "refused: {error}");

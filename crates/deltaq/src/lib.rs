@@ -24,8 +24,8 @@ mod run;
 mod table;
 
 pub use comparison::{
-    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, removals, setting,
-    solve_choice,
+    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, removals,
+    setting, solve_choice,
 };
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;

@@ -8,7 +8,7 @@ use super::Known;
 pub const BETTER_THAN_IT_KNOWS: f64 = 10.0;
 
 /// Relative error that is passed over whatever the estimate says.
-pub const FLOOR: f64 = 1e-8;
+pub const FLOOR: f64 = 1e-7;
 
 /// What coordinates of the size that they have cannot show, over their size.
 const LAST_DIGITS: f64 = 16.0 * f64::EPSILON;

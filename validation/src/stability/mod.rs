@@ -11,7 +11,7 @@
 //! ```
 //!
 //! `e(t)` is the largest difference of the motion's two runs up to `t`; `s(t)` the largest distance from the start up to `t`, the first tenth of the
-//! run at least; `u(t)` what the reference itself may be off by; `b` the larger of 10⁻⁸ and ten times the tolerance that was asked of the kept run.
+//! run at least; `u(t)` what the reference itself may be off by; `b` the larger of 10⁻⁷ and ten times the tolerance that was asked of the kept run.
 //! Lengths in the kinetic metric. Where 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked of it.
 
 mod cases;

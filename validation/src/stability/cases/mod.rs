@@ -7,7 +7,7 @@ mod sledge;
 mod units;
 mod viscous;
 
-use deltaq::{Choice, choices, derive, formulation};
+use deltaq::{Choice, choices, derive_at, formulation};
 use mechanics::{ConstantsRule, Scene, SceneError};
 
 use super::question::{Case, Question, Subject};
@@ -43,7 +43,7 @@ fn choice(scene: &Scene, name: &str) -> Result<Choice, String> {
 
 /// A scene in one formulation.
 fn subject(scene: &Scene, choice: &Choice) -> Result<Subject, String> {
-    let equations = derive(&scene.system, choice).map_err(|error| error.to_string())?;
+    let equations = derive_at(&scene.system, &scene.start, choice).map_err(|error| error.to_string())?;
     Ok(Subject {
         system: scene.system.clone(),
         start: scene.start.clone(),
