@@ -43,7 +43,11 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
     let mut motion = solve_choice(&scene, &choice, &settings)?;
     let estimate = error_estimate(&mut motion, setting(&scene))?;
     let complaint = match &motion.ending {
-        Ending::Stopped { t, cause } => Some(format!("stopped at t = {t}: {cause}")),
+        Ending::Stopped { t, cause } => {
+            let doubt = motion.doubt.as_ref().map_or(String::new(), |doubt| format!("; {doubt}"));
+            Some(format!("stopped at t = {t}: {cause}{doubt}"))
+        }
+        Ending::Completed if motion.doubt.is_some() => motion.doubt.clone(),
         Ending::Completed => estimate.complaint().map(|words| words + "; ask for a smaller --tolerance"),
     };
     let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();

@@ -69,6 +69,8 @@ pub struct Motion {
     pub constants: Vec<f64>,
     /// How it ended.
     pub ending: Ending,
+    /// Why the difference of the two runs is no error estimate, where the tolerance did not decide how long the steps are.
+    pub doubt: Option<String>,
     /// Work of the kept run.
     pub work: Work,
     /// What projection did in the kept run.
@@ -206,6 +208,7 @@ pub fn solve(
     let (kept, looser) = (kept.trajectory(), looser.trajectory());
     let end = readable_end(&mut prepared.compiled, &kept, &looser);
     Ok(Motion {
+        doubt: doubt(&kept.dense, &looser.dense, end),
         end,
         ending,
         constants,
@@ -224,6 +227,26 @@ pub fn solve(
 /// Where only the tighter run goes on, there is no error estimate, and so no motion.
 fn unconfirmed(cause: &str) -> String {
     format!("the run that estimates the error stops here: {cause}")
+}
+
+/// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
+const FEW_STEPS: usize = 200;
+
+/// A hundredth of the tolerance takes at least so many times the steps: 1.78 of a method of order 8.
+const MORE_STEPS: f64 = 1.1;
+
+/// Two runs with the same steps have the same error, which their difference does not show.
+fn doubt(kept: &DenseOutput, looser: &DenseOutput, end: f64) -> Option<String> {
+    let sign = (end - kept.start()).signum();
+    let count = |run: &DenseOutput| run.step_times().iter().filter(|&&t| (end - t) * sign >= 0.0).count();
+    let (tight, loose) = (count(kept), count(looser));
+    let same = loose >= FEW_STEPS && (tight as f64) < MORE_STEPS * loose as f64;
+    same.then(|| {
+        format!(
+            "the error estimate is not to be trusted: {loose} steps at one tolerance, {tight} at a hundredth of it, so that something else limits \
+             the steps"
+        )
+    })
 }
 
 /// Both runs stop near the same singularity, or for different causes.

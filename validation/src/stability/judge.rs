@@ -98,10 +98,10 @@ pub fn judge(motion: &mut Motion, metric: &mut Metric, known: &mut Known, floor:
             distance: length(q, &start),
         });
     }
-    Ok(verdict(&samples, &motion.ending, floor))
+    Ok(verdict(&samples, &motion.ending, motion.doubt.as_deref(), floor))
 }
 
-fn verdict(samples: &[Sample], ending: &Ending, floor: f64) -> Verdict {
+fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64) -> Verdict {
     let first = (samples.len() as f64 * FIRST_PART) as usize;
     let mut scale = samples[..first].iter().fold(0.0, |scale, sample| worst(scale, sample.distance));
     let (mut largest, mut estimate) = (0.0_f64, 0.0_f64);
@@ -109,8 +109,8 @@ fn verdict(samples: &[Sample], ending: &Ending, floor: f64) -> Verdict {
         estimate = worst(estimate, sample.difference);
         scale = worst(scale, sample.distance);
         let claimed = BETTER_THAN_IT_KNOWS * estimate;
-        // an estimate as large as the motion itself claims nothing
-        let bounded = claimed < scale || scale == 0.0;
+        // an estimate as large as the motion itself claims nothing, nor does one that says so
+        let bounded = doubt.is_none() && (claimed < scale || scale == 0.0);
         let allowed = claimed.max(floor * scale) + sample.uncertainty;
         let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
         // not `error > allowed`: NaN is wrong too
@@ -121,8 +121,11 @@ fn verdict(samples: &[Sample], ending: &Ending, floor: f64) -> Verdict {
     }
     let estimate = if scale > 0.0 { estimate / scale } else { estimate };
     match ending {
-        Ending::Stopped { t, cause } => Verdict::Refused { t: Some(*t), cause: cause.clone() },
-        Ending::Completed if estimate <= TRUSTED => Verdict::Accurate { error: largest, estimate },
+        Ending::Stopped { t, cause } => {
+            let cause = doubt.map_or(cause.clone(), |doubt| format!("{cause}; {doubt}"));
+            Verdict::Refused { t: Some(*t), cause }
+        }
+        Ending::Completed if estimate <= TRUSTED && doubt.is_none() => Verdict::Accurate { error: largest, estimate },
         Ending::Completed => Verdict::Admitted { error: largest, estimate },
     }
 }
