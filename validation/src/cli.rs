@@ -51,6 +51,8 @@ pub enum Section {
     Realization,
     /// The paper's equations, each shown to hold or not.
     PaperAudit,
+    /// Every method on stiff and extreme cases, against references.
+    Stability,
 }
 
 /// The subcommands.

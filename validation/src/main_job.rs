@@ -15,8 +15,8 @@ use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
 use crate::random::{Batch, Kind, Record};
 use crate::report::{
-    AuditReport, File, Provenance, RealizationReport, answer, difference_of_verdicts, overview, pictures, random_files,
-    random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all,
+    AuditReport, File, Provenance, RealizationReport, StabilityReport, answer, difference_of_verdicts, overview,
+    pictures, random_files, random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all,
 };
 use crate::{parallel, substitution};
 
@@ -56,6 +56,7 @@ struct Results {
     records: Vec<Record>,
     realization: Option<RealizationReport>,
     audit: Option<AuditReport>,
+    stability: Option<StabilityReport>,
 }
 
 impl Results {
@@ -76,8 +77,9 @@ impl Results {
         let realization =
             sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
         let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
+        let stability = sections.contains(&Section::Stability).then(|| StabilityReport::new(quiet)).transpose()?;
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
-        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit })
+        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit, stability })
     }
 
     fn verdicts(&self) -> Value {
@@ -88,6 +90,9 @@ impl Results {
         }
         if let Some(audit) = &self.audit {
             verdicts["paper audit"] = audit.verdicts();
+        }
+        if let Some(stability) = &self.stability {
+            verdicts["stability"] = stability.verdicts();
         }
         if let Some(words) = self.casadi.as_ref().and_then(casadi_job::verdict_words) {
             verdicts["casadi"] = words;
@@ -105,7 +110,8 @@ impl Results {
         let random = (!self.records.is_empty()).then(|| (random_headline(&self.records), "random.md"));
         let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
         let audit = self.audit.as_ref().map(|report| (report.headline(), "paper-audit.md"));
-        casadi.into_iter().chain(random).chain(realization).chain(audit).collect()
+        let stability = self.stability.as_ref().map(|report| (report.headline(), "stability.md"));
+        casadi.into_iter().chain(random).chain(realization).chain(audit).chain(stability).collect()
     }
 
     /// Pages and pictures of every section that ran.
@@ -118,6 +124,9 @@ impl Results {
             files.extend(realization.files()?);
         }
         files.extend(self.audit.iter().flat_map(AuditReport::files));
+        if let Some(stability) = &self.stability {
+            files.extend(stability.files()?);
+        }
         Ok(files)
     }
 }

@@ -9,6 +9,7 @@ mod random_page;
 mod realization_page;
 mod referees_section;
 mod scene_page;
+mod stability_page;
 mod tables;
 mod verdicts;
 
@@ -20,4 +21,5 @@ pub use random_page::{random_files, random_headline, random_verdicts};
 pub use realization_page::RealizationReport;
 pub use referees_section::referees_section;
 pub use scene_page::{answer, scene_page};
+pub use stability_page::StabilityReport;
 pub use verdicts::{difference_of_verdicts, verdicts};

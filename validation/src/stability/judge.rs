@@ -75,11 +75,25 @@ struct Sample {
     distance: f64,
 }
 
-/// Judges a motion by what is known, which has to reach as far. Relative errors under `floor` are passed over.
+/// What is asked of a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowance {
+    /// Relative errors under this are passed over.
+    pub floor: f64,
+    /// So many coordinates, the first ones, are compared.
+    pub compared: usize,
+}
+
+/// Judges a motion by what is known, which has to reach as far.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be read off before its end: as bad as being wrong, but another fault.
-pub fn judge(motion: &mut Motion, metric: &mut Metric, known: &mut Known, floor: f64) -> Result<Verdict, SolveError> {
+pub fn judge(
+    motion: &mut Motion,
+    metric: &mut Metric,
+    known: &mut Known,
+    allowance: Allowance,
+) -> Result<Verdict, SolveError> {
     let start = motion.at(motion.start())?.coordinates;
     let mut samples = Vec::with_capacity(SAMPLES + 1);
     for t in motion.grid(SAMPLES) {
@@ -87,7 +101,8 @@ pub fn judge(motion: &mut Motion, metric: &mut Metric, known: &mut Known, floor:
         let (truth, second) = known.at(t);
         let q = &kept.coordinates;
         let mut length = |a: &[f64], b: &[f64]| {
-            let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+            let mut difference: Vec<f64> = a.iter().zip(b).take(allowance.compared).map(|(a, b)| a - b).collect();
+            difference.resize(q.len(), 0.0);
             metric.length(t, q, &kept.velocities, &difference)
         };
         samples.push(Sample {
@@ -98,7 +113,7 @@ pub fn judge(motion: &mut Motion, metric: &mut Metric, known: &mut Known, floor:
             distance: length(q, &start),
         });
     }
-    Ok(verdict(&samples, &motion.ending, motion.doubt.as_deref(), floor))
+    Ok(verdict(&samples, &motion.ending, motion.doubt.as_deref(), allowance.floor))
 }
 
 fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64) -> Verdict {

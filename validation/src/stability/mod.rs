@@ -20,6 +20,6 @@ mod question;
 mod reference;
 
 pub use cases::CASES;
-pub use judge::{BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
+pub use judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 pub use question::{Case, Cell, MAX_STEPS, Question, Subject, run, tolerance};
 pub use reference::{Known, Reference};

@@ -5,7 +5,7 @@ use deltaq::{Metric, Setting, Settings, TIGHTER, solve};
 use integrate::Method;
 use mechanics::{ConstantsRule, Equations, State, System};
 
-use super::judge::{BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
+use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::reference::Reference;
 use crate::parallel;
 
@@ -62,6 +62,8 @@ pub struct Question {
     pub subject: Box<dyn Fn() -> Result<Subject, String> + Send + Sync>,
     /// What is known of the motion.
     pub reference: Reference,
+    /// So many coordinates, the first ones, are compared.
+    pub compared: usize,
 }
 
 /// An answer.
@@ -126,7 +128,8 @@ impl Question {
         let steps = motion.work.steps;
         let mut known = self.reference.up_to(motion.start(), motion.end()).map_err(anyhow::Error::msg)?;
         let floor = FLOOR.max(BETTER_THAN_IT_KNOWS * settings.tolerance * TIGHTER);
-        match judge(&mut motion, &mut Metric::new(measured)?, &mut known, floor) {
+        match judge(&mut motion, &mut Metric::new(measured)?, &mut known, Allowance { floor, compared: self.compared })
+        {
             Ok(verdict) => Ok((verdict, steps)),
             Err(error) => refused(error.to_string()),
         }

@@ -43,7 +43,13 @@ fn added() -> Vec<Question> {
             ([q[0], q[1], q[2]], [v[0], v[1], v[2]], strength * (-q[1]).mul_add(v[0], v[2]))
         });
         let reference = Reduced { z_mass: 1.0, weakness: 1.0 / strength }.from((q, v), multiplier);
-        Question { point: strength, formulation: "Newton, with added mass".into(), subject, reference }
+        Question {
+            point: strength,
+            formulation: "Newton, with added mass".into(),
+            subject,
+            reference,
+            compared: usize::MAX,
+        }
     };
     powers(0, 12, 1).map(question).collect()
 }

@@ -1,6 +1,7 @@
 //! The cases.
 
 mod blow_up;
+mod cone;
 mod dependent;
 mod mass;
 mod sledge;
@@ -20,6 +21,8 @@ pub const CASES: &[Case] = &[
     mass::RATIO,
     sledge::GYRATION,
     sledge::LONG,
+    cone::APEX,
+    cone::CHART,
     dependent::CASE,
     units::LENGTH,
     units::TIME,
@@ -68,7 +71,13 @@ fn questions(
             subject(&scene, &choice(&scene, name)?)
         };
         let title = formulation(name).map_or(name, |f| f.title);
-        Question { point, formulation: title.into(), subject: Box::new(subject), reference: reference(name) }
+        Question {
+            point,
+            formulation: title.into(),
+            subject: Box::new(subject),
+            reference: reference(name),
+            compared: usize::MAX,
+        }
     };
     names.iter().map(one).collect()
 }

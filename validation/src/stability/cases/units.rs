@@ -56,6 +56,7 @@ fn questions(unit: f64, scaling: &Scaling) -> Vec<Question> {
             Box::new(move || subject(&scaling, name))
         },
         reference: in_time_unit(Sledge { k: 0.7 }.reference(name), scaling.time),
+        compared: usize::MAX,
     };
     FORMULATIONS.into_iter().map(one).collect()
 }

@@ -41,7 +41,13 @@ fn question(strength: f64) -> Question {
     };
     let motion = Slipping::new(9.81 * 0.4_f64.sin(), 0.3, 0.5, 1.1, strength);
     let reference = Reference::Closed(Box::new(move |t| motion.at(t)));
-    Question { point: strength, formulation: "Newton, with friction".into(), subject: Box::new(subject), reference }
+    Question {
+        point: strength,
+        formulation: "Newton, with friction".into(),
+        subject: Box::new(subject),
+        reference,
+        compared: usize::MAX,
+    }
 }
 
 /// The sledge that slips, from the origin, without slip at the start. With `v` along and `s` across the blade and `φ = φ₀ + ωt`
