@@ -102,7 +102,11 @@ pub fn run(cases: &[&Case], quiet: bool) -> Result<Vec<Cell>> {
 }
 
 impl Question {
-    fn cells(&self, case: &'static str) -> Result<Vec<Cell>> {
+    /// The answer of every method.
+    ///
+    /// # Errors
+    /// Where the reference does not reach as far as what it is to judge.
+    pub fn cells(&self, case: &'static str) -> Result<Vec<Cell>> {
         let subject = (self.subject)();
         let cell = |method| {
             let (verdict, steps) =
