@@ -128,8 +128,8 @@ fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64)
         let bounded = doubt.is_none() && (claimed < scale || scale == 0.0);
         let allowed = claimed.max(floor * scale) + sample.uncertainty;
         let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
-        // not `error > allowed`: NaN is wrong too
-        if bounded && !(sample.error <= allowed) || scale.is_nan() || estimate.is_nan() {
+        let off = sample.error > allowed || sample.error.is_nan() || allowed.is_nan();
+        if (bounded && off) || scale.is_nan() || estimate.is_nan() {
             return Verdict::Wrong { error: relative(sample.error), estimate: relative(estimate), t: sample.t };
         }
         largest = largest.max(relative(sample.error));
