@@ -1,4 +1,3 @@
 //! Tests between crates.
 
-pub mod closed_forms;
 pub mod references;

@@ -53,6 +53,8 @@ pub enum Section {
     PaperAudit,
     /// Error against run time.
     ErrorVsTime,
+    /// Every method on stiff and extreme cases, against references.
+    Stability,
 }
 
 /// The subcommands.
@@ -72,6 +74,8 @@ pub enum Command {
     Bench(BenchArguments),
     /// Measure how cost grows with the length of a train of trailers.
     Scaling(ScalingArguments),
+    /// Put every method to the test on stiff and extreme cases: is what comes back right, and where it is not, does it say so?
+    Stability(StabilityArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
 }
@@ -171,6 +175,20 @@ pub struct RandomArguments {
     /// Folder for scene files: the system of --index, and a shrunk counterexample of every claim that fails.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+    /// No progress bar.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// `deltaq stability`.
+#[derive(Args, Debug)]
+pub struct StabilityArguments {
+    /// Cases to run, all if left out.
+    #[arg(long = "case", value_name = "NAME,…", value_delimiter = ',')]
+    pub cases: Vec<String>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,

@@ -18,5 +18,7 @@ pub mod scaling;
 pub mod scaling_command;
 pub mod show_command;
 pub mod solve_command;
+pub mod stability;
+pub mod stability_command;
 pub mod substitution;
 pub mod trailer;

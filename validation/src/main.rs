@@ -10,6 +10,7 @@ use validation::cli::{Cli, Command};
 use validation::solve_command::Answer;
 use validation::{
     bench_command, compare_command, main_job, random_command, scaling_command, show_command, solve_command,
+    stability_command,
 };
 
 fn main() -> ExitCode {
@@ -47,6 +48,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Bench(arguments)) => bench_command::run(&arguments)?,
         Some(Command::Scaling(arguments)) => scaling_command::run(&arguments)?,
         Some(Command::Random(arguments)) => return random_command::run(&arguments),
+        Some(Command::Stability(arguments)) => return stability_command::run(&arguments),
         Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
     };
     Ok(Answer { text, complaint: None })

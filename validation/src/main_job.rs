@@ -16,9 +16,9 @@ use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
 use crate::random::{Batch, Kind, Record};
 use crate::report::{
-    AuditReport, File, Provenance, RealizationReport, answer, bench_files, bench_headline, difference_of_verdicts,
-    overview, pictures, random_files, random_headline, random_verdicts, referees_section, scene_page, verdicts,
-    write_all,
+    AuditReport, File, Provenance, RealizationReport, StabilityReport, answer, bench_files, bench_headline,
+    difference_of_verdicts, overview, pictures, random_files, random_headline, random_verdicts, referees_section,
+    scene_page, verdicts, write_all,
 };
 use crate::{parallel, substitution};
 
@@ -59,6 +59,7 @@ struct Results {
     realization: Option<RealizationReport>,
     audit: Option<AuditReport>,
     benches: Vec<Bench>,
+    stability: Option<StabilityReport>,
 }
 
 impl Results {
@@ -79,6 +80,7 @@ impl Results {
         let realization =
             sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
         let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
+        let stability = sections.contains(&Section::Stability).then(|| StabilityReport::new(quiet)).transpose()?;
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
         // last, and one after the other: nothing else is to run beside what is timed
         let benches = if sections.contains(&Section::ErrorVsTime) {
@@ -86,7 +88,7 @@ impl Results {
         } else {
             Vec::new()
         };
-        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit, benches })
+        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit, stability, benches })
     }
 
     fn verdicts(&self) -> Value {
@@ -97,6 +99,9 @@ impl Results {
         }
         if let Some(audit) = &self.audit {
             verdicts["paper audit"] = audit.verdicts();
+        }
+        if let Some(stability) = &self.stability {
+            verdicts["stability"] = stability.verdicts();
         }
         if let Some(words) = self.casadi.as_ref().and_then(casadi_job::verdict_words) {
             verdicts["casadi"] = words;
@@ -114,8 +119,9 @@ impl Results {
         let random = (!self.records.is_empty()).then(|| (random_headline(&self.records), "random.md"));
         let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
         let audit = self.audit.as_ref().map(|report| (report.headline(), "paper-audit.md"));
+        let stability = self.stability.as_ref().map(|report| (report.headline(), "stability.md"));
         let benches = (!self.benches.is_empty()).then(|| (bench_headline(&self.benches), "error-vs-time.md"));
-        casadi.into_iter().chain(random).chain(realization).chain(audit).chain(benches).collect()
+        casadi.into_iter().chain(random).chain(realization).chain(audit).chain(stability).chain(benches).collect()
     }
 
     /// Pages and pictures of every section that ran.
@@ -128,6 +134,9 @@ impl Results {
             files.extend(realization.files()?);
         }
         files.extend(self.audit.iter().flat_map(AuditReport::files));
+        if let Some(stability) = &self.stability {
+            files.extend(stability.files()?);
+        }
         if !self.benches.is_empty() {
             files.extend(bench_files(&self.benches)?);
         }

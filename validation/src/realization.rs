@@ -126,7 +126,7 @@ fn run(setting: Setting, method: Method, coordinates: usize) -> Result<Motion, S
     if sharp.is_complete() { Ok(sharp) } else { at(TOLERANCES[1]) }
 }
 
-fn with_friction(system: &System, strength: f64) -> System {
+pub(crate) fn with_friction(system: &System, strength: f64) -> System {
     let mut other = system.clone();
     let g = &other.graph;
     let jacobian = g.jacobian(&system.constraints, &system.velocities());
@@ -136,7 +136,7 @@ fn with_friction(system: &System, strength: f64) -> System {
     other
 }
 
-fn with_added_mass(system: &System, strength: f64) -> System {
+pub(crate) fn with_added_mass(system: &System, strength: f64) -> System {
     let mut other = system.clone();
     let g = &other.graph;
     let square = g.dot(&system.constraints, &system.constraints);
@@ -146,7 +146,7 @@ fn with_added_mass(system: &System, strength: f64) -> System {
 }
 
 /// The velocities with which `massive` has the momenta `L_v + Aᵀ μ₀` of the constrained start: linear equations, as momenta are affine in `v`.
-fn at_momentum(setting: Setting, massive: &System, multipliers: &[f64]) -> Result<State, SolveError> {
+pub(crate) fn at_momentum(setting: Setting, massive: &System, multipliers: &[f64]) -> Result<State, SolveError> {
     let (g, v) = (&massive.graph, massive.velocities());
     let n = v.len();
     let own = g.gradient(massive.lagrangian, &v);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Choice, EquationStyle, Settings, choices, derive, equations_text, ready, setting};
+use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, ready, setting};
 use mechanics::{ConstantsRule, Cost, Equations, Scene, integrability};
 
 use crate::catalogue;
@@ -36,7 +36,7 @@ pub fn run(arguments: &ShowArguments) -> Result<String> {
     let _ = writeln!(text, "\nConstraint: {}", integrability(&scene.system, &scene.start)?);
     for choice in choices(&scene) {
         let _ = writeln!(text, "\n## {}\n", choice.label);
-        match derive(&scene.system, &choice) {
+        match derive_at(&scene.system, &scene.start, &choice) {
             Ok(equations) => {
                 text += &equations_text(&equations, style);
                 text += &form(&scene, equations, &choice)?;

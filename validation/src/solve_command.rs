@@ -13,9 +13,6 @@ use serde_json::{Map, Value, json};
 use crate::catalogue;
 use crate::cli::{Format, MethodName, SolveArguments};
 
-/// Relative error estimate over which a trajectory is not trusted.
-const TRUSTED: f64 = 1e-3;
-
 /// Times at which invariants are sampled.
 const SAMPLES: usize = 200;
 
@@ -51,13 +48,15 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
     };
     let estimate = error_estimate(&mut motion, setting(&scene))?;
     let complaint = match &motion.ending {
-        Ending::Stopped { t, cause } => Some(format!("stopped at t = {t}: {cause}")),
-        Ending::Completed if estimate.relative.is_nan() || estimate.relative > TRUSTED => Some(format!(
-            "not to be trusted: relative error estimate {:.1e}, limit {TRUSTED:.0e}; ask for a smaller {}",
-            estimate.relative,
-            if arguments.step.is_some() { "--step" } else { "--tolerance" }
-        )),
-        Ending::Completed => None,
+        Ending::Stopped { t, cause } => {
+            let doubt = motion.doubt.as_ref().map_or(String::new(), |doubt| format!("; {doubt}"));
+            Some(format!("stopped at t = {t}: {cause}{doubt}"))
+        }
+        Ending::Completed if motion.doubt.is_some() => motion.doubt.clone(),
+        Ending::Completed => {
+            let smaller = if arguments.step.is_some() { "--step" } else { "--tolerance" };
+            estimate.complaint().map(|words| format!("{words}; ask for a smaller {smaller}"))
+        }
     };
     let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();
     let text = match arguments.format {

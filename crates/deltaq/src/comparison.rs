@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use mechanics::{
-    ConstantsRule, Derivation, Equations, Formulation, Integrability, Removal, RemovalError, Scene, State, System,
-    integrability,
+    ConstantsRule, Derivation, Equations, Formulation, Integrability, Recombination, Removal, RemovalError, Scene,
+    State, System, integrability,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -171,6 +171,20 @@ fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Resul
     Ok(equations.leave_out_unneeded())
 }
 
+/// [`derive()`], from constraints that are independent at `start` where those of the system nearly are not ([`Recombination`]).
+///
+/// # Errors
+/// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
+pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
+    if choice.removal.is_some() {
+        return derive(system, choice); // in which the constraints stand no more
+    }
+    match Recombination::at(system, start)? {
+        None => derive_from(system, Some(start), choice),
+        Some(combined) => Ok(combined.restore(derive_from(&combined.system(system), Some(start), choice)?)),
+    }
+}
+
 /// Derives and integrates a choice from the start of the scene.
 ///
 /// # Errors
@@ -205,7 +219,7 @@ pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Resu
         removals(scene)?;
     }
     let clock = Instant::now();
-    let equations = derive_from(&scene.system, Some(&scene.start), choice)?;
+    let equations = derive_at(&scene.system, &scene.start, choice)?;
     let derive = clock.elapsed().as_secs_f64();
     let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
     motion.seconds.derive = derive;

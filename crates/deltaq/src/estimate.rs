@@ -6,6 +6,9 @@ use crate::{Metric, Motion, Setting, SolveError};
 /// Instants at which it is taken.
 const SAMPLES: usize = 200;
 
+/// Relative error estimate over which a motion is not trusted.
+pub const TRUSTED: f64 = 1e-3;
+
 /// Largest difference of the two runs of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
@@ -13,6 +16,15 @@ pub struct ErrorEstimate {
     pub absolute: f64,
     /// Over the largest distance from the start, where there is one.
     pub relative: f64,
+}
+
+impl ErrorEstimate {
+    /// Why a motion with this estimate is not to be trusted: it is over [`TRUSTED`], or no number.
+    pub fn complaint(&self) -> Option<String> {
+        let trusted = self.relative <= TRUSTED;
+        (!trusted)
+            .then(|| format!("not to be trusted: relative error estimate {:.1e}, limit {TRUSTED:.0e}", self.relative))
+    }
 }
 
 /// The error estimate of `motion`, which started at `setting`, at 200 equidistant times.

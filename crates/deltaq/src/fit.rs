@@ -7,7 +7,7 @@ use mechanics::{ConstantsRule, Equations};
 use nalgebra::DVector;
 
 use crate::metric::Metric;
-use crate::run::Prepared;
+use crate::run::{Origin, Prepared};
 use crate::{Motion, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the fit compares.
@@ -57,7 +57,8 @@ pub fn best_fit(
     let mut search = |tolerance: f64, limits: &Settings, guess: &[f64]| {
         let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
             let broken = |reason: String| BoundaryError::Residual { reason };
-            let run = prepared.run(constants, end, tolerance, limits).map_err(|e| broken(e.to_string()))?;
+            let run =
+                prepared.run(constants, end, tolerance, Origin::Start, limits).map_err(|e| broken(e.to_string()))?;
             run.solution.completed()?;
             let mut run = run.trajectory();
             let mut y = vec![0.0; prepared.equations.states.len()];

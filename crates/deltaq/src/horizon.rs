@@ -3,7 +3,7 @@
 use integrate::{BoundaryError, ShootOptions, shoot};
 
 use crate::motion::{Settings, ending};
-use crate::run::Prepared;
+use crate::run::{Origin, Prepared};
 use crate::{Ending, SolveError, TIGHTER};
 
 /// Residual at the horizon that is accepted, over the tolerance of the integration.
@@ -41,7 +41,7 @@ pub(crate) fn natural_constants(
     let mut failure = None;
     let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
         let mut end = vec![0.0; prepared.equations.states.len()];
-        let run = prepared.run(constants, horizon, tolerance, settings).map_err(|error| {
+        let run = prepared.run(constants, horizon, tolerance, Origin::Start, settings).map_err(|error| {
             let reason = error.to_string();
             failure = Some(error);
             BoundaryError::Residual { reason }

@@ -27,12 +27,12 @@ mod steps;
 mod table;
 
 pub use comparison::{
-    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, removals, setting,
-    solve_choice,
+    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, removals,
+    setting, solve_choice,
 };
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
-pub use estimate::{ErrorEstimate, error_estimate};
+pub use estimate::{ErrorEstimate, TRUSTED, error_estimate};
 pub use fit::best_fit;
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,

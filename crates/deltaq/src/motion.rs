@@ -8,7 +8,7 @@ use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System};
 use crate::SolveError;
 use crate::gap::subtract;
 use crate::horizon::natural_constants;
-use crate::run::{Prepared, Trajectory};
+use crate::run::{Origin, Prepared, Trajectory};
 
 /// The tolerance of the second run over that of the first.
 pub const TIGHTER: f64 = 1e-2;
@@ -78,6 +78,8 @@ pub struct Motion {
     pub constants: Vec<f64>,
     /// How it ended.
     pub ending: Ending,
+    /// Why the difference of the two runs is no error estimate, where the tolerance did not decide how long the steps are.
+    pub doubt: Option<String>,
     /// Work of the kept run.
     pub work: Work,
     /// What projection did in the kept run.
@@ -205,16 +207,24 @@ pub fn solve(
     let compile = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     let constants = resolve(&mut prepared, constants, settings)?;
-    let looser = prepared.run(&constants, setting.end, settings.tolerance, settings)?;
-    let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, settings)?;
+    let looser = prepared.run(&constants, setting.end, settings.tolerance, Origin::LastDigit, settings)?;
+    let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, Origin::Start, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
-    let ending = ending(&mut prepared, &kept.solution);
-    let (work, projection) = (kept.solution.work, kept.solution.projection);
-    let fallbacks = kept.fallbacks;
+    let ending = match (ending(&mut prepared, &kept.solution), ending(&mut prepared, &looser.solution)) {
+        (Ending::Completed, Ending::Stopped { t, cause }) => Ending::Stopped { t, cause: unconfirmed(&cause) },
+        (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later, setting) => {
+            Ending::Stopped { t, cause: unconfirmed(&cause) }
+        }
+        (ending, _) => ending,
+    };
+    let (work, projection, fallbacks) = (kept.solution.work, kept.solution.projection, kept.fallbacks);
     let runs = [kept.trajectory(), looser.trajectory()];
     let seconds = Seconds { derive: 0.0, compile, integrate };
     let mut motion = Motion { work, projection, ..Motion::of(prepared, constants, ending, runs, seconds) };
     motion.form.fallbacks = fallbacks;
+    if settings.method.takes_more_steps_at_less_tolerance() {
+        motion.doubt = doubt(&motion.kept.step_times(), &motion.looser.step_times(), motion.end);
+    }
     Ok(motion)
 }
 
@@ -236,6 +246,7 @@ impl Motion {
             projection: ProjectionReport::default(),
             seconds,
             form: FormReport { why: prepared.form.why, fallbacks: 0 },
+            doubt: None,
             kept,
             looser,
             state: vec![0.0; size],
@@ -244,6 +255,37 @@ impl Motion {
             compiled: prepared.compiled,
         }
     }
+}
+
+/// Where only the tighter run goes on, there is no error estimate, and so no motion.
+fn unconfirmed(cause: &str) -> String {
+    format!("the run that estimates the error stops here: {cause}")
+}
+
+/// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
+const FEW_STEPS: usize = 200;
+
+/// A hundredth of the tolerance takes at least so many times the steps: 1.78 of a method of order 8.
+const MORE_STEPS: f64 = 1.1;
+
+/// Two runs with the same steps have the same error, which their difference does not show.
+fn doubt(kept: &[f64], looser: &[f64], end: f64) -> Option<String> {
+    let sign = (end - kept[0]).signum();
+    let count = |times: &[f64]| times.iter().filter(|&&t| (end - t) * sign >= 0.0).count();
+    let (tight, loose) = (count(kept), count(looser));
+    let same = loose >= FEW_STEPS && (tight as f64) < MORE_STEPS * loose as f64;
+    same.then(|| {
+        format!(
+            "the error estimate is not to be trusted: {loose} steps at one tolerance, {tight} at a hundredth of it, so that something else limits \
+             the steps"
+        )
+    })
+}
+
+/// Both runs stop near the same singularity, or for different causes.
+fn much_before(t: f64, later: f64, setting: Setting) -> bool {
+    const NEAR: f64 = 1e-3;
+    (later - t) * (setting.end - setting.start.t).signum() > NEAR * (later - setting.start.t).abs()
 }
 
 /// How far before a singularity a motion is read off, as fractions of its length.

@@ -38,7 +38,7 @@ pub(crate) fn run(system: &System, start: &Start, end: f64, options: &Options) -
         .t0(start.t)
         .h0(sign)
         .rtol(options.relative_tolerance)
-        .atol(vec![options.absolute_tolerance; n])
+        .atol(options.absolute_tolerances(n))
         .rhs_implicit(
             |y: &[f64], _: &[f64], t: f64, rates: &mut [f64]| system.rates_or_nan(t, y, rates),
             |y: &[f64], _: &[f64], t: f64, v: &[f64], product: &mut [f64]| {
@@ -171,9 +171,10 @@ where
 
     /// The length of the projection's move in tolerances, root mean square over the components.
     fn move_in_tolerances(&self) -> f64 {
-        let Options { relative_tolerance, absolute_tolerance, .. } = *self.call.options;
-        let square = |(a, b): (&f64, &f64)| ((a - b) / (absolute_tolerance + relative_tolerance * a.abs())).powi(2);
-        let sum: f64 = self.candidate.iter().zip(&self.candidate_raw).map(square).sum();
+        let relative = self.call.options.relative_tolerance;
+        let absolute = self.call.options.absolute_tolerances(self.candidate.len());
+        let square = |((a, b), absolute): ((&f64, &f64), f64)| ((a - b) / (absolute + relative * a.abs())).powi(2);
+        let sum: f64 = self.candidate.iter().zip(&self.candidate_raw).zip(absolute).map(square).sum();
         (sum / self.candidate.len() as f64).sqrt()
     }
 }

@@ -21,7 +21,7 @@ pub(crate) struct Dop853<'s, 'p> {
     system: &'s System<'p>,
     end: f64,
     relative_tolerance: f64,
-    absolute_tolerance: f64,
+    absolute_tolerances: Vec<f64>,
     t: f64,
     y: Vec<f64>,
     /// Stage rates, one after the other; stage 0 is F(t, y).
@@ -50,7 +50,7 @@ impl<'s, 'p> Dop853<'s, 'p> {
             system,
             end,
             relative_tolerance: options.relative_tolerance.max(TIGHTEST),
-            absolute_tolerance: options.absolute_tolerance,
+            absolute_tolerances: options.absolute_tolerances(n),
             t: start.t,
             y: start.y.clone(),
             k,
@@ -75,8 +75,8 @@ impl<'s, 'p> Dop853<'s, 'p> {
         let longest = (self.end - self.t).abs();
         let sign = (self.end - self.t).signum();
         let (mut size, mut rate) = (0.0, 0.0);
-        for (y, f) in self.y.iter().zip(&self.k) {
-            let scale = self.absolute_tolerance + self.relative_tolerance * y.abs();
+        for ((y, f), absolute) in self.y.iter().zip(&self.k).zip(&self.absolute_tolerances) {
+            let scale = absolute + self.relative_tolerance * y.abs();
             size += (y / scale).powi(2);
             rate += (f / scale).powi(2);
         }
@@ -92,8 +92,8 @@ impl<'s, 'p> Dop853<'s, 'p> {
             return;
         }
         let mut curvature = 0.0;
-        for ((y, f), g) in self.y.iter().zip(here).zip(there) {
-            let scale = self.absolute_tolerance + self.relative_tolerance * y.abs();
+        for (((y, f), g), absolute) in self.y.iter().zip(here).zip(there).zip(&self.absolute_tolerances) {
+            let scale = absolute + self.relative_tolerance * y.abs();
             curvature += ((*g - *f) / scale).powi(2);
         }
         let steepest = (curvature.sqrt() / first).max(rate.sqrt());
@@ -135,7 +135,7 @@ impl<'s, 'p> Dop853<'s, 'p> {
         let (y, candidate) = (&self.y, &self.candidate);
         let scale = |i: usize| {
             let size = f64::max(y[i].abs(), candidate[i].abs());
-            self.absolute_tolerance + self.relative_tolerance * size
+            self.absolute_tolerances[i] + self.relative_tolerance * size
         };
         combine(&ERROR_5, &self.k, n, |i, sum| fifth += (sum / scale(i)).powi(2));
         combine(&STEP, &self.k, n, |i, sum| self.argument[i] = sum);

@@ -38,6 +38,24 @@ pub enum CallError {
         /// 0.
         limit: f64,
     },
+    /// Sizes were given, but not one a component.
+    #[error("{found} sizes are given for {expected} unknowns")]
+    Sizes {
+        /// [`crate::Problem::dimension`].
+        expected: usize,
+        /// Length of [`crate::Options::sizes`].
+        found: usize,
+    },
+    /// A size is not a positive finite number.
+    #[error("the size of component {component} is {found}, it must be finite and above {limit}")]
+    Size {
+        /// Which one, counted from 0.
+        component: usize,
+        /// What was given.
+        found: f64,
+        /// 0.
+        limit: f64,
+    },
     /// A component of the start state is NaN or infinite.
     #[error("component {component} of the start state is {found}")]
     StartNotFinite {

@@ -144,6 +144,12 @@ fn check_call(dimension: usize, start: &Start, end: f64, options: &Options) -> R
     if !(absolute > 0.0 && absolute.is_finite()) {
         return Err(CallError::AbsoluteTolerance { found: absolute, limit: 0.0 });
     }
+    if !options.sizes.is_empty() && options.sizes.len() != dimension {
+        return Err(CallError::Sizes { expected: dimension, found: options.sizes.len() });
+    }
+    if let Some(component) = options.sizes.iter().position(|size| !(*size > 0.0 && size.is_finite())) {
+        return Err(CallError::Size { component, found: options.sizes[component], limit: 0.0 });
+    }
     if let Some(component) = start.y.iter().position(|y| !y.is_finite()) {
         return Err(CallError::StartNotFinite { component, found: start.y[component] });
     }

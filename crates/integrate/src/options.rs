@@ -41,6 +41,11 @@ impl Method {
         }
     }
 
+    /// Whether less tolerance takes more steps: not where it takes a higher order instead.
+    pub fn takes_more_steps_at_less_tolerance(self) -> bool {
+        self != Method::Taylor
+    }
+
     /// Whether the method asks for [`crate::Problem::jacobian`].
     pub fn is_implicit(self) -> bool {
         matches!(self, Method::Bdf | Method::TrBdf2 | Method::Esdirk34 | Method::Radau5)
@@ -97,7 +102,7 @@ impl PartialEq for Interrupt {
 
 /// Method, tolerances and limits of an integration.
 ///
-/// The local error `e` of a step is kept below `|e_i| ≤ absolute + relative · max(|y_i|, |y_i,new|)` in the root mean
+/// The local error `e` of a step is kept below `|e_i| ≤ absolute · size_i + relative · max(|y_i|, |y_i,new|)` in the root mean
 /// square over the components.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -108,6 +113,9 @@ pub struct Options {
     pub relative_tolerance: f64,
     /// Tolerance in the state's own units; > 0.
     pub absolute_tolerance: f64,
+    /// What the absolute tolerance is multiplied by, component by component, each > 0; empty: by 1. Small components have small errors only
+    /// where their size is known.
+    pub sizes: Vec<f64>,
     /// Whether accepted states are projected.
     pub projection: Projection,
     /// Limit on the number of attempted (accepted and rejected) steps; > 0.
@@ -119,6 +127,12 @@ pub struct Options {
 }
 
 impl Options {
+    /// The absolute tolerance of each of `n` components.
+    pub(crate) fn absolute_tolerances(&self, n: usize) -> Vec<f64> {
+        let size = |i: usize| self.sizes.get(i).copied().unwrap_or(1.0);
+        (0..n).map(|i| self.absolute_tolerance * size(i)).collect()
+    }
+
     /// [`Method::Dop853`] with both tolerances equal, projection after each step, dense output, at most 100 000 steps.
     ///
     /// ```
@@ -131,6 +145,7 @@ impl Options {
             method: Method::Dop853,
             relative_tolerance: tolerance,
             absolute_tolerance: tolerance,
+            sizes: Vec::new(),
             projection: Projection::EveryStep,
             max_steps: 100_000,
             dense: Dense::Everywhere,

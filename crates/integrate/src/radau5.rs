@@ -67,7 +67,7 @@ pub(crate) struct Radau5<'s, 'p> {
     system: &'s System<'p>,
     end: f64,
     relative: f64,
-    absolute: f64,
+    absolute: Vec<f64>,
     newton_tolerance: f64,
     t: f64,
     y: Vec<f64>,
@@ -107,9 +107,9 @@ impl<'s, 'p> Radau5<'s, 'p> {
         let mut rates = vec![0.0; n];
         system.rates(start.t, &start.y, &mut rates)?;
         let relative = options.relative_tolerance.max(TIGHTEST);
-        let absolute = options.absolute_tolerance;
-        let scale = |y: f64| absolute + relative * y.abs();
-        let norm = |v: &[f64]| rms(v.iter().zip(&start.y).map(|(x, y)| x / scale(*y)));
+        let absolute = options.absolute_tolerances(n);
+        let scale = |i: usize| absolute[i] + relative * start.y[i].abs();
+        let norm = |v: &[f64]| rms(v.iter().enumerate().map(|(i, x)| x / scale(i)));
         let (size, slope) = (norm(&start.y), norm(&rates));
         let first = if size > 1e-5 && slope > 1e-5 { 1e-3 * size / slope } else { 1e-6 };
         let length = end - start.t;
@@ -147,7 +147,7 @@ impl<'s, 'p> Radau5<'s, 'p> {
     }
 
     fn scale(&self, i: usize) -> f64 {
-        self.absolute + self.relative * self.y[i].abs()
+        self.absolute[i] + self.relative * self.y[i].abs()
     }
 
     /// Jacobian and factors for steps of length `h`, as far as they are not there.
@@ -228,7 +228,7 @@ impl<'s, 'p> Radau5<'s, 'p> {
                 for (w, change) in self.w.iter_mut().zip(changes) {
                     w[i] += change;
                 }
-                let scale = self.absolute + self.relative * self.y[i].abs();
+                let scale = self.absolute[i] + self.relative * self.y[i].abs();
                 sum += changes.iter().map(|x| (x / scale).powi(2)).sum::<f64>();
                 for (row, z) in T.iter().zip(&mut self.z) {
                     z[i] = row[0] * self.w[0][i] + row[1] * self.w[1][i] + row[2] * self.w[2][i];

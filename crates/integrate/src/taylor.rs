@@ -48,7 +48,7 @@ pub(crate) struct Taylor<'s, 'p> {
     system: &'s System<'p>,
     end: f64,
     relative_tolerance: f64,
-    absolute_tolerance: f64,
+    absolute_tolerances: Vec<f64>,
     order: usize,
     t: f64,
     /// Coefficients at `t` of the powers of time over `unit`: order k, component i at `k n + i`.
@@ -84,7 +84,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
             system,
             end,
             relative_tolerance: options.relative_tolerance,
-            absolute_tolerance: options.absolute_tolerance,
+            absolute_tolerances: options.absolute_tolerances(n),
             order,
             t: start.t,
             coefficients: vec![0.0; (order + 1) * n],
@@ -157,7 +157,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
         let excess = |i: usize| {
             let (y, move_) = (self.candidate[i], (self.candidate[i] - self.reached[i]).abs());
             let size = y.abs().max(self.slope[i].abs());
-            let allowed = DEFECT * (self.absolute_tolerance + relative * size);
+            let allowed = DEFECT * (self.absolute_tolerances[i] + relative * size);
             ((self.slope[i] - rates[i] * by).abs() / allowed, move_ / allowed)
         };
         let (mut worst, mut moved) = ((0.0, 0), 0.0_f64);
@@ -175,8 +175,8 @@ impl<'s, 'p> Taylor<'s, 'p> {
     fn choose_step(&mut self) -> f64 {
         let n = self.scale.len();
         let (y, rest) = self.coefficients.split_at(n);
-        for (scale, y) in self.scale.iter_mut().zip(y) {
-            *scale = 1.0 / (self.absolute_tolerance + self.relative_tolerance * y.abs());
+        for ((scale, y), absolute) in self.scale.iter_mut().zip(y).zip(&self.absolute_tolerances) {
+            *scale = 1.0 / (absolute + self.relative_tolerance * y.abs());
         }
         for (size, row) in self.sizes[1..].iter_mut().zip(rest.chunks_exact(n)) {
             *size = row.iter().zip(&self.scale).fold(0.0, |largest, (c, scale)| f64::max(largest, c.abs() * scale));

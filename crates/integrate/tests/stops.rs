@@ -252,6 +252,12 @@ fn every_bad_call() {
     assert!(matches!(call(&start, 1.0, &options), Some(CallError::RelativeTolerance { .. })));
     let options = Options { absolute_tolerance: f64::NAN, ..good.clone() };
     assert!(matches!(call(&start, 1.0, &options), Some(CallError::AbsoluteTolerance { .. })));
+    let options = Options { sizes: vec![1.0], ..good.clone() };
+    assert_eq!(call(&start, 1.0, &options), Some(CallError::Sizes { expected: 2, found: 1 }));
+    for found in [0.0, -1.0, f64::INFINITY] {
+        let options = Options { sizes: vec![1.0, found], ..good.clone() };
+        assert_eq!(call(&start, 1.0, &options), Some(CallError::Size { component: 1, found, limit: 0.0 }));
+    }
     let infinite = Start { t: 0.0, y: vec![1.0, f64::INFINITY] };
     let not_finite = CallError::StartNotFinite { component: 1, found: f64::INFINITY };
     assert_eq!(call(&infinite, 1.0, &good), Some(not_finite));

@@ -41,7 +41,7 @@ pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal}
 pub use scene::{SIZE_LIMIT, Scene};
 pub use scene_error::{NameFault, SceneError, SceneErrorKind, Unavailable};
 pub use start::{
-    Completion, Quantity, RemovalStart, StartData, StartError, check_regularity, complete_removal_start,
+    Completion, Quantity, Recombination, RemovalStart, StartData, StartError, check_regularity, complete_removal_start,
     complete_start, project_velocity,
 };
 pub use system::{Coordinate, Parameter, State, System};

@@ -13,12 +13,14 @@ use crate::{Removal, State, System};
 mod error;
 mod numeric;
 mod project;
+mod recombination;
 mod regularity;
 mod removal_start;
 mod velocities;
 
 pub use error::{Quantity, StartError};
 pub use project::project_velocity;
+pub use recombination::Recombination;
 pub use regularity::check_regularity;
 pub use removal_start::{RemovalStart, complete_removal_start};
 

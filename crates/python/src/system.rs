@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{derive, ready, removals, setting, solve_choice};
+use deltaq::{derive_at, ready, removals, setting, solve_choice};
 use mechanics::{Scene, integrability};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -299,7 +299,7 @@ impl System {
             choice.constants = mechanics::ConstantsRule::Zero;
         }
         let work = move || {
-            let equations = derive(&scene.system, &choice)?;
+            let equations = derive_at(&scene.system, &scene.start, &choice)?;
             let made = ready(setting(&scene), equations, &choice.constants, &settings)?;
             Ok((made, scene))
         };

@@ -2,5 +2,6 @@
 //! [`mechanics::System`], that is from `L`, `f` and `Q`, and uses nothing of ours but differentiation, tapes and the time
 //! loop.
 
+pub mod closed_forms;
 pub mod discrete;
 pub mod maggi;

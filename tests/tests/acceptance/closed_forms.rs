@@ -1,6 +1,6 @@
 //! Motions against what is known of them in closed form.
 
-use tests::closed_forms::{AppellHamel, Disc, Heisenberg, Particle, Pendulum, Sledge, Sleigh, TurntableBall};
+use referees::closed_forms::{AppellHamel, Disc, Heisenberg, Particle, Pendulum, Sledge, Sleigh, TurntableBall};
 
 use crate::support::{at, chetaev, common_times, error, gap, index, must, must_exceed, parameter, scene, vakonomic};
 use mechanics::Scene;
@@ -189,5 +189,21 @@ fn pendulum_swings_as_jacobi_says() {
     for mu in [0.0, 0.7, -2.0] {
         let what = format!("velocity-pendulum, vakonomic with μ₀ = {mu}: Jacobi's functions");
         must(&what, error(&mut vakonomic(&scene, &[mu]), &exact), 1e-9);
+    }
+}
+
+#[test]
+fn the_closed_form_of_the_sledge_agrees_with_the_independent_references() {
+    use tests::references::{Motion, REFERENCES};
+    let sledge = sledge(&scene("sledge", &[]));
+    let chetaev = REFERENCES.iter().filter(|r| r.scene == "sledge" && r.motion == Motion::Chetaev);
+    assert_eq!(chetaev.clone().count(), 2);
+    for reference in chetaev {
+        let state = sledge.at(reference.t);
+        let found = [state.x, state.y, state.phi, state.reaction];
+        let known = reference.q.iter().chain(reference.multipliers);
+        for (a, b) in found.into_iter().zip(known) {
+            assert!((a - b).abs() <= 1e-14 * b.abs(), "{a} is not {b} at t = {}", reference.t);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use deltaq::{Motion, Settings};
 use integrate::Method;
 use mechanics::{Compiled, Equations, Scene};
-use tests::closed_forms::Sledge;
+use referees::closed_forms::Sledge;
 
 use crate::support::{
     at, equations, linear_scenes, motion_of, must, number, parameter, regular_removals, removal_values, scene, scenes,

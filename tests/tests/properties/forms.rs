@@ -52,13 +52,14 @@ fn compare(motion: &mut Motion) -> Option<Found> {
     }
     let inputs = |t: f64, y: &[f64]| [&[t], y, &constants].concat();
     let start = motion.start();
-    let form = Form::choose(&equations, Some(&inputs(start, &motion.states_at(start)))).expect("compiles");
+    let form =
+        Form::choose(&equations, Some(&inputs(start, &motion.states_at(start).expect("readable")))).expect("compiles");
     let mut chosen = Compiled::with_form(&equations, &form).expect("compiles");
     plain.set_constants(&constants);
     chosen.set_constants(&constants);
     let mut worst = 0.0_f64;
     for t in motion.grid(INSTANTS) {
-        let y = motion.states_at(t);
+        let y = motion.states_at(t).expect("readable");
         let mut rates = [vec![0.0; y.len()], vec![0.0; y.len()]];
         chosen.rates(t, &y, &mut rates[0]).expect("regular");
         plain.rates(t, &y, &mut rates[1]).expect("regular");
@@ -138,7 +139,7 @@ fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
         let mut plain = Compiled::plain(&motion.equations).expect("compiles");
         plain.set_constants(&motion.constants);
         let (t, end) = (motion.start(), motion.end());
-        let start = Start { t, y: motion.states_at(t) };
+        let start = Start { t, y: motion.states_at(t).expect("readable") };
         let solution = integrate(&mut Plain(&mut plain), &start, end, &Options::with_tolerance(1e-13)).expect("a call");
         let mut y = vec![0.0; start.y.len()];
         for t in motion.grid(20) {

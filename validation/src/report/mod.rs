@@ -11,6 +11,7 @@ mod realization_page;
 mod referees_section;
 mod scaling_page;
 mod scene_page;
+mod stability_page;
 mod tables;
 mod verdicts;
 
@@ -24,4 +25,5 @@ pub use realization_page::RealizationReport;
 pub use referees_section::referees_section;
 pub use scaling_page::{scaling_files, scaling_text};
 pub use scene_page::{answer, scene_page};
+pub use stability_page::StabilityReport;
 pub use verdicts::{difference_of_verdicts, verdicts};

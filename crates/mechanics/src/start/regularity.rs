@@ -30,9 +30,19 @@ pub fn check_regularity(system: &System, state: &State) -> Result<(), StartError
     scaled.check_mass()
 }
 
+/// `A` in units in which its entries are of order 1, the factors that made its rows so, and the ratio of its singular values.
+pub(super) fn scaled_constraint_jacobian(
+    system: &System,
+    state: &State,
+) -> Result<(DMatrix<f64>, DVector<f64>, f64), StartError> {
+    let scaled = ScaledMatrices::new(system, state)?;
+    let ratio = scaled.check_constraints()?;
+    Ok((scaled.constraint_jacobian, scaled.rows, ratio))
+}
+
 /// Checks the constraint Jacobian alone.
 pub(super) fn check_constraints(system: &System, state: &State) -> Result<(), StartError> {
-    ScaledMatrices::new(system, state)?.check_constraints()
+    ScaledMatrices::new(system, state)?.check_constraints().map(|_| ())
 }
 
 fn check_finite(system: &System, state: &State) -> Result<(), StartError> {
@@ -56,6 +66,8 @@ fn check_finite(system: &System, state: &State) -> Result<(), StartError> {
 struct ScaledMatrices {
     constraint_jacobian: DMatrix<f64>,
     mass: DMatrix<f64>,
+    /// Factors of the rows of `A`.
+    rows: DVector<f64>,
 }
 
 impl ScaledMatrices {
@@ -87,17 +99,19 @@ impl ScaledMatrices {
         Ok(ScaledMatrices {
             constraint_jacobian: DMatrix::from_fn(h, n, |i, j| rows[i] * a[(i, j)] * columns[j]),
             mass: DMatrix::from_fn(n, n, |i, j| columns[i] * m[(i, j)] * columns[j]),
+            rows,
         })
     }
 
-    fn check_constraints(&self) -> Result<(), StartError> {
+    /// The ratio of the singular values of `A`, 1 where there is no constraint.
+    fn check_constraints(&self) -> Result<f64, StartError> {
         if self.constraint_jacobian.nrows() == 0 {
-            return Ok(());
+            return Ok(1.0);
         }
         let values = decompose(self.constraint_jacobian.clone())?.values;
         let (ratio, singular_values) = ratio(&values);
         if ratio > SINGULAR_LIMIT {
-            return Ok(());
+            return Ok(ratio);
         }
         Err(StartError::DependentConstraints { singular_values, ratio, limit: SINGULAR_LIMIT })
     }

@@ -1,0 +1,192 @@
+//! Stiff and extreme cases: no method returns a wrong trajectory in silence, and what was mended on the way stays so.
+
+use deltaq::{
+    Choice, Ending, Motion, Setting, Settings, default_constants, derive, derive_at, formulation, setting, solve,
+};
+use integrate::Method;
+use mechanics::{ConstantsRule, Equations, Recombination, Scene};
+use validation::stability::{CASES, Cell, Question, Reference, Verdict, run};
+
+fn questions(case: &str) -> Vec<Question> {
+    let case = CASES.iter().find(|c| c.name == case).expect("a case of that name");
+    (case.questions)()
+}
+
+fn question(case: &str, point: f64, formulation: &str) -> Question {
+    let found = questions(case).into_iter().find(|q| q.point == point && q.formulation == formulation);
+    found.expect("a question at that point")
+}
+
+fn is_wrong(cell: &Cell) -> bool {
+    matches!(cell.verdict, Verdict::Wrong { .. })
+}
+
+#[test]
+fn nothing_is_wrong_and_no_case_is_only_refused() {
+    let cells = run(&CASES.iter().collect::<Vec<_>>(), true).expect("every reference reaches far enough");
+    let wrong: Vec<&Cell> = cells.iter().filter(|cell| is_wrong(cell)).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    let accurate = |cell: &&Cell| matches!(cell.verdict, Verdict::Accurate { .. });
+    for case in CASES.iter().filter(|case| !case.name.starts_with("blow-up")) {
+        assert!(
+            cells.iter().filter(accurate).any(|cell| cell.case == case.name),
+            "{} has no accurate answer",
+            case.name
+        );
+    }
+    for method in Method::ALL {
+        assert!(cells.iter().filter(accurate).any(|cell| cell.method == method), "{method:?} has no accurate answer");
+    }
+}
+
+#[test]
+fn a_motion_that_is_off_and_does_not_know_is_called_wrong() {
+    for (off, wrong) in [(0.0, false), (1e-4, true), (f64::NAN, true)] {
+        let mut asked = question("sledge-long", 10.0, "Chetaev");
+        let Reference::Closed(road) = asked.reference else { panic!("the sledge has a closed form") };
+        asked.reference = Reference::Closed(Box::new(move |t| {
+            let mut q = road(t);
+            q[0] += off * t;
+            q
+        }));
+        let cells = asked.cells("sledge-long").expect("a closed form reaches anywhere");
+        let dop853 = cells.iter().find(|cell| cell.method == Method::Dop853).expect("of every method");
+        assert_eq!(is_wrong(dop853), wrong, "a reference that is off by {off}: {dop853:?}");
+    }
+}
+
+#[test]
+fn runaway_motions_stop_at_the_pole() {
+    for start in [0.01, 1.0, 100.0] {
+        let cells = question("blow-up-across", start, "Chetaev").cells("blow-up-across").expect("a closed form");
+        for cell in &cells {
+            let Verdict::Refused { t: Some(t), .. } = cell.verdict else { panic!("{cell:?}") };
+            let limit = if cell.method == Method::Dop853 { 1e-9 } else { 1e-3 };
+            assert!((t * start - 1.0).abs() < limit, "the pole is at {}: {cell:?}", 1.0 / start);
+        }
+    }
+}
+
+#[test]
+fn a_sledge_of_a_picometre_is_resolved() {
+    // with an absolute tolerance in metres, BDF had an error of 1.2e-2 and an estimate of 3e-4
+    let cells = question("unit-of-length", 1e12, "Chetaev").cells("unit-of-length").expect("a closed form");
+    for cell in cells {
+        let limit = if matches!(cell.method, Method::TrBdf2 | Method::Esdirk34) { 1e-3 } else { 1e-6 };
+        match cell.verdict {
+            Verdict::Accurate { error, .. } => assert!(error < limit, "{cell:?}"),
+            _ => panic!("{cell:?}"),
+        }
+    }
+}
+
+fn motion(question: &Question, method: Method, tolerance: f64, max_steps: usize) -> Motion {
+    let subject = (question.subject)().expect("equations");
+    let settings = Settings { tolerance, method, max_steps, ..Settings::default() };
+    let setting = Setting { system: &subject.system, start: &subject.start, end: subject.end };
+    solve(setting, subject.equations, &subject.constants, &settings).expect("starts")
+}
+
+#[test]
+fn steps_that_the_tolerance_does_not_decide_are_said() {
+    // both runs take steps of 1e-5 and have the same error, which their difference does not show
+    let stiff = motion(&question("viscous", 1e10, "Newton, with friction"), Method::Esdirk34, 1e-7, 4_000);
+    assert!(stiff.doubt.as_ref().is_some_and(|words| words.contains("something else limits")), "{:?}", stiff.doubt);
+    let soft = motion(&question("viscous", 1e1, "Newton, with friction"), Method::Esdirk34, 1e-7, 4_000);
+    assert_eq!(soft.doubt, None);
+}
+
+#[test]
+fn a_motion_ends_where_the_run_for_its_estimate_ends() {
+    // close to the end of the chart, the looser run gets stuck in its own round-off before the tighter one
+    let stuck = questions("cone-chart").iter().filter(|q| q.point < 1e-2).any(|q| {
+        (q.subject)().is_ok_and(|_| {
+            let motion = motion(q, Method::Dop853, 1e-10, 4_000);
+            let Ending::Stopped { t, cause } = &motion.ending else { panic!("complete at θ = {}", q.point) };
+            assert!(motion.end() >= 0.99 * t, "ends at {}, says {t}: {cause}", motion.end());
+            cause.starts_with("the run that estimates the error stops here")
+        })
+    });
+    assert!(stuck, "no run for an estimate stops first: another example is needed");
+}
+
+const NEARLY_ONE: &str = r#"
+title = "Two constraints that are nearly one"
+[coordinates]
+x = { start = 0.3 }
+y = { start = -0.5 }
+z = { start = 0 }
+w = { start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2 + z'^2 + w'^2)/2"
+constraints = ["z' - y*x'", "SECOND"]
+[start.velocities]
+"x'" = 1.0
+"y'" = 0.5
+[run]
+duration = 3
+"#;
+
+/// `f₂ = f₁ + d (ż + ẇ − xẏ)`, or the bracket alone.
+fn nearly_one(d: Option<f64>) -> Scene {
+    let second = match d {
+        Some(d) => format!("(1 + {d:?})*z' - y*x' + {d:?}*(w' - x*y')"),
+        None => "z' + w' - x*y'".into(),
+    };
+    Scene::parse("nearly-one", &NEARLY_ONE.replace("SECOND", &second)).expect("a scene")
+}
+
+fn choice(scene: &Scene, name: &str) -> Choice {
+    let entry = formulation(name).expect("in the table");
+    Choice {
+        label: entry.title.into(),
+        formulation: entry.name,
+        removal: None,
+        constants: default_constants(entry, scene),
+    }
+}
+
+fn solved(scene: &Scene, equations: Equations, constants: ConstantsRule) -> Motion {
+    solve(setting(scene), equations, &constants, &Settings::default()).expect("starts")
+}
+
+#[test]
+fn recombined_constraints_have_the_same_motion_and_the_multipliers_of_those_given() {
+    let d = 2.0_f64.powi(-13);
+    let (near, apart) = (nearly_one(Some(d)), nearly_one(None));
+    assert!(Recombination::at(&near.system, &near.start).expect("independent").is_some());
+    assert!(Recombination::at(&apart.system, &apart.start).expect("independent").is_none());
+    // with f₂ = f₁ + d f₃: μ₁f₁ + μ₂f₂ = (μ₁ + μ₂) f₁ + d μ₂ f₃
+    let given = [-700.0, 900.0];
+    let same = [given[0] + given[1], d * given[1]];
+    for (name, near_rule, apart_rule) in [
+        ("chetaev", ConstantsRule::Zero, ConstantsRule::Zero),
+        ("vakonomic", ConstantsRule::Given(given.to_vec()), ConstantsRule::Given(same.to_vec())),
+        ("vakonomic-costate", ConstantsRule::Given(given.to_vec()), ConstantsRule::Given(same.to_vec())),
+    ] {
+        let equations = derive_at(&near.system, &near.start, &choice(&near, name)).expect("equations");
+        assert!(equations.left_out.iter().any(|l| l.words.contains("nearly dependent")), "{name} does not say so");
+        let mut one = solved(&near, equations, near_rule);
+        let mut two = solved(&apart, derive(&apart.system, &choice(&apart, name)).expect("equations"), apart_rule);
+        assert!(one.is_complete() && two.is_complete(), "{name}: {:?}", one.ending);
+        for t in [0.0, 1.0, 3.0] {
+            let (one, two) = (one.at(t).expect("a state"), two.at(t).expect("a state"));
+            for (a, b) in one.coordinates.iter().zip(&two.coordinates) {
+                assert!((a - b).abs() < 1e-9, "{name} at t = {t}: {a} is not {b}");
+            }
+            let (found, known) = (&one.multipliers, &two.multipliers);
+            let expected = [known[0] - known[1] / d, known[1] / d];
+            let size = expected[0].abs().max(expected[1].abs()).max(1.0);
+            for (a, b) in found.iter().zip(expected) {
+                assert!((a - b).abs() < 1e-8 * size, "{name} at t = {t}: multiplier {a} is not {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn constraints_that_round_off_makes_one_are_refused_with_their_angle() {
+    let text = NEARLY_ONE.replace("SECOND", "(1 + 1e-14)*z' - y*x' + 1e-14*(w' - x*y')");
+    let error = Scene::parse("nearly-one", &text).expect_err("dependent").to_string();
+    assert!(error.contains("dependent at the start") && error.contains("limit 1e-10"), "{error}");
+}

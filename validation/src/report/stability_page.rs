@@ -1,0 +1,173 @@
+//! The page about stiff and extreme cases.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use anyhow::Result;
+use integrate::Method;
+use serde_json::{Map, Value, json};
+
+use crate::picture::{Aspect, Axis, Curve, Picture, Style};
+use crate::report::File;
+use crate::report::numbers::short;
+use crate::stability::{CASES, Case, Cell, MAX_STEPS, Verdict, run, tolerance};
+
+/// Lines of the pictures, method by method.
+const STYLES: [Style; 4] = [Style::Chetaev, Style::Vakonomic, Style::RemovedConstraint, Style::Substituted];
+
+/// Cases that are drawn, with the formulation that is.
+const DRAWN: [(&str, &str); 2] = [("viscous", "Newton, with friction"), ("added-mass", "Newton, with added mass")];
+
+/// Every method on every case.
+pub struct StabilityReport {
+    cells: Vec<Cell>,
+}
+
+impl StabilityReport {
+    /// Runs all cases.
+    ///
+    /// # Errors
+    /// Where a reference cannot be had.
+    pub fn new(quiet: bool) -> Result<StabilityReport> {
+        Ok(StabilityReport { cells: run(&CASES.iter().collect::<Vec<_>>(), quiet)? })
+    }
+
+    fn count(&self, word: &str) -> usize {
+        self.cells.iter().filter(|cell| cell.verdict.word() == word).count()
+    }
+
+    /// The first line of the page.
+    pub fn headline(&self) -> String {
+        format!(
+            "Stiff and extreme cases, {} answers of {} methods: {} accurate, {} inaccurate and said so, {} refused with time and cause, {} wrong.",
+            self.cells.len(),
+            Method::ALL.len(),
+            self.count("accurate"),
+            self.count("admitted"),
+            self.count("refused"),
+            self.count("wrong")
+        )
+    }
+
+    /// The verdicts for machines: a word a cell.
+    pub fn verdicts(&self) -> Value {
+        let mut cases = Map::new();
+        for cell in &self.cells {
+            let line = format!("{} = {:e}, {}", variable(cell.case), cell.point, cell.formulation);
+            let words = &mut cases.entry(cell.case).or_insert_with(|| json!({}))[line];
+            words[format!("{:?}", cell.method)] = cell.verdict.word().into();
+        }
+        json!({ "wrong": self.count("wrong"), "cases": cases })
+    }
+
+    /// The page and its pictures.
+    ///
+    /// # Errors
+    /// Where a picture cannot be drawn.
+    pub fn files(&self) -> Result<Vec<File>> {
+        let mut files = vec![File { path: "stability.md".into(), text: self.page() }];
+        for (name, formulation) in DRAWN {
+            files.push(File { path: picture_name(name).into(), text: self.picture(name, formulation)? });
+        }
+        Ok(files)
+    }
+
+    fn page(&self) -> String {
+        let tolerances: Vec<String> =
+            Method::ALL.iter().map(|&method| format!("{method:?} {:.0e}", tolerance(method))).collect();
+        let mut page = format!("# Stiff and extreme cases\n\n**{}**\n\n", self.headline());
+        let _ = writeln!(
+            page,
+            "Does a wrong trajectory ever come back in silence? Every method answers every question; each answer is compared, at 201 times, with a reference that \
+             does not share the failure that the case is about.\n\n\
+             - a number: *accurate*, the largest true error over the largest distance from the start. The error is under ten times the motion's own estimate (or under \
+             1e-7, or under ten times the tolerance), and that estimate is under 1e-3.\n\
+             - a number, *said so*: the same, but the estimate is over 1e-3, or the run says that it is no estimate: `deltaq solve` ends with exit code 3 and the reason.\n\
+             - *to t = …*: stopped there, with a cause; what comes before is accurate in the same sense. *refused*: an error before the start.\n\
+             - **wrong**: anything else.\n\n\
+             A run may take {MAX_STEPS} steps, and is refused where it needs more: that is the budget of this page, not a limit of the methods. Tolerances of the looser of the two \
+             runs: {}. Errors are distances in the kinetic metric. `deltaq stability --case NAME` prints every answer with its cause.",
+            tolerances.join(", ")
+        );
+        for case in CASES {
+            self.section(&mut page, case);
+        }
+        page
+    }
+
+    fn section(&self, page: &mut String, case: &Case) {
+        let cells: Vec<&Cell> = self.cells.iter().filter(|cell| cell.case == case.name).collect();
+        let _ = writeln!(page, "\n## {}\n\n{}\n\n*Reference*: {}.\n", case.name, case.about, case.reference);
+        if DRAWN.iter().any(|(name, _)| *name == case.name) {
+            let _ = writeln!(page, "![Error over {}]({})\n", case.variable, picture_name(case.name));
+        }
+        let methods: Vec<String> = Method::ALL.iter().map(|method| format!("{method:?}")).collect();
+        let _ = writeln!(page, "| {} | formulation | {} |", case.variable, methods.join(" | "));
+        let _ = writeln!(page, "|---:|---|{}", "---:|".repeat(methods.len()));
+        for line in cells.chunks(methods.len()) {
+            let words: Vec<String> = line.iter().map(|cell| words(&cell.verdict)).collect();
+            let _ = writeln!(page, "| {} | {} | {} |", short(line[0].point), line[0].formulation, words.join(" | "));
+        }
+        let mut causes: BTreeMap<String, usize> = BTreeMap::new();
+        for cell in &cells {
+            if let Verdict::Refused { cause, .. } = &cell.verdict {
+                *causes.entry(kind_of(cause)).or_default() += 1;
+            }
+        }
+        if !causes.is_empty() {
+            let list: Vec<String> = causes.iter().map(|(cause, count)| format!("{count} × {cause}")).collect();
+            let _ = writeln!(page, "\nCauses: {}.", list.join("; "));
+        }
+    }
+
+    fn picture(&self, name: &str, formulation: &str) -> Result<String> {
+        let curve = |(i, method): (usize, &Method)| {
+            let cells =
+                self.cells.iter().filter(|c| c.case == name && c.formulation == formulation && c.method == *method);
+            let points = cells.map(|cell| match cell.verdict {
+                Verdict::Accurate { error, .. } | Verdict::Admitted { error, .. } | Verdict::Wrong { error, .. } => {
+                    (cell.point, error)
+                }
+                Verdict::Refused { .. } => (cell.point, f64::NAN),
+            });
+            Curve { label: format!("{method:?}"), style: STYLES[i % STYLES.len()], points: points.collect() }
+        };
+        let picture = Picture {
+            title: format!("{name}: true error of what is not refused"),
+            x: Axis::log(variable(name)),
+            y: Axis::log("error over distance"),
+            curves: Method::ALL.iter().enumerate().map(curve).collect(),
+            aspect: Aspect::Fill,
+        };
+        Ok(picture.to_svg()?)
+    }
+}
+
+fn picture_name(case: &str) -> String {
+    format!("stability-{case}.svg")
+}
+
+fn variable(case: &str) -> &'static str {
+    CASES.iter().find(|c| c.name == case).map_or("", |c| c.variable)
+}
+
+fn words(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::Accurate { error, .. } => short(*error),
+        Verdict::Admitted { error, .. } => format!("{}, *said so*", short(*error)),
+        Verdict::Refused { t: Some(t), .. } => format!("to t = {}", short(*t)),
+        Verdict::Refused { t: None, .. } => "refused".into(),
+        Verdict::Wrong { error, estimate, .. } => {
+            format!("**wrong**: {}, estimate {}", short(*error), short(*estimate))
+        }
+    }
+}
+
+/// A cause without its place and its figures.
+fn kind_of(cause: &str) -> String {
+    let first = cause.lines().next().unwrap_or_default();
+    let kind = first.split_once(": ").filter(|(place, _)| place.contains(':')).map_or(first, |(_, rest)| rest);
+    let figure = |word: &str| word.starts_with(|c: char| c.is_ascii_digit());
+    let words: Vec<&str> = kind.split(' ').map(|word| if figure(word) { "…" } else { word }).collect();
+    words.join(" ")
+}

@@ -1,0 +1,101 @@
+//! The sledge with a mass that hardly resists turning, or hardly turns; and for a long time.
+
+use mechanics::Scene;
+use referees::closed_forms;
+
+use super::{FORMULATIONS, powers};
+use crate::stability::question::{Case, Question};
+use crate::stability::reference::Reference;
+
+const REFERENCE: &str = "Chetaev: closed form; the others: hand-derived equations for the heading alone with the momenta p_x = p_x(0) + g t sin α, p_y as \
+                         functions of time, double run of DOP853";
+
+pub(super) const GYRATION: Case = Case {
+    name: "sledge-k",
+    about: "The sledge over 10 s with radius of gyration k: the vakonomic and the removed-constraint sledge oscillate at a rate that grows \
+            as t/k.",
+    reference: REFERENCE,
+    variable: "k",
+    questions: by_gyration,
+};
+
+pub(super) const LONG: Case = Case {
+    name: "sledge-long",
+    about: "The sledge of the scene for a long time.",
+    reference: REFERENCE,
+    variable: "duration",
+    questions: by_duration,
+};
+
+fn by_gyration() -> Vec<Question> {
+    powers(-4, 4, 1).flat_map(|k| questions(k, k, 10.0)).collect()
+}
+
+fn by_duration() -> Vec<Question> {
+    powers(0, 3, 1).flat_map(|duration| questions(duration, 0.7, duration)).collect()
+}
+
+fn questions(point: f64, k: f64, duration: f64) -> Vec<Question> {
+    let scene = move || {
+        let overrides = [("k".into(), k), ("duration".into(), duration)];
+        Scene::parse_with("sledge", include_str!("../../../scenes/sledge.toml"), &overrides)
+    };
+    super::questions(point, scene, &FORMULATIONS, |name| Sledge { k }.reference(name))
+}
+
+/// The sledge of the scene with radius of gyration `k`.
+pub(super) struct Sledge {
+    pub(super) k: f64,
+}
+
+const GRAVITY: f64 = 9.81;
+const SLOPE: f64 = 0.4;
+const PHI: f64 = 0.3;
+const OMEGA: f64 = 1.1;
+const SPEED: f64 = 0.5;
+
+impl Sledge {
+    /// Chetaev; vakonomic with `μ₀ = 0`; removed constraint by arc length with `P(t₀) = 0`.
+    pub(super) fn reference(&self, formulation: &str) -> Reference {
+        let (sin, cos) = PHI.sin_cos();
+        match formulation {
+            "chetaev" => {
+                let gravity_along = GRAVITY * SLOPE.sin();
+                let sledge =
+                    closed_forms::Sledge { gravity_along, x: 0.0, y: 0.0, phi: PHI, speed: SPEED, omega: OMEGA };
+                Reference::Closed(Box::new(move |t| {
+                    let state = sledge.at(t);
+                    vec![state.x, state.y, state.phi]
+                }))
+            }
+            "removed-constraint" => self.by_heading([0.0, 0.0]),
+            _ => self.by_heading([SPEED * cos, SPEED * sin]),
+        }
+    }
+
+    /// With `e = (cos φ, sin φ)`, `n = (−sin φ, cos φ)` and `p = (p_x + g t sin α, p_y)`:
+    ///
+    /// ```text
+    /// k² φ̈ = −u̇ p·n,    u̇ = u̇₀ + p·e − p₀·e₀,    (ẋ, ẏ) = u̇ e
+    /// ```
+    ///
+    /// Hamilton's equations of `½(p·e)² + ½p_φ²/k² − g x sin α` for `p₀ = u̇₀ e₀ + μ₀ n₀`; those of removal by arc length for `p₀ = −P(t₀)`.
+    fn by_heading(&self, momentum: [f64; 2]) -> Reference {
+        let square = self.k * self.k;
+        let push = GRAVITY * SLOPE.sin();
+        let rest = SPEED - momentum[0] * PHI.cos() - momentum[1] * PHI.sin();
+        Reference::Ode {
+            y: vec![PHI, OMEGA, 0.0, 0.0],
+            rates: Box::new(move |t, y, rates| {
+                let (sin, cos) = y[0].sin_cos();
+                let (px, py) = (momentum[0] + push * t, momentum[1]);
+                let speed = rest + px * cos + py * sin;
+                rates[0] = y[1];
+                rates[1] = -speed * (py * cos - px * sin) / square;
+                rates[2] = speed * cos;
+                rates[3] = speed * sin;
+            }),
+            read: Box::new(|_, y| vec![y[2], y[3], y[0]]),
+        }
+    }
+}

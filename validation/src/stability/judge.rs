@@ -1,0 +1,151 @@
+//! The word for a motion, given what it should have been.
+
+use deltaq::{Ending, Metric, Motion, SolveError, TRUSTED};
+
+use super::Known;
+
+/// The error may be so many times the motion's own estimate.
+pub const BETTER_THAN_IT_KNOWS: f64 = 10.0;
+
+/// Relative error that is passed over whatever the estimate says.
+pub const FLOOR: f64 = 1e-7;
+
+/// What coordinates of the size that they have cannot show, over their size.
+const LAST_DIGITS: f64 = 16.0 * f64::EPSILON;
+
+/// Times at which errors are taken, less one.
+const SAMPLES: usize = 200;
+
+/// What became of a cell. Errors and estimates are relative to the distance from the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Complete, right, and known to be.
+    Accurate {
+        /// True error.
+        error: f64,
+        /// The motion's own estimate.
+        estimate: f64,
+    },
+    /// Complete, with an estimate that is over the limit of trust and not too small.
+    Admitted {
+        /// True error.
+        error: f64,
+        /// The motion's own estimate.
+        estimate: f64,
+    },
+    /// No motion, or one that stopped, right as far as it goes.
+    Refused {
+        /// Where it stopped; `None` where it was not started.
+        t: Option<f64>,
+        /// Why.
+        cause: String,
+    },
+    /// An error that nobody was told of.
+    Wrong {
+        /// True error.
+        error: f64,
+        /// The motion's own estimate at the same time.
+        estimate: f64,
+        /// Where this was first seen.
+        t: f64,
+    },
+}
+
+impl Verdict {
+    /// One word.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Verdict::Accurate { .. } => "accurate",
+            Verdict::Admitted { .. } => "admitted",
+            Verdict::Refused { .. } => "refused",
+            Verdict::Wrong { .. } => "wrong",
+        }
+    }
+}
+
+/// Part of the run over which the first errors are measured: a step of length 10⁻⁶ has no distance of its own worth the name.
+const FIRST_PART: f64 = 0.1;
+
+/// What is known of a motion at one time; lengths in the kinetic metric.
+struct Sample {
+    t: f64,
+    error: f64,
+    uncertainty: f64,
+    difference: f64,
+    distance: f64,
+}
+
+/// What is asked of a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowance {
+    /// Relative errors under this are passed over.
+    pub floor: f64,
+    /// So many coordinates, the first ones, are compared.
+    pub compared: usize,
+}
+
+/// Judges a motion by what is known, which has to reach as far.
+///
+/// # Errors
+/// [`SolveError`] where the motion cannot be read off before its end: as bad as being wrong, but another fault.
+pub fn judge(
+    motion: &mut Motion,
+    metric: &mut Metric,
+    known: &mut Known,
+    allowance: Allowance,
+) -> Result<Verdict, SolveError> {
+    let start = motion.at(motion.start())?.coordinates;
+    let mut samples = Vec::with_capacity(SAMPLES + 1);
+    for t in motion.grid(SAMPLES) {
+        let (kept, looser) = motion.at_in_both_runs(t)?;
+        let (truth, second) = known.at(t);
+        let q = &kept.coordinates;
+        let mut length = |a: &[f64], b: &[f64]| {
+            let mut difference: Vec<f64> = a.iter().zip(b).take(allowance.compared).map(|(a, b)| a - b).collect();
+            difference.resize(q.len(), 0.0);
+            metric.length(t, q, &kept.velocities, &difference)
+        };
+        samples.push(Sample {
+            t,
+            error: length(q, &truth),
+            uncertainty: length(&truth, &second) + LAST_DIGITS * length(&truth, &vec![0.0; truth.len()]),
+            difference: length(q, &looser.coordinates),
+            distance: length(q, &start),
+        });
+    }
+    Ok(verdict(&samples, &motion.ending, motion.doubt.as_deref(), allowance.floor))
+}
+
+fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64) -> Verdict {
+    let first = (samples.len() as f64 * FIRST_PART) as usize;
+    let mut scale = samples[..first].iter().fold(0.0, |scale, sample| worst(scale, sample.distance));
+    let (mut largest, mut estimate) = (0.0_f64, 0.0_f64);
+    for sample in samples {
+        estimate = worst(estimate, sample.difference);
+        scale = worst(scale, sample.distance);
+        let claimed = BETTER_THAN_IT_KNOWS * estimate;
+        // an estimate as large as the motion itself claims nothing, nor does one that says so
+        let bounded = doubt.is_none() && (claimed < scale || scale == 0.0);
+        let allowed = claimed.max(floor * scale) + sample.uncertainty;
+        let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
+        let off = sample.error > allowed || sample.error.is_nan() || allowed.is_nan();
+        if (bounded && off) || scale.is_nan() || estimate.is_nan() {
+            return Verdict::Wrong { error: relative(sample.error), estimate: relative(estimate), t: sample.t };
+        }
+        largest = largest.max(relative(sample.error));
+    }
+    let estimate = if scale > 0.0 { estimate / scale } else { estimate };
+    match ending {
+        Ending::Stopped { t, cause } => {
+            let cause = doubt.map_or(cause.clone(), |doubt| format!("{cause}; {doubt}"));
+            Verdict::Refused { t: Some(*t), cause }
+        }
+        Ending::Completed if estimate <= TRUSTED && doubt.is_none() => Verdict::Accurate { error: largest, estimate },
+        Ending::Completed => Verdict::Admitted { error: largest, estimate },
+    }
+}
+
+/// The larger of the two, NaN if one is.
+fn worst(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}

@@ -1,0 +1,25 @@
+//! Stiff and extreme cases: is what comes back right, and where it is not, does it say so?
+//!
+//! A [`Question`] is one system at one point of one case in one formulation, with a [`Reference`] that does not share the failure it is there
+//! to find. Every method of [`integrate::Method::ALL`] answers it, and [`judge()`] gives each [`Cell`] a word:
+//!
+//! ```text
+//! accurate   complete;  error(t) ≤ max(10 e(t), b s(t)) + u(t) at 201 times t, e ≤ 10⁻³ s at the end
+//! admitted   the same but for the last condition: the run says itself that it is not to be trusted
+//! refused    a typed error; or stopped early with time and cause, and what comes before the stop is as above
+//! wrong      anything else
+//! ```
+//!
+//! `e(t)` is the largest difference of the motion's two runs up to `t`; `s(t)` the largest distance from the start up to `t`, the first tenth of the
+//! run at least; `u(t)` what the reference itself may be off by; `b` the larger of 10⁻⁷ and ten times the tolerance that was asked of the kept run.
+//! Lengths in the kinetic metric. Where 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked of it.
+
+mod cases;
+mod judge;
+mod question;
+mod reference;
+
+pub use cases::CASES;
+pub use judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
+pub use question::{Case, Cell, MAX_STEPS, Question, Subject, run, tolerance};
+pub use reference::{Known, Reference};

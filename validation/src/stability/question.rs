@@ -1,0 +1,141 @@
+//! Questions, and the answers of every method.
+
+use anyhow::{Context, Result};
+use deltaq::{Metric, Setting, Settings, TIGHTER, solve};
+use integrate::Method;
+use mechanics::{ConstantsRule, Equations, State, System};
+
+use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
+use super::reference::Reference;
+use crate::parallel;
+
+/// Limit on the steps of one run: what needs more is refused.
+pub const MAX_STEPS: usize = 4_000;
+
+/// Tolerance of the looser run, as the order of the method allows within [`MAX_STEPS`].
+pub fn tolerance(method: Method) -> f64 {
+    match method {
+        Method::Tsit45 | Method::Bdf => 1e-8,
+        Method::Esdirk34 => 1e-7,
+        Method::TrBdf2 => 1e-5,
+        _ => 1e-10,
+    }
+}
+
+/// A case: one way of making things hard, by degrees.
+pub struct Case {
+    /// Name for the command line and the page.
+    pub name: &'static str,
+    /// What is made hard, and what could go wrong, for the page.
+    pub about: &'static str,
+    /// What the answers are compared with, for the page.
+    pub reference: &'static str,
+    /// What the points are values of.
+    pub variable: &'static str,
+    /// The questions, point by point.
+    pub questions: fn() -> Vec<Question>,
+}
+
+/// A system with its start, ready for a formulation.
+pub struct Subject {
+    /// The system that is integrated.
+    pub system: System,
+    /// Its start.
+    pub start: State,
+    /// Time at which the motion is to end.
+    pub end: f64,
+    /// Its equations; the coordinates they hand out are those of `measured`.
+    pub equations: Equations,
+    /// Free constants.
+    pub constants: ConstantsRule,
+    /// The system in whose kinetic metric errors are measured.
+    pub measured: System,
+}
+
+/// One system at one point in one formulation.
+pub struct Question {
+    /// The point, for example `1e6`.
+    pub point: f64,
+    /// The formulation, and the removal where there are several.
+    pub formulation: String,
+    /// The system and its equations, or why there are none.
+    pub subject: Box<dyn Fn() -> Result<Subject, String> + Send + Sync>,
+    /// What is known of the motion.
+    pub reference: Reference,
+    /// So many coordinates, the first ones, are compared.
+    pub compared: usize,
+}
+
+/// An answer.
+#[derive(Clone, Debug)]
+pub struct Cell {
+    /// Name of the case.
+    pub case: &'static str,
+    /// Point of the case.
+    pub point: f64,
+    /// Formulation.
+    pub formulation: String,
+    /// Method.
+    pub method: Method,
+    /// What came of it.
+    pub verdict: Verdict,
+    /// Steps of the kept run.
+    pub steps: usize,
+}
+
+/// Every method on every question of `cases`.
+///
+/// # Errors
+/// Where a reference does not reach as far as what it is to judge.
+pub fn run(cases: &[&Case], quiet: bool) -> Result<Vec<Cell>> {
+    let questions: Vec<(&'static str, Question)> =
+        cases.iter().flat_map(|case| (case.questions)().into_iter().map(|q| (case.name, q))).collect();
+    let bar = parallel::progress(questions.len(), quiet);
+    let cells = parallel::map(&questions, |(case, question)| {
+        bar.set_message(*case);
+        let cells = question.cells(case);
+        bar.inc(1);
+        cells
+    });
+    bar.finish_and_clear();
+    Ok(cells.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+}
+
+impl Question {
+    /// The answer of every method.
+    ///
+    /// # Errors
+    /// Where the reference does not reach as far as what it is to judge.
+    pub fn cells(&self, case: &'static str) -> Result<Vec<Cell>> {
+        let subject = (self.subject)();
+        let cell = |method| {
+            let (verdict, steps) =
+                self.answer(&subject, method).with_context(|| format!("{case}, {}, {method:?}", self.point))?;
+            Ok(Cell { case, point: self.point, formulation: self.formulation.clone(), method, verdict, steps })
+        };
+        Method::ALL.into_iter().map(cell).collect()
+    }
+
+    /// The verdict on one method, and the steps it took.
+    fn answer(&self, subject: &Result<Subject, String>, method: Method) -> Result<(Verdict, usize)> {
+        let refused = |cause: String| Ok((Verdict::Refused { t: None, cause }, 0));
+        let Subject { system, start, end, equations, constants, measured } = match subject {
+            Ok(subject) => subject,
+            Err(cause) => return refused(cause.clone()),
+        };
+        let settings = Settings { tolerance: tolerance(method), method, max_steps: MAX_STEPS, ..Settings::default() };
+        let setting = Setting { system, start, end: *end };
+        let mut motion = match solve(setting, equations.clone(), constants, &settings) {
+            Ok(motion) => motion,
+            Err(error) => return refused(error.to_string()),
+        };
+        let steps = motion.work.steps;
+        let mut known = self.reference.up_to(motion.start(), motion.end()).map_err(anyhow::Error::msg)?;
+        let floor = FLOOR.max(BETTER_THAN_IT_KNOWS * settings.tolerance * TIGHTER);
+        match judge(&mut motion, &mut Metric::new(measured)?, &mut known, Allowance { floor, compared: self.compared })
+        {
+            Ok(verdict) => Ok((verdict, steps)),
+            Err(error) => refused(error.to_string()),
+        }
+    }
+}
