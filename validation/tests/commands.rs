@@ -352,3 +352,24 @@ fn list_and_show_answer() {
         assert!(shown.contains(word), "{word} is not in {shown}");
     }
 }
+
+#[test]
+fn show_says_in_which_form_equations_are_evaluated() {
+    let output = deltaq(&["show", "trailer"]);
+    exit(&output, 0);
+    let shown = text(&output.stdout);
+    for words in
+        ["eliminated beforehand", "pivots are watched", "instructions; the plain form takes", "one unknown: a quotient"]
+    {
+        assert!(shown.contains(words), "`{words}` is not in {shown}");
+    }
+    // two roots: Newton's method, and one form only
+    let shown = text(&deltaq(&["show", "appell-hamel"]).stdout);
+    assert!(
+        shown.contains("do not enter linearly") && shown.contains("instructions and LU factorizations of"),
+        "{shown}"
+    );
+    let value = json(&["trailer", "-f", "vakonomic"]);
+    let evaluations = value["work"]["evaluations"].as_u64().expect("a count");
+    assert!(value["form"]["fallbacks"].as_u64().is_some_and(|n| n < evaluations / 20), "{}", value["form"]);
+}

@@ -238,7 +238,10 @@ fn eliminated(
             "{size} unknowns without pivots that are safe at the start, or too many of them: LU factorization"
         )));
     };
-    let words = format!("{size} unknowns {}; {}", described(way), guarded(&found));
+    let words = match size {
+        1 => "one unknown: a quotient".into(),
+        _ => format!("{size} unknowns {}; {}", described(way), guarded(&found)),
+    };
     Ok(Ok((found, words)))
 }
 
@@ -252,7 +255,8 @@ fn described(way: Strategy) -> &'static str {
 
 fn guarded(found: &Definitions) -> String {
     match found.moving {
-        0 => "no pivot can become small".into(),
+        0 => "no multiplier of the elimination can become large".into(),
+        1 => "one pivot is watched, LU factorization where it is small".into(),
         count => format!("{count} pivots are watched, LU factorization where one is small"),
     }
 }
