@@ -17,6 +17,7 @@ fn explore() {
         let scene = scene(name);
         let times: Vec<f64> = (1..=10).map(|i| end * i as f64 / 10.0).collect();
         for choice in choices(&scene) {
+            if std::env::var("ONLY").is_ok_and(|o| !format!("{name} {}", choice.label).contains(&o)) { continue; }
             let equations = derive(&scene.system, &choice).unwrap();
             let constants = match ready(setting(&scene), equations.clone(), &choice.constants, &Settings::default()) {
                 Ok(r) => r.constants,

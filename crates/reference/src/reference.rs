@@ -62,9 +62,9 @@ pub struct Reference<T = DoubleDouble> {
     pub times: Vec<f64>,
     /// The motion there, by the Taylor series at the tighter tolerance.
     pub points: Vec<Point<T>>,
-    /// What of it is in doubt at each time: the largest distance between two of the four runs.
+    /// What of it is in doubt at each time: the distance from the other method or from the looser tolerance, whichever is larger.
     pub errors: Vec<Distance>,
-    /// Where the largest distances come from.
+    /// The largest distances behind that.
     pub agreement: Agreement,
     /// Largest `|fᵢ|` at the points: no run is projected onto the constraint.
     pub constraint_residual: f64,
@@ -92,20 +92,19 @@ impl<T: Wide> Reference<T> {
     }
 }
 
-/// Tolerance of the tighter runs over the accuracy that is asked for; what a failure makes of it; how often.
-const TIGHTER: f64 = 1e-7;
-const AGAIN: f64 = 1e-2;
+/// Tolerance of the first pair of runs over the accuracy that is asked for, and of the second pair over that of the first.
+const FIRST: f64 = 1e-5;
+const TIGHTER: f64 = 1e-2;
+
+/// How often a tighter pair is tried.
 const TRIES: usize = 3;
 
-/// Tolerance of the looser runs over that of the tighter.
-const LOOSER: f64 = 1e2;
-
-/// The motion at `times` with an error of at most `accuracy` (kinetic metric, relative to the length of the way where that is over 1), in
-/// double-double arithmetic.
+/// The motion at `times` with an error of at most `accuracy` (kinetic metric) in double-double arithmetic.
 ///
 /// Two methods compute it, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes and a linear solve per evaluation, and a Taylor
-/// series of the traced residuals. They share the expressions and the number type, nothing else. [`Reference::errors`] is the largest distance
-/// between any two of the four runs.
+/// series of the traced residuals. They share the expressions, the tapes and the number type, and no step of the way. [`Reference::errors`] is how far the kept
+/// run, the Taylor series at the tighter tolerance, is from the other method and from itself at the looser tolerance. While that is over
+/// `accuracy`, tolerances become tighter, three times at most.
 ///
 /// Times, parameters, constants and `q₀` are the given `f64`, exactly (0.4 is not 2/5), as they are for a run in `f64`. The velocity at the start is the one
 /// with `f = 0` nearest to `v₀` in the kinetic metric, to the last digit of the wide type: what the projection of a run in `f64` would give
@@ -155,20 +154,28 @@ pub fn reference_in<T: Wide>(
     accuracy: f64,
 ) -> Result<Reference<T>, ReferenceError> {
     let runs = Runs::new(question, times)?;
-    let mut tolerance = accuracy * TIGHTER;
-    let mut best: Option<Reference<T>> = None;
+    let mut tolerance = accuracy * FIRST;
+    let mut looser = runs.pair(tolerance)?;
+    let (mut error, mut next) = (f64::INFINITY, TIGHTER);
     for _ in 0..TRIES {
-        match runs.confirmed(tolerance) {
-            Ok(found) if found.error() <= accuracy * found.scale.max(1.0) => return Ok(found),
-            Ok(found) if best.as_ref().is_none_or(|b| found.error() < b.error()) => best = Some(found),
-            Ok(_) => break,
-            Err(error) if best.is_none() => return Err(error),
-            Err(_) => break,
+        tolerance *= next;
+        let tighter = runs.pair(tolerance)?;
+        let found = runs.compared(&looser, &tighter, tolerance)?;
+        if found.error() <= accuracy {
+            return Ok(found);
         }
-        tolerance *= AGAIN;
+        error = error.min(found.error());
+        // errors go with the tolerance
+        next = (0.1 * accuracy / found.error()).clamp(1e-4, 0.1);
+        looser = tighter;
     }
-    let error = best.map_or(f64::NAN, |b| b.error());
     Err(ReferenceError::NotReached { error, accuracy, epsilon: T::EPSILON })
+}
+
+/// One run of each method.
+struct Pair<T> {
+    taylor: Vec<Point<T>>,
+    extrapolation: Vec<Point<T>>,
 }
 
 /// What all runs share.
@@ -224,11 +231,14 @@ impl<'a, T: Wide> Runs<'a, T> {
         Ok(points)
     }
 
-    /// All four runs, compared.
-    fn confirmed(&self, tolerance: f64) -> Result<Reference<T>, ReferenceError> {
-        let points = self.taylor(tolerance)?;
-        let others =
-            [self.extrapolation(tolerance)?, self.taylor(tolerance * LOOSER)?, self.extrapolation(tolerance * LOOSER)?];
+    /// Both methods at one tolerance.
+    fn pair(&self, tolerance: f64) -> Result<Pair<T>, ReferenceError> {
+        Ok(Pair { taylor: self.taylor(tolerance)?, extrapolation: self.extrapolation(tolerance)? })
+    }
+
+    /// The tighter pair of runs, compared with each other and with the looser pair.
+    fn compared(&self, looser: &Pair<T>, tighter: &Pair<T>, tolerance: f64) -> Result<Reference<T>, ReferenceError> {
+        let points = &tighter.taylor;
         let mut metric: Metric<T> = Metric::new(self.question.system)?;
         let mut agreement = Agreement {
             methods: Distance::default(),
@@ -242,21 +252,18 @@ impl<'a, T: Wide> Runs<'a, T> {
             metric.load(T::from_f64(self.times[i]), point);
             constraint_residual = constraint_residual.max(metric.constraint_residual());
             scale = scale.max(metric.length(&point.coordinates, &points[0].coordinates));
-            let distance = |a: &Point<T>, b: &Point<T>| metric.distance(a, b);
-            let [extrapolated, looser, looser_extrapolated] = others.each_ref().map(|run| &run[i]);
-            let methods = distance(point, extrapolated);
-            let taylor = distance(point, looser);
-            let extrapolation = distance(extrapolated, looser_extrapolated);
-            let crossed = distance(point, looser_extrapolated).max(distance(extrapolated, looser));
+            let methods = metric.distance(point, &tighter.extrapolation[i]);
+            let taylor = metric.distance(point, &looser.taylor[i]);
+            let extrapolation = metric.distance(&tighter.extrapolation[i], &looser.extrapolation[i]);
             agreement.methods = agreement.methods.max(methods);
             agreement.taylor = agreement.taylor.max(taylor);
             agreement.extrapolation = agreement.extrapolation.max(extrapolation);
-            errors.push(methods.max(taylor).max(extrapolation).max(crossed));
+            errors.push(methods.max(taylor));
             masses.push(metric.mass());
         }
         Ok(Reference {
             times: self.times.to_vec(),
-            points,
+            points: points.clone(),
             errors,
             agreement,
             constraint_residual,

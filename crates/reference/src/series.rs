@@ -134,9 +134,8 @@ impl<T: Wide> Series<T> {
 
     /// `Σ a_j b_{k−j}` over `j = from … to`.
     fn convolution(&self, a: Node, b: Node, from: usize, to: usize, k: usize) -> T {
-        let row = |node: Node| &self.coefficients[node as usize * self.length..][..=k];
-        let (a, b) = (row(a), row(b));
-        (from..=to).fold(T::zero(), |sum, j| sum + a[j] * b[k - j])
+        let row = |node: Node| &self.coefficients[node as usize * self.length..];
+        T::convolution(&row(a)[from..=to], &row(b)[k - to..=k - from])
     }
 }
 

@@ -10,6 +10,10 @@ pub trait Wide: Scalar + PartialOrd + std::fmt::Debug + 'static {
     fn to_f64(self) -> f64;
     /// Neither infinite nor "not a number".
     fn is_finite(self) -> bool;
+    /// `Σ a_j b_{n−1−j}` for two slices of length `n`.
+    fn convolution(a: &[Self], b: &[Self]) -> Self {
+        a.iter().zip(b.iter().rev()).fold(Self::zero(), |sum, (&x, &y)| sum + x * y)
+    }
     /// 0
     fn zero() -> Self {
         Self::from_f64(0.0)
