@@ -13,7 +13,7 @@ mod functions;
 /// Sum and product are algorithms 6 and 10 of Joldes, Muller & Popescu 2017 (relative errors under 3·2⁻¹⁰⁶ and 5·2⁻¹⁰⁶), the quotient is long division.
 /// The reasons for not taking the crate `twofloat`, measured in `tests/double_double.rs`: its quotient has a relative error of 1e-16, its exponential and
 /// its logarithm 1e-11. And its product asks for a fused multiply-add, which is a call of a function unless the program is built
-/// for one processor; Dekker's exact product is 3 times as fast then.
+/// for one processor; Dekker's exact product is 5 times as fast then.
 ///
 /// ```
 /// use reference::DoubleDouble;

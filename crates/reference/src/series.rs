@@ -166,3 +166,58 @@ fn apply<T: Scalar>(function: Function, x: T) -> T {
         Function::Log => x.log(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::DoubleDouble;
+    use crate::trace::{Traced, record};
+
+    /// Sum of the series of `e(a(t), b(t))` at `h` minus the value there, for `a = a₀ + t − t²/2` and `b = 3/4 + t/3`.
+    fn misses(
+        start: (i64, i64),
+        e: impl Fn(Traced, Traced) -> Traced,
+        exact: fn(DoubleDouble, DoubleDouble) -> DoubleDouble,
+    ) -> f64 {
+        const LENGTH: usize = 26;
+        let (operations, node) = record(|| e(Traced::input(0), Traced::input(1)).0);
+        let ratio = DoubleDouble::from_ratio;
+        let inputs = [vec![ratio(start.0, start.1), ratio(1, 1), ratio(-1, 2)], vec![ratio(3, 4), ratio(1, 3)]];
+        let mut series: Series<DoubleDouble> = Series::new(operations, LENGTH, |_| false, |_| false);
+        for k in 0..LENGTH {
+            series.advance(k, Part::All, |place| inputs[place].get(k).copied().unwrap_or(DoubleDouble::ZERO));
+        }
+        let h = ratio(1, 100);
+        let sum =
+            |c: &dyn Fn(usize) -> DoubleDouble| (0..LENGTH).rev().fold(DoubleDouble::ZERO, |sum, k| sum * h + c(k));
+        let [a, b] = inputs.each_ref().map(|c| sum(&|k| c.get(k).copied().unwrap_or(DoubleDouble::ZERO)));
+        (sum(&|k| series.at(node, k)) - exact(a, b)).size()
+    }
+
+    #[test]
+    fn series_of_all_operations_are_those_of_their_values() {
+        macro_rules! check {
+            ($start:expr, $e:expr) => {
+                let error = misses($start, $e, $e);
+                assert!(error < 1e-29, "{}: {error:.1e}", stringify!($e));
+            };
+        }
+        check!((2, 5), |a, b| a * b - b / a + -a);
+        check!((2, 5), |a, b| (a * b).sqrt());
+        check!((2, 5), |a, b| a.sin() * b.cos());
+        check!((2, 5), |a, _| a.cos());
+        check!((2, 5), |a, b| a.tan() + b.tanh());
+        check!((2, 5), |a, b| a.sinh() * b.cosh());
+        check!((2, 5), |a, _| a.asin());
+        check!((2, 5), |a, _| a.acos());
+        check!((2, 5), |a, _| a.atan());
+        check!((2, 5), |a, _| a.asinh());
+        check!((5, 2), |a, _| a.acosh());
+        check!((2, 5), |a, _| a.atanh());
+        check!((2, 5), |a, b| (a * b).exp());
+        check!((2, 5), |a, b| (a / b).log());
+        check!((2, 5), |a, b| a.powf(b));
+        check!((-2, 5), |a, b| a.powf(Scalar::from_f64(3.0)) + b);
+        check!((-2, 5), |a, b| a.atan2(b));
+    }
+}

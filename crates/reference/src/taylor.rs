@@ -72,7 +72,7 @@ impl<T: Wide> Taylor<T> {
         while !open.is_empty() {
             self.expand(instant, t, &y)?;
             let step = self.step();
-            if !(step > SHORTEST * t.size().max((end - start.0).abs())) {
+            if step.is_nan() || step <= SHORTEST * t.size().max((end - start.0).abs()) {
                 return Err(ReferenceError::Stopped { method: NAME, time: t.to_f64(), step });
             }
             let unknowns = instant.unknowns().to_vec();

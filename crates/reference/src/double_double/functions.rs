@@ -20,16 +20,12 @@ fn number(x: f64) -> DoubleDouble {
     DoubleDouble::from_f64(x)
 }
 
-fn nan() -> DoubleDouble {
-    number(f64::NAN)
-}
-
 /// `x − n c` for the constant `c` in three parts.
 fn reduced(x: DoubleDouble, n: f64, parts: [f64; 3]) -> DoubleDouble {
     parts.iter().fold(x, |rest, &part| rest - number(part).times(n))
 }
 
-/// `1 + x/(a b) (1 + x/((a+s)(b+s)) (…))` for the series of sine, cosine and exponential.
+/// `1 + x/d₁ (1 + x/d₂ (1 + …))`
 fn series(x: DoubleDouble, terms: u32, divisor: impl Fn(u32) -> f64) -> DoubleDouble {
     (1..=terms).rev().fold(ONE, |sum, k| ONE + sum * x / number(divisor(k)))
 }
@@ -47,8 +43,8 @@ pub(super) fn sqrt(x: DoubleDouble) -> DoubleDouble {
 
 pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let quarters = (x.hi() / HALF_PI[0]).round();
-    if !(quarters.abs() < TURNS) {
-        return (nan(), nan());
+    if quarters.is_nan() || quarters.abs() >= TURNS {
+        return (number(f64::NAN), number(f64::NAN));
     }
     let r = reduced(x, quarters, HALF_PI);
     let (sine, cosine) = near_zero(r);
@@ -60,7 +56,7 @@ pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     }
 }
 
-/// Reciprocals of the factorials 2! … 28!, and the series of sine and cosine for |r| ≤ π/4: the first term left out is under 1e-34.
+/// Sine and cosine by their series for |r| ≤ π/4: the first term left out is under 1e-34.
 fn near_zero(r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let minus_square = -(r * r);
     let odd = INVERSE_FACTORIALS.iter().skip(1).step_by(2);
@@ -73,7 +69,7 @@ fn near_zero(r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
 
 pub(super) fn exp(x: DoubleDouble) -> DoubleDouble {
     let high = x.hi();
-    if !(high.abs() < 745.0) {
+    if high.is_nan() || high.abs() >= 745.0 {
         return number(high.exp());
     }
     let doublings = (high / LN_2[0]).round();
@@ -97,7 +93,7 @@ pub(super) fn log(x: DoubleDouble) -> DoubleDouble {
 
 /// `log(1 + d) = 2 artanh(d/(2 + d))`, for |d| < 1/4 by its series.
 fn log_of_one_plus(d: DoubleDouble) -> DoubleDouble {
-    if !(d.hi().abs() < 0.25) {
+    if d.hi().is_nan() || d.hi().abs() >= 0.25 {
         return log(ONE + d);
     }
     let s = d / (number(2.0) + d);
@@ -134,9 +130,8 @@ pub(super) fn leg(x: DoubleDouble) -> DoubleDouble {
 
 /// The angle of the point `(x, y)`: that in `f64`, turned by what it misses.
 pub(super) fn atan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
-    let (unit_y, unit_x) = (y.hi(), x.hi());
-    let rough = unit_y.atan2(unit_x);
-    if (unit_y == 0.0 && unit_x == 0.0) || !rough.is_finite() {
+    let rough = y.hi().atan2(x.hi());
+    if (y.hi() == 0.0 && x.hi() == 0.0) || !rough.is_finite() {
         return number(rough);
     }
     let angle = number(rough);
