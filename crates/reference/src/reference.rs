@@ -13,7 +13,7 @@ use crate::{DoubleDouble, ReferenceError, Wide, extrapolation};
 pub struct Question<'a> {
     /// The system.
     pub system: &'a System,
-    /// `(t₀, q₀, v₀)`, taken as exact; see [`reference`] for what becomes of `v₀`.
+    /// `(t₀, q₀, v₀)`, taken as exact; see [`reference()`] for what becomes of `v₀`.
     pub start: &'a State,
     /// The equations of motion.
     pub equations: &'a Equations,
@@ -163,10 +163,10 @@ pub fn reference(question: &Question, times: &[f64], accuracy: f64) -> Result<Re
     reference_in(question, times, accuracy)
 }
 
-/// [`reference`] in any wide type.
+/// [`reference()`] in any wide type.
 ///
 /// # Errors
-/// As [`reference`].
+/// As [`reference()`].
 pub fn reference_in<T: Wide>(
     question: &Question,
     times: &[f64],
