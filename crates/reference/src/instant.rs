@@ -1,0 +1,210 @@
+//! Equations of motion in any wide type: `ẏ = F(t, y, z)` with `R(z; t, y) = 0`.
+
+use mechanics::Equations;
+use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+
+use crate::linear::Factors;
+use crate::{ReferenceError, Wide};
+
+/// Newton steps allowed for one instant, and the relative step after which one more step leaves round-off only.
+const STEPS: usize = 30;
+const SMALL: f64 = 1e-18;
+
+const INSTANT: &str = "equations of the instant";
+
+/// A tape with its registers and outputs.
+pub(crate) struct Program<T> {
+    pub(crate) tape: Tape,
+    registers: Workspace<T>,
+    pub(crate) values: Vec<T>,
+}
+
+impl<T: Wide> Program<T> {
+    pub(crate) fn new(tape: Tape) -> Self {
+        Program { registers: tape.workspace(), values: vec![T::zero(); tape.outputs()], tape }
+    }
+
+    pub(crate) fn run(&mut self, inputs: &[T]) -> &[T] {
+        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
+        &self.values
+    }
+}
+
+/// Where the numbers of a motion stand among the inputs of its tapes: `t, y, z`, free constants, parameters.
+///
+/// Parameters are inputs and not folded into the tapes: folding rounds them, and their products, as decimal fractions or to `f64`.
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    pub(crate) symbols: Vec<Symbol>,
+    pub(crate) states: usize,
+    pub(crate) unknowns: usize,
+    /// Values of the free constants and the parameters.
+    pub(crate) fixed: Vec<f64>,
+}
+
+impl Layout {
+    fn new(equations: &Equations, constants: &[f64]) -> Self {
+        let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
+        let sizes = (states.len(), unknowns.len());
+        let (names, values) = parameters(equations);
+        let symbols = [vec![equations.time], states, unknowns, equations.constant_symbols(), names].concat();
+        Layout { symbols, states: sizes.0, unknowns: sizes.1, fixed: [constants, &values].concat() }
+    }
+
+    pub(crate) fn compile(&self, equations: &Equations, outputs: &[Expr]) -> Result<Tape, CompileError> {
+        equations.graph.compile(&self.symbols, outputs, &Default::default())
+    }
+
+    fn first_unknown(&self) -> usize {
+        1 + self.states
+    }
+}
+
+/// Parameters and their values in the order of the symbols.
+pub(crate) fn parameters(equations: &Equations) -> (Vec<Symbol>, Vec<f64>) {
+    let mut ordered: Vec<(Symbol, f64)> = equations.parameters.iter().map(|(&s, &x)| (s, x)).collect();
+    ordered.sort_by_key(|(s, _)| *s);
+    ordered.into_iter().unzip()
+}
+
+/// One block: its matrix `∂R/∂z` row-major and `R`.
+struct WideBlock<T> {
+    first: usize,
+    size: usize,
+    linear: bool,
+    program: Program<T>,
+}
+
+/// What is read off a motion at one time, in a wide type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point<T> {
+    /// `q`.
+    pub coordinates: Vec<T>,
+    /// `q̇`.
+    pub velocities: Vec<T>,
+    /// Multipliers or costates.
+    pub multipliers: Vec<T>,
+    /// The states `y` of the equations.
+    pub states: Vec<T>,
+}
+
+/// Compiled equations of motion.
+pub(crate) struct Instant<T> {
+    pub(crate) layout: Layout,
+    blocks: Vec<WideBlock<T>>,
+    rates: Program<T>,
+    outputs: Program<T>,
+    dimension: usize,
+    inputs: Vec<T>,
+}
+
+impl<T: Wide> Instant<T> {
+    pub(crate) fn new(equations: &Equations, constants: &[f64]) -> Result<Self, ReferenceError> {
+        let g = &equations.graph;
+        let layout = Layout::new(equations, constants);
+        let mut blocks = Vec::new();
+        let mut first = 0;
+        for block in &equations.blocks {
+            let matrix = g.jacobian(&block.residuals, &block.unknowns);
+            let linear = !matrix.entries().iter().any(|&e| block.unknowns.iter().any(|&z| g.depends_on(e, z)));
+            let outputs = [matrix.entries(), &block.residuals].concat();
+            let program = Program::new(layout.compile(equations, &outputs)?);
+            blocks.push(WideBlock { first, size: block.unknowns.len(), linear, program });
+            first += block.unknowns.len();
+        }
+        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
+        let multipliers: Vec<Expr> = equations.multipliers.iter().map(|m| m.expression).collect();
+        let outputs = [&equations.coordinates[..], &equations.velocities, &multipliers].concat();
+        let mut inputs = vec![T::zero(); layout.symbols.len()];
+        let fixed = inputs.len() - layout.fixed.len();
+        for (input, &x) in inputs[fixed..].iter_mut().zip(&layout.fixed) {
+            *input = T::from_f64(x);
+        }
+        Ok(Instant {
+            rates: Program::new(layout.compile(equations, &rates)?),
+            outputs: Program::new(layout.compile(equations, &outputs)?),
+            dimension: equations.coordinates.len(),
+            layout,
+            blocks,
+            inputs,
+        })
+    }
+
+    /// Sets the point from which the unknowns are solved next.
+    pub(crate) fn set_guess(&mut self, unknowns: &[T]) {
+        let first = self.layout.first_unknown();
+        self.inputs[first..first + unknowns.len()].copy_from_slice(unknowns);
+    }
+
+    /// `z` as solved last.
+    pub(crate) fn unknowns(&self) -> &[T] {
+        let first = self.layout.first_unknown();
+        &self.inputs[first..first + self.layout.unknowns]
+    }
+
+    /// Solves the equations of the instant, from the last solution, and returns the factors of each block at its solution.
+    pub(crate) fn solve(&mut self, t: T, y: &[T]) -> Result<Vec<Factors<T>>, ReferenceError> {
+        self.inputs[0] = t;
+        self.inputs[1..1 + y.len()].copy_from_slice(y);
+        let z = self.layout.first_unknown();
+        let mut solved = Vec::with_capacity(self.blocks.len());
+        for block in &mut self.blocks {
+            let place = z + block.first..z + block.first + block.size;
+            // a step from a point that is not finite would never come back
+            if !self.inputs[place.clone()].iter().all(|x| x.is_finite()) {
+                self.inputs[place.clone()].fill(T::zero());
+            }
+            let mut last = false;
+            for step in 0.. {
+                let values = block.program.run(&self.inputs);
+                let (matrix, residual) = values.split_at(block.size * block.size);
+                let factors = Factors::new(matrix, block.size).map_err(|singular| ReferenceError::Singular {
+                    what: INSTANT,
+                    time: t.to_f64(),
+                    pivot: singular.pivot,
+                })?;
+                let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
+                for (x, dx) in self.inputs[place.clone()].iter_mut().zip(factors.solve(residual)) {
+                    *x = *x - dx;
+                    length = length.max(dx.size());
+                    size = size.max(x.size());
+                }
+                if block.linear || last {
+                    solved.push(factors);
+                    break;
+                }
+                let relative = length / size;
+                last = relative < SMALL;
+                if !relative.is_finite() || step > STEPS {
+                    return Err(ReferenceError::NotConverged {
+                        what: INSTANT,
+                        time: t.to_f64(),
+                        step: relative,
+                        limit: SMALL,
+                    });
+                }
+            }
+        }
+        Ok(solved)
+    }
+
+    /// `F(t, y)`.
+    pub(crate) fn rates(&mut self, t: T, y: &[T], rates: &mut [T]) -> Result<(), ReferenceError> {
+        self.solve(t, y)?;
+        rates.copy_from_slice(self.rates.run(&self.inputs));
+        Ok(())
+    }
+
+    /// What is read off at `(t, y)`.
+    pub(crate) fn point(&mut self, t: T, y: &[T]) -> Result<Point<T>, ReferenceError> {
+        self.solve(t, y)?;
+        let n = self.dimension;
+        let values = self.outputs.run(&self.inputs);
+        Ok(Point {
+            coordinates: values[..n].to_vec(),
+            velocities: values[n..2 * n].to_vec(),
+            multipliers: values[2 * n..].to_vec(),
+            states: y.to_vec(),
+        })
+    }
+}

@@ -1,0 +1,298 @@
+//! A motion computed by two methods, each at two tolerances.
+
+use mechanics::{Equations, State, System};
+
+use crate::instant::{Instant, Point};
+use crate::metric::Metric;
+use crate::start::{Start, start};
+use crate::taylor::Taylor;
+use crate::{DoubleDouble, ReferenceError, Wide, extrapolation};
+
+/// The motion that is asked for.
+#[derive(Clone, Copy)]
+pub struct Question<'a> {
+    /// The system.
+    pub system: &'a System,
+    /// `(t₀, q₀, v₀)`, taken as exact; see [`reference()`] for what becomes of `v₀`.
+    pub start: &'a State,
+    /// The equations of motion.
+    pub equations: &'a Equations,
+    /// Values of the free constants, taken as exact.
+    pub constants: &'a [f64],
+}
+
+/// How far two runs are apart at one time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Distance {
+    /// `√|Δqᵀ M Δq|`, the kinetic metric.
+    pub positions: f64,
+    /// `√|Δq̇ᵀ M Δq̇|`.
+    pub velocities: f64,
+    /// Largest difference of a multiplier or costate.
+    pub multipliers: f64,
+}
+
+impl Distance {
+    fn max(self, other: Distance) -> Distance {
+        Distance {
+            positions: self.positions.max(other.positions),
+            velocities: self.velocities.max(other.velocities),
+            multipliers: self.multipliers.max(other.multipliers),
+        }
+    }
+}
+
+/// Largest distances between the runs behind a reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Agreement {
+    /// Extrapolation and Taylor series, both at the tighter tolerance.
+    pub methods: Distance,
+    /// Extrapolation at two tolerances.
+    pub extrapolation: Distance,
+    /// Taylor series at two tolerances.
+    pub taylor: Distance,
+    /// The tighter tolerance; the other one is 100 times that.
+    pub tolerance: f64,
+}
+
+/// A motion at some times, with a known error.
+#[derive(Clone, Debug)]
+pub struct Reference<T = DoubleDouble> {
+    /// Times, in order.
+    pub times: Vec<f64>,
+    /// The motion there, by the Taylor series at the tighter tolerance.
+    pub points: Vec<Point<T>>,
+    /// What of it is in doubt at each time: the distance from the other method or from the looser tolerance, whichever is larger.
+    pub errors: Vec<Distance>,
+    /// The largest distances behind that.
+    pub agreement: Agreement,
+    /// Largest `|fᵢ|` at the points: no run is projected onto the constraint.
+    pub constraint_residual: f64,
+    /// Largest distance of a point from the first one, kinetic metric.
+    pub scale: f64,
+    metric: Vec<Vec<f64>>,
+}
+
+impl<T: Wide> Reference<T> {
+    /// Largest of [`Reference::errors`] in the positions, kinetic metric.
+    pub fn error(&self) -> f64 {
+        self.errors.iter().fold(0.0, |worst, e| worst.max(e.positions))
+    }
+
+    /// `√|Δqᵀ M Δq|` between the coordinates `q` and the reference at the time of index `i`, with `M` there: the error of a run that claims `q`. The
+    /// difference is taken in the wide type.
+    ///
+    /// # Panics
+    /// If there is no such time, or `q` has another length than the coordinates.
+    pub fn distance(&self, i: usize, q: &[f64]) -> f64 {
+        let right = &self.points[i].coordinates;
+        assert_eq!(q.len(), right.len(), "coordinates");
+        let difference: Vec<f64> = q.iter().zip(right).map(|(&x, &r)| (T::from_f64(x) - r).to_f64()).collect();
+        crate::metric::length(&self.metric[i], &difference)
+    }
+
+    /// Largest distance `√|Δqᵀ M Δq|` from another reference at the same times, for example of the same motion in another form.
+    ///
+    /// # Panics
+    /// If the times differ.
+    pub fn gap(&self, other: &Self) -> f64 {
+        assert_eq!(self.times, other.times, "times");
+        let at = |i: usize| {
+            let (a, b) = (&self.points[i].coordinates, &other.points[i].coordinates);
+            let difference: Vec<f64> = a.iter().zip(b).map(|(&a, &b)| (a - b).to_f64()).collect();
+            crate::metric::length(&self.metric[i], &difference)
+        };
+        (0..self.times.len()).map(at).fold(0.0, f64::max)
+    }
+}
+
+/// Tolerance of the first pair of runs over the accuracy that is asked for, and of the second pair over that of the first.
+const FIRST: f64 = 1e-5;
+const TIGHTER: f64 = 1e-2;
+
+/// The tightest tolerance over the spacing of the numbers.
+const ROUND_OFF: f64 = 8.0;
+
+/// How often a tighter pair is tried.
+const TRIES: usize = 3;
+
+/// The motion at `times` with an error of at most `accuracy` (kinetic metric) in double-double arithmetic.
+///
+/// Two methods compute it, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes and a linear solve per evaluation, and a Taylor
+/// series of the traced residuals. They share the start, the tapes, the solution of a single instant
+/// and the number type; how they go from one time to the next they do not share. [`Reference::errors`] is how far the kept
+/// run, the Taylor series at the tighter tolerance, is from the other method and from itself at the looser tolerance. While that is over
+/// `accuracy`, tolerances become tighter, three times at most.
+///
+/// Times, parameters, constants and `q₀` are the given `f64`, exactly (0.4 is not 2/5), as they are for a run in `f64`. The velocity at the start is the one
+/// with `f = 0` nearest to `v₀` in the kinetic metric, to the last digit of the wide type: what the projection of a run in `f64` would give
+/// without rounding. How a run rounds its own start is part of its error.
+///
+/// ```
+/// use mechanics::State;
+/// use reference::{Question, reference};
+/// use symbolic::Graph;
+/// // x'' = −x from x = 1 is the cosine
+/// let graph = Graph::new();
+/// let mut system = mechanics::System::new(graph, &[("x", "m")]);
+/// let g = system.graph.clone();
+/// let (x, v) = (system.coordinates[0].position, system.coordinates[0].velocity);
+/// let square = |s| g.mul(g.ratio(1, 2), g.powi(g.variable(s), 2));
+/// system.lagrangian = g.sub(square(v), square(x));
+/// let mut equations = mechanics::Equations::new("by hand", &system);
+/// equations.add_positions_and_velocities(&system);
+/// equations.states[1].rate = g.neg(g.variable(x));
+/// equations.coordinates = vec![g.variable(x)];
+/// equations.velocities = vec![g.variable(v)];
+/// equations.graph = g.clone();
+/// system.graph = g;
+///
+/// let start = State { t: 0.0, q: vec![1.0], v: vec![0.0] };
+/// let question = Question { system: &system, start: &start, equations: &equations, constants: &[] };
+/// let motion = reference(&question, &[1.0, 2.0], 1e-20)?;
+/// use symbolic::Scalar;
+/// let right = reference::DoubleDouble::from_f64(2.0).cos();
+/// assert!(motion.error() < 1e-20);
+/// assert!(reference::Wide::size(motion.points[1].coordinates[0] - right) < 1e-25);
+/// assert!(motion.distance(1, &[2.0_f64.cos()]) < 1e-16);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`ReferenceError`]; [`ReferenceError::NotReached`] where the number type or the methods do not give the accuracy.
+pub fn reference(question: &Question, times: &[f64], accuracy: f64) -> Result<Reference, ReferenceError> {
+    reference_in(question, times, accuracy)
+}
+
+/// [`reference()`] in any wide type.
+///
+/// # Errors
+/// As [`reference()`].
+pub fn reference_in<T: Wide>(
+    question: &Question,
+    times: &[f64],
+    accuracy: f64,
+) -> Result<Reference<T>, ReferenceError> {
+    let runs = Runs::new(question, times)?;
+    let tightest = ROUND_OFF * T::EPSILON;
+    let mut tolerance = (accuracy * FIRST).max(tightest / TIGHTER);
+    let mut looser = runs.pair(tolerance)?;
+    let (mut error, mut next) = (f64::INFINITY, TIGHTER);
+    for _ in 0..TRIES {
+        tolerance = (tolerance * next).max(tightest);
+        let tighter = runs.pair(tolerance)?;
+        let found = runs.compared(&looser, &tighter, tolerance)?;
+        if found.error() <= accuracy {
+            return Ok(found);
+        }
+        error = error.min(found.error());
+        if tolerance == tightest {
+            break;
+        }
+        // errors go with the tolerance
+        next = (0.1 * accuracy / found.error()).clamp(1e-4, 0.1);
+        looser = tighter;
+    }
+    Err(ReferenceError::NotReached { error, accuracy, epsilon: T::EPSILON })
+}
+
+/// One run of each method.
+struct Pair<T> {
+    taylor: Vec<Point<T>>,
+    extrapolation: Vec<Point<T>>,
+}
+
+/// What all runs share.
+struct Runs<'a, T> {
+    question: &'a Question<'a>,
+    times: &'a [f64],
+    start: Start<T>,
+}
+
+impl<'a, T: Wide> Runs<'a, T> {
+    fn new(question: &'a Question, times: &'a [f64]) -> Result<Self, ReferenceError> {
+        let Question { system, start: state, equations, constants } = *question;
+        let (found, expected) = (constants.len(), equations.free_constants.len());
+        if found != expected {
+            return Err(ReferenceError::Constants { found, expected });
+        }
+        let mut before = state.t;
+        for &time in times {
+            if !(time >= before && time.is_finite()) {
+                return Err(ReferenceError::Times { time, start: state.t });
+            }
+            before = time;
+        }
+        Ok(Runs { start: start(system, state, equations, constants)?, question, times })
+    }
+
+    /// The equations, ready at the start.
+    fn instant(&self) -> Result<Instant<T>, ReferenceError> {
+        let mut instant = Instant::new(self.question.equations, self.question.constants)?;
+        instant.set_guess(&self.start.guess);
+        Ok(instant)
+    }
+
+    fn extrapolation(&self, tolerance: f64) -> Result<Vec<Point<T>>, ReferenceError> {
+        let mut points = Vec::with_capacity(self.times.len());
+        let start = (self.question.start.t, &self.start.states[..]);
+        extrapolation::integrate(&mut self.instant()?, start, self.times, tolerance, |instant, t, y| {
+            points.push(instant.point(T::from_f64(t), y)?);
+            Ok(())
+        })?;
+        Ok(points)
+    }
+
+    fn taylor(&self, tolerance: f64) -> Result<Vec<Point<T>>, ReferenceError> {
+        let mut points = Vec::with_capacity(self.times.len());
+        let mut instant = self.instant()?;
+        let mut taylor = Taylor::new(self.question.equations, &instant, tolerance)?;
+        let start = (self.question.start.t, &self.start.states[..]);
+        taylor.integrate(&mut instant, start, self.times, |instant, t, y| {
+            points.push(instant.point(T::from_f64(t), y)?);
+            Ok(())
+        })?;
+        Ok(points)
+    }
+
+    /// Both methods at one tolerance.
+    fn pair(&self, tolerance: f64) -> Result<Pair<T>, ReferenceError> {
+        Ok(Pair { taylor: self.taylor(tolerance)?, extrapolation: self.extrapolation(tolerance)? })
+    }
+
+    /// The tighter pair of runs, compared with each other and with the looser pair.
+    fn compared(&self, looser: &Pair<T>, tighter: &Pair<T>, tolerance: f64) -> Result<Reference<T>, ReferenceError> {
+        let points = &tighter.taylor;
+        let mut metric: Metric<T> = Metric::new(self.question.system)?;
+        let mut agreement = Agreement {
+            methods: Distance::default(),
+            extrapolation: Distance::default(),
+            taylor: Distance::default(),
+            tolerance,
+        };
+        let (mut errors, mut masses) = (Vec::new(), Vec::new());
+        let (mut constraint_residual, mut scale) = (0.0_f64, 0.0_f64);
+        for (i, point) in points.iter().enumerate() {
+            metric.load(T::from_f64(self.times[i]), point);
+            constraint_residual = constraint_residual.max(metric.constraint_residual());
+            scale = scale.max(metric.length(&point.coordinates, &points[0].coordinates));
+            let methods = metric.distance(point, &tighter.extrapolation[i]);
+            let taylor = metric.distance(point, &looser.taylor[i]);
+            let extrapolation = metric.distance(&tighter.extrapolation[i], &looser.extrapolation[i]);
+            agreement.methods = agreement.methods.max(methods);
+            agreement.taylor = agreement.taylor.max(taylor);
+            agreement.extrapolation = agreement.extrapolation.max(extrapolation);
+            errors.push(methods.max(taylor));
+            masses.push(metric.mass());
+        }
+        Ok(Reference {
+            times: self.times.to_vec(),
+            points: points.clone(),
+            errors,
+            agreement,
+            constraint_residual,
+            scale,
+            metric: masses,
+        })
+    }
+}

@@ -1,0 +1,148 @@
+//! Accuracy of double-double arithmetic, measured against correctly rounded numbers of 300 bits.
+
+use dashu_float::FBig;
+use dashu_float::round::mode::HalfEven;
+use reference::DoubleDouble;
+use symbolic::Scalar;
+use twofloat::TwoFloat;
+
+type Exact = FBig<HalfEven, 2>;
+
+const BITS: usize = 300;
+
+fn exact(x: f64) -> Exact {
+    Exact::try_from(x).unwrap().with_precision(BITS).value()
+}
+
+fn value(x: DoubleDouble) -> Exact {
+    let (high, low) = x.parts();
+    exact(high) + exact(low)
+}
+
+/// Random numbers with 106 bits, a pure function of the count.
+struct Numbers(u64);
+
+impl Numbers {
+    fn unit(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Between the bounds, on a logarithmic scale where they have one sign.
+    fn between(&mut self, low: f64, high: f64) -> DoubleDouble {
+        let unit = self.unit();
+        let x = if low > 0.0 { low * (high / low).powf(unit) } else { low + (high - low) * unit };
+        DoubleDouble::sum(x, x * f64::EPSILON * (self.unit() - 0.5))
+    }
+}
+
+/// Largest relative error of `ours` against `theirs` over 300 pairs.
+fn worst(
+    ranges: [(f64, f64); 2],
+    ours: impl Fn(DoubleDouble, DoubleDouble) -> DoubleDouble,
+    theirs: impl Fn(&Exact, &Exact) -> Exact,
+) -> f64 {
+    let mut numbers = Numbers(0x9E37_79B9_7F4A_7C15);
+    let mut worst = 0.0_f64;
+    for _ in 0..300 {
+        let [a, b] = ranges.map(|(low, high)| numbers.between(low, high));
+        let right = theirs(&value(a), &value(b));
+        let difference = value(ours(a, b)) - &right;
+        let relative = (difference.to_f64().value() / right.to_f64().value()).abs();
+        worst = worst.max(relative);
+        assert!(relative.is_finite(), "{a:?} {b:?} {:?}", ours(a, b));
+    }
+    worst
+}
+
+#[test]
+fn arithmetic_has_107_bits() {
+    let wide = [(1e-6, 1e6), (1e-6, 1e6)];
+    let check = |name: &str, error: f64, limit: f64| {
+        println!("{name:<12} relative error {error:.1e}");
+        assert!(error < limit, "{name}: {error:.2e}");
+    };
+    check("a + b", worst(wide, |a, b| a + b, |a, b| a + b), 4e-32);
+    check("a - b", worst([(0.5, 2.0), (0.5, 2.0)], |a, b| a - b, |a, b| a - b), 4e-32);
+    check("a * b", worst(wide, |a, b| a * b, |a, b| a * b), 6.2e-32);
+    check("a / b", worst(wide, |a, b| a / b, |a, b| a / b), 8e-32);
+    check("sqrt", worst(wide, |a, _| a.sqrt(), |a, _| a.sqrt()), 8e-32);
+    let ratio = DoubleDouble::from_ratio(981, 100);
+    assert!((value(ratio) * exact(100.0) - exact(981.0)).to_f64().value().abs() < 1e-28);
+    let large = i64::MAX - 1;
+    let (high, low) = DoubleDouble::from_ratio(large, 1).parts();
+    assert_eq!(high as i128 + low as i128, i128::from(large));
+}
+
+#[test]
+fn functions_have_100_bits() {
+    let one = (1.0, 1.0);
+    type Ours = fn(DoubleDouble) -> DoubleDouble;
+    type Theirs = fn(&Exact) -> Exact;
+    let cases: [(&str, (f64, f64), Ours, Theirs); 25] = [
+        ("sin", (-0.8, 0.8), |x| x.sin(), |x| x.sin()),
+        ("sin", (1e-3, 3.0), |x| x.sin(), |x| x.sin()),
+        ("sin", (-1e3, 1e3), |x| x.sin(), |x| x.sin()),
+        ("cos", (-1e3, 1e3), |x| x.cos(), |x| x.cos()),
+        ("sin", (1e3, 1e9), |x| x.sin(), |x| x.sin()),
+        ("tan", (-100.0, 100.0), |x| x.tan(), |x| x.tan()),
+        ("exp", (-1.0, 1.0), |x| x.exp(), |x| x.exp()),
+        ("exp", (-300.0, 300.0), |x| x.exp(), |x| x.exp()),
+        ("log", (1e-10, 1e10), |x| x.log(), |x| x.ln()),
+        ("log", (0.85, 1.15), |x| x.log(), |x| x.ln()),
+        ("sinh", (-0.5, 0.5), |x| x.sinh(), |x| x.sinh()),
+        ("sinh", (-30.0, 30.0), |x| x.sinh(), |x| x.sinh()),
+        ("cosh", (-30.0, 30.0), |x| x.cosh(), |x| x.cosh()),
+        ("tanh", (-3.0, 3.0), |x| x.tanh(), |x| x.tanh()),
+        ("tanh", (1e-5, 60.0), |x| x.tanh(), |x| x.tanh()),
+        ("asin", (-0.999, 0.999), |x| x.asin(), |x| x.asin()),
+        ("acos", (-0.999, 0.9), |x| x.acos(), |x| x.acos()),
+        ("atan", (1e-6, 1e6), |x| x.atan(), |x| x.atan()),
+        ("atan", (-2.0, 2.0), |x| x.atan(), |x| x.atan()),
+        ("asinh", (1e-6, 1e6), |x| x.asinh(), |x| x.asinh()),
+        ("asinh", (-1.0, 1.0), |x| x.asinh(), |x| x.asinh()),
+        ("acosh", (1.0001, 1e6), |x| x.acosh(), |x| x.acosh()),
+        ("atanh", (-0.99, 0.99), |x| x.atanh(), |x| x.atanh()),
+        ("atanh", (1e-8, 0.1), |x| x.atanh(), |x| x.atanh()),
+        ("sqrt", (1e-200, 1e-150), |x| x.sqrt(), |x| x.sqrt()),
+    ];
+    for (name, range, ours, theirs) in cases {
+        let error = worst([range, one], |x, _| ours(x), |x, _| theirs(x));
+        println!("{name:<6} on {range:?}: relative error {error:.1e}");
+        assert!(error < 8e-31, "{name} on {range:?}: {error:.2e}");
+    }
+    // the logarithm of the base times the exponent is what rounding acts on
+    let error = worst([(0.1, 10.0), (-3.0, 3.0)], |x, y| x.powf(y), |x, y| x.powf(y));
+    println!("powf: relative error {error:.1e}");
+    assert!(error < 2e-30, "powf: {error:.2e}");
+    let error = worst([(-3.0, 3.0), (-3.0, 3.0)], |y, x| y.atan2(x), |y, x| y.atan2(x));
+    println!("atan2: relative error {error:.1e}");
+    assert!(error < 8e-31, "atan2: {error:.2e}");
+}
+
+#[test]
+fn integer_powers_keep_the_sign_of_the_base() {
+    let minus_two = DoubleDouble::from_f64(-2.0);
+    assert_eq!(minus_two.powf(DoubleDouble::from_f64(3.0)).parts(), (-8.0, 0.0));
+    assert_eq!(minus_two.powf(DoubleDouble::from_f64(-2.0)).parts(), (0.25, 0.0));
+    assert!(minus_two.powf(DoubleDouble::from_f64(0.5)).parts().0.is_nan());
+    assert!(minus_two.log().parts().0.is_nan() && minus_two.sqrt().parts().0.is_nan());
+    assert!(DoubleDouble::from_f64(2.0).asin().parts().0.is_nan());
+}
+
+/// Why the quotient and the functions are our own: what the crate's lose. If this fails, the crate has become better.
+#[test]
+fn quotient_and_functions_of_the_crate_are_not_accurate_enough() {
+    let of = |x: DoubleDouble| TwoFloat::new_add(x.parts().0, x.parts().1);
+    let back = |x: TwoFloat| DoubleDouble::sum(x.hi(), x.lo());
+    let wide = [(1e-6, 1e6), (1e-6, 1e6)];
+    let quotient = worst(wide, |a, b| back(of(a) / of(b)), |a, b| a / b);
+    let sine = worst([(-0.8, 0.8), (1.0, 1.0)], |x, _| back(of(x).sin()), |x, _| x.sin());
+    let exponential = worst([(-1.0, 1.0), (1.0, 1.0)], |x, _| back(of(x).exp()), |x, _| x.exp());
+    let logarithm = worst([(0.1, 10.0), (1.0, 1.0)], |x, _| back(of(x).ln()), |x, _| x.ln());
+    let root = worst(wide, |a, _| back(of(a).sqrt()), |a, _| a.sqrt());
+    println!("twofloat: / {quotient:.1e}, sin {sine:.1e}, exp {exponential:.1e}, ln {logarithm:.1e}, sqrt {root:.1e}");
+    assert!(quotient.max(sine).max(exponential) > 1e-30);
+}
