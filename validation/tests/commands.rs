@@ -187,7 +187,7 @@ fn equal_steps_keep_the_constraint_and_have_their_order() {
         for i in 0..2 {
             let phi = column(&value, "coordinates", "phi")[i];
             let [vx, vy] = ["x", "y"].map(|name| column(&value, "velocities", name)[i]);
-            assert!((vy * phi.cos() - vx * phi.sin()).abs() < 4e-15, "order {order}");
+            assert!((vy * phi.cos() - vx * phi.sin()).abs() < 4e-14, "order {order}");
         }
     }
     for formulation in ["vakonomic", "vakonomic-costate", "removed-constraint"] {

@@ -35,7 +35,7 @@
 //!   and so all equations stay as they are, `Φ_{−h} Φ_h = 1`. So the error is a power series in `h²`, and on integrable reversible motions the
 //!   energy error stays bounded. On others it may wander: a nonholonomic flow is not symplectic, and no step makes it so.
 //! - Vakonomic and removed: `Φ_h` is the implicit midpoint rule in `(x, p)`, hence symplectic; `p` of a cyclic coordinate is constant to
-//!   round-off. Chetaev: so is the momentum of a symmetry of `L` and `Q` whose direction the constraint allows for, where it is constant in `q`.
+//!   round-off.
 //!
 //! # Order
 //! 2, and 4, 6, 8 by [`Composition`] of steps, some of them back in time; or by Richardson's extrapolation over halvings of `h`, which gains two

@@ -44,8 +44,8 @@ fn chetaev_sledge_swings_for_ever() {
 }
 
 #[test]
-fn chetaev_without_curvature_keeps_its_energy_at_order_four() {
-    // the pendulum whose length is fixed by a constraint on velocities
+fn chetaev_keeps_its_energy_at_order_four() {
+    // an integrable constraint: the particle swings in a bowl
     let scene = scene("bowl");
     let discrete = Discrete::chetaev(&scene.system, &scene.start, 0.02 * MILLION as f64).unwrap();
     let drift = discrete.composed(Composition::Fourth).drift(MILLION, PARTS).unwrap();
@@ -63,7 +63,7 @@ fn vakonomic_steps_neither_gain_nor_lose_energy() {
 
 #[test]
 fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
-    // at order 8 nothing else is left: vakonomic circles, 2.7 turns in 1000 steps, and what a removal makes of them
+    // at order 8 nothing else is left: vakonomic circles, 2.5 turns in 1000 steps, and what a removal makes of them
     let scene = scene("heisenberg");
     let end = 0.02 * MILLION as f64;
     let circles = Discrete::vakonomic(&scene.system, &scene.start, &[0.8], end).unwrap();
@@ -78,7 +78,7 @@ fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
 
 #[test]
 fn a_motion_that_does_not_return_lets_the_energy_of_order_two_go() {
-    // no method is at fault: the trailer is not reversible onto itself, and its nonholonomic flow keeps no symplectic form
+    // what is kept elsewhere needs a reversible motion that is integrable, or a symplectic form; this one has neither, as measured
     let scene = scene("trailer");
     let discrete = Discrete::chetaev(&scene.system, &scene.start, 0.01 * 100_000.0).unwrap();
     let drift = discrete.drift(100_000, PARTS).unwrap();

@@ -74,8 +74,7 @@ mod events;
 mod options;
 mod problem;
 mod radau5;
-#[cfg(test)]
-mod radau5_tests;
+mod radau5_tableau;
 mod root;
 mod status;
 mod stepper;

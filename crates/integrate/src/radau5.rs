@@ -13,26 +13,10 @@ use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
 use crate::options::Options;
 use crate::problem::Start;
+use crate::radau5_tableau::{ERROR, NODES, T, T_INVERSE, eigenvalues};
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, shortest_step};
 use crate::system::{Failure, System, check_finite};
-
-/// √6
-const ROOT_6: f64 = 2.449_489_742_783_178;
-const NODES: [f64; 3] = [(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.0, 1.0];
-/// The error estimate, `h⁻¹ Σ e_i z_i + F`, is solved with the real factors.
-const ERROR: [f64; 3] = [-(13.0 + 7.0 * ROOT_6) / 3.0, (-13.0 + 7.0 * ROOT_6) / 3.0, -1.0 / 3.0];
-/// `A⁻¹ = T diag(γ, [α −β; β α]) T⁻¹`.
-pub(crate) const T: [[f64; 3]; 3] = [
-    [9.123_239_487_089_295e-2, -0.141_255_295_020_954_2, -3.002_919_410_514_742_4e-2],
-    [0.241_717_932_707_107_02, 0.204_129_352_293_799_93, 0.382_942_112_757_261_94],
-    [0.966_048_182_615_092_9, 1.0, 0.0],
-];
-pub(crate) const T_INVERSE: [[f64; 3]; 3] = [
-    [4.325_579_890_063_155, 0.339_199_251_815_809_87, 0.541_770_539_935_874_9],
-    [-4.178_718_591_551_905, -0.327_682_820_761_062_4, 0.476_623_554_500_550_45],
-    [-0.502_872_634_945_786_9, 2.571_926_949_855_605_4, -0.596_039_204_828_224_9],
-];
 
 /// Below this the error estimate measures round-off.
 const TIGHTEST: f64 = 1e-14;
@@ -48,14 +32,6 @@ const ITERATIONS: usize = 7;
 const GOOD_CONTRACTION: f64 = 1e-3;
 /// The step is kept, and the factors with it, if the new one would be up to so many times as long.
 const SAME_STEP: f64 = 1.2;
-
-/// `γ`, `α`, `β`: the eigenvalues of `A⁻¹` are `γ` and `α ± iβ`.
-pub(crate) fn eigenvalues() -> [f64; 3] {
-    let (a, b) = (81.0_f64.cbrt(), 9.0_f64.cbrt());
-    let (alpha, beta) = ((12.0 - a + b) / 60.0, (a + b) * 3.0_f64.sqrt() / 60.0);
-    let size = alpha * alpha + beta * beta;
-    [30.0 / (6.0 + a - b), alpha / size, beta / size]
-}
 
 struct Factors {
     step: f64,
@@ -388,12 +364,13 @@ impl Stepper for Radau5<'_, '_> {
         let n = self.y.len();
         let [a, b, _] = NODES;
         let (_, parts) = self.last.get_or_insert_with(|| (0.0, [vec![0.0; n], vec![0.0; n], vec![0.0; n]]));
+        let [one, two, three] = parts;
         for i in 0..n {
             let [z1, z2, z3] = [self.z[0][i], self.z[1][i], self.z[2][i]];
-            parts[0][i] = (z2 - z3) / (b - 1.0);
+            one[i] = (z2 - z3) / (b - 1.0);
             let slope = (z1 - z2) / (a - b);
-            parts[1][i] = (slope - parts[0][i]) / (a - 1.0);
-            parts[2][i] = parts[1][i] - (slope - z1 / a) / b;
+            two[i] = (slope - one[i]) / (a - 1.0);
+            three[i] = two[i] - (slope - z1 / a) / b;
         }
         if let Some((length, _)) = &mut self.last {
             *length = self.taken;
