@@ -6,7 +6,7 @@
 //!
 //! - [`FORMULATIONS`]: the table.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate.
-//! - [`ready()`]: the equations compiled, for other integrators.
+//! - [`ready()`]: the equations compiled, for other integrators; [`SingleRuns`]: runs of ours one by one, for measurements.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
 mod comparison;
@@ -21,6 +21,7 @@ mod metric;
 mod motion;
 mod ready;
 mod run;
+mod single;
 mod table;
 
 pub use comparison::{
@@ -38,4 +39,5 @@ pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
 pub use motion::{Ending, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
 pub use ready::{Ready, ready};
+pub use single::{SingleRun, SingleRuns};
 pub use table::{FORMULATIONS, formulation};

@@ -93,12 +93,17 @@ impl Prepared {
         tolerance: f64,
         settings: &Settings,
     ) -> Result<Run, SolveError> {
-        let y = self.start(constants);
         let mut options = Options::with_tolerance(tolerance);
         options.method = settings.method;
         options.projection = settings.projection;
         options.max_steps = settings.max_steps;
         options.interrupt = settings.interrupt.clone();
+        self.run_with(constants, end, &options)
+    }
+
+    /// One run with all options chosen.
+    pub(crate) fn run_with(&mut self, constants: &[f64], end: f64, options: &Options) -> Result<Run, SolveError> {
+        let y = self.start(constants);
         let mut anchors = Vec::new();
         let start = self.compiled.settle(self.t, &y)?.to_vec();
         self.compiled.rates(self.t, &y, &mut vec![0.0; y.len()])?;
@@ -106,7 +111,7 @@ impl Prepared {
             anchors.push((self.t, start));
         }
         let mut runner = Runner { compiled: &mut self.compiled, anchors };
-        let solution = integrate::integrate(&mut runner, &Start { t: self.t, y }, end, &options)?;
+        let solution = integrate::integrate(&mut runner, &Start { t: self.t, y }, end, options)?;
         Ok(Run { solution, anchors: runner.anchors })
     }
 }

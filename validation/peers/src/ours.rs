@@ -1,0 +1,209 @@
+//! Ours, asked as the peers are: see `validation/peers/worker.py`.
+
+use std::collections::HashMap;
+use std::hint::black_box;
+use std::io::{BufRead, Write};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use deltaq::{Choice, Settings, SingleRuns, derive, formulation, setting, solve};
+use integrate::{Dense, Method, Options, Status};
+use mechanics::{ConstantsRule, Derivation, Scene};
+use serde_json::{Value, json};
+use validation::casadi_job::tags;
+
+use crate::Case;
+
+/// The method that stands for [`deltaq::solve`]: two runs, the second at a hundredth of the tolerance, and the difference as an error estimate.
+const SOLVE: &str = "solve: two runs of Dop853";
+
+/// Steps of one run at most, as [`Settings`] has it.
+const MAX_STEPS: usize = 1_000_000;
+
+/// A case that was read.
+struct Loaded {
+    case: Case,
+    scene: Scene,
+    choice: Choice,
+    runs: HashMap<String, SingleRuns>,
+}
+
+/// Answers on standard output what is asked on standard input, until that ends.
+///
+/// # Errors
+/// Where the pipes break.
+pub fn serve() -> Result<()> {
+    let mut loaded = None;
+    let mut output = std::io::stdout();
+    for line in std::io::stdin().lock().lines() {
+        let answer = serde_json::from_str(&line?)
+            .context("no JSON")
+            .and_then(|question: Value| answer(&question, &mut loaded))
+            .unwrap_or_else(|error| json!({ "failure": format!("{error:#}") }));
+        writeln!(output, "{answer}")?;
+        output.flush()?;
+    }
+    Ok(())
+}
+
+fn answer(question: &Value, loaded: &mut Option<Loaded>) -> Result<Value> {
+    let text = |key: &str| question[key].as_str().with_context(|| format!("`{key}` is missing"));
+    let number = |key: &str| question[key].as_f64().with_context(|| format!("`{key}` is missing"));
+    match text("do")? {
+        "version" => return Ok(json!({ "versions": { "deltaq": env!("CARGO_PKG_VERSION") } })),
+        "setup" => {
+            let case: Case = serde_json::from_value(question["case"].clone())?;
+            let clock = Instant::now();
+            let (scene, choice) = read(&case)?;
+            let runs = compile(&scene, &choice, &Settings::default())?;
+            let seconds = clock.elapsed().as_secs_f64();
+            let runs = HashMap::from([(format!("{:?}", Method::Dop853), runs)]);
+            *loaded = Some(Loaded { case, scene, choice, runs });
+            let mut methods: Vec<String> = Method::ALL.iter().map(|method| format!("{method:?}")).collect();
+            methods.push(SOLVE.into());
+            return Ok(json!({ "seconds": seconds, "methods": methods }));
+        }
+        _ => {}
+    }
+    let loaded = loaded.as_mut().context("nothing was set up")?;
+    match text("do")? {
+        "rates" => loaded.rates(),
+        "prepare" => {
+            let clock = Instant::now();
+            loaded.prepare(text("method")?)?;
+            Ok(json!({ "seconds": clock.elapsed().as_secs_f64() }))
+        }
+        "run" => loaded.run(text("method")?, number("tolerance")?, text("task")? == "end", number("repeat")?),
+        "total" => loaded.total(text("method")?, number("tolerance")?),
+        other => bail!("nobody knows how to `{other}`"),
+    }
+}
+
+/// The scene of a case, and the choice of its formulation. Constants that are given with the case are not computed again.
+fn read(case: &Case) -> Result<(Scene, Choice)> {
+    let mut scene = Scene::parse(&case.name, &case.toml)?;
+    let last = case.times.last().context("a case without times")?;
+    scene.duration = last - scene.start.t;
+    let entry = formulation(&case.formulation).context("no such formulation")?;
+    let removal = match &case.removal {
+        Some(name) => Some(scene.removals.iter().find(|r| r.name == *name).context("no such removal")?.clone()),
+        None => None,
+    };
+    let costates: Vec<f64> =
+        case.tags.iter().zip(&case.start).filter(|((kind, _), _)| kind == "P").map(|(_, &x)| x).collect();
+    let constants = match &removal {
+        Some(removal) if case.start.is_empty() => removal.constants.clone(),
+        Some(_) => ConstantsRule::Given(costates),
+        None => deltaq::default_constants(entry, &scene),
+    };
+    let choice = Choice { label: entry.title.into(), formulation: entry.name, removal, constants };
+    Ok((scene, choice))
+}
+
+fn compile(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<SingleRuns> {
+    let equations = derive(&scene.system, choice)?;
+    Ok(SingleRuns::new(setting(scene), equations, &choice.constants, settings)?)
+}
+
+fn method(name: &str) -> Result<Method> {
+    if name == SOLVE {
+        return Ok(Method::Dop853);
+    }
+    Method::ALL.into_iter().find(|method| format!("{method:?}") == name).with_context(|| format!("no method {name}"))
+}
+
+impl Loaded {
+    /// What each state is, where it starts and its rate there, by the equations as derived, nothing left out of them.
+    fn rates(&mut self) -> Result<Value> {
+        let entry = formulation(self.choice.formulation).context("no such formulation")?;
+        let removal = self.choice.removal.as_ref();
+        let equations = (entry.derive)(&self.scene.system, &Derivation { removal })?;
+        let tags = tags(&equations);
+        let mut runs = SingleRuns::new(setting(&self.scene), equations, &self.choice.constants, &Settings::default())?;
+        let (start, rates) = runs.start()?;
+        Ok(json!({ "tags": tags, "start": start, "rates": rates }))
+    }
+
+    fn prepare(&mut self, name: &str) -> Result<&mut SingleRuns> {
+        if !self.runs.contains_key(name) {
+            let settings = Settings { method: method(name)?, ..Settings::default() };
+            self.runs.insert(name.into(), compile(&self.scene, &self.choice, &settings)?);
+        }
+        self.runs.get_mut(name).context("no runs")
+    }
+
+    fn run(&mut self, name: &str, tolerance: f64, end: bool, repeat: f64) -> Result<Value> {
+        if name == SOLVE {
+            return self.solve(tolerance, repeat);
+        }
+        let times = if end {
+            vec![self.case.times[0], self.case.times[self.case.times.len() - 1]]
+        } else {
+            self.case.times.clone()
+        };
+        let dense = if end { Dense::EndOnly } else { Dense::Everywhere };
+        let options =
+            Options { method: method(name)?, dense, max_steps: MAX_STEPS, ..Options::with_tolerance(tolerance) };
+        let runs = self.prepare(name)?;
+        let (mut best, mut total, mut repeats) = (f64::INFINITY, 0.0, 0);
+        let mut states = Vec::new();
+        let run = loop {
+            let clock = Instant::now();
+            let run = runs.run(&options)?;
+            states.resize(run.dimension(), 0.0);
+            for &t in &times {
+                run.states_at(t, &mut states);
+                black_box(&states);
+            }
+            let seconds = clock.elapsed().as_secs_f64();
+            (best, total, repeats) = (f64::min(best, seconds), total + seconds, repeats + 1);
+            if total >= repeat {
+                break run;
+            }
+        };
+        if let Status::Stopped { t, cause } = &run.status {
+            bail!("stopped at {t}: {cause}");
+        }
+        let coordinates: Vec<Vec<f64>> =
+            times.iter().map(|&t| Ok(runs.outputs(&run, t)?.coordinates)).collect::<Result<_>>()?;
+        let evaluations = run.work.evaluations;
+        Ok(json!({ "seconds": best, "repeats": repeats, "coordinates": coordinates, "evaluations": evaluations }))
+    }
+
+    /// [`deltaq::solve`] on compiled equations, as it says itself; for a trajectory and for its end alike.
+    fn solve(&mut self, tolerance: f64, repeat: f64) -> Result<Value> {
+        let equations = derive(&self.scene.system, &self.choice)?;
+        let constants = ConstantsRule::Given(self.prepare(&format!("{:?}", Method::Dop853))?.constants().to_vec());
+        let settings = Settings { tolerance, ..Settings::default() };
+        let (mut best, mut total, mut repeats) = (f64::INFINITY, 0.0, 0);
+        let mut motion = loop {
+            let motion = solve(setting(&self.scene), equations.clone(), &constants, &settings)?;
+            let seconds = motion.seconds.integrate;
+            (best, total, repeats) = (f64::min(best, seconds), total + seconds, repeats + 1);
+            if total >= repeat {
+                break motion;
+            }
+        };
+        if !motion.is_complete() {
+            bail!("stopped: {:?}", motion.ending);
+        }
+        let coordinates: Vec<Vec<f64>> =
+            self.case.times.iter().map(|&t| Ok(motion.at(t)?.coordinates)).collect::<Result<_>>()?;
+        Ok(json!({ "seconds": best, "repeats": repeats, "coordinates": coordinates }))
+    }
+
+    /// Seconds from the text of the scene to the states at all times, everything done once.
+    fn total(&mut self, name: &str, tolerance: f64) -> Result<Value> {
+        let options = Options { method: method(name)?, max_steps: MAX_STEPS, ..Options::with_tolerance(tolerance) };
+        let clock = Instant::now();
+        let (scene, choice) = read(&self.case)?;
+        let mut runs = compile(&scene, &choice, &Settings { method: options.method, ..Settings::default() })?;
+        let run = runs.run(&options)?;
+        let mut states = vec![0.0; run.dimension()];
+        for &t in &self.case.times {
+            run.states_at(t, &mut states);
+            black_box(&states);
+        }
+        Ok(json!({ "seconds": clock.elapsed().as_secs_f64() }))
+    }
+}
