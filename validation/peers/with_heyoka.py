@@ -31,7 +31,8 @@ class Tool:
         if case["purpose"] == "reference":
             return [REFERENCE]
         # one function for the whole step, or functions in loops: more to compile and faster, or the other way round
-        return [OWN, COMPACT] + ([SIMPLIFIED] if case["form"] == "scene" else [])
+        trailers = case["name"].startswith("trailers")
+        return [OWN, COMPACT] + ([] if trailers else [SIMPLIFIED])
 
     def setup(self, case, scene):
         self.case, self.scene, self.ready, self.short = case, scene, {}, None

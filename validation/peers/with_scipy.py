@@ -52,7 +52,8 @@ class Tool:
             if self.by_hand:
                 n, m, J, d = self.arguments
                 hand = njit(self.hand)
-                self.compiled = njit(lambda t, y: hand(t, y, n, m, J, d))
+                # Radau hands over columns of matrices
+                self.compiled = njit(lambda t, y: hand(t, np.ascontiguousarray(y), n, m, J, d))
             else:
                 self.compiled = njit(function(self.lines.for_numba()))
             found, expected = self.compiled(0.0, self.start), np.array(self.python(0.0, self.start))

@@ -77,8 +77,9 @@ def main():
         try:
             said = answer(it, json.loads(line), state)
         except Exception as error:  # a failure of a tool is a result, listed on the page
+            # CasADi says where first, and at the end what happened
             words = str(error).strip().splitlines()
-            said = {"failure": f"{type(error).__name__}: {words[0] if words else ''}"[:200]}
+            said = {"failure": f"{type(error).__name__}: {words[-1] if words else ''}"[:200]}
         print(json.dumps(said), file=out, flush=True)
 
 
