@@ -30,8 +30,8 @@ mod environment;
 mod questions;
 mod table;
 
-pub use environment::NotRun;
-pub use questions::{Amount, Question, Tag};
+pub use crate::python_environment::NotRun;
+pub use questions::{Amount, Question, Tag, tags};
 pub use table::{headline, referee_table, verdict_words};
 
 /// What the referee says about one comparison.

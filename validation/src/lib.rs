@@ -10,6 +10,7 @@ pub mod compare_command;
 pub mod main_job;
 pub mod parallel;
 pub mod picture;
+pub mod python_environment;
 pub mod random;
 pub mod random_command;
 pub mod realization;

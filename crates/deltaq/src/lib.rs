@@ -7,7 +7,7 @@
 //! - [`FORMULATIONS`]: the table.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate.
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
-//! - [`ready()`]: the equations compiled, for other integrators.
+//! - [`ready()`]: the equations compiled, for single runs and for other integrators.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
 mod comparison;
@@ -40,6 +40,6 @@ pub use gap::{
 pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
 pub use motion::{Ending, FormReport, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
-pub use ready::{Ready, SingleRun, ready};
+pub use ready::{Ready, SingleRun, ready, ready_to_run};
 pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
 pub use table::{FORMS, FORMULATIONS, formulation};

@@ -1,7 +1,7 @@
 //! Equations made ready for single runs of the time loop, and for other integrators than ours.
 
-use integrate::{Options, ProjectionReport, Start, Status, Work};
-use mechanics::{Compiled, ConstantsRule, Equations, Outputs};
+use integrate::{Method, Options, ProjectionReport, Start, Status, Work};
+use mechanics::{Compiled, ConstantsRule, Equations, Form, Outputs};
 
 use crate::motion::resolve;
 use crate::run::{Prepared, Trajectory, integrate_once};
@@ -14,8 +14,8 @@ pub struct Ready {
     pub equations: Equations,
     /// `ẏ = F(t, y)` with its Jacobian; the constants and the guess are set.
     pub compiled: Compiled,
-    /// In which form it is evaluated and why ([`mechanics::Form::why`]).
-    pub form: Vec<String>,
+    /// The form in which it is evaluated.
+    pub form: Form,
     /// Values of the free constants.
     pub constants: Vec<f64>,
     /// `t₀`.
@@ -51,6 +51,14 @@ impl SingleRun {
         let mut state = vec![0.0; ready.start.len()];
         self.trajectory.outputs(&mut ready.compiled, t, &mut state)
     }
+
+    /// The states at `t`.
+    ///
+    /// # Errors
+    /// As [`SingleRun::at`].
+    pub fn states_at(&mut self, ready: &mut Ready, t: f64, states: &mut [f64]) -> Result<(), SolveError> {
+        self.trajectory.state(&mut ready.compiled, t, states)
+    }
 }
 
 impl Ready {
@@ -59,6 +67,7 @@ impl Ready {
     /// # Errors
     /// [`SolveError`] where the run cannot be started; how it ended is [`SingleRun::status`].
     pub fn integrate(&mut self, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
+        self.prepare(options.method)?;
         if !self.guess.is_empty() {
             self.compiled.set_guess(&self.guess);
         }
@@ -67,6 +76,39 @@ impl Ready {
         let (status, work, projection) = (run.solution.status.clone(), run.solution.work, run.solution.projection);
         Ok(SingleRun { status, work, projection, trajectory: run.trajectory() })
     }
+}
+
+impl Ready {
+    /// Compiles what `method` needs beyond the rates, unless that is done: it is done by the first run anyway.
+    ///
+    /// # Errors
+    /// [`SolveError::Compile`].
+    pub fn prepare(&mut self, method: Method) -> Result<(), SolveError> {
+        if method.is_implicit() && !self.compiled.has_jacobian() {
+            self.compiled = self.compiled.clone().with_jacobian(&self.equations)?;
+        }
+        if method == Method::Taylor && !self.compiled.has_series() {
+            self.compiled = self.compiled.clone().with_series(&self.equations, &self.form)?;
+        }
+        Ok(())
+    }
+}
+
+/// [`ready()`] without a Jacobian, unless the method of `settings` asks for one: for runs by [`Ready::integrate`], which compiles what is missing.
+///
+/// # Errors
+/// As [`ready()`].
+pub fn ready_to_run(
+    setting: Setting,
+    equations: Equations,
+    constants: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Ready, SolveError> {
+    let mut prepared = Prepared::new(setting, equations, settings)?;
+    let constants = resolve(&mut prepared, constants, settings)?;
+    let start = prepared.start(&constants);
+    let Prepared { equations, compiled, form, guess, t, .. } = prepared;
+    Ok(Ready { equations, compiled, form, constants, t, start, guess })
 }
 
 /// Compiles `equations`, Jacobian included, and computes what they start from. Nothing is integrated, unless the constants are natural at a
@@ -107,10 +149,9 @@ pub fn ready(
     constants: &ConstantsRule,
     settings: &Settings,
 ) -> Result<Ready, SolveError> {
-    let mut prepared = Prepared::new(setting, equations, settings)?;
-    let constants = resolve(&mut prepared, constants, settings)?;
-    let start = prepared.start(&constants);
-    let Prepared { equations, compiled, form, guess, t, .. } = prepared;
-    let compiled = if settings.method.is_implicit() { compiled } else { compiled.with_jacobian(&equations)? };
-    Ok(Ready { equations, compiled, form: form.why, constants, t, start, guess })
+    let mut ready = ready_to_run(setting, equations, constants, settings)?;
+    if !ready.compiled.has_jacobian() {
+        ready.compiled = ready.compiled.with_jacobian(&ready.equations)?;
+    }
+    Ok(ready)
 }

@@ -207,6 +207,11 @@ impl Compiled {
         Ok(self)
     }
 
+    /// Whether [`Compiled::with_jacobian`] was called.
+    pub fn has_jacobian(&self) -> bool {
+        self.derivatives.is_some()
+    }
+
     /// Whether [`Compiled::with_series`] was called.
     pub fn has_series(&self) -> bool {
         self.series.is_some()

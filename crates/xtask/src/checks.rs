@@ -125,7 +125,16 @@ pub(crate) fn run(checks: &[Check]) -> ExitCode {
 
 /// Writes `reports/engine.md`. No check: what it runs is another program, at a length of its own.
 pub(crate) fn engine() -> ExitCode {
-    match succeed(cargo().args(["run", "--release", "--package", "engine"])) {
+    chore(cargo().args(["run", "--release", "--package", "engine"]))
+}
+
+/// Writes `reports/peers.md`. No check: what it writes are times, of this machine and in this hour.
+pub(crate) fn peers(arguments: &[&str]) -> ExitCode {
+    chore(cargo().args(["run", "--release", "--package", "peers", "--"]).args(arguments))
+}
+
+fn chore(command: &mut Command) -> ExitCode {
+    match succeed(command) {
         Ok(_) => ExitCode::SUCCESS,
         Err(error) => {
             println!("{error:#}");

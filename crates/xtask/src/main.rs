@@ -23,6 +23,9 @@ fn main() -> ExitCode {
     if arguments == ["engine"] {
         return checks::engine();
     }
+    if let ["peers", rest @ ..] = arguments.as_slice() {
+        return checks::peers(rest);
+    }
     let chosen = match arguments.as_slice() {
         [] | ["help" | "--help" | "-h"] => {
             list(&checks);
@@ -52,4 +55,8 @@ fn list(checks: &[checks::Check]) {
     }
     println!("\n  {:<10} {}", "mutate", mutate::ABOUT);
     println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
+    println!(
+        "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look",
+        "peers"
+    );
 }

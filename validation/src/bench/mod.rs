@@ -13,7 +13,7 @@ pub use truth::Truth;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Metric, Ready, Settings, choices, derive, ready, setting};
+use deltaq::{Choice, Metric, Ready, Settings, choices, derive, ready_to_run, setting};
 use integrate::{Method, Work};
 use mechanics::Scene;
 
@@ -153,10 +153,9 @@ fn measurements(scene: &Scene, choice: &Choice, metric: &mut Metric, effort: &Ef
     let clock = Instant::now();
     let equations = derive(&scene.system, choice)?;
     let derive = clock.elapsed().as_secs_f64();
-    // the method for which most is compiled
     let settings = Settings { method: Method::Taylor, ..Settings::default() };
     let clock = Instant::now();
-    let mut ready: Ready = ready(setting(scene), equations, &choice.constants, &settings)?;
+    let mut ready: Ready = ready_to_run(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();
     let truth = Truth::new(scene, &ready, SAMPLES).context("no reference")?;
     let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, &truth, metric, effort)).collect();

@@ -1,7 +1,9 @@
-//! A virtual environment of Python for the referee, made once for each version of its requirements.
+//! The referee's scripts, and how they are run.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+use crate::python_environment::{self, NotRun, files};
 
 const REQUIREMENTS: &str = include_str!("../../casadi/requirements.txt");
 
@@ -15,98 +17,12 @@ const SCRIPTS: [(&str, &str); 6] = [
     ("check.py", include_str!("../../casadi/check.py")),
 ];
 
-/// Why the referee could not run. The words name no place on this machine: they go into reports.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NotRun {
-    /// No interpreter.
-    #[error("there is no `python3`, version 3.11 or later")]
-    NoPython,
-    /// `python3 -m venv` failed.
-    #[error("`python3 -m venv` ended with {status}")]
-    NoEnvironment {
-        /// How it ended.
-        status: String,
-    },
-    /// The packages could not be installed.
-    #[error("pip could not install the required packages ({status}): is there a package index?")]
-    NoPackages {
-        /// How it ended.
-        status: String,
-    },
-    /// A folder or a file could not be written.
-    #[error("cannot write {what}: {kind}")]
-    Files {
-        /// What.
-        what: &'static str,
-        /// What the file system says.
-        kind: std::io::ErrorKind,
-    },
-    /// The scripts ended without an answer.
-    #[error("the scripts ended with {status}: {last_line}")]
-    NoAnswer {
-        /// How they ended.
-        status: String,
-        /// Last line of what they complained of.
-        last_line: String,
-    },
-}
-
-/// The folder that cargo builds into, from the place of this program; `target` in the current folder where that cannot be found.
-fn target() -> PathBuf {
-    let program = std::env::current_exe().unwrap_or_default();
-    let marked = |folder: &&Path| folder.join("CACHEDIR.TAG").exists();
-    program.ancestors().find(marked).map_or_else(|| PathBuf::from("target"), Path::to_path_buf)
-}
-
-/// FNV-1a, 64 bits.
-fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, byte| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
-}
-
-fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
-    move |error| NotRun::Files { what, kind: error.kind() }
-}
-
-/// The interpreter of the environment, made now if it is not there yet. What is half made is never seen: it is built beside its place and
-/// moved there when it is complete.
+/// The interpreter of the referee's environment.
 ///
 /// # Errors
 /// [`NotRun`].
 pub fn interpreter() -> Result<PathBuf, NotRun> {
-    let target = target();
-    let place = target.join(format!("casadi-{:016x}", hash(REQUIREMENTS)));
-    let python = Path::new("bin").join("python");
-    if place.join(&python).exists() {
-        return Ok(place.join(python));
-    }
-    let version = Command::new("python3").args(["-c", "import sys; sys.exit(sys.version_info < (3, 11))"]).output();
-    if !version.is_ok_and(|output| output.status.success()) {
-        return Err(NotRun::NoPython);
-    }
-    std::fs::create_dir_all(&target).map_err(files("the target folder"))?;
-    let building =
-        tempfile::Builder::new().prefix("casadi-new-").tempdir_in(&target).map_err(files("an environment"))?;
-    let folder = building.path().join("environment");
-    let run = |command: &mut Command| command.output().map_err(|_| NotRun::NoPython);
-    let made = run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
-    if !made.status.success() {
-        return Err(NotRun::NoEnvironment { status: made.status.to_string() });
-    }
-    let list = building.path().join("requirements.txt");
-    std::fs::write(&list, REQUIREMENTS).map_err(files("the requirements"))?;
-    let options = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"];
-    let mut pip = Command::new(folder.join(&python));
-    let installed =
-        run(pip.args(options).args(["--retries", "1", "--timeout", "20", "--only-binary", ":all:", "-r"]).arg(&list))?;
-    if !installed.status.success() {
-        return Err(NotRun::NoPackages { status: installed.status.to_string() });
-    }
-    // Another process may have been quicker; its environment is as good.
-    let moved = std::fs::rename(&folder, &place);
-    if !place.join(&python).exists() {
-        moved.map_err(files("an environment"))?;
-    }
-    Ok(place.join(python))
+    python_environment::interpreter("casadi", REQUIREMENTS)
 }
 
 /// Runs the scripts on a job; the text of their answer.

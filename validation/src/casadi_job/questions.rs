@@ -221,7 +221,7 @@ fn names(equations: &Equations) -> Vec<String> {
 }
 
 /// What each state is, in the words that the referee understands.
-fn tags(equations: &Equations) -> Vec<Tag> {
+pub fn tags(equations: &Equations) -> Vec<Tag> {
     let g = &equations.graph;
     let mut costates = equations.free_constants.iter().filter_map(|c| c.memory);
     let mut multiplier = 0;

@@ -1,0 +1,237 @@
+//! Ours, asked as the peers are: see `validation/peers/worker.py`.
+
+use std::collections::HashMap;
+use std::hint::black_box;
+use std::io::{BufRead, Write};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use deltaq::{Choice, Ready, Settings, derive, derive_at, formulation, ready_to_run, setting, solve};
+use integrate::{Dense, Method, Options, Status};
+use mechanics::{ConstantsRule, Derivation, Scene};
+use serde_json::{Value, json};
+use validation::casadi_job::tags;
+
+use crate::Case;
+
+/// The method that stands for [`deltaq::solve`]: two runs, the second at a hundredth of the tolerance, and the difference as an error estimate.
+const SOLVE: &str = "solve: two runs of Dop853";
+
+/// Steps of one run at most, as [`Settings`] has it.
+const MAX_STEPS: usize = 1_000_000;
+
+/// A case that was read.
+struct Loaded {
+    case: Case,
+    scene: Scene,
+    choice: Choice,
+    runs: HashMap<String, Ready>,
+}
+
+/// Answers on standard output what is asked on standard input, until that ends.
+///
+/// # Errors
+/// Where the pipes break.
+pub fn serve() -> Result<()> {
+    let mut loaded = None;
+    let mut output = std::io::stdout();
+    for line in std::io::stdin().lock().lines() {
+        let answer = serde_json::from_str(&line?)
+            .context("no JSON")
+            .and_then(|question: Value| answer(&question, &mut loaded))
+            .unwrap_or_else(|error| json!({ "failure": format!("{error:#}") }));
+        writeln!(output, "{answer}")?;
+        output.flush()?;
+    }
+    Ok(())
+}
+
+fn answer(question: &Value, loaded: &mut Option<Loaded>) -> Result<Value> {
+    let text = |key: &str| question[key].as_str().with_context(|| format!("`{key}` is missing"));
+    let number = |key: &str| question[key].as_f64().with_context(|| format!("`{key}` is missing"));
+    match text("do")? {
+        "version" => return Ok(json!({ "versions": { "deltaq": env!("CARGO_PKG_VERSION") } })),
+        "setup" => {
+            let case: Case = serde_json::from_value(question["case"].clone())?;
+            let clock = Instant::now();
+            let (scene, choice) = read(&case)?;
+            let runs = compile(&scene, &choice, &Settings::default())?;
+            let seconds = clock.elapsed().as_secs_f64();
+            let runs = HashMap::from([(format!("{:?}", Method::Dop853), runs)]);
+            let forms = forms(&case.formulation);
+            let names = |form: &&str| Method::ALL.map(|method| format!("{method:?}{form}"));
+            let mut methods: Vec<String> = forms.iter().flat_map(names).collect();
+            methods.push(SOLVE.into());
+            *loaded = Some(Loaded { case, scene, choice, runs });
+            return Ok(json!({ "seconds": seconds, "methods": methods }));
+        }
+        _ => {}
+    }
+    let loaded = loaded.as_mut().context("nothing was set up")?;
+    match text("do")? {
+        "rates" => loaded.rates(),
+        "prepare" => {
+            let clock = Instant::now();
+            loaded.prepare(text("method")?)?;
+            Ok(json!({ "seconds": clock.elapsed().as_secs_f64() }))
+        }
+        "run" => loaded.run(text("method")?, number("tolerance")?, text("task")? == "end", number("repeat")?),
+        "total" => loaded.total(text("method")?, number("tolerance")?),
+        other => bail!("nobody knows how to `{other}`"),
+    }
+}
+
+/// The scene of a case, and the choice of its formulation. Constants that are given with the case are not computed again.
+fn read(case: &Case) -> Result<(Scene, Choice)> {
+    let mut scene = Scene::parse(&case.name, &case.toml)?;
+    let last = case.times.last().context("a case without times")?;
+    scene.duration = last - scene.start.t;
+    let entry = formulation(&case.formulation).context("no such formulation")?;
+    let removal = match &case.removal {
+        Some(name) => Some(scene.removals.iter().find(|r| r.name == *name).context("no such removal")?.clone()),
+        None => None,
+    };
+    let costates: Vec<f64> =
+        case.tags.iter().zip(&case.start).filter(|((kind, _), _)| kind == "P").map(|(_, &x)| x).collect();
+    let constants = match &removal {
+        Some(removal) if case.start.is_empty() => removal.constants.clone(),
+        Some(_) => ConstantsRule::Given(costates),
+        None => deltaq::default_constants(entry, &scene),
+    };
+    let choice = Choice { label: entry.title.into(), formulation: entry.name, removal, constants };
+    Ok((scene, choice))
+}
+
+fn compile(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Ready> {
+    let equations = derive_at(&scene.system, &scene.start, choice)?;
+    Ok(ready_to_run(setting(scene), equations, &choice.constants, settings)?)
+}
+
+/// Forms of a formulation's equations, as they are added to the name of a method.
+fn forms(formulation: &str) -> &'static [&'static str] {
+    match formulation {
+        "chetaev" => &["", ", quasi-velocities"],
+        "vakonomic" => &["", ", costate form"],
+        _ => &[""],
+    }
+}
+
+/// The method of that name, and the formulation that it is for where that is another form of the one in question.
+fn method(name: &str) -> Result<(Method, Option<&'static str>)> {
+    if name == SOLVE {
+        return Ok((Method::Dop853, None));
+    }
+    let (method, form) = match name.split_once(", ") {
+        None => (name, None),
+        Some((method, "quasi-velocities")) => (method, Some("chetaev-reduced")),
+        Some((method, "costate form")) => (method, Some("vakonomic-costate")),
+        Some((_, form)) => bail!("no form {form}"),
+    };
+    let method = Method::ALL.into_iter().find(|known| format!("{known:?}") == method);
+    Ok((method.with_context(|| format!("no method {name}"))?, form))
+}
+
+/// The choice in another form of its formulation.
+fn in_form(choice: &Choice, form: Option<&'static str>) -> Choice {
+    Choice { formulation: form.unwrap_or(choice.formulation), ..choice.clone() }
+}
+
+impl Loaded {
+    /// What each state is, where it starts and its rate there, by the equations as derived, nothing left out of them.
+    fn rates(&mut self) -> Result<Value> {
+        let entry = formulation(self.choice.formulation).context("no such formulation")?;
+        let removal = self.choice.removal.as_ref();
+        let equations = (entry.derive)(&self.scene.system, &Derivation { removal, start: Some(&self.scene.start) })?;
+        let tags = tags(&equations);
+        let mut ready = ready_to_run(setting(&self.scene), equations, &self.choice.constants, &Settings::default())?;
+        let mut rates = vec![0.0; ready.start.len()];
+        ready.compiled.rates(ready.t, &ready.start, &mut rates).map_err(deltaq::SolveError::AtStart)?;
+        Ok(json!({ "tags": tags, "start": ready.start, "rates": rates }))
+    }
+
+    fn prepare(&mut self, name: &str) -> Result<&mut Ready> {
+        if !self.runs.contains_key(name) {
+            let (method, form) = method(name)?;
+            let settings = Settings { method, ..Settings::default() };
+            self.runs.insert(name.into(), compile(&self.scene, &in_form(&self.choice, form), &settings)?);
+        }
+        self.runs.get_mut(name).context("no runs")
+    }
+
+    fn run(&mut self, name: &str, tolerance: f64, end: bool, repeat: f64) -> Result<Value> {
+        if name == SOLVE {
+            return self.solve(tolerance, repeat);
+        }
+        let times = if end {
+            vec![self.case.times[0], self.case.times[self.case.times.len() - 1]]
+        } else {
+            self.case.times.clone()
+        };
+        let dense = if end { Dense::EndOnly } else { Dense::Everywhere };
+        let method = method(name)?.0;
+        let options = Options { method, dense, max_steps: MAX_STEPS, ..Options::with_tolerance(tolerance) };
+        let until = times[times.len() - 1];
+        let runs = self.prepare(name)?;
+        let (mut best, mut total, mut repeats) = (f64::INFINITY, 0.0, 0);
+        let mut states = vec![0.0; runs.start.len()];
+        let mut run = loop {
+            let clock = Instant::now();
+            let mut run = runs.integrate(until, &options)?;
+            for &t in &times {
+                run.states_at(runs, t, &mut states)?;
+                black_box(&states);
+            }
+            let seconds = clock.elapsed().as_secs_f64();
+            (best, total, repeats) = (f64::min(best, seconds), total + seconds, repeats + 1);
+            if total >= repeat {
+                break run;
+            }
+        };
+        if let Status::Stopped { t, cause } = &run.status {
+            bail!("stopped at {t}: {cause}");
+        }
+        let coordinates: Vec<Vec<f64>> =
+            times.iter().map(|&t| Ok(run.at(runs, t)?.coordinates)).collect::<Result<_>>()?;
+        let evaluations = run.work.evaluations;
+        Ok(json!({ "seconds": best, "repeats": repeats, "coordinates": coordinates, "evaluations": evaluations }))
+    }
+
+    /// [`deltaq::solve`] on compiled equations, as it says itself; for a trajectory and for its end alike.
+    fn solve(&mut self, tolerance: f64, repeat: f64) -> Result<Value> {
+        let equations = derive(&self.scene.system, &self.choice)?;
+        let constants = ConstantsRule::Given(self.prepare(&format!("{:?}", Method::Dop853))?.constants.clone());
+        let settings = Settings { tolerance, ..Settings::default() };
+        let (mut best, mut total, mut repeats) = (f64::INFINITY, 0.0, 0);
+        let mut motion = loop {
+            let motion = solve(setting(&self.scene), equations.clone(), &constants, &settings)?;
+            let seconds = motion.seconds.integrate;
+            (best, total, repeats) = (f64::min(best, seconds), total + seconds, repeats + 1);
+            if total >= repeat {
+                break motion;
+            }
+        };
+        if !motion.is_complete() {
+            bail!("stopped: {:?}", motion.ending);
+        }
+        let coordinates: Vec<Vec<f64>> =
+            self.case.times.iter().map(|&t| Ok(motion.at(t)?.coordinates)).collect::<Result<_>>()?;
+        Ok(json!({ "seconds": best, "repeats": repeats, "coordinates": coordinates }))
+    }
+
+    /// Seconds from the text of the scene to the states at all times, everything done once.
+    fn total(&mut self, name: &str, tolerance: f64) -> Result<Value> {
+        let (method, form) = method(name)?;
+        let options = Options { method, max_steps: MAX_STEPS, ..Options::with_tolerance(tolerance) };
+        let clock = Instant::now();
+        let (scene, choice) = read(&self.case)?;
+        let choice = in_form(&choice, form);
+        let mut runs = compile(&scene, &choice, &Settings { method, ..Settings::default() })?;
+        let mut run = runs.integrate(scene.start.t + scene.duration, &options)?;
+        let mut states = vec![0.0; runs.start.len()];
+        for &t in &self.case.times {
+            run.states_at(&mut runs, t, &mut states)?;
+            black_box(&states);
+        }
+        Ok(json!({ "seconds": clock.elapsed().as_secs_f64() }))
+    }
+}
