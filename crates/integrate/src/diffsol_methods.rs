@@ -58,7 +58,9 @@ pub(crate) fn run(system: &System, start: &Start, end: f64, options: &Options) -
         Method::Bdf => call.drive(problem.bdf::<Linear>(), Kind { degree: 5, told_above: MULTISTEP_MOVE }),
         Method::TrBdf2 => call.drive(problem.tr_bdf2::<Linear>(), Kind { degree: 2, told_above: 0.0 }),
         Method::Esdirk34 => call.drive(problem.esdirk34::<Linear>(), Kind { degree: 3, told_above: 0.0 }),
-        Method::Tsit45 | Method::Dop853 | Method::Taylor => call.drive(problem.tsit45(), Kind { degree: 4, told_above: 0.0 }),
+        Method::Tsit45 | Method::Dop853 | Method::Taylor => {
+            call.drive(problem.tsit45(), Kind { degree: 4, told_above: 0.0 })
+        }
     }
 }
 

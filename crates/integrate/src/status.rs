@@ -54,7 +54,9 @@ pub enum StopCause {
         component: usize,
     },
     /// The rates at the end of a step were not those of the Taylor series there, however small the step.
-    #[error("component {component} of the rates leaves its Taylor series however short the step: it is not smooth here")]
+    #[error(
+        "component {component} of the rates leaves its Taylor series however short the step: it is not smooth here"
+    )]
     NotSmooth {
         /// Which one, counted from 0.
         component: usize,

@@ -264,7 +264,10 @@ fn every_bad_call() {
     let late = Start { t: 1.0, y: vec![1.0, 0.0] };
     assert!(matches!(call(&late, 1.0f64.next_up(), &good), Some(CallError::EmptyInterval { .. })));
     let taylor = Options { method: Method::Taylor, ..good.clone() };
-    assert_eq!(integrate(&mut robertson(), &Start { t: 0.0, y: vec![1.0; 3] }, 1.0, &taylor).err(), Some(CallError::NoTaylor));
+    assert_eq!(
+        integrate(&mut robertson(), &Start { t: 0.0, y: vec![1.0; 3] }, 1.0, &taylor).err(),
+        Some(CallError::NoTaylor)
+    );
     let options = Options { max_steps: 0, ..good };
     assert_eq!(call(&start, 1.0, &options), Some(CallError::MaxSteps { found: 0, limit: 1 }));
 }

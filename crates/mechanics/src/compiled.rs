@@ -272,7 +272,8 @@ impl Compiled {
         Ok(())
     }
 
-    /// Taylor coefficients of the motion through `(t, y)`, to the order for which there is room, `y_i(t + τ) = Σ_k coefficients[k n + i] (τ/unit)^k`.
+    /// Taylor coefficients of the motion through `(t, y)`, component after component, as many orders as there is room for:
+    /// `y_i(t + τ) = Σ_k coefficients[i orders + k] (τ/unit)^k`.
     ///
     /// Unknowns of the instant are series, too: at order k a block is linear in `z_k`, with `∂R/∂z` of order 0 as its matrix.
     ///
@@ -281,13 +282,7 @@ impl Compiled {
     ///
     /// # Panics
     /// If [`Compiled::with_series`] was not called, or there is room for less than two orders.
-    pub fn taylor(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        unit: f64,
-        coefficients: &mut [f64],
-    ) -> Result<(), EvaluationFailure> {
+    pub fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.solve_instant(t, y)?;
         let order = coefficients.len() / y.len() - 1;
         let series = self.series.as_mut().expect("compiled with_series");

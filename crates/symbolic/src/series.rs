@@ -1,7 +1,11 @@
 //! Power series of expressions along a motion: Taylor coefficients order by order.
 
-use crate::series_scalar::{LANES, Product, SeriesScalar, Store, Task, Weights};
+pub(crate) mod build;
+mod scalar;
+
 use crate::tape::{Tape, Workspace};
+use scalar::LANES;
+pub use scalar::{Product, SeriesScalar, Store, Task, Weights};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -170,8 +174,7 @@ impl SeriesTape {
         let stride = (order + 1 + LANES).next_multiple_of(LANES);
         let zero = T::from_f64(0.0);
         let at = |row: Row| row as usize * stride;
-        let place =
-            |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
+        let place = |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
         let mut halves = [vec![zero; order * stride], vec![zero; order * stride]];
         for newest in 1..order {
             for j in 1..=newest {
