@@ -25,7 +25,7 @@ pub struct DenseOutput {
     /// Step k begins at `begins[k]` and has the length `widths[k]`, of either sign.
     begins: Vec<f64>,
     widths: Vec<f64>,
-    /// `coefficients[(k · terms + j) · dimension + i]`: step k, basis function j, component i. Empty: ends only.
+    /// Step after step, in the order of the basis. Empty: ends only.
     coefficients: Vec<f64>,
 }
 
@@ -161,9 +161,9 @@ impl DenseOutput {
 /// What the coefficients of a step are multiplied by.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Basis {
-    /// 1, θ, θ (1 − θ), θ² (1 − θ) …
+    /// 1, θ, θ (1 − θ), θ² (1 − θ) …; all components of the first coefficient, then those of the second …
     Nested,
-    /// 1, θ, θ² …
+    /// 1, θ, θ² …; all coefficients of the first component, then those of the second …
     Powers,
 }
 
@@ -171,10 +171,16 @@ pub(crate) enum Basis {
 pub(crate) fn evaluate_segment(basis: Basis, coefficients: &[f64], theta: f64, y: &mut [f64]) {
     let dimension = y.len();
     let terms = coefficients.len() / dimension;
+    if basis == Basis::Powers {
+        for (y, row) in y.iter_mut().zip(coefficients.chunks_exact(terms)) {
+            *y = row.iter().rev().fold(0.0, |sum, c| c + theta * sum);
+        }
+        return;
+    }
     y.copy_from_slice(&coefficients[(terms - 1) * dimension..]);
     for (j, row) in coefficients[..(terms - 1) * dimension].chunks_exact(dimension).enumerate().rev() {
         // c_{j+1} is multiplied by θ for even j, by 1 − θ for odd j.
-        let factor = if j % 2 == 0 || basis == Basis::Powers { theta } else { 1.0 - theta };
+        let factor = if j % 2 == 0 { theta } else { 1.0 - theta };
         for (y, c) in y.iter_mut().zip(row) {
             *y = c + factor * *y;
         }

@@ -57,10 +57,10 @@ pub trait Problem {
         false
     }
 
-    /// Writes the coefficients of the solution through `(t, y)`, as many orders as there is room for:
+    /// Writes the coefficients of the solution through `(t, y)`, component after component, as many orders as there is room for:
     ///
     /// ```text
-    /// y_i(t + τ) = Σ_k coefficients[k n + i] (τ / unit)^k,   k = 0, 1, … coefficients.len() / n − 1,   unit > 0
+    /// y_i(t + τ) = Σ_k coefficients[i m + k] (τ / unit)^k,   k = 0, 1, … m − 1,   m = coefficients.len() / n,   unit > 0
     /// ```
     ///
     /// A coefficient that overflows may be written as such.

@@ -375,7 +375,8 @@ impl Compiled {
         Ok(())
     }
 
-    /// Taylor coefficients of the motion through `(t, y)`, to the order for which there is room, `y_i(t + τ) = Σ_k coefficients[k n + i] (τ/unit)^k`.
+    /// Taylor coefficients of the motion through `(t, y)`, component after component, as many orders as there is room for:
+    /// `y_i(t + τ) = Σ_k coefficients[i orders + k] (τ/unit)^k`.
     ///
     /// Unknowns of the instant are series, too: at order k a block is linear in `z_k`, with `∂R/∂z` of order 0 as its matrix.
     ///

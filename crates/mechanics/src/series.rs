@@ -61,17 +61,15 @@ impl Series {
         });
     }
 
-    /// The coefficients of the states, `coefficients[k n + i]`, from the last expansion.
+    /// The coefficients of the states, component after component, from the last expansion.
     pub(crate) fn write(&self, y: &[f64], coefficients: &mut [f64]) {
-        let n = y.len();
-        coefficients[n..].fill(0.0);
-        for (i, y) in y.iter().enumerate() {
+        let orders = coefficients.len() / y.len();
+        for ((i, y), row) in y.iter().enumerate().zip(coefficients.chunks_exact_mut(orders)) {
             match self.tape.input(1 + i, &self.workspace) {
-                None => coefficients[i] = *y,
-                Some(series) => {
-                    for (c, x) in coefficients[i..].iter_mut().step_by(n).zip(series) {
-                        *c = *x;
-                    }
+                Some(series) => row.copy_from_slice(series),
+                None => {
+                    row.fill(0.0);
+                    row[0] = *y;
                 }
             }
         }

@@ -3,9 +3,9 @@
 use crate::arena::{Arena, Node};
 use crate::number::Number;
 use crate::program::{Id, Program};
-use crate::series::{SeriesInput, SeriesTape};
+use crate::series::{SeriesInput, SeriesTape, build};
 use crate::tape::Tape;
-use crate::{Expr, Graph, Symbol, lower, series_build};
+use crate::{Expr, Graph, Symbol, lower};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::HashMap;
 
@@ -118,7 +118,7 @@ impl Graph {
         let all: Vec<Expr> = outputs.iter().chain(blocks.iter().flatten()).copied().collect();
         let mut series = None;
         self.lowered(&symbols, definitions, &all, constants, |program, ids| {
-            let tape = series.insert(series_build::build(program, &kinds, ids, outputs.len(), &sizes));
+            let tape = series.insert(build::build(program, &kinds, ids, outputs.len(), &sizes));
             tape.first.clone()
         })?;
         Ok(series.expect("made where the program was lowered"))

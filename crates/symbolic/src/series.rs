@@ -1,7 +1,11 @@
 //! Power series of expressions along a motion: Taylor coefficients order by order.
 
-use crate::series_scalar::{LANES, Product, SeriesScalar, Store, Task, Weights};
+pub(crate) mod build;
+mod scalar;
+
 use crate::tape::{Tape, Workspace};
+use scalar::LANES;
+pub use scalar::{Product, SeriesScalar, Store, Task, Weights};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -101,9 +101,7 @@ pub fn solution(rates: fn(&Jet, &[Jet]) -> Vec<Jet>, t: f64, y: &[f64], unit: f6
             y.0.push(unit * rate.0[k] / (k + 1) as f64);
         }
     }
-    for (k, row) in coefficients.chunks_exact_mut(n).enumerate() {
-        for (c, y) in row.iter_mut().zip(&series) {
-            *c = y.0[k];
-        }
+    for (row, y) in coefficients.chunks_exact_mut(orders).zip(&series) {
+        row.copy_from_slice(&y.0);
     }
 }

@@ -75,8 +75,9 @@ impl Problem for Case {
         self.rates(t, y, &mut rates)?;
         solution(self.series.expect("a series"), t, y, unit, coefficients);
         // Where the rates are not what the series says, as behind a wall, the rates count.
-        for (c, rate) in coefficients[y.len()..].iter_mut().zip(rates) {
-            *c += 0.0 * rate;
+        let orders = coefficients.len() / y.len();
+        for (row, rate) in coefficients.chunks_exact_mut(orders).zip(rates) {
+            row[1] += 0.0 * rate;
         }
         Ok(())
     }

@@ -128,11 +128,8 @@ const LARGE: usize = 1 << 16;
 
 impl SeriesScalar for f64 {
     fn room(places: usize) -> usize {
-        match places {
-            0..=SMALL => SMALL + LANES,
-            0..=LARGE => LARGE + LANES,
-            _ => places,
-        }
+        let sizes = [SMALL, LARGE].map(|size| size + LANES);
+        sizes.into_iter().find(|size| places <= *size).unwrap_or(places)
     }
 
     fn dispatch<F: Task<f64>>(rows: &mut [f64], task: F) {

@@ -1,9 +1,11 @@
 //! From a straight-line program to a [`SeriesTape`].
 
-use crate::Function;
+mod decide;
+mod functions;
+
+use super::{Bilinear, Definition, Implicit, Row, SeriesInput, SeriesTape, Slot, Source};
 use crate::number::{Number, Rational};
 use crate::program::{Id, Program, Value};
-use crate::series::{Bilinear, Definition, Implicit, Row, SeriesInput, SeriesTape, Slot, Source};
 use crate::tape::Tape;
 use rustc_hash::FxHashMap;
 
@@ -124,56 +126,6 @@ impl<'i> Builder<'i> {
             Value::Mul(a, b) if !self.varies(b) => Some((Multiple::By(b), a)),
             Value::Div(a, b) if !self.varies(b) => Some((Multiple::Over(b), a)),
             _ => None,
-        }
-    }
-
-    /// Decides from the last value to the first, so that all users of a value come before it.
-    fn decide(&mut self, outputs: &[Id]) {
-        let n = self.program.len();
-        let (mut linear, mut factor) = (vec![0_usize; n], vec![0_usize; n]);
-        self.decisions = vec![Decision::None; n];
-        for o in outputs {
-            linear[*o as usize] += 2;
-        }
-        for id in (0..n).rev() {
-            let (terms, factors) = (linear[id], factor[id]);
-            if terms + factors == 0 || !self.varies(id as Id) {
-                continue;
-            }
-            let value = self.program.value(id as Id);
-            let multiple = self.multiple(id as Id);
-            let bilinear = multiple.is_some()
-                || matches!(value, Value::Add(..) | Value::Sub(..) | Value::Mul(..) | Value::Square(_));
-            self.decisions[id] = if bilinear && terms == 1 && factors == 0 {
-                Decision::Absorbed
-            } else if multiple.is_some() && terms == 0 {
-                Decision::Peeled
-            } else {
-                Decision::Row
-            };
-            if let Some((_, a)) = multiple {
-                match self.decisions[id] {
-                    Decision::Peeled => factor[a as usize] += factors,
-                    _ => linear[a as usize] += 1,
-                }
-                continue;
-            }
-            match value {
-                Value::Add(a, b) | Value::Sub(a, b) => {
-                    linear[a as usize] += 1;
-                    linear[b as usize] += 1;
-                }
-                Value::Div(a, b) => {
-                    linear[a as usize] += 1;
-                    factor[b as usize] += 1;
-                }
-                _ => {
-                    let (operands, count) = value.operands();
-                    for o in &operands[..count] {
-                        factor[*o as usize] += 1;
-                    }
-                }
-            }
         }
     }
 
@@ -307,189 +259,6 @@ impl<'i> Builder<'i> {
         (id, weight)
     }
 
-    fn define(&mut self, id: Id) -> Row {
-        let value = self.program.value(id);
-        match value {
-            Value::Input(_) => self.fresh(Some(id)),
-            Value::Neg(_) | Value::Add(..) | Value::Sub(..) | Value::Mul(..) | Value::Square(_) => self.linear(id),
-            Value::Div(_, b) if !self.varies(b) => self.linear(id),
-            Value::Div(a, b) => self.quotient(id, Some(a), b),
-            Value::Recip(b) => self.quotient(id, None, b),
-            Value::Sqrt(a) => self.square_root(id, a),
-            Value::Call(function, a) => self.call(id, function, a),
-            Value::Pow(a, b) => self.power(id, a, b),
-            Value::Atan2(y, x) => self.angle(id, y, x),
-            Value::Constant(_) | Value::MulAdd(..) | Value::MulSub(..) | Value::NegMulAdd(..) | Value::Mul3(..) => {
-                unreachable!("{value:?} does not vary, or is made later")
-            }
-        }
-    }
-
-    fn linear(&mut self, id: Id) -> Row {
-        let mut sum = Sum::default();
-        self.absorb(&mut sum, id, self.one, true);
-        let row = self.fresh(Some(id));
-        self.definitions.push((row, sum));
-        row
-    }
-
-    /// b c = a
-    fn quotient(&mut self, id: Id, numerator: Option<Id>, b: Id) -> Row {
-        let (mut sum, reciprocal) = (Sum::default(), self.push(Value::Recip(b)));
-        if let Some(a) = numerator {
-            self.absorb(&mut sum, a, reciprocal, false);
-        }
-        let divisor = self.row(b);
-        let row = self.fresh(Some(id));
-        let minus = self.minus(reciprocal);
-        sum.pairs.push((minus, divisor, row));
-        sum.terms.push((self.times(minus, id), divisor));
-        self.definitions.push((row, sum));
-        row
-    }
-
-    /// s² = a
-    fn square_root(&mut self, id: Id, a: Id) -> Row {
-        let two = self.number(2);
-        let double = self.times(two, id);
-        let weight = self.push(Value::Recip(double));
-        let mut sum = Sum::default();
-        self.absorb(&mut sum, a, weight, false);
-        let row = self.fresh(Some(id));
-        sum.pairs.push((self.minus(weight), row, row));
-        self.definitions.push((row, sum));
-        row
-    }
-
-    fn call(&mut self, id: Id, function: Function, a: Id) -> Row {
-        use Function::*;
-        match function {
-            Sin | Cos => self.sine_and_cosine(id, a, (Sin, Cos), true),
-            Sinh | Cosh => self.sine_and_cosine(id, a, (Sinh, Cosh), false),
-            Tan => self.tangent(id, a, Value::Add),
-            Tanh => self.tangent(id, a, Value::Sub),
-            Exp => self.exponential(id, a),
-            Log => self.integral(id, a, a, self.one),
-            Asin | Acos | Atan | Asinh | Acosh | Atanh => {
-                let square = self.push(Value::Square(a));
-                let (one, minus_one) = (self.one, self.number(-1));
-                let radicand = self.push(match function {
-                    Asin | Acos | Atanh => Value::Sub(one, square),
-                    Acosh => Value::Sub(square, one),
-                    _ => Value::Add(one, square),
-                });
-                let rational = matches!(function, Atan | Atanh);
-                let divisor = if rational { radicand } else { self.push(Value::Sqrt(radicand)) };
-                let sign = if function == Acos { minus_one } else { one };
-                self.integral(id, a, divisor, sign)
-            }
-        }
-    }
-
-    /// e' = a' e, with any value at order 0
-    fn exponential(&mut self, id: Id, a: Id) -> Row {
-        let argument = self.row(a);
-        let slope = self.slope(argument);
-        let row = self.fresh(Some(id));
-        let sum = Sum { terms: vec![(id, argument)], pairs_over_k: vec![(self.one, slope, row)], ..Sum::default() };
-        self.definitions.push((row, sum));
-        row
-    }
-
-    /// s' = a' c, c' = ∓a' s; the upper sign if it is a circle
-    fn sine_and_cosine(&mut self, id: Id, a: Id, (sine, cosine): (Function, Function), circle: bool) -> Row {
-        let argument = self.row(a);
-        let slope = self.slope(argument);
-        let (s, c) = (self.push(Value::Call(sine, a)), self.push(Value::Call(cosine, a)));
-        let rows = (self.fresh(Some(s)), self.fresh(Some(c)));
-        let (one, minus_one) = (self.one, self.number(-1));
-        let (sign, weight) = if circle { (minus_one, self.minus(s)) } else { (one, s) };
-        let of_sine = Sum { terms: vec![(c, argument)], pairs_over_k: vec![(one, slope, rows.1)], ..Sum::default() };
-        let of_cosine =
-            Sum { terms: vec![(weight, argument)], pairs_over_k: vec![(sign, slope, rows.0)], ..Sum::default() };
-        self.definitions.push((rows.0, of_sine));
-        self.definitions.push((rows.1, of_cosine));
-        if id == s { rows.0 } else { rows.1 }
-    }
-
-    /// x' = a' u, u = 1 ± x²
-    fn tangent(&mut self, id: Id, a: Id, sign: fn(Id, Id) -> Value) -> Row {
-        let argument = self.row(a);
-        let slope = self.slope(argument);
-        let square = self.push(Value::Square(id));
-        let u = self.push(sign(self.one, square));
-        let row = self.fresh(Some(id));
-        let of_u = match self.rows.get(&u) {
-            Some(row) => *row,
-            None => self.fresh(Some(u)),
-        };
-        let sum = Sum { terms: vec![(u, argument)], pairs_over_k: vec![(self.one, slope, of_u)], ..Sum::default() };
-        self.definitions.push((row, sum));
-        let mut sum = Sum::default();
-        self.absorb(&mut sum, u, self.one, true);
-        self.definitions.push((of_u, sum));
-        row
-    }
-
-    /// x' d = sign · a'
-    fn integral(&mut self, id: Id, a: Id, divisor: Id, sign: Id) -> Row {
-        let reciprocal = self.push(Value::Recip(divisor));
-        let mut sum = Sum::default();
-        let weight = self.times(sign, reciprocal);
-        self.absorb(&mut sum, a, weight, false);
-        let d = self.row(divisor);
-        let row = self.fresh(Some(id));
-        let slope = self.slope(row);
-        sum.pairs_over_k.push((self.minus(reciprocal), slope, d));
-        self.definitions.push((row, sum));
-        row
-    }
-
-    /// a p' = r a' p for a constant r, else p = exp(r log a)
-    fn power(&mut self, id: Id, a: Id, r: Id) -> Row {
-        if self.varies(r) {
-            let logarithm = self.push(Value::Call(Function::Log, a));
-            let product = self.push(Value::Mul(r, logarithm));
-            return self.exponential(id, product);
-        }
-        let base = self.row(a);
-        let row = self.fresh(Some(id));
-        let reciprocal = self.push(Value::Recip(a));
-        let scaled = self.times(r, reciprocal);
-        let (of_base, of_power) = (self.slope(base), self.slope(row));
-        let sum = Sum {
-            terms: vec![(self.times(scaled, id), base)],
-            pairs_over_k: vec![(scaled, of_base, row), (self.minus(reciprocal), of_power, base)],
-            ..Sum::default()
-        };
-        self.definitions.push((row, sum));
-        row
-    }
-
-    /// θ' (x² + y²) = x y' − y x'
-    fn angle(&mut self, id: Id, y: Id, x: Id) -> Row {
-        let squares = [x, y].map(|a| self.push(Value::Square(a)));
-        let d = self.push(Value::Add(squares[0], squares[1]));
-        let reciprocal = self.push(Value::Recip(d));
-        let minus = self.minus(reciprocal);
-        let divisor = self.row(d);
-        let [of_y, of_x] = [y, x].map(|a| if self.varies(a) { Some(self.row(a)) } else { None });
-        let row = self.fresh(Some(id));
-        let mut sum = Sum::default();
-        for (moving, other, factor, weight) in [(of_y, of_x, x, reciprocal), (of_x, of_y, y, minus)] {
-            let Some(moving) = moving else { continue };
-            sum.terms.push((self.times(weight, factor), moving));
-            if let Some(other) = other {
-                let slope = self.slope(moving);
-                sum.pairs_over_k.push((weight, slope, other));
-            }
-        }
-        let slope = self.slope(row);
-        sum.pairs_over_k.push((minus, slope, divisor));
-        self.definitions.push((row, sum));
-        row
-    }
-
     fn finish(mut self, inputs: &[SeriesInput], outputs: &[Id], own_outputs: usize, blocks: &[usize]) -> SeriesTape {
         let input_ids: Vec<Id> = (0..inputs.len()).map(|i| self.push(Value::Input(i as u32))).collect();
         let input_rows: Vec<Option<Row>> =
@@ -503,6 +272,14 @@ impl<'i> Builder<'i> {
         definitions.sort_by_key(|(row, _)| stage(*row));
         let stages = (0..=blocks.len()).map(|b| definitions.partition_point(|(row, _)| stage(*row) <= 1 + b)).collect();
 
+        // Operands in the order in which they are known: the last one is what a sum waits for.
+        let mut known: Vec<usize> = vec![0; self.of_row.len()];
+        for (place, (row, _)) in definitions.iter().enumerate() {
+            known[*row as usize] = 1 + place;
+        }
+        for (slope, of) in &self.slope_list {
+            known[*slope as usize] = known[*of as usize];
+        }
         let none = self.fresh(None);
         let mut totals: Vec<Row> = Vec::new();
         for (_, sum) in &mut definitions {
@@ -510,6 +287,7 @@ impl<'i> Builder<'i> {
             totals.push(if bare { none } else { self.fresh(None) });
             let terms = std::mem::take(&mut sum.terms);
             sum.terms = self.merged(terms);
+            sum.terms.sort_by_key(|(_, operand)| known[*operand as usize]);
         }
         let zero = self.push(Value::Constant(Number::ZERO));
         let mut first: Vec<Id> = self.of_row.iter().map(|id| id.unwrap_or(zero)).collect();
@@ -526,16 +304,18 @@ impl<'i> Builder<'i> {
             terms.extend(sum.terms.iter().map(|(weight, operand)| (slot(*weight), *operand)));
             ends.push(Definition { row: *row, products: *total, end: terms.len() });
             for (list, pairs) in products.iter_mut().zip([&sum.pairs, &sum.pairs_over_k]) {
-                list.extend(pairs.iter().enumerate().map(|(i, (scale, left, right))| {
-                    (i, Bilinear { scale: slot(*scale), target: *total, left: *left, right: *right })
+                list.extend(pairs.iter().map(|(scale, left, right)| Bilinear {
+                    scale: slot(*scale),
+                    target: *total,
+                    left: *left,
+                    right: *right,
                 }));
             }
         }
-        // The first pair of every sum, then the second …: neighbours have different targets and do not wait for each other.
-        let products = products.map(|mut list| {
-            list.sort_by_key(|(i, _)| *i);
-            list.into_iter().map(|(_, product)| product).collect()
-        });
+        // So that coefficients have been written for a while when they are read in groups.
+        for list in &mut products {
+            list.sort_by_key(|product: &Bilinear| known[product.left as usize].max(known[product.right as usize]));
+        }
         let sources: Vec<Source> = outputs
             .iter()
             .zip(&of_outputs)

@@ -1,0 +1,56 @@
+//! Which values get a series of their own.
+
+use super::{Builder, Decision};
+use crate::program::{Id, Value};
+
+impl Builder<'_> {
+    /// Decides from the last value to the first, so that all users of a value come before it.
+    pub(super) fn decide(&mut self, outputs: &[Id]) {
+        let n = self.program.len();
+        let (mut linear, mut factor) = (vec![0_usize; n], vec![0_usize; n]);
+        self.decisions = vec![Decision::None; n];
+        for o in outputs {
+            linear[*o as usize] += 2;
+        }
+        for id in (0..n).rev() {
+            let (terms, factors) = (linear[id], factor[id]);
+            if terms + factors == 0 || !self.varies(id as Id) {
+                continue;
+            }
+            let value = self.program.value(id as Id);
+            let multiple = self.multiple(id as Id);
+            let bilinear = multiple.is_some()
+                || matches!(value, Value::Add(..) | Value::Sub(..) | Value::Mul(..) | Value::Square(_));
+            self.decisions[id] = if bilinear && terms == 1 && factors == 0 {
+                Decision::Absorbed
+            } else if multiple.is_some() && terms == 0 {
+                Decision::Peeled
+            } else {
+                Decision::Row
+            };
+            if let Some((_, a)) = multiple {
+                match self.decisions[id] {
+                    Decision::Peeled => factor[a as usize] += factors,
+                    _ => linear[a as usize] += 1,
+                }
+                continue;
+            }
+            match value {
+                Value::Add(a, b) | Value::Sub(a, b) => {
+                    linear[a as usize] += 1;
+                    linear[b as usize] += 1;
+                }
+                Value::Div(a, b) => {
+                    linear[a as usize] += 1;
+                    factor[b as usize] += 1;
+                }
+                _ => {
+                    let (operands, count) = value.operands();
+                    for o in &operands[..count] {
+                        factor[*o as usize] += 1;
+                    }
+                }
+            }
+        }
+    }
+}
