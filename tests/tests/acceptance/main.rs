@@ -12,3 +12,4 @@ mod planar_body;
 mod references;
 mod second_rates;
 mod support;
+mod taylor;
