@@ -225,7 +225,10 @@ fn json_text(
         "error_estimate": error_estimate,
         "invariants": invariants,
         "projection": { "count": motion.projection.projections, "largest": motion.projection.largest },
-        "work": { "steps": motion.work.steps, "rejected": motion.work.rejected, "evaluations": motion.work.evaluations },
+        "work": {
+            "steps": motion.work.steps, "rejected": motion.work.rejected, "evaluations": motion.work.evaluations,
+            "orders": motion.work.orders,
+        },
         "form": { "why": motion.form.why, "fallbacks": motion.form.fallbacks },
         "seconds": {
             "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate

@@ -18,7 +18,7 @@
 //!
 //! | method | order | order of the dense output | for |
 //! |---|---|---|---|
-//! | [`Method::Taylor`] | from the tolerance: 15 at 1e-12 | that of the step | smooth non-stiff problems with Taylor series, any accuracy |
+//! | [`Method::Taylor`] | from the tolerance: 22 at 1e-9, 29 at 1e-12 | that of the step | smooth non-stiff problems with Taylor series, any accuracy |
 //! | [`Method::Dop853`] | 8 | 7 | non-stiff problems, high accuracy |
 //! | [`Method::Tsit45`] | 5 | 4 | non-stiff problems, low accuracy |
 //! | [`Method::Bdf`] | 1 to 5 | that of the step | stiff problems |
@@ -44,7 +44,8 @@
 //! # Projection
 //! With [`Projection::EveryStep`], [`Problem::project`] is applied to each accepted state before it is stored. Dop853
 //! evaluates the rates at the projected state instead of the other one, so that projection costs no evaluation, and the
-//! dense output stays continuously differentiable. Tsit45, TrBdf2 and Esdirk34 go on from the projected state, at one
+//! dense output stays continuously differentiable. Taylor goes on from the projected state at no cost; the move goes into the last
+//! coefficient of the step's polynomial. Tsit45, TrBdf2 and Esdirk34 go on from the projected state, at one
 //! evaluation a step. Bdf remembers several steps and would have to forget them, so that its own solution is left
 //! unprojected until the projection moves the state by more than 1000 tolerances; what is stored is always projected.
 //! In each case the order of the method is kept, between the ends of the steps the manifold is met to the accuracy of
@@ -53,7 +54,8 @@
 //! # What never happens
 //! A NaN or an infinity is never part of a solution: a step whose stages, state or rates are not finite is tried again
 //! at half its length, at most 60 times, and then the run stops with [`StopCause::NotFinite`]; likewise for
-//! [`EvaluationError`]s, with [`StopCause::Evaluation`] and the problem's own words.
+//! [`EvaluationError`]s, with [`StopCause::Evaluation`] and the problem's own words. A Taylor step across a point where the rates are not smooth
+//! is tried again likewise, and the run stops with [`StopCause::NotSmooth`].
 //!
 //! # Sources
 //! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993 (DOP853,

@@ -203,7 +203,7 @@ fn work_is_counted_to_the_evaluation() {
             let solution = integrate(&mut case, &start, 10.0, &options(method)).unwrap();
             assert_eq!(solution.work.evaluations, case.evaluations, "{method:?}");
             assert_eq!(solution.work.jacobians, case.jacobians, "{method:?}");
-            let implicit = !matches!(method, Method::Dop853 | Method::Tsit45);
+            let implicit = method.is_implicit();
             assert_eq!(solution.work.jacobians > 0, implicit, "{method:?}");
         }
         // On the way to a wall, too.

@@ -157,6 +157,7 @@ impl Motion {
         work.set_item("rejected", motion.work.rejected)?;
         work.set_item("evaluations", motion.work.evaluations)?;
         work.set_item("jacobians", motion.work.jacobians)?;
+        work.set_item("orders", motion.work.orders)?;
         projection.set_item("count", motion.projection.projections)?;
         projection.set_item("largest", motion.projection.largest)?;
         projection.set_item("total", motion.projection.total)?;

@@ -13,3 +13,4 @@ mod reduced_form;
 mod references;
 mod second_rates;
 mod support;
+mod taylor;
