@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use deltaq::{Metric, Ready, SingleRun};
+use deltaq::{Ready, SingleRun};
 use integrate::{Method, Options, Status, Work};
 
 use super::{Effort, Truth};
@@ -52,13 +52,13 @@ fn tightest(method: Method) -> i32 {
 }
 
 impl Series {
-    pub(super) fn new(method: Method, ready: &mut Ready, truth: &Truth, metric: &mut Metric, effort: &Effort) -> Self {
+    pub(super) fn new(method: Method, ready: &mut Ready, truth: &mut Truth, effort: &Effort) -> Self {
         let mut points = Vec::new();
         for exponent in 3..=tightest(method) {
             let mut options = Options::with_tolerance(10.0_f64.powi(-exponent));
             options.method = method;
             options.max_steps = effort.max_steps;
-            let outcome = measure(ready, &options, truth, metric, effort);
+            let outcome = measure(ready, &options, truth, effort);
             let slow = outcome.as_ref().map_or(0.0, |m| m.seconds) > effort.patience;
             points.push(Point { tolerance: options.relative_tolerance, outcome });
             if slow {
@@ -69,13 +69,7 @@ impl Series {
     }
 }
 
-fn measure(
-    ready: &mut Ready,
-    options: &Options,
-    truth: &Truth,
-    metric: &mut Metric,
-    effort: &Effort,
-) -> Result<Measured, String> {
+fn measure(ready: &mut Ready, options: &Options, truth: &mut Truth, effort: &Effort) -> Result<Measured, String> {
     let (mut seconds, mut total) = (f64::INFINITY, 0.0);
     let mut repeats = 0;
     loop {
@@ -90,18 +84,17 @@ fn measure(
         repeats += 1;
         let enough = total >= effort.seconds && repeats >= REPEATS;
         if enough || total > effort.patience {
-            let error = error(&mut run, ready, truth, metric)?;
+            let error = error(&mut run, ready, truth)?;
             return Ok(Measured { seconds, error, work: run.work });
         }
     }
 }
 
-fn error(run: &mut SingleRun, ready: &mut Ready, truth: &Truth, metric: &mut Metric) -> Result<f64, String> {
+fn error(run: &mut SingleRun, ready: &mut Ready, truth: &mut Truth) -> Result<f64, String> {
     let mut largest = 0.0_f64;
-    for sample in &truth.samples {
-        let here = run.at(ready, sample.t).map_err(|error| error.to_string())?.coordinates;
-        let difference: Vec<f64> = here.iter().zip(&sample.q).map(|(a, b)| a - b).collect();
-        largest = largest.max(metric.length(sample.t, &sample.q, &sample.v, &difference));
+    for (i, t) in truth.times.clone().into_iter().enumerate() {
+        let here = run.at(ready, t).map_err(|error| error.to_string())?.coordinates;
+        largest = largest.max(truth.distance(i, &here));
     }
     Ok(largest)
 }

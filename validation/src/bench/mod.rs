@@ -13,7 +13,7 @@ pub use truth::Truth;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Metric, Ready, Settings, choices, derive, ready_to_run, setting};
+use deltaq::{Choice, Ready, Settings, choices, derive, ready_to_run, setting};
 use integrate::{Method, Work};
 use mechanics::Scene;
 
@@ -137,19 +137,18 @@ pub fn bench(name: &str, overrides: &[(String, f64)], effort: &Effort, tell: imp
     let clock = Instant::now();
     let scene = catalogue::find(name, overrides)?;
     let parse = clock.elapsed().as_secs_f64();
-    let mut metric = Metric::new(&scene.system)?;
     let entries = choices(&scene)
         .into_iter()
         .map(|choice| {
             tell(&format!("{}, {}", scene.name, choice.label));
-            let outcome = measurements(&scene, &choice, &mut metric, effort).map_err(|error| format!("{error:#}"));
+            let outcome = measurements(&scene, &choice, effort).map_err(|error| format!("{error:#}"));
             Entry { label: choice.label, formulation: choice.formulation, outcome }
         })
         .collect();
     Ok(Bench { scene: scene.name.clone(), title: scene.title.clone(), parse, entries })
 }
 
-fn measurements(scene: &Scene, choice: &Choice, metric: &mut Metric, effort: &Effort) -> Result<Measurements> {
+fn measurements(scene: &Scene, choice: &Choice, effort: &Effort) -> Result<Measurements> {
     let clock = Instant::now();
     let equations = derive(&scene.system, choice)?;
     let derive = clock.elapsed().as_secs_f64();
@@ -157,8 +156,8 @@ fn measurements(scene: &Scene, choice: &Choice, metric: &mut Metric, effort: &Ef
     let clock = Instant::now();
     let mut ready: Ready = ready_to_run(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();
-    let truth = Truth::new(scene, &ready, SAMPLES).context("no reference")?;
-    let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, &truth, metric, effort)).collect();
+    let mut truth = Truth::new(scene, &ready, SAMPLES).context("no reference")?;
+    let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, &mut truth, effort)).collect();
     Ok(Measurements {
         derive,
         compile,

@@ -1,65 +1,97 @@
 //! The reference that errors are taken against.
 
 use anyhow::Result;
-use deltaq::Ready;
+use deltaq::{Metric, Ready};
 use integrate::{Options, Status};
-use mechanics::Scene;
+use mechanics::{Scene, State};
+use reference::{Question, Reference, reference};
 
 /// Where a motion truly is at some times.
-#[derive(Clone, Debug)]
 pub struct Truth {
-    /// Coordinates and velocities, in the order of time, the last at the end.
-    pub samples: Vec<Sample>,
-    /// What they are wrong by at most, in the largest coordinate.
+    /// Times, the last at the end.
+    pub times: Vec<f64>,
+    /// What the coordinates are wrong by at most, in the kinetic metric.
     pub error: f64,
     /// How they were had.
     pub origin: String,
-    /// Whether the motion ends before the scene does, and the samples therefore before its end.
+    /// Whether the motion ends before the scene does, and the times therefore before its end.
     pub shortened: bool,
+    source: Source,
 }
 
-/// Where a motion is at one time.
-#[derive(Clone, Debug)]
-pub struct Sample {
-    /// Time.
-    pub t: f64,
-    /// `q`.
-    pub q: Vec<f64>,
-    /// `q̇`.
-    pub v: Vec<f64>,
+enum Source {
+    /// In double-double arithmetic.
+    Wide(Box<Reference>),
+    /// In `f64`, where the other could not be had: coordinates and velocities at each time.
+    Narrow(Vec<(Vec<f64>, Vec<f64>)>, Box<Metric>),
 }
 
 /// Of a motion that ends at a singularity this part is measured.
 const PART: f64 = 0.9;
 
+/// Error that is asked of the reference.
+const ACCURACY: f64 = 1e-16;
+
 impl Truth {
-    /// `count` samples of the motion that `ready` starts, up to the end of the scene or a little before the motion's own.
+    /// `count` times of the motion that `ready` starts, up to the end of the scene or a little before the motion's own.
     ///
     /// # Errors
     /// Where the motion cannot be had.
     pub fn new(scene: &Scene, ready: &Ready, count: usize) -> Result<Truth> {
         let mut ready = ready.clone();
         let end = scene.start.t + scene.duration;
-        let runs = [1e-13, 2e-15].map(|tolerance| ready.integrate(end, &Options::with_tolerance(tolerance)));
-        let [looser, tighter] = runs;
+        let [looser, tighter] =
+            [1e-13, 2e-15].map(|tolerance| ready.integrate(end, &Options::with_tolerance(tolerance)));
         let (mut looser, mut tighter) = (looser?, tighter?);
         let shortened = [&looser, &tighter].iter().any(|run| run.status != Status::Completed);
         let reached = tighter.end().min(looser.end());
         let end = if shortened { ready.t + PART * (reached - ready.t) } else { end };
-        let mut samples = Vec::new();
+        let at = |i: usize| if i == count { end } else { ready.t + (end - ready.t) * i as f64 / count as f64 };
+        let times: Vec<f64> = (1..=count).map(at).collect();
+
+        let start = State { t: ready.t, ..scene.start.clone() };
+        let question =
+            Question { system: &scene.system, start: &start, equations: &ready.equations, constants: &ready.constants };
+        let refused = match reference(&question, &times, ACCURACY) {
+            Ok(found) => {
+                let origin = "double-double, two methods".into();
+                return Ok(Truth {
+                    times,
+                    error: found.error(),
+                    origin,
+                    shortened,
+                    source: Source::Wide(Box::new(found)),
+                });
+            }
+            Err(error) => error,
+        };
+        let mut metric = Metric::new(&scene.system)?;
         let mut error = 0.0_f64;
-        for i in 1..=count {
-            let t = if i == count { end } else { ready.t + (end - ready.t) * i as f64 / count as f64 };
+        let mut places = Vec::new();
+        for &t in &times {
             let (here, there) = (tighter.at(&mut ready, t)?, looser.at(&mut ready, t)?);
-            let apart = here.coordinates.iter().zip(&there.coordinates).map(|(a, b)| (a - b).abs());
-            error = apart.fold(error, f64::max);
-            samples.push(Sample { t, q: here.coordinates, v: here.velocities });
+            let apart: Vec<f64> = here.coordinates.iter().zip(&there.coordinates).map(|(a, b)| a - b).collect();
+            error = error.max(metric.length(t, &here.coordinates, &here.velocities, &apart));
+            places.push((here.coordinates, here.velocities));
         }
-        Ok(Truth { samples, error, origin: "DOP853 at tolerance 2e-15".into(), shortened })
+        let origin = format!("DOP853 at tolerance 2e-15 (none in double-double arithmetic: {refused})");
+        Ok(Truth { times, error, origin, shortened, source: Source::Narrow(places, Box::new(metric)) })
     }
 
     /// Time of the last sample.
     pub fn end(&self) -> f64 {
-        self.samples.last().map_or(f64::NAN, |s| s.t)
+        self.times.last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// Distance of the coordinates `q` from the motion at the time of index `i`, kinetic metric.
+    pub fn distance(&mut self, i: usize, q: &[f64]) -> f64 {
+        match &mut self.source {
+            Source::Wide(found) => found.distance(i, q),
+            Source::Narrow(places, metric) => {
+                let (right, v) = &places[i];
+                let apart: Vec<f64> = q.iter().zip(right).map(|(a, b)| a - b).collect();
+                metric.length(self.times[i], right, v, &apart)
+            }
+        }
     }
 }
