@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{Choice, Motion, Settings, SolveError, compare, formulation, removals, solve_choice};
+use deltaq::{Choice, Motion, Settings, SolveError, compare, derive, formulation, removals, setting, solve_choice};
 use integrate::{BoundaryError, CallError};
 use mechanics::{
     ConstantsRule, DerivationError, EvaluationFailure, Removal, RemovalError, Scene, SceneErrorKind, StartError,
@@ -185,6 +185,10 @@ fn dependent_constraints_at_the_start() {
     scene.system.constraints.push(f);
     for name in ["chetaev", "vakonomic", "vakonomic-costate"] {
         let error = refused(solve(&scene, name, ConstantsRule::Zero));
+        assert!(matches!(error, SolveError::Start(StartError::DependentConstraints { .. })), "{error}");
+        // equations that were derived without a look at the start are refused when they are solved there
+        let equations = derive(&scene.system, &choice(name, None, ConstantsRule::Zero)).expect("equations");
+        let error = refused(deltaq::solve(setting(&scene), equations, &ConstantsRule::Zero, &Settings::default()));
         assert!(matches!(error, SolveError::AtStart(EvaluationFailure::Singular { .. })), "{error}");
     }
     let error = compare(scene, Vec::new(), &Settings::default()).err().expect("not refused");

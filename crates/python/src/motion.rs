@@ -118,6 +118,9 @@ pub(crate) struct Motion {
     /// Why the motion stopped, None where it is complete.
     #[pyo3(get)]
     cause: Option<String>,
+    /// Why the error estimate is not to be trusted, None where nothing speaks against it.
+    #[pyo3(get)]
+    doubt: Option<String>,
     /// Time of the start.
     #[pyo3(get)]
     start: f64,
@@ -175,6 +178,7 @@ impl Motion {
             relative_error_estimate: estimate.relative,
             status,
             cause,
+            doubt: motion.doubt.clone(),
             start: motion.start(),
             end: motion.end(),
             constants: constants.unbind(),

@@ -1,12 +1,12 @@
 //! Questions, and the answers of every method.
 
 use anyhow::{Context, Result};
-use deltaq::{Metric, Setting, Settings, TIGHTER, solve};
+use deltaq::{Metric, Motion, Setting, Settings, TIGHTER, solve};
 use integrate::Method;
 use mechanics::{ConstantsRule, Equations, State, System};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
-use super::reference::Reference;
+use super::reference::{Known, Reference};
 use crate::parallel;
 
 /// Limit on the steps of one run: what needs more is refused.
@@ -108,34 +108,46 @@ impl Question {
     /// Where the reference does not reach as far as what it is to judge.
     pub fn cells(&self, case: &'static str) -> Result<Vec<Cell>> {
         let subject = (self.subject)();
-        let cell = |method| {
-            let (verdict, steps) =
-                self.answer(&subject, method).with_context(|| format!("{case}, {}, {method:?}", self.point))?;
-            Ok(Cell { case, point: self.point, formulation: self.formulation.clone(), method, verdict, steps })
+        let mut motions: Vec<(Method, Result<Motion, String>)> =
+            Method::ALL.into_iter().map(|method| (method, motion(&subject, method))).collect();
+        let reached = motions.iter().filter_map(|(_, motion)| motion.as_ref().ok());
+        // one reference for all, as far as the one that comes furthest
+        let furthest = reached.map(|motion| (motion.start(), motion.end())).max_by(|a, b| a.1.total_cmp(&b.1));
+        let mut known = match furthest {
+            Some((start, end)) => Some(
+                self.reference
+                    .up_to(start, end)
+                    .map_err(anyhow::Error::msg)
+                    .with_context(|| format!("{case}, {}", self.point))?,
+            ),
+            None => None,
         };
-        Method::ALL.into_iter().map(cell).collect()
+        let mut cells = Vec::with_capacity(motions.len());
+        for (method, motion) in &mut motions {
+            let steps = motion.as_ref().map_or(0, |motion| motion.work.steps);
+            let verdict = match (motion, &subject, &mut known) {
+                (Ok(motion), Ok(subject), Some(known)) => self.judged(motion, &subject.measured, known, *method)?,
+                (Err(cause), ..) => Verdict::Refused { t: None, cause: cause.clone() },
+                (_, Err(cause), _) => Verdict::Refused { t: None, cause: cause.clone() },
+                (Ok(_), Ok(_), None) => unreachable!("there is a reference where there is a motion"),
+            };
+            let (point, formulation) = (self.point, self.formulation.clone());
+            cells.push(Cell { case, point, formulation, method: *method, verdict, steps });
+        }
+        Ok(cells)
     }
 
-    /// The verdict on one method, and the steps it took.
-    fn answer(&self, subject: &Result<Subject, String>, method: Method) -> Result<(Verdict, usize)> {
-        let refused = |cause: String| Ok((Verdict::Refused { t: None, cause }, 0));
-        let Subject { system, start, end, equations, constants, measured } = match subject {
-            Ok(subject) => subject,
-            Err(cause) => return refused(cause.clone()),
-        };
-        let settings = Settings { tolerance: tolerance(method), method, max_steps: MAX_STEPS, ..Settings::default() };
-        let setting = Setting { system, start, end: *end };
-        let mut motion = match solve(setting, equations.clone(), constants, &settings) {
-            Ok(motion) => motion,
-            Err(error) => return refused(error.to_string()),
-        };
-        let steps = motion.work.steps;
-        let mut known = self.reference.up_to(motion.start(), motion.end()).map_err(anyhow::Error::msg)?;
-        let floor = FLOOR.max(BETTER_THAN_IT_KNOWS * settings.tolerance * TIGHTER);
-        match judge(&mut motion, &mut Metric::new(measured)?, &mut known, Allowance { floor, compared: self.compared })
-        {
-            Ok(verdict) => Ok((verdict, steps)),
-            Err(error) => refused(error.to_string()),
-        }
+    fn judged(&self, motion: &mut Motion, measured: &System, known: &mut Known, method: Method) -> Result<Verdict> {
+        let floor = FLOOR.max(BETTER_THAN_IT_KNOWS * tolerance(method) * TIGHTER);
+        let allowance = Allowance { floor, compared: self.compared };
+        let refused = |error: deltaq::SolveError| Verdict::Refused { t: None, cause: error.to_string() };
+        Ok(judge(motion, &mut Metric::new(measured)?, known, allowance).unwrap_or_else(refused))
     }
+}
+
+fn motion(subject: &Result<Subject, String>, method: Method) -> Result<Motion, String> {
+    let Subject { system, start, end, equations, constants, .. } = subject.as_ref().map_err(Clone::clone)?;
+    let settings = Settings { tolerance: tolerance(method), method, max_steps: MAX_STEPS, ..Settings::default() };
+    let setting = Setting { system, start, end: *end };
+    solve(setting, equations.clone(), constants, &settings).map_err(|error| error.to_string())
 }

@@ -1,6 +1,8 @@
 //! What a motion should have been: closed forms, and equations derived by hand in other variables.
 
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
+use mechanics::{State, System};
+use referees::maggi::{self, Form, Maggi};
 
 /// Coordinates over time.
 pub type Road = Box<dyn Fn(f64) -> Vec<f64> + Send + Sync>;
@@ -11,10 +13,15 @@ pub type Rates = Box<dyn Fn(f64, &[f64], &mut [f64]) + Send + Sync>;
 /// Coordinates from `(t, y)`.
 pub type Reading = Box<dyn Fn(f64, &[f64]) -> Vec<f64> + Send + Sync>;
 
+/// A system and its start.
+pub type Posed = Box<dyn Fn() -> Result<(System, State), String> + Send + Sync>;
+
 /// A road to the same motion that does not share the failure of what it judges.
 pub enum Reference {
     /// The motion in closed form.
     Closed(Road),
+    /// Chetaev's motion by Maggi's equations, of a system in the same coordinates with equivalent constraints.
+    Maggi(Posed),
     /// Equations in other variables, derived by hand and well conditioned where the judged ones are not.
     Ode {
         /// `y(t₀)`.
@@ -30,6 +37,15 @@ pub enum Reference {
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
 const STEPS: usize = 2_000_000;
 
+/// Tolerances of the two runs of a [`Reference::Maggi`], whose solves of one instant leave more round-off.
+const MAGGI: [f64; 2] = [1e-10, 1e-12];
+
+/// A reference that stops within this part of the time before the motion stops at the same singularity; nothing is compared in between.
+const SAME_STOP: f64 = 1e-3;
+
+/// Length of a run that is needed only for its start.
+const SHORTEST: f64 = 1e-9;
+
 /// A reference, known up to some time.
 pub enum Known<'a> {
     /// At any time.
@@ -43,6 +59,8 @@ pub enum Known<'a> {
         /// The state there.
         y: &'a [f64],
     },
+    /// From two runs of Maggi's equations, the second one tighter.
+    Maggi(Box<[maggi::Motion; 2]>),
     /// From two runs, the second one tighter.
     Runs {
         /// How the states are read.
@@ -59,6 +77,25 @@ impl Reference {
     /// The words of the integrator.
     pub fn up_to(&self, start: f64, end: f64) -> Result<Known<'_>, String> {
         match self {
+            Reference::Maggi(posed) => {
+                let (system, state) = posed()?;
+                let run = |tolerance: f64| -> Result<maggi::Motion, String> {
+                    let mut maggi = Maggi::new(&system).map_err(|error| error.to_string())?;
+                    // an end is needed even where nothing is to be compared but the start
+                    let end = if end == start { start + SHORTEST } else { end };
+                    let motion =
+                        maggi.solve(&state, end, tolerance, Form::Accelerations).map_err(|error| error.to_string())?;
+                    match motion.ending() {
+                        maggi::Ending::Completed => Ok(motion),
+                        // at the same singularity
+                        maggi::Ending::Stopped { t, .. } if (end - t).abs() <= SAME_STOP * (end - start).abs() => {
+                            Ok(motion)
+                        }
+                        other => Err(format!("the reference stops: {other:?}")),
+                    }
+                };
+                Ok(Known::Maggi(Box::new([run(MAGGI[0])?, run(MAGGI[1])?])))
+            }
             Reference::Ode { y, read, .. } if end == start => Ok(Known::Start { read, t: start, y }),
             Reference::Closed(road) => Ok(Known::Closed(road)),
             Reference::Ode { y, rates, read } => {
@@ -79,12 +116,24 @@ impl Reference {
 }
 
 impl Known<'_> {
-    /// The coordinates at `t`, and those by a second run, whose distance is what they may be off by.
-    pub fn at(&mut self, t: f64) -> (Vec<f64>, Vec<f64>) {
-        match self {
+    /// The coordinates at `t`, and those by a second run, whose distance is what they may be off by; `None` between where the reference stops and where
+    /// a motion stops at the same singularity.
+    pub fn at(&mut self, t: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+        Some(match self {
             Known::Closed(road) => {
                 let q = road(t);
                 (q.clone(), q)
+            }
+            Known::Maggi(runs) => {
+                let [looser, kept] = &mut **runs;
+                if t > looser.end().min(kept.end()) {
+                    return None;
+                }
+                let read = |run: &mut maggi::Motion| {
+                    let size = run.solution.dense.dimension();
+                    run.state(t).map_or_else(|_| vec![f64::NAN; size], |state| state.q)
+                };
+                (read(kept), read(looser))
             }
             Known::Start { read, t, y } => (read(*t, y), read(*t, y)),
             Known::Runs { read, runs } => {
@@ -95,7 +144,7 @@ impl Known<'_> {
                 kept.evaluate(t, &mut y);
                 (read(t, &y), second)
             }
-        }
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod blow_up;
 mod cone;
+mod cylinders;
 mod dependent;
 mod mass;
 mod sledge;
@@ -23,6 +24,9 @@ pub const CASES: &[Case] = &[
     sledge::LONG,
     cone::APEX,
     cone::CHART,
+    cylinders::TURN,
+    cylinders::HEADING,
+    cylinders::ANGLE,
     dependent::CASE,
     units::LENGTH,
     units::TIME,
