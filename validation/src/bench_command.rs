@@ -2,10 +2,10 @@
 
 use anyhow::{Result, bail};
 
-use crate::bench::{Effort, bench};
+use crate::bench::Effort;
 use crate::catalogue;
 use crate::cli::{BenchArguments, TextOrJson};
-use crate::parallel;
+use crate::main_job::bench_all;
 use crate::report::{bench_files, bench_json, bench_table, write_all};
 
 /// Measures error against run time.
@@ -17,15 +17,10 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
         bail!("--seconds is {}; it must be above 0", arguments.seconds);
     }
     let effort = Effort { seconds: arguments.seconds, ..Effort::default() };
-    let all: Vec<String> = catalogue::SCENES.iter().map(|(name, _)| name.to_string()).collect();
-    let names = if arguments.scenes.is_empty() { &all } else { &arguments.scenes };
-    let bar = parallel::progress(names.len(), arguments.quiet);
-    let mut benches = Vec::new();
-    for name in names {
-        benches.push(bench(name, &arguments.overrides, &effort, |words| bar.set_message(words.to_string()))?);
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
+    let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    let given: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
+    let names: Vec<&str> = if given.is_empty() { all() } else { given };
+    let benches = bench_all(&names, &arguments.overrides, &effort, arguments.quiet)?;
     if let Some(folder) = &arguments.out {
         write_all(folder, &bench_files(&benches)?)?;
     }

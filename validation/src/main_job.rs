@@ -10,7 +10,7 @@ use deltaq::{Comparison, Settings, compare};
 use mechanics::Scene;
 use serde_json::Value;
 
-use crate::bench::{Bench, Effort, bench};
+use crate::bench::{self, Bench, Effort};
 use crate::casadi_job::{self, Outcome};
 use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
@@ -84,7 +84,7 @@ impl Results {
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
         // last, and one after the other: nothing else is to run beside what is timed
         let benches = if sections.contains(&Section::ErrorVsTime) {
-            bench_all(names, &Effort::brief(), quiet)?
+            bench_all(names, &[], &Effort::brief(), quiet)?
         } else {
             Vec::new()
         };
@@ -236,14 +236,20 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     results.into_iter().collect()
 }
 
-/// Measures the scenes one after the other.
+/// References of all scenes over all processors, then measurements one after the other.
 ///
 /// # Errors
 /// Where a scene cannot be read.
-pub fn bench_all(names: &[&str], effort: &Effort, quiet: bool) -> Result<Vec<Bench>> {
-    let bar = parallel::progress(names.len(), quiet);
-    let benches = names.iter().map(|name| {
-        let measured = bench(name, &[], effort, |words| bar.set_message(words.to_string()));
+pub fn bench_all(names: &[&str], overrides: &[(String, f64)], effort: &Effort, quiet: bool) -> Result<Vec<Bench>> {
+    let bar = parallel::progress(2 * names.len(), quiet);
+    bar.set_message("references");
+    let prepared = parallel::map(names, |name| {
+        let prepared = bench::prepare(name, overrides);
+        bar.inc(1);
+        prepared
+    });
+    let benches = prepared.into_iter().map(|prepared| {
+        let measured = bench::measure(prepared?, effort, |words| bar.set_message(words.to_string()));
         bar.inc(1);
         measured
     });

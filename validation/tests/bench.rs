@@ -1,7 +1,7 @@
 //! `deltaq bench`: what is measured is right, and what fails is listed.
 
 use integrate::Method;
-use validation::bench::{Effort, bench};
+use validation::bench::{Effort, measure, prepare};
 use validation::report::{bench_files, bench_json};
 
 fn effort(max_steps: usize) -> Effort {
@@ -10,7 +10,7 @@ fn effort(max_steps: usize) -> Effort {
 
 #[test]
 fn every_formulation_is_measured_by_every_method() {
-    let bench = bench("sledge", &[], &effort(20_000), |_| ()).unwrap();
+    let bench = measure(prepare("sledge", &[]).unwrap(), &effort(20_000), |_| ()).unwrap();
     assert!(bench.entries.len() >= 4);
     for entry in &bench.entries {
         let m = entry.outcome.as_ref().unwrap_or_else(|reason| panic!("{}: {reason}", entry.label));
@@ -27,7 +27,7 @@ fn every_formulation_is_measured_by_every_method() {
 
 #[test]
 fn failures_are_listed_with_their_cause() {
-    let bench = bench("sledge", &[], &effort(20), |_| ()).unwrap();
+    let bench = measure(prepare("sledge", &[]).unwrap(), &effort(20), |_| ()).unwrap();
     let files = bench_files(&[bench]).unwrap();
     let page = &files.iter().find(|f| f.path.ends_with("error-vs-time.md")).unwrap().text;
     assert!(page.contains("more than 20 steps"), "{page}");

@@ -13,7 +13,7 @@ pub use truth::Truth;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Ready, Settings, choices, derive, ready_to_run, setting};
+use deltaq::{Choice, Ready, Settings, choices, derive_at, ready_to_run, setting};
 use integrate::{Method, Work};
 use mechanics::Scene;
 
@@ -129,34 +129,53 @@ impl Measurements {
     }
 }
 
-/// Measures every formulation of `name`, a built-in scene or the path of a scene file.
+/// A scene with a reference for each of its formulations.
+pub struct Prepared {
+    name: String,
+    overrides: Vec<(String, f64)>,
+    truths: Vec<Result<Truth, String>>,
+}
+
+/// Computes the references of `name`, a built-in scene or the path of a scene file: nothing is timed, so that several may be prepared at once.
+///
+/// # Errors
+/// Where the scene cannot be read.
+pub fn prepare(name: &str, overrides: &[(String, f64)]) -> Result<Prepared> {
+    let scene = catalogue::find(name, overrides)?;
+    let truth = |choice: &Choice| -> Result<Truth> {
+        let equations = derive_at(&scene.system, &scene.start, choice)?;
+        let ready = ready_to_run(setting(&scene), equations, &choice.constants, &Settings::default())?;
+        Truth::new(&scene, &ready, SAMPLES).context("no reference")
+    };
+    let truths = choices(&scene).iter().map(|choice| truth(choice).map_err(|error| format!("{error:#}"))).collect();
+    Ok(Prepared { name: name.into(), overrides: overrides.to_vec(), truths })
+}
+
+/// Measures every formulation, by every method; nothing else should run meanwhile.
 ///
 /// # Errors
 /// Where the scene cannot be read. A formulation that cannot be measured is an [`Entry`] that says why.
-pub fn bench(name: &str, overrides: &[(String, f64)], effort: &Effort, tell: impl Fn(&str)) -> Result<Bench> {
+pub fn measure(prepared: Prepared, effort: &Effort, tell: impl Fn(&str)) -> Result<Bench> {
     let clock = Instant::now();
-    let scene = catalogue::find(name, overrides)?;
+    let scene = catalogue::find(&prepared.name, &prepared.overrides)?;
     let parse = clock.elapsed().as_secs_f64();
-    let entries = choices(&scene)
-        .into_iter()
-        .map(|choice| {
-            tell(&format!("{}, {}", scene.name, choice.label));
-            let outcome = measurements(&scene, &choice, effort).map_err(|error| format!("{error:#}"));
-            Entry { label: choice.label, formulation: choice.formulation, outcome }
-        })
-        .collect();
-    Ok(Bench { scene: scene.name.clone(), title: scene.title.clone(), parse, entries })
+    let entries = choices(&scene).into_iter().zip(prepared.truths).map(|(choice, truth)| {
+        tell(&format!("{}, {}", scene.name, choice.label));
+        let outcome =
+            truth.and_then(|truth| measurements(&scene, &choice, truth, effort).map_err(|error| format!("{error:#}")));
+        Entry { label: choice.label, formulation: choice.formulation, outcome }
+    });
+    Ok(Bench { entries: entries.collect(), scene: scene.name.clone(), title: scene.title.clone(), parse })
 }
 
-fn measurements(scene: &Scene, choice: &Choice, effort: &Effort) -> Result<Measurements> {
+fn measurements(scene: &Scene, choice: &Choice, mut truth: Truth, effort: &Effort) -> Result<Measurements> {
     let clock = Instant::now();
-    let equations = derive(&scene.system, choice)?;
+    let equations = derive_at(&scene.system, &scene.start, choice)?;
     let derive = clock.elapsed().as_secs_f64();
     let settings = Settings { method: Method::Taylor, ..Settings::default() };
     let clock = Instant::now();
     let mut ready: Ready = ready_to_run(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();
-    let mut truth = Truth::new(scene, &ready, SAMPLES).context("no reference")?;
     let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, &mut truth, effort)).collect();
     Ok(Measurements {
         derive,
@@ -165,7 +184,7 @@ fn measurements(scene: &Scene, choice: &Choice, effort: &Effort) -> Result<Measu
         span: (ready.t, truth.end()),
         shortened: truth.shortened,
         reference_error: truth.error,
-        reference: truth.origin.clone(),
+        reference: truth.origin,
         series,
     })
 }
