@@ -162,7 +162,10 @@ pub fn compare_motions_by(
     let complete = first.is_complete() && second.is_complete();
     let estimate = estimates[0].max(estimates[1]);
     let relative = if scale > 0.0 { estimate / scale } else { estimate };
-    let verdict = if certain_from.is_some() {
+    let doubt = first.doubt.as_ref().or(second.doubt.as_ref());
+    let verdict = if let Some(doubt) = doubt {
+        Verdict::Undecided { because: doubt.clone() }
+    } else if certain_from.is_some() {
         Verdict::Different
     } else if !complete {
         let stop = [&first.ending, &second.ending].into_iter().find_map(|e| match e {

@@ -388,7 +388,7 @@ impl Compiled {
     pub fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.load(t, y);
         self.solve_blocks(Blocks::Left)?;
-        let trusted = self.straight.as_mut().is_none_or(|s| s.rates(&self.inputs).is_some());
+        let trusted = self.straight.as_mut().is_none_or(|s| s.is_trusted(&self.inputs));
         let series = if trusted {
             &mut self.series
         } else {

@@ -50,6 +50,11 @@ impl Straight {
         })
     }
 
+    /// Whether the definitions can be trusted at these values; where they always can, that costs nothing.
+    pub(crate) fn is_trusted(&mut self, values: &[f64]) -> bool {
+        !self.watched || self.rates(values).is_some()
+    }
+
     /// Number of instructions of one evaluation of the rates.
     pub(crate) fn len(&self) -> usize {
         self.rates.len()
