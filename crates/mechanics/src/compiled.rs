@@ -2,7 +2,7 @@
 
 use symbolic::{CompileError, Expr};
 
-use crate::definitions::jacobian;
+use crate::derivatives::Derivatives;
 use crate::equations::Equations;
 use crate::form::Form;
 use crate::instant::{CompiledBlock, EvaluationFailure, Program};
@@ -79,15 +79,6 @@ impl Cost {
     pub fn operations(self) -> usize {
         self.instructions + self.factorization
     }
-}
-
-/// `∂F/∂y` by the implicit function theorem, exact derivatives from the graph.
-#[derive(Clone)]
-struct Derivatives {
-    /// ∂(rates)/∂y row-major, then ∂(rates)/∂z row-major, then ∂R/∂y row-major, block after block.
-    program: Program,
-    unknowns: usize,
-    column: Vec<f64>,
 }
 
 /// What is read off a motion at one instant.
@@ -172,26 +163,7 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::new`].
     pub fn with_jacobian(mut self, equations: &Equations) -> Result<Self, CompileError> {
-        let g = &equations.graph;
-        let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
-        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let mut all = rates.clone();
-        all.extend(equations.blocks.iter().flat_map(|block| &block.residuals));
-        let (definitions, by_state) = jacobian(g, &equations.definitions, &all, &states);
-        let (direct, of_blocks) = by_state.split_at(rates.len() * states.len());
-        let mut outputs = direct.to_vec();
-        outputs.extend(g.jacobian(&rates, &unknowns).entries());
-        outputs.extend(of_blocks);
-        let mut inputs = vec![equations.time];
-        inputs.extend(states);
-        inputs.extend(equations.constant_symbols());
-        inputs.extend(&unknowns);
-        let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
-        self.derivatives = Some(Derivatives {
-            program: Program::by_way_of(equations, &definitions, &inputs, &outputs)?,
-            unknowns: unknowns.len(),
-            column: vec![0.0; largest],
-        });
+        self.derivatives = Some(Derivatives::new(equations)?);
         Ok(self)
     }
 
@@ -347,31 +319,8 @@ impl Compiled {
     /// If [`Compiled::with_jacobian`] was not called.
     pub fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.solve_instant(t, y)?;
-        let n = self.sizes.states;
-        let d = self.derivatives.as_mut().expect("compiled with_jacobian");
-        let values = d.program.run(&self.inputs);
-        let (direct, rest) = values.split_at(n * n);
-        let (by_unknown, mut by_state) = rest.split_at(n * d.unknowns);
-        jacobian.copy_from_slice(direct);
-        for block in &mut self.equations_of_instant {
-            let size = block.size;
-            for column in 0..n {
-                let b = &mut d.column[..size];
-                for (i, x) in b.iter_mut().enumerate() {
-                    *x = -by_state[i * n + column];
-                }
-                if b.iter().all(|&x| x == 0.0) {
-                    continue;
-                }
-                block.factors.solve(b);
-                for row in 0..n {
-                    let sensitivity = &by_unknown[row * d.unknowns + block.first..][..size];
-                    let change: f64 = sensitivity.iter().zip(&*b).map(|(s, x)| s * x).sum();
-                    jacobian[row * n + column] += change;
-                }
-            }
-            by_state = &by_state[size * n..];
-        }
+        let derivatives = self.derivatives.as_mut().expect("compiled with_jacobian");
+        derivatives.write(&self.inputs, &mut self.equations_of_instant, jacobian);
         Ok(())
     }
 

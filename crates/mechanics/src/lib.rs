@@ -4,6 +4,7 @@
 mod automatic_removal;
 mod compiled;
 mod definitions;
+mod derivatives;
 mod equations;
 mod error;
 mod form;

@@ -1,0 +1,71 @@
+//! `∂F/∂y` of compiled equations.
+
+use symbolic::{CompileError, Expr};
+
+use crate::definitions::jacobian;
+use crate::equations::Equations;
+use crate::instant::{CompiledBlock, Program};
+
+/// `∂F/∂y` by the implicit function theorem, exact derivatives from the graph.
+#[derive(Clone)]
+pub(crate) struct Derivatives {
+    /// ∂(rates)/∂y row-major, then ∂(rates)/∂z row-major, then ∂R/∂y row-major, block after block.
+    program: Program,
+    states: usize,
+    unknowns: usize,
+    column: Vec<f64>,
+}
+
+impl Derivatives {
+    pub(crate) fn new(equations: &Equations) -> Result<Self, CompileError> {
+        let g = &equations.graph;
+        let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
+        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
+        let mut all = rates.clone();
+        all.extend(equations.blocks.iter().flat_map(|block| &block.residuals));
+        let (definitions, by_state) = jacobian(g, &equations.definitions, &all, &states);
+        let (direct, of_blocks) = by_state.split_at(rates.len() * states.len());
+        let mut outputs = direct.to_vec();
+        outputs.extend(g.jacobian(&rates, &unknowns).entries());
+        outputs.extend(of_blocks);
+        let mut inputs = vec![equations.time];
+        inputs.extend(states);
+        inputs.extend(equations.constant_symbols());
+        inputs.extend(&unknowns);
+        let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
+        Ok(Derivatives {
+            program: Program::by_way_of(equations, &definitions, &inputs, &outputs)?,
+            states: rates.len(),
+            unknowns: unknowns.len(),
+            column: vec![0.0; largest],
+        })
+    }
+
+    /// Writes `∂F/∂y`, row-major, at `t, y, constants, z`, where `z` solves the blocks, whose factors are at hand.
+    pub(crate) fn write(&mut self, inputs: &[f64], blocks: &mut [CompiledBlock], jacobian: &mut [f64]) {
+        let n = self.states;
+        let values = self.program.run(inputs);
+        let (direct, rest) = values.split_at(n * n);
+        let (by_unknown, mut by_state) = rest.split_at(n * self.unknowns);
+        jacobian.copy_from_slice(direct);
+        for block in blocks {
+            let size = block.size;
+            for column in 0..n {
+                let b = &mut self.column[..size];
+                for (i, x) in b.iter_mut().enumerate() {
+                    *x = -by_state[i * n + column];
+                }
+                if b.iter().all(|&x| x == 0.0) {
+                    continue;
+                }
+                block.factors.solve(b);
+                for row in 0..n {
+                    let sensitivity = &by_unknown[row * self.unknowns + block.first..][..size];
+                    let change: f64 = sensitivity.iter().zip(&*b).map(|(s, x)| s * x).sum();
+                    jacobian[row * n + column] += change;
+                }
+            }
+            by_state = &by_state[size * n..];
+        }
+    }
+}
