@@ -127,7 +127,8 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
-    /// Intermediate quantities in `(t, y)` and earlier ones, by way of which everything else may be written; see [`crate::Definitions`].
+    /// Intermediate quantities in `(t, y, z)` and earlier ones, by way of which everything else may be written; see [`crate::Definitions`]. Blocks and
+    /// guards may need those only that contain no `z`.
     pub definitions: Vec<(Symbol, Expr)>,
     /// `y` with rates and start.
     pub states: Vec<StateVariable>,
@@ -319,13 +320,14 @@ impl Equations {
         }
     }
 
-    /// Substitutes in rates, outputs, invariants and guards.
+    /// Substitutes in definitions, rates, outputs, invariants and guards.
     fn rewrite(&mut self, map: &HashMap<Symbol, Expr>) {
         let g = &self.graph;
         for e in self
-            .states
+            .definitions
             .iter_mut()
-            .map(|s| &mut s.rate)
+            .map(|d| &mut d.1)
+            .chain(self.states.iter_mut().map(|s| &mut s.rate))
             .chain(&mut self.coordinates)
             .chain(&mut self.velocities)
             .chain(self.multipliers.iter_mut().map(|n| &mut n.expression))

@@ -35,7 +35,7 @@ pub use form::Form;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
 pub use instant::EvaluationFailure;
 pub use integrability::{Integrability, integrability};
-pub use quasi_velocities::{DependentVelocity, QuasiVelocities, QuasiVelocity};
+pub use quasi_velocities::{Columns, DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use scene::{SIZE_LIMIT, Scene};
