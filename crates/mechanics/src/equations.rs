@@ -311,7 +311,11 @@ impl Equations {
                 return true;
             }
             let rest = g.substitute(*residual, &HashMap::from([(*unknown, g.zero())]));
-            solved.insert(*unknown, g.neg(g.div(rest, coefficient)));
+            let solution = g.neg(g.div(rest, coefficient));
+            match self.definitions.iter().position(|d| g.depends_on(d.1, *unknown)) {
+                Some(first) => self.definitions.insert(first, (*unknown, solution)),
+                None => _ = solved.insert(*unknown, solution),
+            }
             false
         });
         self.graph = g;
@@ -320,14 +324,13 @@ impl Equations {
         }
     }
 
-    /// Substitutes in definitions, rates, outputs, invariants and guards.
+    /// Substitutes in rates, outputs, invariants and guards.
     fn rewrite(&mut self, map: &HashMap<Symbol, Expr>) {
         let g = &self.graph;
         for e in self
-            .definitions
+            .states
             .iter_mut()
-            .map(|d| &mut d.1)
-            .chain(self.states.iter_mut().map(|s| &mut s.rate))
+            .map(|s| &mut s.rate)
             .chain(&mut self.coordinates)
             .chain(&mut self.velocities)
             .chain(self.multipliers.iter_mut().map(|n| &mut n.expression))

@@ -2,6 +2,7 @@
 //! its equations of motion. Knows no formulation.
 
 mod automatic_removal;
+mod cheapest;
 mod compiled;
 mod definitions;
 mod equations;
@@ -25,6 +26,7 @@ mod start;
 mod straight;
 mod system;
 
+pub use cheapest::cheapest;
 pub use compiled::{Compiled, Cost, Outputs};
 pub use definitions::Definitions;
 pub use equations::{

@@ -28,7 +28,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use mechanics::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, QuasiVelocities, Role,
-    StateVariable, Statement, System, fresh_symbol, refuse_forces,
+    StateVariable, Statement, System, cheapest, fresh_symbol, refuse_forces,
 };
 use symbolic::{Expr, Graph, Symbol};
 
@@ -45,6 +45,11 @@ pub const REDUCED_FORM: Formulation = Formulation {
 
 /// Nodes of an expression that gets no name of its own.
 const SHORT: usize = 8;
+/// Nodes of an expression that is not multiplied out.
+const LONG: usize = 100;
+/// Coordinates of a system in which velocities are put in, if that is shorter; and nodes of `L` and of `v` over which it is not tried.
+const SMALL: usize = 8;
+const WHOLE: usize = 200;
 
 /// Derives the vakonomic equations with states `(q, p)`, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
 ///
@@ -83,54 +88,118 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
     refuse_forces(&system, REDUCED_FORM.name)?;
     let quasi = QuasiVelocities::new(&system, derivation.start)
         .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
-    let mut equations = Equations::new(REDUCED_FORM.name, &system);
     let augmented = augment(&system);
-    let (q, v) = (system.positions(), system.velocities());
-    let costates: Vec<Symbol> = system.coordinates.iter().map(|c| fresh_symbol(g, &format!("p_{}", c.name))).collect();
-    let p = g.variables(&costates);
-    let momenta = g.gradient(system.lagrangian, &v);
+    let fresh = |name: String| fresh_symbol(g, &name);
+    let costates: Vec<Symbol> = system.coordinates.iter().map(|c| fresh(format!("p_{}", c.name))).collect();
+    let costate_rates = costates.iter().map(|&p| fresh(format!("{}'", g.name(p)))).collect();
+    let problem = Problem { quasi, augmented, p: g.variables(&costates), costates, costate_rates };
+    let recursive = problem.equations(system.clone(), None, None);
+    let Some(Whole { balance, rates }) = problem.put_in(&system) else { return Ok(recursive) };
+    let with = |balance, rates| problem.equations(system.clone(), balance, rates);
+    let mixed = [with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))];
+    Ok(cheapest([recursive].into_iter().chain(mixed).collect()))
+}
 
-    let mut definitions = quasi.coefficients.clone();
-    let residuals = stationarity(&system, &quasi, &p, &momenta, &mut definitions);
-    for d in &quasi.dependent {
-        let velocity = velocity(g, d);
-        definitions.define(d.symbol, velocity);
-        let left = g.variable(d.symbol);
-        equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
-    }
-    for (w, &residual) in quasi.free.iter().zip(&residuals) {
-        let meaning = format!("stationary in {}", g.name(w.symbol));
-        equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
-    }
-    let seeds: Vec<Expr> = p.iter().zip(&momenta).map(|(&p, &l_v)| g.sub(p, l_v)).collect();
-    let adjoints = adjoints(g, &quasi, &seeds, &mut definitions);
-    let along = by_positions(&system, &quasi, &adjoints, &mut definitions);
-    let gradient = g.gradient(system.lagrangian, &q);
+/// Quasi-velocities put in: short for small systems, where terms meet that cancel.
+struct Whole {
+    /// `−∂K/∂w`
+    balance: Vec<Expr>,
+    /// `−∂K/∂q`
+    rates: Vec<Expr>,
+}
 
-    let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
-    for i in 0..q.len() {
-        let (rate, start) = (g.variable(v[i]), g.variable(q[i]));
-        equations.states.push(StateVariable { symbol: q[i], role: Role::Position, rate, start });
+struct Problem {
+    quasi: QuasiVelocities,
+    augmented: Augmented,
+    costates: Vec<Symbol>,
+    /// Symbols of `ṗ`, for the reader.
+    costate_rates: Vec<Symbol>,
+    p: Vec<Expr>,
+}
+
+impl Problem {
+    /// The equations by recursion, or by what is given for `∂K/∂w = 0` and `ṗ`.
+    fn equations(&self, system: System, balance: Option<&[Expr]>, rates: Option<&[Expr]>) -> Equations {
+        let Problem { quasi, augmented, costates, costate_rates, p } = self;
+        let g = &system.graph;
+        let mut equations = Equations::new(REDUCED_FORM.name, &system);
+        let (q, v) = (system.positions(), system.velocities());
+        let momenta = g.gradient(system.lagrangian, &v);
+
+        let mut definitions = quasi.coefficients.clone();
+        let residuals = match balance {
+            Some(given) => given.to_vec(),
+            None => stationarity(&system, quasi, p, &momenta, &mut definitions),
+        };
+        for d in &quasi.dependent {
+            let velocity = velocity(g, d);
+            definitions.define(d.symbol, velocity);
+            let left = g.variable(d.symbol);
+            equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
+        }
+        for (w, &residual) in quasi.free.iter().zip(&residuals) {
+            let meaning = format!("stationary in {}", g.name(w.symbol));
+            equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
+        }
+        let seeds: Vec<Expr> = p.iter().zip(&momenta).map(|(&p, &l_v)| g.sub(p, l_v)).collect();
+        let adjoints = adjoints(g, quasi, &seeds, &mut definitions);
+        let rates = match rates {
+            Some(given) => given.to_vec(),
+            None => {
+                let along = by_positions(&system, quasi, &adjoints, &mut definitions);
+                let gradient = g.gradient(system.lagrangian, &q);
+                gradient.iter().zip(along).map(|(&l_q, along)| multiplied_out(g, g.sub(l_q, along))).collect()
+            }
+        };
+
+        let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
+        for i in 0..q.len() {
+            let (rate, start) = (g.variable(v[i]), g.variable(q[i]));
+            equations.states.push(StateVariable { symbol: q[i], role: Role::Position, rate, start });
+        }
+        for (i, (&symbol, &rate)) in costates.iter().zip(&rates).enumerate() {
+            let start = g.substitute(augmented.momenta[i], &at_start);
+            equations.states.push(StateVariable { symbol, role: Role::Costate, rate, start });
+            let left = g.variable(costate_rates[i]);
+            equations.statements.push(Statement { meaning: "costate".into(), left, right: rate });
+        }
+        equations.blocks = vec![Block {
+            unknowns: quasi.free.iter().map(|w| w.symbol).collect(),
+            residuals,
+            guess: quasi.free.iter().map(|w| w.start).collect(),
+            regular: "∂²L/∂v² regular on the admissible velocities",
+        }];
+        multipliers(g, quasi, augmented, &adjoints, &mut definitions);
+        hand_over(&mut equations, &system, augmented, p);
+        equations.guards = quasi.guards.clone();
+        equations.definitions = definitions.into_list();
+        equations.graph = system.graph;
+        equations
     }
-    for (i, &symbol) in costates.iter().enumerate() {
-        let start = g.substitute(augmented.momenta[i], &at_start);
-        let rate = multiplied_out(g, g.sub(gradient[i], along[i]));
-        equations.states.push(StateVariable { symbol, role: Role::Costate, rate, start });
-        let left = g.variable(fresh_symbol(g, &format!("{}'", g.name(symbol))));
-        equations.statements.push(Statement { meaning: "costate".into(), left, right: rate });
+
+    /// The derivatives of `K` with the velocities put in; none where that is long.
+    fn put_in(&self, system: &System) -> Option<Whole> {
+        if system.dimension() > SMALL {
+            return None;
+        }
+        let g = &system.graph;
+        let mut at: HashMap<Symbol, Expr> = HashMap::new();
+        for &(symbol, e) in self.quasi.coefficients.list() {
+            at.insert(symbol, g.substitute(e, &at));
+        }
+        for d in &self.quasi.dependent {
+            at.insert(d.symbol, g.substitute(velocity(g, d), &at));
+        }
+        let v = g.substitute_all(&g.variables(&system.velocities()), &at);
+        let lagrangian = g.substitute(system.lagrangian, &at);
+        if g.size(&[lagrangian]) > WHOLE || g.size(&v) > WHOLE {
+            return None;
+        }
+        let function = g.sub(g.dot(&self.p, &v), shorter(g, lagrangian));
+        let w: Vec<Symbol> = self.quasi.free.iter().map(|w| w.symbol).collect();
+        let minus = |by: &[Symbol]| g.gradient(function, by).into_iter().map(|e| shorter(g, g.neg(e))).collect();
+        Some(Whole { balance: minus(&w), rates: minus(&system.positions()) })
     }
-    equations.blocks = vec![Block {
-        unknowns: quasi.free.iter().map(|w| w.symbol).collect(),
-        residuals,
-        guess: quasi.free.iter().map(|w| w.start).collect(),
-        regular: "∂²L/∂v² regular on the admissible velocities",
-    }];
-    multipliers(g, &quasi, &augmented, &adjoints, &mut definitions);
-    hand_over(&mut equations, &system, &augmented, &p);
-    equations.guards = quasi.guards;
-    equations.definitions = definitions.into_list();
-    equations.graph = system.graph;
-    Ok(equations)
 }
 
 fn velocity(g: &Graph, d: &mechanics::DependentVelocity) -> Expr {
@@ -244,14 +313,15 @@ fn multipliers(
     }
 }
 
-/// `e` multiplied out, if that makes it shorter.
+/// `e` multiplied out, if that makes it shorter and is soon done.
 fn multiplied_out(g: &Graph, e: Expr) -> Expr {
-    let size = g.size(&[e]);
-    if size > 100 {
-        return e;
-    }
+    if g.size(&[e]) > LONG { e } else { shorter(g, e) }
+}
+
+/// `e` multiplied out, if that makes it shorter.
+fn shorter(g: &Graph, e: Expr) -> Expr {
     let expanded = g.expand(e);
-    if g.size(&[expanded]) < size { expanded } else { e }
+    if g.size(&[expanded]) < g.size(&[e]) { expanded } else { e }
 }
 
 /// Outputs, free constants and invariants.
