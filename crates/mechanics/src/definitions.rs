@@ -1,4 +1,4 @@
-//! Intermediate quantities of equations: each a short expression in states, parameters and earlier ones.
+//! Intermediate quantities of equations: each a short expression in states, unknowns, parameters and earlier ones.
 
 use std::collections::{HashMap, HashSet};
 

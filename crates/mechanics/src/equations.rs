@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use symbolic::{CompileError, Expr, Graph, Matrix, Symbol, Tape};
 
-use crate::definitions::{needed, symbols_behind};
+use crate::definitions::{apart, needed, symbols_behind};
 use crate::{Removal, System};
 
 /// What a state variable is.
@@ -301,7 +301,7 @@ impl Equations {
     fn solve_single_unknowns(&mut self) {
         let g = self.graph.clone();
         let parameters: HashSet<Symbol> = self.parameters.keys().copied().collect();
-        let mut solved: HashMap<Symbol, Expr> = HashMap::new();
+        let mut solved: Vec<(Symbol, Expr)> = Vec::new();
         self.blocks.retain(|block| {
             let ([unknown], [residual]) = (&block.unknowns[..], &block.residuals[..]) else { return true };
             let coefficient = g.derivative(*residual, *unknown);
@@ -312,15 +312,16 @@ impl Equations {
             }
             let rest = g.substitute(*residual, &HashMap::from([(*unknown, g.zero())]));
             let solution = g.neg(g.div(rest, coefficient));
-            match self.definitions.iter().position(|d| g.depends_on(d.1, *unknown)) {
-                Some(first) => self.definitions.insert(first, (*unknown, solution)),
-                None => _ = solved.insert(*unknown, solution),
-            }
+            solved.push((*unknown, solution));
             false
         });
         self.graph = g;
-        if !solved.is_empty() {
-            self.rewrite(&solved);
+        let unknowns: Vec<Symbol> = solved.iter().map(|s| s.0).collect();
+        let (known, waiting) = apart(&self.graph, &self.definitions, &unknowns);
+        if !waiting.is_empty() {
+            self.definitions = [known, solved, waiting].concat();
+        } else if !solved.is_empty() {
+            self.rewrite(&solved.into_iter().collect());
         }
     }
 
