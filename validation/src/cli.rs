@@ -98,7 +98,7 @@ pub struct ShowArguments {
 pub struct SolveArguments {
     /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
     pub scene: String,
-    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate or removed-constraint.
+    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced or removed-constraint.
     #[arg(long, short)]
     pub formulation: String,
     /// Vakonomic multipliers at the start, one a constraint.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, ready, setting};
+use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, ready, setting};
 use mechanics::{ConstantsRule, Cost, Equations, Scene, integrability};
 
 use crate::catalogue;
@@ -18,7 +18,7 @@ pub fn list() -> String {
     catalogue::SCENES.iter().map(line).collect()
 }
 
-/// Equations of every formulation, what was left out, and whether the constraints are integrable.
+/// Equations of every formulation and its further forms, what was left out, and whether the constraints are integrable.
 ///
 /// # Errors
 /// Bad input, with its place.
@@ -34,7 +34,7 @@ pub fn run(arguments: &ShowArguments) -> Result<String> {
         let _ = writeln!(text, "0 = {}", print(f));
     }
     let _ = writeln!(text, "\nConstraint: {}", integrability(&scene.system, &scene.start)?);
-    for choice in choices(&scene) {
+    for choice in choices(&scene).into_iter().chain(forms(&scene)) {
         let _ = writeln!(text, "\n## {}\n", choice.label);
         match derive_at(&scene.system, &scene.start, &choice) {
             Ok(equations) => {

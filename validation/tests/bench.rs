@@ -11,7 +11,10 @@ fn effort(max_steps: usize) -> Effort {
 #[test]
 fn every_formulation_is_measured_by_every_method() {
     let bench = measure(prepare("sledge", &[]).unwrap(), &effort(20_000), |_| ()).unwrap();
-    assert!(bench.entries.len() >= 4);
+    assert!(bench.entries.len() >= 6);
+    for form in deltaq::FORMS {
+        assert!(bench.entries.iter().any(|e| e.formulation == form.name), "{} is not measured", form.name);
+    }
     for entry in &bench.entries {
         let m = entry.outcome.as_ref().unwrap_or_else(|reason| panic!("{}: {reason}", entry.label));
         assert_eq!(m.series.len(), Method::ALL.len());

@@ -4,18 +4,24 @@ use validation::scaling::{FROM, Limits, TRAILERS, counts, exponent, line};
 
 #[test]
 fn a_train_costs_what_its_length_costs() {
+    for name in ["chetaev-reduced", "vakonomic-reduced"] {
+        grows_with_its_length(name);
+    }
+}
+
+fn grows_with_its_length(name: &str) {
     let long: Vec<usize> = TRAILERS.into_iter().filter(|&n| n >= FROM).collect();
     let counts: Vec<(f64, (usize, usize))> =
-        long.iter().map(|&n| (n as f64, counts("chetaev-reduced", n).expect("has equations"))).collect();
+        long.iter().map(|&n| (n as f64, counts(name, n).expect("has equations"))).collect();
     assert_eq!(counts.len(), 5);
     let fit = |of: fn(&(usize, usize)) -> usize| {
         exponent(&counts.iter().map(|(n, c)| (*n, of(c) as f64)).collect::<Vec<_>>()).expect("five points")
     };
     let (derivation, side) = (fit(|c| c.0), fit(|c| c.1));
-    println!("expressions {derivation:?}, operations {side:?}: {counts:?}");
-    assert!(derivation.value < 1.5, "expressions made: exponent {derivation:?}");
-    assert!(side.value < 1.2, "operations of a right-hand side: exponent {side:?}");
-    assert!(derivation.value > 0.9 && side.value > 0.9, "a longer train costs more: {derivation:?}, {side:?}");
+    println!("{name}: expressions {derivation:?}, operations {side:?}: {counts:?}");
+    assert!(derivation.value < 1.5, "{name}: expressions made: exponent {derivation:?}");
+    assert!(side.value < 1.2, "{name}: operations of a right-hand side: exponent {side:?}");
+    assert!(derivation.value > 0.9 && side.value > 0.9, "{name}: a longer train costs more: {derivation:?}, {side:?}");
 }
 
 #[test]

@@ -31,7 +31,7 @@ use mechanics::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, QuasiVelocities, Role,
     StateVariable, Statement, System,
 };
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{Expr, Symbol};
 
 /// The same motion in quasi-velocities; for constraints linear in the velocities.
 pub const REDUCED_FORM: Formulation = Formulation {
@@ -44,8 +44,6 @@ pub const REDUCED_FORM: Formulation = Formulation {
 
 /// Nodes of an expression that gets no name of its own.
 const SHORT: usize = 8;
-/// The same for the two sides of the reduced equations.
-const SIDE: usize = 24;
 
 /// A sparse vector.
 type Sparse = BTreeMap<usize, Expr>;
@@ -97,33 +95,16 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
         let left = g.variable(d.symbol);
         equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
     }
-    let columns = columns(g, &quasi, &mut definitions);
+    let columns = quasi.columns(g, &mut definitions);
     let gamma = drift(&system, &quasi, &mut definitions);
     let Balance { mass, force, momenta } = balance(&system, &gamma, &mut definitions);
 
     // SᵀMS ẇ + Sᵀ force = 0
-    let products: Vec<Sparse> = columns
-        .iter()
-        .map(|column| {
-            multiply(g, &mass, column).into_iter().map(|(i, e)| (i, definitions.short(g, "m", SHORT, e))).collect()
-        })
-        .collect();
-    let count = quasi.free.len();
-    let mut reduced = vec![vec![g.zero(); count]; count];
-    for (i, column) in columns.iter().enumerate() {
-        for (j, product) in products.iter().enumerate().take(i + 1) {
-            let entry = definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, column, product)));
-            (reduced[i][j], reduced[j][i]) = (entry, entry);
-        }
-    }
+    let reduced = columns.reduced(g, &mass, &mut definitions);
+    let applied = columns.projected(g, &force, &mut definitions);
     let rates: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.rate)).collect();
-    let force: Sparse = force.into_iter().enumerate().collect();
-    let residuals: Vec<Expr> = (0..count)
-        .map(|i| {
-            let applied = definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, &columns[i], &force)));
-            g.add(g.dot(&reduced[i], &rates), applied)
-        })
-        .collect();
+    let residuals: Vec<Expr> =
+        reduced.iter().zip(applied).map(|(row, applied)| g.add(g.dot(row, &rates), applied)).collect();
     for (w, &residual) in quasi.free.iter().zip(&residuals) {
         let meaning = format!("balance for {}", g.name(w.symbol));
         equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
@@ -138,37 +119,6 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
     equations.definitions = definitions.into_list();
     equations.graph = system.graph;
     Ok(equations)
-}
-
-/// The columns of `S` by coordinate.
-fn columns(g: &Graph, quasi: &QuasiVelocities, definitions: &mut Definitions) -> Vec<Sparse> {
-    let mut columns = vec![Sparse::new(); quasi.free.len()];
-    // row by row: which column has what entry
-    let mut rows: HashMap<Symbol, Sparse> = HashMap::new();
-    for (column, w) in quasi.free.iter().enumerate() {
-        rows.insert(w.symbol, Sparse::from([(column, g.one())]));
-        if let Some(i) = w.coordinate {
-            columns[column].insert(i, g.one());
-        }
-    }
-    for d in &quasi.dependent {
-        let mut entries: BTreeMap<usize, Vec<Expr>> = BTreeMap::new();
-        for (s, coefficient) in &d.terms {
-            for (&column, &e) in &rows[s] {
-                entries.entry(column).or_default().push(g.mul(*coefficient, e));
-            }
-        }
-        let sum = |terms: Vec<Expr>| g.sum(&terms);
-        let entries = entries.into_iter().map(|(column, terms)| (column, sum(terms))).filter(|(_, e)| !g.is_zero(*e));
-        let row: Sparse = entries.map(|(column, e)| (column, definitions.short(g, "S", SHORT, e))).collect();
-        if let Some(i) = d.coordinate {
-            for (&column, &e) in &row {
-                columns[column].insert(i, e);
-            }
-        }
-        rows.insert(d.symbol, row);
-    }
-    columns
 }
 
 /// `γ`, the accelerations at `ẇ = 0`, by coordinate.
@@ -231,39 +181,6 @@ fn balance(system: &System, gamma: &[Expr], definitions: &mut Definitions) -> Ba
     let row = |row: Vec<(Symbol, Expr)>| row.into_iter().map(|(s, e)| (places[&s], e)).collect::<Sparse>();
     let mass = g.sparse_jacobian(&momenta, &v).into_iter().map(row).collect();
     Balance { mass, force, momenta }
-}
-
-/// `rows · column`
-fn multiply(g: &Graph, rows: &[Sparse], column: &Sparse) -> Sparse {
-    let mut product = Sparse::new();
-    for &i in &reach(rows, column) {
-        let e = dot(g, &rows[i], column);
-        if !g.is_zero(e) {
-            product.insert(i, e);
-        }
-    }
-    product
-}
-
-/// The rows of a symmetric matrix that meet an entry of `column`.
-fn reach(rows: &[Sparse], column: &Sparse) -> BTreeSet<usize> {
-    column.keys().flat_map(|&j| rows[j].keys().copied()).collect()
-}
-
-/// `Σ aᵢ bᵢ`
-fn dot(g: &Graph, a: &Sparse, b: &Sparse) -> Expr {
-    let terms: Vec<Expr> = a.iter().filter_map(|(i, &x)| Some(g.mul(x, *b.get(i)?))).collect();
-    g.sum(&terms)
-}
-
-/// `e` multiplied out, if that makes it shorter: what the columns of `S` have in common with `γ` cancels.
-fn multiplied_out(g: &Graph, e: Expr) -> Expr {
-    let size = g.size(&[e]);
-    if size > 4 * SIDE {
-        return e;
-    }
-    let expanded = g.expand(e);
-    if g.size(&[expanded]) < size { expanded } else { e }
 }
 
 /// States, outputs, invariants and guards.

@@ -12,7 +12,7 @@ use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::growth::{Growth, LeadingTerm, growth, leading_term};
 use crate::metric::Metric;
-use crate::{FORMULATIONS, Motion, Setting, Settings, SolveError, formulation, solve};
+use crate::{FORMS, FORMULATIONS, Motion, Setting, Settings, SolveError, formulation, solve};
 
 /// One formulation of the scene, with all choices made.
 #[derive(Clone)]
@@ -131,12 +131,7 @@ pub fn choices(scene: &Scene) -> Vec<Choice> {
     for formulation in FORMULATIONS {
         let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
         if removals.is_empty() {
-            choices.push(Choice {
-                label: formulation.title.into(),
-                formulation: formulation.name,
-                removal: None,
-                constants: default_constants(formulation, scene),
-            });
+            choices.push(without_removal(formulation, scene));
         }
         for removal in removals {
             choices.push(Choice {
@@ -148,6 +143,16 @@ pub fn choices(scene: &Scene) -> Vec<Choice> {
         }
     }
     choices
+}
+
+/// A choice of each of [`FORMS`], of which [`derive_at`] refuses those that `scene` does not have.
+pub fn forms(scene: &Scene) -> Vec<Choice> {
+    FORMS.iter().map(|form| without_removal(form, scene)).collect()
+}
+
+fn without_removal(formulation: &Formulation, scene: &Scene) -> Choice {
+    let constants = default_constants(formulation, scene);
+    Choice { label: formulation.title.into(), formulation: formulation.name, removal: None, constants }
 }
 
 /// The free constants of a formulation without a removal: the scene's multipliers where it starts from multipliers, else zero.

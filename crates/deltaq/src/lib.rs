@@ -27,8 +27,8 @@ mod steps;
 mod table;
 
 pub use comparison::{
-    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, removals,
-    setting, solve_choice,
+    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, forms,
+    removals, setting, solve_choice,
 };
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;

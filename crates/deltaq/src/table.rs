@@ -6,8 +6,8 @@ use mechanics::Formulation;
 pub const FORMULATIONS: &[Formulation] =
     &[chetaev::FORMULATION, vakonomic::FORMULATION, vakonomic::COSTATE_FORM, removed_constraint::FORMULATION];
 
-/// Other forms of the same equations: solved by name, and in no report of their own.
-pub const FORMS: &[Formulation] = &[chetaev::REDUCED_FORM];
+/// Other forms of the same equations: solved by name, and compared in no report.
+pub const FORMS: &[Formulation] = &[chetaev::REDUCED_FORM, vakonomic::REDUCED_FORM];
 
 /// The formulation or form of that name.
 pub fn formulation(name: &str) -> Option<&'static Formulation> {

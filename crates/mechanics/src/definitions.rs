@@ -1,4 +1,4 @@
-//! Intermediate quantities of equations: each a short expression in states, parameters and earlier ones.
+//! Intermediate quantities of equations: each a short expression in states, unknowns, parameters and earlier ones.
 
 use std::collections::{HashMap, HashSet};
 
@@ -81,8 +81,23 @@ pub(crate) fn symbols_behind(
     found
 }
 
-/// Derivatives through definitions: `∂e/∂s` row-major for `outputs` and the independent symbols `by`, and the definitions that this needs,
-/// those of `definitions` among them. With `e(s, d)`, `d = D(s, d earlier)`:
+/// Definitions that contain no unknowns, and those that do, by way of others too.
+pub(crate) type Apart = (Vec<(Symbol, Expr)>, Vec<(Symbol, Expr)>);
+
+/// `definitions` in two: those known beforehand, and those that wait for `unknowns`.
+pub(crate) fn apart(g: &Graph, definitions: &[(Symbol, Expr)], unknowns: &[Symbol]) -> Apart {
+    let mut waiting: HashSet<Symbol> = unknowns.iter().copied().collect();
+    definitions.iter().copied().partition(|&(symbol, e)| {
+        let waits = g.symbols_of(e).iter().any(|s| waiting.contains(s));
+        if waits {
+            waiting.insert(symbol);
+        }
+        !waits
+    })
+}
+
+/// Derivatives through definitions: `∂e/∂s` row-major for the outputs and independent symbols of each of `wanted`, one after the other, and the
+/// definitions that this needs, those of `definitions` among them. With `e(s, d)`, `d = D(s, d earlier)`:
 ///
 /// ```text
 /// de/ds = ∂e/∂s + Σ ∂e/∂d · dd/ds ,     the sum over the definitions that e contains.
@@ -90,29 +105,29 @@ pub(crate) fn symbols_behind(
 pub(crate) fn jacobian(
     g: &Graph,
     definitions: &[(Symbol, Expr)],
-    outputs: &[Expr],
-    by: &[Symbol],
+    wanted: &[(&[Expr], &[Symbol])],
 ) -> (Vec<(Symbol, Expr)>, Vec<Expr>) {
     /// Nodes of a derivative that gets no name of its own.
     const SHORT: usize = 8;
-    let places: HashMap<Symbol, usize> = by.iter().enumerate().map(|(i, &s)| (s, i)).collect();
-    let inner: Vec<Symbol> = definitions.iter().map(|d| d.0).chain(by.iter().copied()).collect();
+    let independent: HashSet<Symbol> = wanted.iter().flat_map(|(_, by)| by.iter().copied()).collect();
+    let inner: HashSet<Symbol> = definitions.iter().map(|d| d.0).chain(independent.iter().copied()).collect();
     let mut all = Definitions::default();
-    // for each definition, the places of the symbols that it depends on, and the derivatives
-    let mut known: HashMap<Symbol, Vec<(usize, Expr)>> = HashMap::new();
-    let row = |known: &HashMap<Symbol, Vec<(usize, Expr)>>, e: Expr| {
-        let mut terms: Vec<(usize, Expr)> = Vec::new();
-        for (s, derivative) in g.sparse_gradient(e, &inner) {
-            match (places.get(&s), known.get(&s)) {
-                (Some(&place), _) => terms.push((place, derivative)),
-                (None, Some(row)) => terms.extend(row.iter().map(|&(place, d)| (place, g.mul(derivative, d)))),
-                (None, None) => {}
+    // for each definition, the symbols that it depends on, and the derivatives
+    let mut known: HashMap<Symbol, Vec<(Symbol, Expr)>> = HashMap::new();
+    let row = |known: &HashMap<Symbol, Vec<(Symbol, Expr)>>, e: Expr| {
+        let mut terms: Vec<(Symbol, Expr)> = Vec::new();
+        let within: Vec<Symbol> = g.symbols_of(e).into_iter().filter(|s| inner.contains(s)).collect();
+        for (s, derivative) in g.sparse_gradient(e, &within) {
+            match known.get(&s) {
+                _ if independent.contains(&s) => terms.push((s, derivative)),
+                Some(row) => terms.extend(row.iter().map(|&(s, d)| (s, g.mul(derivative, d)))),
+                None => {}
             }
         }
         terms.sort_by_key(|t| t.0);
         let groups = terms.chunk_by(|a, b| a.0 == b.0);
-        let sum = |group: &[(usize, Expr)]| g.sum(&group.iter().map(|t| t.1).collect::<Vec<Expr>>());
-        groups.map(|group| (group[0].0, sum(group))).collect::<Vec<(usize, Expr)>>()
+        let sum = |group: &[(Symbol, Expr)]| g.sum(&group.iter().map(|t| t.1).collect::<Vec<Expr>>());
+        groups.map(|group| (group[0].0, sum(group))).collect::<Vec<(Symbol, Expr)>>()
     };
     for &(symbol, e) in definitions {
         all.define(symbol, e);
@@ -122,11 +137,18 @@ pub(crate) fn jacobian(
         }
         known.insert(symbol, derivatives);
     }
-    let mut matrix = vec![g.zero(); outputs.len() * by.len()];
-    for (i, &e) in outputs.iter().enumerate() {
-        for (j, d) in row(&known, e) {
-            matrix[i * by.len() + j] = d;
+    let mut entries = Vec::new();
+    for (outputs, by) in wanted {
+        let places: HashMap<Symbol, usize> = by.iter().enumerate().map(|(i, &s)| (s, i)).collect();
+        for &e in *outputs {
+            let first = entries.len();
+            entries.resize(first + by.len(), g.zero());
+            for (s, d) in row(&known, e) {
+                if let Some(place) = places.get(&s) {
+                    entries[first + place] = d;
+                }
+            }
         }
     }
-    (all.into_list(), matrix)
+    (all.into_list(), entries)
 }

@@ -21,13 +21,9 @@ impl Derivatives {
         let g = &equations.graph;
         let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let mut all = rates.clone();
-        all.extend(equations.blocks.iter().flat_map(|block| &block.residuals));
-        let (definitions, by_state) = jacobian(g, &equations.definitions, &all, &states);
-        let (direct, of_blocks) = by_state.split_at(rates.len() * states.len());
-        let mut outputs = direct.to_vec();
-        outputs.extend(g.jacobian(&rates, &unknowns).entries());
-        outputs.extend(of_blocks);
+        let residuals: Vec<Expr> = equations.blocks.iter().flat_map(|block| block.residuals.clone()).collect();
+        let (definitions, outputs) =
+            jacobian(g, &equations.definitions, &[(&rates, &states), (&rates, &unknowns), (&residuals, &states)]);
         let mut inputs = vec![equations.time];
         inputs.extend(states);
         inputs.extend(equations.constant_symbols());

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use symbolic::{CompileError, Expr, Graph, Matrix, Symbol, Tape};
 
-use crate::definitions::{needed, symbols_behind};
+use crate::definitions::{apart, needed, symbols_behind};
 use crate::{Removal, System};
 
 /// What a state variable is.
@@ -127,7 +127,8 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
-    /// Intermediate quantities in `(t, y)` and earlier ones, by way of which everything else may be written; see [`crate::Definitions`].
+    /// Intermediate quantities in `(t, y, z)` and earlier ones, by way of which everything else may be written; see [`crate::Definitions`]. Blocks and
+    /// guards may need those only that contain no `z`.
     pub definitions: Vec<(Symbol, Expr)>,
     /// `y` with rates and start.
     pub states: Vec<StateVariable>,
@@ -300,7 +301,7 @@ impl Equations {
     fn solve_single_unknowns(&mut self) {
         let g = self.graph.clone();
         let parameters: HashSet<Symbol> = self.parameters.keys().copied().collect();
-        let mut solved: HashMap<Symbol, Expr> = HashMap::new();
+        let mut solved: Vec<(Symbol, Expr)> = Vec::new();
         self.blocks.retain(|block| {
             let ([unknown], [residual]) = (&block.unknowns[..], &block.residuals[..]) else { return true };
             let coefficient = g.derivative(*residual, *unknown);
@@ -310,12 +311,17 @@ impl Equations {
                 return true;
             }
             let rest = g.substitute(*residual, &HashMap::from([(*unknown, g.zero())]));
-            solved.insert(*unknown, g.neg(g.div(rest, coefficient)));
+            let solution = g.neg(g.div(rest, coefficient));
+            solved.push((*unknown, solution));
             false
         });
         self.graph = g;
-        if !solved.is_empty() {
-            self.rewrite(&solved);
+        let unknowns: Vec<Symbol> = solved.iter().map(|s| s.0).collect();
+        let (known, waiting) = apart(&self.graph, &self.definitions, &unknowns);
+        if !waiting.is_empty() {
+            self.definitions = [known, solved, waiting].concat();
+        } else if !solved.is_empty() {
+            self.rewrite(&solved.into_iter().collect());
         }
     }
 

@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use symbolic::{CompileError, Expr, Graph, Symbol};
 
+use crate::definitions::{apart, symbols_behind};
 use crate::equations::{Block, Equations};
 use crate::form_elimination::{Definitions, Elimination, LinearBlock};
 use crate::form_pivots::{Entry, NEAR, Order, POINTS, Pattern, Strategy};
@@ -47,9 +48,10 @@ impl Form {
     /// Largest condition with which the definitions are used. A multiplier of 1000 takes three digits at most.
     pub const LIMIT: f64 = 1e6;
 
-    /// Those of the equations, then those of the form.
+    /// Those of the equations and those of the form, each after what it contains.
     pub(crate) fn all_definitions(&self, equations: &Equations) -> Vec<(Symbol, Expr)> {
-        [&equations.definitions[..], &self.definitions].concat()
+        let (known, waiting) = apart(&equations.graph, &equations.definitions, &equations.unknowns());
+        [known, self.definitions.clone(), waiting].concat()
     }
 
     /// All blocks are solved by LU factorization.
@@ -116,13 +118,14 @@ fn points(size: usize, given: Option<&[f64]>) -> [Vec<f64>; POINTS] {
     points
 }
 
-/// Adds the definitions of the equations to the symbols, and their values to the points.
+/// Adds the definitions that contain no unknowns to the symbols, and their values to the points.
 fn add_definitions<'a>(
     equations: &Equations,
     known: &mut Vec<Symbol>,
     points: impl Iterator<Item = &'a mut Vec<f64>>,
 ) -> Result<(), CompileError> {
-    let symbols: Vec<Symbol> = equations.definitions.iter().map(|d| d.0).collect();
+    let (definitions, _) = apart(&equations.graph, &equations.definitions, &equations.unknowns());
+    let symbols: Vec<Symbol> = definitions.iter().map(|d| d.0).collect();
     if symbols.is_empty() {
         return Ok(());
     }
@@ -207,7 +210,7 @@ fn eliminated(
     let Some(pattern) = pattern(equations, &linear, known, points)? else {
         return Ok(Err(format!("{size} unknowns, singular or not finite at the start: LU factorization")));
     };
-    let needed: HashSet<Symbol> = equations.states.iter().flat_map(|y| g.symbols_of(y.rate)).collect();
+    let needed = symbols_behind(g, &equations.definitions, equations.states.iter().map(|y| y.rate));
     let unneeded: Vec<bool> = block.unknowns.iter().map(|z| !needed.contains(z)).collect();
     let wanted: Vec<Expr> = block.unknowns.iter().filter(|z| needed.contains(z)).map(|&z| g.variable(z)).collect();
     let mut ways = Vec::new();

@@ -2,6 +2,7 @@
 //! its equations of motion. Knows no formulation.
 
 mod automatic_removal;
+mod cheapest;
 mod compiled;
 mod definitions;
 mod derivatives;
@@ -26,6 +27,7 @@ mod start;
 mod straight;
 mod system;
 
+pub use cheapest::cheapest;
 pub use compiled::{Compiled, Cost, Outputs};
 pub use definitions::Definitions;
 pub use equations::{
@@ -36,7 +38,7 @@ pub use form::Form;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
 pub use instant::EvaluationFailure;
 pub use integrability::{Integrability, integrability};
-pub use quasi_velocities::{DependentVelocity, QuasiVelocities, QuasiVelocity};
+pub use quasi_velocities::{Columns, DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use scene::{SIZE_LIMIT, Scene};

@@ -16,8 +16,10 @@ use symbolic::{Expr, Symbol};
 
 use crate::{Definitions, RemovalError, State, System};
 
+mod columns;
 mod elimination;
 
+pub use columns::Columns;
 use elimination::Elimination;
 
 /// A quasi-velocity `w`.
@@ -46,6 +48,23 @@ pub struct DependentVelocity {
     pub offset: Expr,
 }
 
+/// How a constraint was eliminated, for multipliers. With `ρ` the value of its row at that moment, the velocities that it defined are
+/// `v_k = … + slope_k ρ`, and `added · ρ` went into the rows of constraints eliminated later. So where `δ(p·v − L) = μ·δf` along every `δv`, and
+/// `v̄_k` is the derivative of `p·v − L` by `v_k` by way of all velocities that contain it,
+///
+/// ```text
+/// μ = Σ slope_k v̄_k + Σ added · μ of the later ones .
+/// ```
+#[derive(Clone, Debug)]
+pub struct EliminatedConstraint {
+    /// Index of the constraint.
+    pub constraint: usize,
+    /// Symbols of the dependent velocities that it defined, with `∂v_k/∂ρ` in `(q, t)`.
+    pub slopes: Vec<(Symbol, Expr)>,
+    /// Indices of later constraints, with the factors in `(q, t)`.
+    pub added: Vec<(usize, Expr)>,
+}
+
 /// `v = S(q, t) w + s(q, t)`, the general solution of `A v + b = 0`.
 #[derive(Clone, Debug)]
 pub struct QuasiVelocities {
@@ -53,6 +72,8 @@ pub struct QuasiVelocities {
     pub free: Vec<QuasiVelocity>,
     /// The dependent velocities, each after those that it contains.
     pub dependent: Vec<DependentVelocity>,
+    /// The constraints in the order of their elimination.
+    pub eliminated: Vec<EliminatedConstraint>,
     /// Longer coefficients, in `(q, t)`.
     pub coefficients: Definitions,
     /// Pivots that are not constant: where one of them vanishes, this choice of `w` breaks down.
@@ -75,7 +96,8 @@ impl QuasiVelocities {
         let dependent: Vec<DependentVelocity> = steps.into_iter().rev().flatten().collect();
         let coefficients = std::mem::take(&mut elimination.coefficients);
         let guards = std::mem::take(&mut elimination.guards);
+        let eliminated = std::mem::take(&mut elimination.eliminated);
         let free = elimination.free(&dependent.iter().map(|d| d.symbol).collect::<HashSet<Symbol>>());
-        Ok(QuasiVelocities { free, dependent, coefficients, guards, homogeneous })
+        Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, homogeneous })
     }
 }

@@ -37,6 +37,9 @@
 //! not only by its derivative. For `L` kinetic energy the motions are the normal sub-Riemannian geodesics. The two
 //! forms are derived differently and have to agree.
 //!
+//! **One instant, quasi-velocities** ([`derive_reduced`]). For constraints linear in the velocities `v = S w + s`, and the n − h equations
+//! `Sᵀ (p − L_v) = 0` determine `w` and with it `H`, without multipliers.
+//!
 //! **What the motion depends on.** On `(q₀, v₀)` *and on* `μ₀ ∈ Rʰ`: one start, a family of motions with `h` parameters.
 //!
 //! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of every coordinate that
@@ -53,6 +56,10 @@ use mechanics::{
 };
 use symbolic::{Expr, Graph, Symbol};
 
+mod reduced;
+
+pub use reduced::{REDUCED_FORM, derive_reduced};
+
 /// Entry of the table of formulations: the multiplier form.
 pub const FORMULATION: Formulation =
     Formulation { name: "vakonomic", title: "vakonomic", needs_removal: false, starts_multipliers: true, derive };
@@ -66,7 +73,7 @@ pub const COSTATE_FORM: Formulation = Formulation {
     derive: derive_costate_form,
 };
 
-/// What both forms start from.
+/// What all forms start from.
 struct Augmented {
     /// μ at an instant and μ₀ at the start
     multipliers: Vec<Symbol>,
@@ -242,14 +249,18 @@ fn statements(system: &System, balances: &[Expr]) -> Vec<Statement> {
         .collect()
 }
 
+/// `μ₀`.
+fn free_constants(augmented: &Augmented) -> Vec<FreeConstant> {
+    augmented.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None, memory: None }).collect()
+}
+
 /// What both forms share: outputs, free constants and the quantities that stay constant.
 fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
     let g = &system.graph;
     equations.coordinates = g.variables(&system.positions());
     equations.multipliers =
         augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
-    equations.free_constants =
-        augmented.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None, memory: None }).collect();
+    equations.free_constants = free_constants(&augmented);
     if system.is_autonomous() {
         let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
         equations.invariants.push(Named { name: "energy".into(), expression: g.sub(action, augmented.lagrangian) });

@@ -10,6 +10,7 @@ mod matching;
 mod numerics;
 mod planar_body;
 mod reduced_form;
+mod reduced_vakonomic;
 mod references;
 mod second_rates;
 mod support;

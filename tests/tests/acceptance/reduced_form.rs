@@ -10,7 +10,7 @@ use validation::trailer::{self, Coordinates};
 use crate::support::{at, chetaev, common_times, equations, known_gap, linear_scenes, motion_of, must, scene, tight};
 
 /// Kinds of random systems with constraints linear in the velocities, and none at all.
-const LINEAR: [Kind; 8] = [
+pub const LINEAR: [Kind; 8] = [
     Kind::Free,
     Kind::ChaplyginIntegrable,
     Kind::Integrable,

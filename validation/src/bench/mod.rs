@@ -13,7 +13,7 @@ pub use truth::Truth;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Ready, Settings, choices, derive_at, ready_to_run, setting};
+use deltaq::{Choice, Ready, Settings, choices, derive_at, forms, ready_to_run, setting};
 use integrate::{Method, Work};
 use mechanics::Scene;
 
@@ -58,7 +58,7 @@ pub struct Bench {
     pub title: String,
     /// Seconds from the text of the scene to the system.
     pub parse: f64,
-    /// One a formulation, in the order of the table.
+    /// One a formulation, in the order of the table; then one a further form that has no guards.
     pub entries: Vec<Entry>,
 }
 
@@ -129,11 +129,26 @@ impl Measurements {
     }
 }
 
-/// A scene with a reference for each of its formulations.
+/// A scene with a reference for each of its motions.
 pub struct Prepared {
     name: String,
     overrides: Vec<(String, f64)>,
-    truths: Vec<Result<Truth, String>>,
+    truths: Vec<(String, Result<Truth, String>)>,
+}
+
+/// Every formulation of a scene, and further forms that hold everywhere: one with guards stops where its quasi-velocities break down.
+fn entries(scene: &Scene) -> Vec<Choice> {
+    let regular = |form: &Choice| derive_at(&scene.system, &scene.start, form).is_ok_and(|e| e.guards.is_empty());
+    choices(scene).into_iter().chain(forms(scene).into_iter().filter(regular)).collect()
+}
+
+/// The motion of a choice: forms of one formulation share it.
+fn motion(choice: &Choice) -> String {
+    match choice.formulation.split_once('-') {
+        Some((formulation @ ("chetaev" | "vakonomic"), _)) => formulation.into(),
+        _ if choice.removal.is_none() => choice.formulation.into(),
+        _ => choice.label.clone(),
+    }
 }
 
 /// Computes the references of `name`, a built-in scene or the path of a scene file: nothing is timed, so that several may be prepared at once.
@@ -147,11 +162,17 @@ pub fn prepare(name: &str, overrides: &[(String, f64)]) -> Result<Prepared> {
         let ready = ready_to_run(setting(&scene), equations, &choice.constants, &Settings::default())?;
         Truth::new(&scene, &ready, SAMPLES).context("no reference")
     };
-    let truths = choices(&scene).iter().map(|choice| truth(choice).map_err(|error| format!("{error:#}"))).collect();
+    let mut truths: Vec<(String, Result<Truth, String>)> = Vec::new();
+    for choice in choices(&scene) {
+        let motion = motion(&choice);
+        if truths.iter().all(|(known, _)| *known != motion) {
+            truths.push((motion, truth(&choice).map_err(|error| format!("{error:#}"))));
+        }
+    }
     Ok(Prepared { name: name.into(), overrides: overrides.to_vec(), truths })
 }
 
-/// Measures every formulation, by every method; nothing else should run meanwhile.
+/// Measures every formulation and further form, by every method; nothing else should run meanwhile.
 ///
 /// # Errors
 /// Where the scene cannot be read. A formulation that cannot be measured is an [`Entry`] that says why.
@@ -159,16 +180,21 @@ pub fn measure(prepared: Prepared, effort: &Effort, tell: impl Fn(&str)) -> Resu
     let clock = Instant::now();
     let scene = catalogue::find(&prepared.name, &prepared.overrides)?;
     let parse = clock.elapsed().as_secs_f64();
-    let entries = choices(&scene).into_iter().zip(prepared.truths).map(|(choice, truth)| {
+    let mut truths = prepared.truths;
+    let entries = entries(&scene).into_iter().map(|choice| {
         tell(&format!("{}, {}", scene.name, choice.label));
-        let outcome =
-            truth.and_then(|truth| measurements(&scene, &choice, truth, effort).map_err(|error| format!("{error:#}")));
+        let motion = motion(&choice);
+        let outcome = match truths.iter_mut().find(|(known, _)| *known == motion) {
+            None => Err("no reference".into()),
+            Some((_, Err(reason))) => Err(reason.clone()),
+            Some((_, Ok(truth))) => measurements(&scene, &choice, truth, effort).map_err(|error| format!("{error:#}")),
+        };
         Entry { label: choice.label, formulation: choice.formulation, outcome }
     });
     Ok(Bench { entries: entries.collect(), scene: scene.name.clone(), title: scene.title.clone(), parse })
 }
 
-fn measurements(scene: &Scene, choice: &Choice, mut truth: Truth, effort: &Effort) -> Result<Measurements> {
+fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effort) -> Result<Measurements> {
     let clock = Instant::now();
     let equations = derive_at(&scene.system, &scene.start, choice)?;
     let derive = clock.elapsed().as_secs_f64();
@@ -176,7 +202,7 @@ fn measurements(scene: &Scene, choice: &Choice, mut truth: Truth, effort: &Effor
     let clock = Instant::now();
     let mut ready: Ready = ready_to_run(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();
-    let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, &mut truth, effort)).collect();
+    let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, truth, effort)).collect();
     Ok(Measurements {
         derive,
         compile,
@@ -184,7 +210,7 @@ fn measurements(scene: &Scene, choice: &Choice, mut truth: Truth, effort: &Effor
         span: (ready.t, truth.end()),
         shortened: truth.shortened,
         reference_error: truth.error,
-        reference: truth.origin,
+        reference: truth.origin.clone(),
         series,
     })
 }

@@ -28,9 +28,10 @@ pub const TRAILERS: [usize; 9] = [1, 2, 5, 10, 20, 40, 80, 160, 320];
 pub const FROM: usize = 20;
 
 /// Formulations that are measured, with the coordinates of the train in each.
-pub const FORMULATIONS: [&str; 6] = [
+pub const FORMULATIONS: [&str; 7] = [
     "chetaev-reduced",
     "chetaev",
+    "vakonomic-reduced",
     "vakonomic",
     "vakonomic-costate",
     "removed-constraint",

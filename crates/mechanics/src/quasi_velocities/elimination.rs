@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Graph, Symbol};
 
-use super::{DependentVelocity, QuasiVelocity};
+use super::{DependentVelocity, EliminatedConstraint, QuasiVelocity};
 use crate::{Definitions, RemovalError, State, System, fresh_symbol};
 
 /// A pivot may be this much smaller than the largest one if it fills less.
@@ -63,6 +63,7 @@ pub(super) struct Elimination<'a> {
     /// What each step defined.
     pub(super) steps: Vec<Vec<DependentVelocity>>,
     pub(super) guards: Vec<Expr>,
+    pub(super) eliminated: Vec<EliminatedConstraint>,
 }
 
 impl<'a> Elimination<'a> {
@@ -97,6 +98,7 @@ impl<'a> Elimination<'a> {
             coefficients: Definitions::default(),
             steps: Vec::new(),
             guards: Vec::new(),
+            eliminated: Vec::new(),
         };
         elimination.read(system)?;
         (0..elimination.rows.len()).for_each(|row| elimination.enqueue(row));
@@ -193,6 +195,7 @@ impl<'a> Elimination<'a> {
     /// Takes a row out; also returned: the rows that share a column with it.
     fn take(&mut self, row: usize) -> (Terms, Expr, BTreeSet<usize>) {
         self.active.remove(&row);
+        self.eliminated.push(EliminatedConstraint { constraint: row, slopes: Vec::new(), added: Vec::new() });
         for candidate in std::mem::take(&mut self.rows[row].queued) {
             self.queue.remove(&candidate);
         }
@@ -222,8 +225,11 @@ impl<'a> Elimination<'a> {
             parts.push((j, e));
         }
         let offset = self.named(g.mul(scale, offset));
+        let QuasiVelocity { symbol, coordinate, .. } = self.columns[column].velocity;
+        let mut added = Vec::new();
         for row in std::mem::take(&mut self.columns[column].rows) {
             let Some((factor, _)) = self.rows[row].terms.remove(&column) else { continue };
+            added.push((row, g.mul(factor, scale)));
             for &(j, e) in &parts {
                 self.add(row, j, g.mul(factor, e));
             }
@@ -232,7 +238,10 @@ impl<'a> Elimination<'a> {
             changed.insert(row);
         }
         let terms = parts.into_iter().map(|(j, e)| (self.columns[j].velocity.symbol, e)).collect();
-        let QuasiVelocity { symbol, coordinate, .. } = self.columns[column].velocity;
+        if let Some(eliminated) = self.eliminated.last_mut() {
+            eliminated.slopes.push((symbol, g.neg(scale)));
+            eliminated.added.extend(added);
+        }
         self.steps.push(vec![DependentVelocity { symbol, coordinate, terms, offset }]);
     }
 

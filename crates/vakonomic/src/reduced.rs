@@ -1,0 +1,345 @@
+//! # The vakonomic equations in quasi-velocities
+//!
+//! For constraints linear in the velocities, `A(q, t) v + b(q, t) = 0`, every admissible velocity is `v = S(q, t) w + s(q, t)` with n − h
+//! quasi-velocities `w`, and Hamilton's equations need no multiplier: with
+//!
+//! ```text
+//! K(q, p, w, t) = p·v − L(q, v, t) ,   v = S w + s ,        ∂K/∂w = Sᵀ (p − L_v) = 0   determines w;
+//!
+//! q̇ = v ,        ṗ = −∂K/∂q |_w = L_q − (∂v/∂q)ᵀ (p − L_v) .
+//! ```
+//!
+//! `H(q, p, t)` is the stationary value of `K` over `w`, so that `∂w/∂q` does not enter. These are the equations of the costate form:
+//! `Sᵀ (p − L_v) = 0` says that `p − L_v = Aᵀ μ`, and `A (S w + s) + b = 0`, differentiated at fixed `w`, that `A ∂v/∂q = −∂f/∂q`; hence
+//! `ṗ = L_q + f_qᵀ μ = ∂(L + μ·f)/∂q`.
+//!
+//! For `L` quadratic in the velocities, `w` solves n − h linear equations, `SᵀMS w = Sᵀ (p − L_v(q, s, t))`.
+//!
+//! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and `(∂v/∂q)ᵀ (p − L_v)` is had by going through it backwards: with
+//! `v̄_k` the derivative of `K` by `v_k` by way of all velocities that contain it,
+//!
+//! ```text
+//! v_k = Σ S_kj v_j + s_k :      v̄_j += S_kj v̄_k ,      −ṗ += v̄_k (Σ ∂S_kj/∂q v_j + ∂s_k/∂q) .
+//! ```
+//!
+//! For a chain of n bodies that is O(n) in all. The multipliers follow by one more recursion ([`mechanics::EliminatedConstraint`]) where they are asked for.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use mechanics::{
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, QuasiVelocities, Role,
+    StateVariable, Statement, System, cheapest, fresh_symbol, refuse_forces,
+};
+use symbolic::{Expr, Graph, Symbol};
+
+use crate::{Augmented, augment, free_constants};
+
+/// The same motion in quasi-velocities; for constraints linear in the velocities.
+pub const REDUCED_FORM: Formulation = Formulation {
+    name: "vakonomic-reduced",
+    title: "vakonomic, quasi-velocities",
+    needs_removal: false,
+    starts_multipliers: true,
+    derive: derive_reduced,
+};
+
+/// Nodes of an expression that gets no name of its own.
+const SHORT: usize = 8;
+/// Nodes of an expression that is not multiplied out.
+const LONG: usize = 100;
+/// Coordinates of a system in which velocities are put in, if that is shorter; and nodes of `L` and of `v` over which it is not tried.
+const SMALL: usize = 8;
+const WHOLE: usize = 200;
+
+/// Derives the vakonomic equations with states `(q, p)`, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
+///
+/// The equations for `w` are linear where `L` is quadratic in `v`; otherwise they are solved by Newton's method from the last accepted state.
+///
+/// # Errors
+/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts; [`DerivationError::Reduction`] where a constraint is not
+/// linear in the velocities, or constraints are dependent.
+///
+/// ```
+/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
+/// let equations = vakonomic::derive_reduced(&scene.system, &mechanics::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// // the speed along the blade is the momentum along it
+/// assert_eq!(line(2), "w_x - p_x*cos(phi) - p_y*sin(phi)");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    let system = system.clone();
+    let g = &system.graph;
+    refuse_forces(&system, REDUCED_FORM.name)?;
+    let quasi = QuasiVelocities::new(&system, derivation.start)
+        .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
+    let augmented = augment(&system);
+    let fresh = |name: String| fresh_symbol(g, &name);
+    let costates: Vec<Symbol> = system.coordinates.iter().map(|c| fresh(format!("p_{}", c.name))).collect();
+    let costate_rates = costates.iter().map(|&p| fresh(format!("{}'", g.name(p)))).collect();
+    let problem = Problem { quasi, augmented, p: g.variables(&costates), costates, costate_rates };
+    let recursive = problem.equations(system.clone(), None, None);
+    let Some(Whole { balance, rates }) = problem.put_in(&system) else { return Ok(recursive) };
+    let with = |balance, rates| problem.equations(system.clone(), balance, rates);
+    let mixed = [with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))];
+    Ok(cheapest([recursive].into_iter().chain(mixed).collect()))
+}
+
+/// Quasi-velocities put in: short for small systems, where terms meet that cancel.
+struct Whole {
+    /// `−∂K/∂w`
+    balance: Vec<Expr>,
+    /// `−∂K/∂q`
+    rates: Vec<Expr>,
+}
+
+struct Problem {
+    quasi: QuasiVelocities,
+    augmented: Augmented,
+    costates: Vec<Symbol>,
+    /// Symbols of `ṗ`, for the reader.
+    costate_rates: Vec<Symbol>,
+    p: Vec<Expr>,
+}
+
+impl Problem {
+    /// The equations by recursion, or by what is given for `∂K/∂w = 0` and `ṗ`.
+    fn equations(&self, system: System, balance: Option<&[Expr]>, rates: Option<&[Expr]>) -> Equations {
+        let Problem { quasi, augmented, costates, costate_rates, p } = self;
+        let g = &system.graph;
+        let mut equations = Equations::new(REDUCED_FORM.name, &system);
+        let (q, v) = (system.positions(), system.velocities());
+        let momenta = g.gradient(system.lagrangian, &v);
+
+        let mut definitions = quasi.coefficients.clone();
+        let residuals = match balance {
+            Some(given) => given.to_vec(),
+            None => stationarity(&system, quasi, p, &momenta, &mut definitions),
+        };
+        for d in &quasi.dependent {
+            let velocity = velocity(g, d);
+            definitions.define(d.symbol, velocity);
+            let left = g.variable(d.symbol);
+            equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
+        }
+        for (w, &residual) in quasi.free.iter().zip(&residuals) {
+            let meaning = format!("stationary in {}", g.name(w.symbol));
+            equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
+        }
+        let seeds: Vec<Expr> = p.iter().zip(&momenta).map(|(&p, &l_v)| g.sub(p, l_v)).collect();
+        let adjoints = adjoints(g, quasi, &seeds, &mut definitions);
+        let rates = match rates {
+            Some(given) => given.to_vec(),
+            None => {
+                let along = by_positions(&system, quasi, &adjoints, &mut definitions);
+                let gradient = g.gradient(system.lagrangian, &q);
+                gradient.iter().zip(along).map(|(&l_q, along)| multiplied_out(g, g.sub(l_q, along))).collect()
+            }
+        };
+
+        let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
+        for i in 0..q.len() {
+            let (rate, start) = (g.variable(v[i]), g.variable(q[i]));
+            equations.states.push(StateVariable { symbol: q[i], role: Role::Position, rate, start });
+        }
+        for (i, (&symbol, &rate)) in costates.iter().zip(&rates).enumerate() {
+            let start = g.substitute(augmented.momenta[i], &at_start);
+            equations.states.push(StateVariable { symbol, role: Role::Costate, rate, start });
+            let left = g.variable(costate_rates[i]);
+            equations.statements.push(Statement { meaning: "costate".into(), left, right: rate });
+        }
+        equations.blocks = vec![Block {
+            unknowns: quasi.free.iter().map(|w| w.symbol).collect(),
+            residuals,
+            guess: quasi.free.iter().map(|w| w.start).collect(),
+            regular: "∂²L/∂v² regular on the admissible velocities",
+        }];
+        multipliers(g, quasi, augmented, &adjoints, &mut definitions);
+        hand_over(&mut equations, &system, augmented, p);
+        equations.guards = quasi.guards.clone();
+        equations.definitions = definitions.into_list();
+        equations.graph = system.graph;
+        equations
+    }
+
+    /// The derivatives of `K` with the velocities put in; none where that is long.
+    fn put_in(&self, system: &System) -> Option<Whole> {
+        if system.dimension() > SMALL {
+            return None;
+        }
+        let g = &system.graph;
+        let mut at: HashMap<Symbol, Expr> = HashMap::new();
+        for &(symbol, e) in self.quasi.coefficients.list() {
+            at.insert(symbol, g.substitute(e, &at));
+        }
+        for d in &self.quasi.dependent {
+            at.insert(d.symbol, g.substitute(velocity(g, d), &at));
+        }
+        let v = g.substitute_all(&g.variables(&system.velocities()), &at);
+        let lagrangian = g.substitute(system.lagrangian, &at);
+        if g.size(&[lagrangian]) > WHOLE || g.size(&v) > WHOLE {
+            return None;
+        }
+        let function = g.sub(g.dot(&self.p, &v), shorter(g, lagrangian));
+        let w: Vec<Symbol> = self.quasi.free.iter().map(|w| w.symbol).collect();
+        let minus = |by: &[Symbol]| g.gradient(function, by).into_iter().map(|e| shorter(g, g.neg(e))).collect();
+        Some(Whole { balance: minus(&w), rates: minus(&system.positions()) })
+    }
+}
+
+fn velocity(g: &Graph, d: &mechanics::DependentVelocity) -> Expr {
+    let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
+    g.sum(&terms)
+}
+
+/// `Sᵀ (L_v − p)` in `(t, q, p, w)`, without what depends on `w` by way of definitions.
+fn stationarity(
+    system: &System,
+    quasi: &QuasiVelocities,
+    p: &[Expr],
+    momenta: &[Expr],
+    definitions: &mut Definitions,
+) -> Vec<Expr> {
+    let g = &system.graph;
+    let v = system.velocities();
+    let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
+    let mass = g.sparse_jacobian(momenta, &v);
+    let quadratic = mass.iter().flatten().all(|(_, e)| g.symbols_of(*e).iter().all(|s| !places.contains_key(s)));
+    let columns = quasi.columns(g, definitions);
+    // v at w = 0 where L is quadratic, else v itself
+    let mut at: HashMap<Symbol, Expr> = HashMap::new();
+    if quadratic {
+        at.extend(quasi.free.iter().map(|w| (w.symbol, g.zero())));
+    }
+    for d in &quasi.dependent {
+        let mut value = g.substitute(velocity(g, d), &at);
+        if quadratic {
+            value = definitions.short(g, "s", SHORT, value);
+        }
+        at.insert(d.symbol, value);
+    }
+    let momenta = g.substitute_all(momenta, &at);
+    let rest: Vec<Expr> = momenta.iter().zip(p).map(|(&l_v, &p)| g.sub(l_v, p)).collect();
+    if !quadratic {
+        return columns.projected_whole(g, &rest);
+    }
+    let row = |row: &Vec<(Symbol, Expr)>| row.iter().map(|&(s, e)| (places[&s], e)).collect::<BTreeMap<usize, Expr>>();
+    let mass: Vec<BTreeMap<usize, Expr>> = mass.iter().map(row).collect();
+    let reduced = columns.reduced(g, &mass, definitions);
+    let rest = columns.projected(g, &rest, definitions);
+    let w: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.symbol)).collect();
+    reduced.iter().zip(rest).map(|(row, rest)| g.add(g.dot(row, &w), rest)).collect()
+}
+
+/// `v̄_k` of the dependent velocities, from `seeds = p − L_v` by coordinate.
+fn adjoints(
+    g: &Graph,
+    quasi: &QuasiVelocities,
+    seeds: &[Expr],
+    definitions: &mut Definitions,
+) -> HashMap<Symbol, Expr> {
+    let mut terms: HashMap<Symbol, Vec<Expr>> =
+        quasi.dependent.iter().map(|d| (d.symbol, d.coordinate.map(|i| seeds[i]).into_iter().collect())).collect();
+    let mut adjoints = HashMap::new();
+    for d in quasi.dependent.iter().rev() {
+        let adjoint = definitions.short(g, "r", SHORT, g.sum(&terms[&d.symbol]));
+        for &(s, coefficient) in &d.terms {
+            if let Some(terms) = terms.get_mut(&s) {
+                terms.push(g.mul(coefficient, adjoint));
+            }
+        }
+        adjoints.insert(d.symbol, adjoint);
+    }
+    adjoints
+}
+
+/// `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`, through the recursion of the velocities and that of their coefficients.
+fn by_positions(
+    system: &System,
+    quasi: &QuasiVelocities,
+    adjoints: &HashMap<Symbol, Expr>,
+    definitions: &mut Definitions,
+) -> Vec<Expr> {
+    let g = &system.graph;
+    let positions = system.positions();
+    let coefficients = quasi.coefficients.list();
+    let within: HashSet<Symbol> = positions.iter().copied().chain(coefficients.iter().map(|c| c.0)).collect();
+    let mut terms: HashMap<Symbol, Vec<Expr>> = HashMap::new();
+    let add = |terms: &mut HashMap<Symbol, Vec<Expr>>, e: Expr, adjoint: Expr| {
+        let symbols: Vec<Symbol> = g.symbols_of(e).into_iter().filter(|s| within.contains(s)).collect();
+        for (s, derivative) in g.sparse_gradient(e, &symbols) {
+            terms.entry(s).or_default().push(g.mul(derivative, adjoint));
+        }
+    };
+    for d in quasi.dependent.iter().rev() {
+        add(&mut terms, velocity(g, d), adjoints[&d.symbol]);
+    }
+    for &(symbol, e) in coefficients.iter().rev() {
+        let Some(own) = terms.remove(&symbol) else { continue };
+        let adjoint = definitions.short(g, "rc", SHORT, g.sum(&own));
+        add(&mut terms, e, adjoint);
+    }
+    positions.iter().map(|q| terms.get(q).map_or(g.zero(), |terms| g.sum(terms))).collect()
+}
+
+/// Defines `μ`, the constraint eliminated last first.
+fn multipliers(
+    g: &Graph,
+    quasi: &QuasiVelocities,
+    augmented: &Augmented,
+    adjoints: &HashMap<Symbol, Expr>,
+    definitions: &mut Definitions,
+) {
+    for eliminated in quasi.eliminated.iter().rev() {
+        let own = eliminated.slopes.iter().map(|(v, slope)| g.mul(*slope, adjoints[v]));
+        let later = eliminated.added.iter().map(|&(i, e)| g.mul(e, g.variable(augmented.multipliers[i])));
+        let terms: Vec<Expr> = own.chain(later).collect();
+        definitions.define(augmented.multipliers[eliminated.constraint], g.sum(&terms));
+    }
+}
+
+/// `e` multiplied out, if that makes it shorter and is soon done.
+fn multiplied_out(g: &Graph, e: Expr) -> Expr {
+    if g.size(&[e]) > LONG { e } else { shorter(g, e) }
+}
+
+/// `e` multiplied out, if that makes it shorter.
+fn shorter(g: &Graph, e: Expr) -> Expr {
+    let expanded = g.expand(e);
+    if g.size(&[expanded]) < g.size(&[e]) { expanded } else { e }
+}
+
+/// Outputs, free constants and invariants.
+fn hand_over(equations: &mut Equations, system: &System, augmented: &Augmented, p: &[Expr]) {
+    let g = &system.graph;
+    let v = g.variables(&system.velocities());
+    equations.coordinates = g.variables(&system.positions());
+    let named = |&mu: &Symbol| Named { name: g.name(mu), expression: g.variable(mu) };
+    equations.multipliers = augmented.multipliers.iter().map(named).collect();
+    equations.free_constants = free_constants(augmented);
+    if system.is_autonomous() {
+        let energy = g.sub(g.dot(&v, p), system.lagrangian);
+        equations.invariants.push(Named { name: "energy".into(), expression: energy });
+    }
+    for (i, c) in system.coordinates.iter().enumerate() {
+        if g.is_zero(augmented.gradient[i]) {
+            equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: p[i] });
+        }
+    }
+    equations.velocities = v;
+}

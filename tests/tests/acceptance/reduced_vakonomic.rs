@@ -1,0 +1,253 @@
+//! The vakonomic equations in quasi-velocities are those of the costate form, instant by instant, and their motions those of the multiplier form.
+
+use std::cell::Cell;
+
+use deltaq::{Settings, formulation};
+use integrate::Method;
+use mechanics::{Compiled, Derivation, Equations, Form, Outputs, Scene};
+use proptest::prelude::*;
+use validation::random::{Recipe, recipes_of};
+use validation::trailer::{self, Coordinates};
+
+use crate::reduced_form::LINEAR;
+use crate::support::{
+    TIGHT, at, common_times, equations, known_gap, linear_scenes, motion_of, must, scene, some_multipliers, tight,
+    vakonomic, values,
+};
+
+fn raw(scene: &Scene, name: &str) -> Equations {
+    let derivation = Derivation { removal: None, start: Some(&scene.start) };
+    (formulation(name).expect("in the table").derive)(&scene.system, &derivation).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// `y(t₀)` with the multipliers `mu`.
+fn start(scene: &Scene, equations: &Equations, mu: &[f64]) -> Vec<f64> {
+    let mut values = values(&scene.system, &scene.start);
+    values.extend(equations.constant_symbols().into_iter().zip(mu.iter().copied()));
+    let (symbols, inputs): (Vec<_>, Vec<f64>) = values.into_iter().unzip();
+    let starts: Vec<_> = equations.states.iter().map(|y| y.start).collect();
+    let tape = equations.tape(&symbols, &starts).expect("compiles");
+    let mut y = vec![0.0; starts.len()];
+    tape.evaluate(&inputs, &mut tape.workspace(), &mut y);
+    y
+}
+
+/// Rates and outputs at the start.
+fn instant(scene: &Scene, equations: &Equations, mut compiled: Compiled, mu: &[f64]) -> (Vec<f64>, Outputs) {
+    let y = start(scene, equations, mu);
+    let unknowns = start_guess(scene, equations, mu);
+    compiled.set_constants(mu);
+    compiled.set_guess(&unknowns);
+    let mut rates = vec![0.0; y.len()];
+    compiled.rates(scene.start.t, &y, &mut rates).expect("regular");
+    (rates, compiled.outputs(scene.start.t, &y).expect("regular"))
+}
+
+fn start_guess(scene: &Scene, equations: &Equations, mu: &[f64]) -> Vec<f64> {
+    let mut values = values(&scene.system, &scene.start);
+    values.extend(equations.constant_symbols().into_iter().zip(mu.iter().copied()));
+    let (symbols, inputs): (Vec<_>, Vec<f64>) = values.into_iter().unzip();
+    let guess: Vec<_> = equations.blocks.iter().flat_map(|b| b.guess.clone()).collect();
+    let tape = equations.tape(&symbols, &guess).expect("compiles");
+    let mut z = vec![0.0; guess.len()];
+    tape.evaluate(&inputs, &mut tape.workspace(), &mut z);
+    z
+}
+
+/// Largest difference, relative to the largest entry.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let largest = b.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs() / largest)
+        .fold(0.0, |m, d| if d.is_nan() { f64::INFINITY } else { m.max(d) })
+}
+
+/// Differences of rates, velocities and multipliers between the two forms, the reduced one in the form chosen and in the plain one.
+fn differences(scene: &Scene, mu: &[f64]) -> [f64; 3] {
+    let (costate, reduced) = (raw(scene, "vakonomic-costate"), raw(scene, "vakonomic-reduced"));
+    let names = |e: &Equations| e.states.iter().map(|y| e.graph.name(y.symbol)).collect::<Vec<String>>();
+    assert_eq!(names(&costate), names(&reduced));
+    let (rates, outputs) = instant(scene, &costate, Compiled::plain(&costate).expect("compiles"), mu);
+    let mut largest = [0.0_f64; 3];
+    for compiled in [Compiled::new(&reduced), Compiled::plain(&reduced)] {
+        let (other, others) = instant(scene, &reduced, compiled.expect("compiles"), mu);
+        let found = [
+            apart(&other, &rates),
+            apart(&others.velocities, &outputs.velocities),
+            apart(&others.multipliers, &outputs.multipliers),
+        ];
+        largest.iter_mut().zip(found).for_each(|(largest, d)| *largest = largest.max(d));
+        let energy = |e: &Equations, o: &Outputs| {
+            e.invariants.iter().zip(&o.invariants).find(|(n, _)| n.name == "energy").map(|(_, &x)| x)
+        };
+        let energies = [energy(&costate, &outputs), energy(&reduced, &others)];
+        assert_eq!(energies[0].is_some(), energies[1].is_some());
+        if let [Some(one), Some(two)] = energies {
+            largest[0] = largest[0].max(apart(&[one], &[two]));
+        }
+        assert_eq!(costate.invariants.len(), reduced.invariants.len());
+    }
+    largest
+}
+
+#[test]
+fn rates_are_those_of_the_costate_form_on_every_scene() {
+    for scene in linear_scenes() {
+        let [rates, velocities, multipliers] = differences(&scene, &some_multipliers(&scene));
+        must(&format!("{}: rates against the costate form", scene.name), rates, 1e-13);
+        must(&format!("{}: velocities", scene.name), velocities, 1e-13);
+        must(&format!("{}: multipliers", scene.name), multipliers, 1e-12);
+    }
+}
+
+#[test]
+fn rates_are_those_of_the_costate_form_on_random_systems() {
+    let worst = Cell::new([0.0_f64; 3]);
+    let config = ProptestConfig {
+        cases: 256,
+        failure_persistence: None,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(1983),
+        ..ProptestConfig::default()
+    };
+    let mut runner = proptest::test_runner::TestRunner::new(config);
+    let outcome = runner.run(&recipes_of(&LINEAR), |recipe: Recipe| {
+        let scene = recipe.scene("random");
+        if scene.system.has_forces() {
+            return Ok(());
+        }
+        let found = differences(&scene, &some_multipliers(&scene));
+        worst.set(std::array::from_fn(|i| worst.get()[i].max(found[i])));
+        prop_assert!(found.iter().all(|&d| d < 1e-9), "{found:?}\n{}", scene.to_toml());
+        Ok(())
+    });
+    if let Err(error) = outcome {
+        panic!("{error}");
+    }
+    println!("largest differences {:?}", worst.get().map(|d| format!("{d:.1e}")));
+    assert!(worst.get()[0] > 0.0, "round-off is never zero on every system: nothing was compared");
+}
+
+#[test]
+fn motions_are_those_of_the_multiplier_form() {
+    for scene in linear_scenes() {
+        let mu: Vec<f64> = some_multipliers(&scene).iter().map(|mu| 0.3 * mu).collect();
+        let mut reference = motion_of(&scene, equations(&scene.system, "vakonomic", None), &mu, &tight());
+        let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &mu, &tight());
+        let (distance, end) = known_gap(&mut reference, &mut motion);
+        let guards = motion.equations.guards.len();
+        must(&format!("{}: quasi-velocities, {guards} guards, to {end:.2} s", scene.name), distance, 1e-9);
+        assert!(guards > 0 || end > 0.0, "{}: nothing was compared", scene.name);
+        let mut metric = deltaq::Metric::new(&scene.system).expect("compiles");
+        let times = common_times(&[&motion]);
+        let residual = times.iter().map(|&t| {
+            let now = at(&mut motion, t);
+            let speed = now.velocities.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
+            metric.constraint_residual(t, &now.coordinates, &now.velocities) / speed
+        });
+        must(&format!("{}: |f| without projection", scene.name), residual.fold(0.0, f64::max), 1e-11);
+    }
+}
+
+#[test]
+fn multipliers_and_series_follow_along_the_motion() {
+    for scene in [scene("sledge", &[]), scene("disc", &[]), trailer::scene(2, Coordinates::Maximal).expect("parses")] {
+        let mu: Vec<f64> = some_multipliers(&scene).iter().map(|mu| 0.3 * mu).collect();
+        let mut reference = vakonomic(&scene, &mu);
+        let settings = Settings { method: Method::Taylor, tolerance: TIGHT, ..tight() };
+        let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &mu, &settings);
+        let (distance, end) = known_gap(&mut reference, &mut motion);
+        must(&format!("{}: by Taylor series, to {end:.2} s", scene.name), distance, 1e-9);
+        let t = scene.start.t + 0.5 * (end - scene.start.t);
+        let found = [&mut reference, &mut motion].map(|m| at(m, t).multipliers);
+        must(&format!("{}: multipliers at {t:.2} s", scene.name), apart(&found[1], &found[0]), 1e-8);
+    }
+}
+
+#[test]
+fn the_jacobian_goes_through_what_waits_for_the_unknowns() {
+    for scene in [scene("disc", &[]), trailer::scene(4, Coordinates::Maximal).expect("parses")] {
+        let equations = equations(&scene.system, "vakonomic-reduced", None);
+        let mu = some_multipliers(&scene);
+        let y = start(&scene, &equations, &mu);
+        let mut compiled = Compiled::new(&equations).and_then(|c| c.with_jacobian(&equations)).expect("compiles");
+        let n = y.len();
+        let mut jacobian = vec![0.0; n * n];
+        compiled.jacobian(0.0, &y, &mut jacobian).expect("regular");
+        let step = 1e-5;
+        let (mut worst, mut largest) = (0.0_f64, 1.0_f64);
+        for j in 0..n {
+            let mut rates = |shift: f64| {
+                let mut moved = y.clone();
+                moved[j] += shift;
+                let mut rates = vec![0.0; n];
+                compiled.rates(0.0, &moved, &mut rates).expect("regular");
+                rates
+            };
+            let (ahead, behind) = (rates(step), rates(-step));
+            for i in 0..n {
+                largest = largest.max(jacobian[i * n + j].abs());
+                worst = worst.max(((ahead[i] - behind[i]) / (2.0 * step) - jacobian[i * n + j]).abs());
+            }
+        }
+        must(&format!("{}: exact Jacobian against central differences", scene.name), worst / largest, 1e-7);
+    }
+}
+
+/// `L` quartic in the velocities: `w` by Newton's method.
+const QUARTIC: &str = r#"
+title = "Sledge whose momentum grows faster than its speed"
+[coordinates]
+x   = { start = 0 }
+y   = { start = 0 }
+phi = { start = 0.3 }
+[system]
+lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + (x'^2 + y'^2)^2/8 + phi'^4/9 + x"
+constraints = ["y'*cos(phi) - x'*sin(phi)"]
+[start.velocities]
+"phi'" = 1
+"x'" = 0.5
+[run]
+duration = 1
+"#;
+
+#[test]
+fn a_lagrangian_that_is_not_quadratic_is_solved_by_newton() {
+    let scene = Scene::parse("quartic", QUARTIC).expect("parses");
+    let [rates, velocities, multipliers] = differences(&scene, &[0.4]);
+    must("quartic: rates", rates, 1e-13);
+    must("quartic: velocities and multipliers", velocities.max(multipliers), 1e-12);
+    let mut reference = vakonomic(&scene, &[0.4]);
+    for method in [Method::Dop853, Method::Taylor] {
+        let settings = Settings { method, ..tight() };
+        let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &[0.4], &settings);
+        must(&format!("quartic: {method:?}"), known_gap(&mut reference, &mut motion).0, 1e-10);
+    }
+}
+
+#[test]
+fn a_train_takes_two_unknowns_whatever_its_length() {
+    let scene = trailer::scene(12, Coordinates::Maximal).expect("parses");
+    let equations = raw(&scene, "vakonomic-reduced");
+    assert_eq!(equations.unknowns().len(), 2);
+    assert!(equations.guards.is_empty());
+    let form = Form::choose(&equations, None).expect("compiles");
+    assert!(form.left.is_empty(), "{:?}", form.why);
+    let [rates, velocities, multipliers] = differences(&scene, &some_multipliers(&scene));
+    must("12 trailers: rates", rates, 1e-11);
+    must("12 trailers: velocities and multipliers", velocities.max(multipliers), 1e-11);
+}
+
+#[test]
+fn forces_and_constraints_that_are_not_linear_are_refused() {
+    let form = formulation("vakonomic-reduced").expect("in the table");
+    let refusal =
+        |scene: &Scene| (form.derive)(&scene.system, &Derivation::default()).err().expect("refused").to_string();
+    let error = refusal(&scene("appell-hamel", &[]));
+    assert!(error.contains("not linear in the velocities"), "{error}");
+    let pulled = QUARTIC.replace("[start.velocities]", "[system.forces]\nx = \"1\"\n[start.velocities]");
+    let scene = Scene::parse("pulled", &pulled).expect("parses");
+    let error = refusal(&scene);
+    assert!(error.contains("force"), "{error}");
+}
