@@ -14,9 +14,9 @@ struct Arguments {
     /// Few tolerances and few repeats: for a look, not for figures that are kept.
     #[arg(long)]
     quick: bool,
-    /// Only problems whose file name contains this.
-    #[arg(long, value_name = "TEXT", default_value = "")]
-    only: String,
+    /// Only problems whose file names contain one of these.
+    #[arg(long, value_name = "TEXT,…", value_delimiter = ',')]
+    only: Vec<String>,
     /// Folder of the page; `reports` for a full run, the folder of build results for any other.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -35,7 +35,8 @@ fn main() -> Result<()> {
     let mut tools = Tools::new()?;
     let versions = tools.versions()?;
     let mut outcomes = Vec::new();
-    for problem in problems()?.iter().filter(|problem| problem.slug.contains(&arguments.only)) {
+    let wanted = |slug: &str| arguments.only.is_empty() || arguments.only.iter().any(|text| slug.contains(text));
+    for problem in problems()?.iter().filter(|problem| wanted(&problem.slug)) {
         let begin = Instant::now();
         let outcome = race(problem, &mut tools, effort).with_context(|| problem.title.clone())?;
         let (rungs, failures) = (outcome.rungs.len(), outcome.failures.len());

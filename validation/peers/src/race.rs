@@ -37,7 +37,7 @@ pub struct Effort {
 
 impl Effort {
     /// For figures that are kept.
-    pub const FULL: Effort = Effort { step: 1, rounds: 3, repeat: 0.1, slow: 1.5, limit: 60 };
+    pub const FULL: Effort = Effort { step: 1, rounds: 2, repeat: 0.05, slow: 0.5, limit: 60 };
     /// For a look.
     pub const QUICK: Effort = Effort { step: 2, rounds: 1, repeat: 0.02, slow: 0.3, limit: 30 };
 }
