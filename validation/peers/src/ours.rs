@@ -111,20 +111,20 @@ fn compile(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Ready>
 fn forms(formulation: &str) -> &'static [&'static str] {
     match formulation {
         "chetaev" => &["", ", quasi-velocities"],
-        "vakonomic" => &["", ", costate form"],
+        "vakonomic" => &["", ", costate form", ", quasi-velocities"],
         _ => &[""],
     }
 }
 
-/// The method of that name, and the formulation that it is for where that is another form of the one in question.
+/// The method of that name, and what is added to the formulation's name where it is for another form.
 fn method(name: &str) -> Result<(Method, Option<&'static str>)> {
     if name == SOLVE {
         return Ok((Method::Dop853, None));
     }
     let (method, form) = match name.split_once(", ") {
         None => (name, None),
-        Some((method, "quasi-velocities")) => (method, Some("chetaev-reduced")),
-        Some((method, "costate form")) => (method, Some("vakonomic-costate")),
+        Some((method, "quasi-velocities")) => (method, Some("reduced")),
+        Some((method, "costate form")) => (method, Some("costate")),
         Some((_, form)) => bail!("no form {form}"),
     };
     let method = Method::ALL.into_iter().find(|known| format!("{known:?}") == method);
@@ -133,7 +133,9 @@ fn method(name: &str) -> Result<(Method, Option<&'static str>)> {
 
 /// The choice in another form of its formulation.
 fn in_form(choice: &Choice, form: Option<&'static str>) -> Choice {
-    Choice { formulation: form.unwrap_or(choice.formulation), ..choice.clone() }
+    let name = |form| format!("{}-{form}", choice.formulation);
+    let formulation = form.and_then(|form| formulation(&name(form))).map_or(choice.formulation, |f| f.name);
+    Choice { formulation, ..choice.clone() }
 }
 
 impl Loaded {

@@ -161,7 +161,7 @@ fn picture(bench: &Bench) -> Result<String, PictureError> {
         let m = entry.outcome.as_ref().ok()?;
         let curves: Vec<Curve> = m.series.iter().enumerate().map(|(i, series)| curve(i, series)).collect();
         let drawn = curves.iter().any(|curve| !curve.points.is_empty());
-        drawn.then(|| Panel { y: Axis::log(format!("error, {}", entry.label)), curves })
+        drawn.then(|| Panel { y: Axis::log(entry.label.replace("removed constraint", "removed")), curves })
     };
     SmallMultiples {
         title: format!("{}: error over run time", bench.title),

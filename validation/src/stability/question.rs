@@ -16,7 +16,7 @@ pub const MAX_STEPS: usize = 4_000;
 pub fn tolerance(method: Method) -> f64 {
     match method {
         Method::Tsit45 | Method::Bdf => 1e-8,
-        Method::Esdirk34 => 1e-7,
+        Method::Esdirk34 | Method::Radau5 => 1e-7,
         Method::TrBdf2 => 1e-5,
         _ => 1e-10,
     }
