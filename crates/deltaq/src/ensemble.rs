@@ -1,6 +1,8 @@
 //! Ensembles: many starts and parameters of one system at once, over the lanes of the processor's vectors and over its cores.
 
 mod run;
+#[cfg(test)]
+mod tests;
 
 use integrate::Method;
 use mechanics::{

@@ -225,10 +225,13 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let (reached, candidate, slope) = (&self.reached, &self.candidate, &self.slope);
         let ends = Ends { reached, candidate, slope, next_coefficients: coefficients, share };
         let (absolute, relative) = (&self.absolute_tolerances, self.options.relative_tolerance);
-        (self.finite, self.smooth) = pulp::Arch::new().dispatch(|| {
-            let defect = ends.defect(absolute, relative);
-            (finite(coefficients), from_fn(|l| defect.component(l).is_none()))
-        });
+        (self.finite, self.smooth) = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                let defect = ends.defect(absolute, relative);
+                (finite(coefficients), from_fn(|l| defect.component(l).is_none()))
+            },
+        );
         if self.events.is_empty() {
             return;
         }
@@ -239,12 +242,15 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             let t = if part == PARTS { self.taken_to } else { from_fn(|l| self.t[l] + theta * self.taken[l]) };
             let (coefficients, inner) = (&self.coefficients, &mut self.inner);
             let last = theta.powi(order as i32);
-            pulp::Arch::new().dispatch(|| {
-                for ((y, row), i) in inner.iter_mut().zip(coefficients.chunks_exact(order + 1)).zip(0..) {
-                    *y = row.iter().rev().fold([0.0; LANES], |sum, c| from_fn(|l| c[l] + share[l] * sum[l]));
-                    *y = from_fn(|l| y[l] + last * (candidate[i][l] - reached[i][l]));
-                }
-            });
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    for ((y, row), i) in inner.iter_mut().zip(coefficients.chunks_exact(order + 1)).zip(0..) {
+                        *y = row.iter().rev().fold([0.0; LANES], |sum, c| from_fn(|l| c[l] + share[l] * sum[l]));
+                        *y = from_fn(|l| y[l] + last * (candidate[i][l] - reached[i][l]));
+                    }
+                },
+            );
             self.problem.event_values(&t, inner, &mut self.events_next);
             for (before, after) in self.events.iter().zip(&self.events_next) {
                 for l in 0..LANES {
@@ -346,7 +352,10 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         } else {
             std::mem::swap(coefficients, &mut self.next_coefficients);
         }
-        let theta = pulp::Arch::new().dispatch(|| longest_step(&self.coefficients, absolute, relative, sizes));
+        let theta = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || longest_step(&self.coefficients, absolute, relative, sizes),
+        );
         for l in (0..LANES).filter(|&l| lanes[l]) {
             (self.t[l], self.unit[l]) = (self.taken_to[l], self.next_unit[l]);
             self.step[l] = theta[l] * self.unit[l];
@@ -381,7 +390,10 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let theta: Lane = from_fn(|l| self.taken[l] / self.unit[l]);
         let (powers, coefficients) = (&mut self.powers, &self.coefficients);
         let (reached, slope) = (&mut self.reached, &mut self.slope);
-        pulp::Arch::new().dispatch(|| evaluate(coefficients, &theta, powers, reached, slope));
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || evaluate(coefficients, &theta, powers, reached, slope),
+        );
         self.candidate.copy_from_slice(&self.reached);
         if self.options.projection == Projection::EveryStep {
             self.moved = self.problem.project(&self.taken_to, &mut self.candidate);

@@ -6,7 +6,6 @@ mod scalar;
 
 use crate::tape::{Tape, Workspace};
 pub use lanes::{LANES, Lanes};
-use scalar::GROUP;
 pub use scalar::{Product, SeriesScalar, Store, Task, Weights};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
@@ -173,7 +172,7 @@ impl SeriesTape {
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
         let order = order.max(1);
-        let stride = (order + 1 + GROUP).next_multiple_of(GROUP);
+        let stride = (order + 1 + T::GROUP).next_multiple_of(T::GROUP);
         let zero = T::from_f64(0.0);
         let at = |row: Row| row as usize * stride;
         let place = |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
@@ -209,7 +208,7 @@ impl SeriesTape {
             orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
         };
-        SeriesWorkspace { rows: vec![zero; T::room(self.rows * stride + GROUP)], plan }
+        SeriesWorkspace { rows: vec![zero; T::room(self.rows * stride + T::GROUP)], plan }
     }
 
     /// Computes the coefficients of all orders, from the inputs at order 0; unknowns must solve their equations there.

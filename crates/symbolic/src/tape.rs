@@ -110,7 +110,10 @@ impl Tape {
         assert_eq!(outputs.len(), self.outputs, "outputs of a tape");
         assert_eq!(registers.len(), self.registers, "the workspace of another tape");
         registers[..self.inputs].copy_from_slice(inputs);
-        T::vectorize(|| run(&self.body, registers));
+        T::vectorize(
+            #[inline(always)]
+            || run(&self.body, registers),
+        );
         outputs.copy_from_slice(&registers[self.inputs..self.inputs + self.outputs]);
     }
 

@@ -114,6 +114,9 @@ pub trait Task<T> {
 /// impl SeriesScalar for Own {}
 /// ```
 pub trait SeriesScalar: Scalar {
+    /// Coefficients of a series are looked at in groups of so many; a series is followed by as many places that may be read.
+    const GROUP: usize = 1;
+
     /// How many places to allocate where so many are needed.
     fn room(places: usize) -> usize {
         places
@@ -130,6 +133,8 @@ const SMALL: usize = 1 << 13;
 const LARGE: usize = 1 << 16;
 
 impl SeriesScalar for f64 {
+    const GROUP: usize = GROUP;
+
     fn room(places: usize) -> usize {
         let sizes = [SMALL, LARGE].map(|size| size + GROUP);
         sizes.into_iter().find(|size| places <= *size).unwrap_or(places)
