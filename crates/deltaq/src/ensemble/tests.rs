@@ -149,7 +149,8 @@ fn members_that_stop_do_so_alone_and_where_they_should() {
 fn what_is_no_member_is_refused() {
     let base = scene(SLEDGE, &[]);
     let chetaev = choice(&base, "chetaev");
-    let refused = |names: &[&str]| matches!(Ensemble::new(&base, &chetaev, names, &settings()), Err(SolveError::Member { .. }));
+    let refused =
+        |names: &[&str]| matches!(Ensemble::new(&base, &chetaev, names, &settings()), Err(SolveError::Member { .. }));
     assert!(refused(&["beta"]) && refused(&["g", "g"]));
     let mut ensemble = Ensemble::new(&base, &chetaev, &["g"], &settings()).unwrap();
     assert!(ensemble.member(&scene(SLEDGE, &[("g", 3.0)])).is_ok());
