@@ -2,11 +2,14 @@
 
 use anyhow::{Result, bail};
 
-use crate::bench::Effort;
+use crate::bench::{Effort, MEMBERS, ensemble_table, ensemble_throughput};
 use crate::catalogue;
 use crate::cli::{BenchArguments, TextOrJson};
 use crate::main_job::bench_all;
 use crate::report::{bench_files, bench_json, bench_table, write_all};
+
+/// Repeats of each way to integrate an ensemble; the least time counts.
+const REPEATS: usize = 5;
 
 /// Measures error against run time.
 ///
@@ -15,6 +18,12 @@ use crate::report::{bench_files, bench_json, bench_table, write_all};
 pub fn run(arguments: &BenchArguments) -> Result<String> {
     if !(arguments.seconds > 0.0 && arguments.seconds.is_finite()) {
         bail!("--seconds is {}; it must be above 0", arguments.seconds);
+    }
+    if let Some(tolerance) = arguments.ensemble {
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            bail!("--ensemble is {tolerance}; it must be between 0 and 1");
+        }
+        return Ok(ensemble_table(&ensemble_throughput(MEMBERS, tolerance, REPEATS)?));
     }
     let effort = Effort { seconds: arguments.seconds, ..Effort::default() };
     let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();

@@ -223,6 +223,9 @@ pub struct BenchArguments {
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
+    /// Measure the throughput of ensembles of sledges instead, at this tolerance: one by one, in lanes, and over all cores.
+    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out", "format"])]
+    pub ensemble: Option<f64>,
     /// No progress bar.
     #[arg(long)]
     pub quiet: bool,

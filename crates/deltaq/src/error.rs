@@ -97,6 +97,12 @@ pub enum SolveError {
         /// Largest number of steps.
         limit: usize,
     },
+    /// A motion cannot be a member of an ensemble.
+    #[error("not a member of this ensemble: {reason}")]
+    Member {
+        /// Why not.
+        reason: String,
+    },
     /// The time integrator was called wrongly.
     #[error(transparent)]
     Call(#[from] CallError),

@@ -46,7 +46,7 @@ pub(crate) fn natural_constants(
             failure = Some(error);
             BoundaryError::Residual { reason }
         })?;
-        if let Ending::Stopped { t, cause } = ending(prepared, &run.solution) {
+        if let Ending::Stopped { t, cause } = ending(&prepared.equations, &mut prepared.compiled, &run.solution) {
             return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
         }
         run.solution.dense.evaluate(horizon, &mut end);

@@ -8,9 +8,11 @@
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate.
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
 //! - [`ready()`]: the equations compiled, for single runs and for other integrators.
+//! - [`Ensemble`]: many starts and parameters of one system at once.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
 mod comparison;
+mod ensemble;
 mod equations_text;
 mod error;
 mod estimate;
@@ -30,6 +32,7 @@ pub use comparison::{
     Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, forms,
     removals, setting, solve_choice,
 };
+pub use ensemble::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
 pub use estimate::{ErrorEstimate, TRUSTED, error_estimate};

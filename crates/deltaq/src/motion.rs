@@ -210,7 +210,8 @@ pub fn solve(
     let looser = prepared.run(&constants, setting.end, settings.tolerance, Origin::LastDigit, settings)?;
     let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, Origin::Start, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
-    let ending = match (ending(&mut prepared, &kept.solution), ending(&mut prepared, &looser.solution)) {
+    let mut end = |run: &Solution| ending(&prepared.equations, &mut prepared.compiled, run);
+    let ending = match (end(&kept.solution), end(&looser.solution)) {
         (Ending::Completed, Ending::Stopped { t, cause }) => Ending::Stopped { t, cause: unconfirmed(&cause) },
         (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later, setting) => {
             Ending::Stopped { t, cause: unconfirmed(&cause) }
@@ -258,7 +259,7 @@ impl Motion {
 }
 
 /// Where only the tighter run goes on, there is no error estimate, and so no motion.
-fn unconfirmed(cause: &str) -> String {
+pub(crate) fn unconfirmed(cause: &str) -> String {
     format!("the run that estimates the error stops here: {cause}")
 }
 
@@ -343,9 +344,8 @@ pub fn constant_names(equations: &Equations) -> Vec<String> {
     equations.free_constants.iter().map(|c| equations.graph.name(c.symbol)).collect()
 }
 
-pub(crate) fn ending(prepared: &mut Prepared, run: &Solution) -> Ending {
+pub(crate) fn ending(equations: &Equations, compiled: &mut Compiled, run: &Solution) -> Ending {
     let Status::Stopped { t, cause } = &run.status else { return Ending::Completed };
-    let equations = &prepared.equations;
     let cause = match cause {
         StopCause::Event { index } => {
             let guard = equations.graph.plain(equations.guards[*index]);
@@ -360,7 +360,7 @@ pub(crate) fn ending(prepared: &mut Prepared, run: &Solution) -> Ending {
         }
         other => other.to_string(),
     };
-    let near = nearly_zero_guard(prepared, &run.dense).map_or(String::new(), |words| format!("; {words}"));
+    let near = nearly_zero_guard(equations, compiled, &run.dense).map_or(String::new(), |words| format!("; {words}"));
     Ending::Stopped { t: *t, cause: cause + &near }
 }
 
@@ -368,13 +368,13 @@ pub(crate) fn ending(prepared: &mut Prepared, run: &Solution) -> Ending {
 const NEARLY_ZERO: f64 = 1e-2;
 
 /// The guard that has shrunk most over the run, if it is nearly zero at its end.
-fn nearly_zero_guard(prepared: &mut Prepared, dense: &DenseOutput) -> Option<String> {
-    let count = prepared.compiled.guards();
+fn nearly_zero_guard(equations: &Equations, compiled: &mut Compiled, dense: &DenseOutput) -> Option<String> {
+    let count = compiled.guards();
     let (mut start, mut end) = (vec![0.0; count], vec![0.0; count]);
-    prepared.compiled.guard_values(dense.start(), dense.start_state(), &mut start);
-    prepared.compiled.guard_values(dense.end(), dense.end_state(), &mut end);
+    compiled.guard_values(dense.start(), dense.start_state(), &mut start);
+    compiled.guard_values(dense.end(), dense.end_state(), &mut end);
     let ratios = start.iter().zip(&end).map(|(a, b)| (b / a).abs());
     let (index, ratio) = ratios.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let guard = prepared.equations.graph.plain(prepared.equations.guards[index]);
+    let guard = equations.graph.plain(equations.guards[index]);
     (ratio < NEARLY_ZERO).then(|| format!("{guard}, by which the equations divide, is down to {:.1e}", end[index]))
 }

@@ -81,7 +81,7 @@ pub(crate) enum Origin {
 }
 
 /// A few units in the last place, up or down as the place in `y` has it.
-fn move_last_digits(y: &mut [f64]) {
+pub(crate) fn move_last_digits(y: &mut [f64]) {
     const UNITS: f64 = 4.0 * f64::EPSILON;
     let mut state = 0x9E37_79B9_7F4A_7C15_u64;
     for x in y {
@@ -98,7 +98,7 @@ const NO_SIZE: f64 = 1e-14;
 /// The size of each state, by which the absolute tolerance is multiplied: what it is at the start or what its rate there makes of it within the
 /// run, if that is under 1. So a motion of 10⁻¹² m is resolved as well as one of 1 m. A state that starts as round-off
 /// of the others, or at rest in zero, says nothing of its size, and has 1.
-fn sizes(y: &[f64], rates: &[f64], length: f64) -> Vec<f64> {
+pub(crate) fn sizes(y: &[f64], rates: &[f64], length: f64) -> Vec<f64> {
     let reach: Vec<f64> = y.iter().zip(rates).map(|(y, rate)| y.abs().max((rate * length).abs())).collect();
     let least = NO_SIZE * reach.iter().copied().fold(0.0, f64::max);
     reach.into_iter().map(|size| if size > least { size.min(1.0) } else { 1.0 }).collect()
@@ -134,13 +134,24 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     pub(crate) fn new(setting: Setting, equations: Equations, settings: &Settings) -> Result<Self, SolveError> {
+        let constants = vec![0.0; equations.free_constants.len()];
+        Prepared::around(setting, equations, &constants, settings)
+    }
+
+    /// In a form that suits these values of the free constants.
+    pub(crate) fn around(
+        setting: Setting,
+        equations: Equations,
+        constants: &[f64],
+        settings: &Settings,
+    ) -> Result<Self, SolveError> {
         let mut values = setting.system.values_at(setting.start);
         if let Some(removal) = &equations.removal {
             values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
         }
         let (mut symbols, mut start_inputs): (Vec<Symbol>, Vec<f64>) = values.into_iter().unzip();
         symbols.extend(equations.constant_symbols());
-        start_inputs.resize(symbols.len(), 0.0);
+        start_inputs.extend(constants);
         let mut outputs: Vec<symbolic::Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
         let start_tape = equations.tape(&symbols, &outputs)?;
@@ -148,7 +159,7 @@ impl Prepared {
         start_tape.evaluate(&start_inputs, &mut start_tape.workspace(), &mut start);
         let mut point = vec![setting.start.t];
         point.extend(&start[..equations.states.len()]);
-        point.resize(1 + equations.states.len() + equations.free_constants.len(), 0.0);
+        point.extend(constants);
         let form = Form::choose(&equations, Some(&point))?;
         let mut compiled = Compiled::with_form(&equations, &form)?;
         if settings.method.is_implicit() {

@@ -5,7 +5,7 @@ use crate::root::find_root_between;
 use crate::system::{Failure, System};
 
 /// Each step is looked at in so many parts of equal length.
-const PARTS: usize = 8;
+pub(crate) const PARTS: usize = 8;
 
 /// The event functions' signs up to the time reached.
 pub(crate) struct EventWatch {

@@ -73,6 +73,7 @@ mod dop853_tableau;
 mod dop853_tests;
 mod error;
 mod events;
+mod lanes;
 mod options;
 mod problem;
 mod radau5;
@@ -82,11 +83,13 @@ mod status;
 mod stepper;
 mod system;
 mod taylor;
+mod taylor_step;
 mod time_loop;
 
 pub use boundary::{BoundaryError, Residual, ShootOptions, Shot, fit, shoot};
 pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
+pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, integrate_lanes};
 pub use options::{Dense, Interrupt, Method, Options, Projection};
 pub use problem::{EvaluationError, Problem, Start};
 pub use root::find_root;
@@ -128,6 +131,14 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
             diffsol_methods::run(&system, start, end, options)
         }
     })
+}
+
+/// Whether [`integrate`] would take `start`, whose length is that of the problem, `end` and `options`.
+///
+/// # Errors
+/// See [`CallError`].
+pub fn check_start(start: &Start, end: f64, options: &Options) -> Result<(), CallError> {
+    check_call(start.y.len(), start, end, options)
 }
 
 fn check_call(dimension: usize, start: &Start, end: f64, options: &Options) -> Result<(), CallError> {

@@ -28,20 +28,8 @@ use crate::problem::Start;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, shortest_step};
 use crate::system::{Failure, System};
+use crate::taylor_step::{Ends, longest_step, order};
 
-/// Orders per factor e of the tolerance.
-const ORDERS: f64 = 1.0;
-/// Tolerances below are for the order as this one.
-const TIGHTEST: f64 = 1e-18;
-const LEAST_ORDER: f64 = 4.0;
-/// The last term, in tolerances: e⁻².
-const LAST: f64 = 0.135;
-/// So much may a term before the last two be over the geometric sequence.
-const SLACK: f64 = 1e3;
-/// The slope of the polynomial at the end of a step, times the step, may differ from the rates by so many tolerances, and by as many moves
-/// of a projection; a relative tolerance below round-off is read as that.
-const DEFECT: f64 = 100.0;
-const ROUND_OFF: f64 = 1e-14;
 /// Where coefficients overflow, the unit of time is shortened by this factor, so many times.
 const SHORTER_UNIT: f64 = 1e-8;
 const UNITS: usize = 30;
@@ -71,8 +59,6 @@ pub(crate) struct Taylor<'s, 'p> {
     powers: Vec<f64>,
     terms: Vec<f64>,
     exponents: Vec<f64>,
-    /// By this factor terms are to fall from one order to the next.
-    fall: f64,
     /// The step of the candidate, of either sign, and its end.
     taken: f64,
     taken_to: f64,
@@ -82,8 +68,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
     /// Computes the coefficients at the start.
     pub(crate) fn new(system: &'s System<'p>, start: &Start, end: f64, options: &Options) -> Result<Self, Failure> {
         let n = system.dimension();
-        let tolerance = options.relative_tolerance.max(TIGHTEST);
-        let order = (1.0 - ORDERS * tolerance.ln()).ceil().max(LEAST_ORDER) as usize;
+        let order = order(options.relative_tolerance);
         let mut taylor = Self {
             system,
             end,
@@ -103,7 +88,6 @@ impl<'s, 'p> Taylor<'s, 'p> {
             powers: vec![0.0; order + 1],
             terms: vec![0.0; (order + 1) * n],
             exponents: (0..=order).map(|k| k as f64).collect(),
-            fall: (-1.0 / ORDERS).exp(),
             taken: 0.0,
             taken_to: start.t,
         };
@@ -173,51 +157,22 @@ impl<'s, 'p> Taylor<'s, 'p> {
 
     /// Compares the slope of the polynomial at the end with the rates there.
     fn check_slope(&self) -> Result<(), Failure> {
-        let orders = self.order + 1;
-        let by = self.taken / self.next_unit;
-        let relative = self.relative_tolerance.max(ROUND_OFF);
-        let excess = |i: usize| {
-            let (y, move_) = (self.candidate[i], (self.candidate[i] - self.reached[i]).abs());
-            let size = y.abs().max(self.slope[i].abs());
-            let allowed = DEFECT * (self.absolute_tolerances[i] + relative * size);
-            ((self.slope[i] - self.next_coefficients[i * orders + 1] * by).abs() / allowed, move_ / allowed)
+        let ends = Ends {
+            reached: self.reached.as_chunks::<1>().0,
+            candidate: self.candidate.as_chunks().0,
+            slope: self.slope.as_chunks().0,
+            next_coefficients: self.next_coefficients.as_chunks().0,
+            share: [self.taken / self.next_unit],
         };
-        let (mut worst, mut moved) = ((0.0, 0), 0.0_f64);
-        for i in 0..self.candidate.len() {
-            let (defect, by) = excess(i);
-            moved = moved.max(by);
-            if defect > worst.0 {
-                worst = (defect, i);
-            }
-        }
-        if worst.0 > 1.0 + DEFECT * moved { Err(Failure::NotSmooth { component: worst.1 }) } else { Ok(()) }
+        let defect = ends.defect(self.absolute_tolerances.as_chunks().0, self.relative_tolerance);
+        defect.component(0).map_or(Ok(()), |component| Err(Failure::NotSmooth { component }))
     }
 
     /// The longest step, of positive length, whose last terms are below the tolerance; infinite for a constant.
     fn choose_step(&mut self) -> f64 {
-        self.sizes.fill(0.0);
-        for (row, absolute) in self.coefficients.chunks_exact(self.order + 1).zip(&self.absolute_tolerances) {
-            let scale = 1.0 / (absolute + self.relative_tolerance * row[0].abs());
-            for (size, c) in self.sizes.iter_mut().zip(row) {
-                let scaled = c.abs() * scale;
-                *size = if scaled > *size { scaled } else { *size };
-            }
-        }
-        let p = self.order;
-        let root = |size: f64, k: usize| (-size.ln() / k as f64).exp();
-        let mut theta = root(self.sizes[p] / LAST, p).min(root(self.sizes[p - 1] * self.fall / LAST, p - 1));
-        theta *= (-0.7 / (p - 1) as f64).exp();
-        let mut allowed = SLACK * LAST / self.fall.powi(p as i32 - 1);
-        let mut power = theta;
-        for k in 1..p - 1 {
-            let size = self.sizes[k];
-            if size * power > allowed {
-                theta = root(size / allowed, k);
-                power = theta.powi(k as i32);
-            }
-            allowed *= self.fall;
-            power *= theta;
-        }
+        let (coefficients, absolute) = (self.coefficients.as_chunks::<1>().0, self.absolute_tolerances.as_chunks().0);
+        let sizes = self.sizes.as_chunks_mut().0;
+        let [theta] = longest_step(coefficients, absolute, self.relative_tolerance, sizes);
         theta * self.unit
     }
 }

@@ -9,7 +9,7 @@ use crate::stepper::{Attempt, Stepper};
 use crate::system::{Failure, System, check_finite};
 
 /// So many times in a row is a step that cannot be evaluated halved.
-const HALVINGS: usize = 60;
+pub(crate) const HALVINGS: usize = 60;
 
 /// Integrates with `stepper`, or reports that it could not be set up.
 pub(crate) fn run(

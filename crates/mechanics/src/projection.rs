@@ -7,8 +7,8 @@ use crate::instant::{EvaluationFailure, Program};
 use crate::linear::{Factors, PIVOT_LIMIT, Singular};
 
 /// Newton steps allowed; a step under this length relative to the velocity ends the iteration.
-const STEPS: usize = 12;
-const LIMIT: f64 = 4.0 * f64::EPSILON;
+pub(crate) const STEPS: usize = 12;
+pub(crate) const LIMIT: f64 = 4.0 * f64::EPSILON;
 
 /// Minimizes `δvᵀ M δv` subject to `f(q, v + δv, t) = 0`, by Newton steps
 ///

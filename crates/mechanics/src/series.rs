@@ -20,26 +20,36 @@ pub(crate) struct Series {
 
 impl Series {
     pub(crate) fn new(equations: &Equations, form: &Form) -> Result<Self, CompileError> {
+        let known = equations.known_symbols().len();
+        let mut places: Vec<usize> = (0..known).collect();
+        let mut first = known;
+        for (k, block) in equations.blocks.iter().enumerate() {
+            if form.left.contains(&k) {
+                places.extend(first..first + block.unknowns.len());
+            }
+            first += block.unknowns.len();
+        }
+        let tape = Series::tape(equations, form)?;
+        let (workspace, inputs) = (tape.workspace(1), vec![0.0; places.len()]);
+        Ok(Series { tape, workspace, left: form.left.clone(), places, inputs })
+    }
+
+    /// Takes `t, y`, constants and the unknowns of blocks that are left.
+    pub(crate) fn tape(equations: &Equations, form: &Form) -> Result<SeriesTape, CompileError> {
         let steady = |symbol: Symbol| (symbol, SeriesInput::Steady);
         let mut inputs = vec![(equations.time, SeriesInput::Time)];
         inputs.extend(equations.states.iter().enumerate().map(|(i, y)| (y.symbol, SeriesInput::State(i))));
         inputs.extend(equations.constant_symbols().into_iter().map(steady));
-        let mut places: Vec<usize> = (0..inputs.len()).collect();
-        let mut first = inputs.len();
         let mut residuals: Vec<Vec<Expr>> = Vec::new();
         for (k, block) in equations.blocks.iter().enumerate() {
             if form.left.contains(&k) {
                 inputs.extend(block.unknowns.iter().map(|&z| (z, SeriesInput::Unknown(residuals.len()))));
                 residuals.push(block.residuals.clone());
-                places.extend(first..first + block.unknowns.len());
             }
-            first += block.unknowns.len();
         }
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
         let definitions = form.all_definitions(equations);
-        let tape = equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)?;
-        let (workspace, inputs) = (tape.workspace(1), vec![0.0; places.len()]);
-        Ok(Series { tape, workspace, left: form.left.clone(), places, inputs })
+        equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)
     }
 
     /// Expands to `order`, from `(t, y, constants, z)`, where `z` solves the blocks that are left and their factors are at hand.

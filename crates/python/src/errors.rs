@@ -49,7 +49,8 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::Horizon { .. }
         | Error::Discrete(_)
         | Error::NoPrinciple { .. }
-        | Error::Step { .. } => SolveError::new_err(text),
+        | Error::Step { .. }
+        | Error::Member { .. } => SolveError::new_err(text),
     }
 }
 

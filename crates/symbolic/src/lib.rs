@@ -69,5 +69,7 @@ pub use matrix::Matrix;
 pub use parse_error::{ParseError, ParseErrorKind};
 pub use range::Range;
 pub use scalar::Scalar;
-pub use series::{Correct, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights};
+pub use series::{
+    Correct, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
+};
 pub use tape::{Tape, Workspace};

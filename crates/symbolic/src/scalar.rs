@@ -55,6 +55,10 @@ pub trait Scalar:
     fn powf(self, exponent: Self) -> Self;
     /// The angle of the point (x, y), with `self` as y.
     fn atan2(self, x: Self) -> Self;
+    /// Runs `task`, which evaluates a tape, with the instructions that are best for this type.
+    fn vectorize<F: FnOnce()>(task: F) {
+        task();
+    }
 }
 
 impl Scalar for f64 {

@@ -1,10 +1,11 @@
 //! Power series of expressions along a motion: Taylor coefficients order by order.
 
 pub(crate) mod build;
+mod lanes;
 mod scalar;
 
 use crate::tape::{Tape, Workspace};
-use scalar::LANES;
+pub use lanes::{LANES, Lanes};
 pub use scalar::{Product, SeriesScalar, Store, Task, Weights};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
@@ -171,7 +172,7 @@ impl SeriesTape {
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
         let order = order.max(1);
-        let stride = (order + 1 + LANES).next_multiple_of(LANES);
+        let stride = (order + 1 + T::GROUP).next_multiple_of(T::GROUP);
         let zero = T::from_f64(0.0);
         let at = |row: Row| row as usize * stride;
         let place = |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
@@ -207,7 +208,7 @@ impl SeriesTape {
             orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
         };
-        SeriesWorkspace { rows: vec![zero; T::room(self.rows * stride + LANES)], plan }
+        SeriesWorkspace { rows: vec![zero; T::room(self.rows * stride + T::GROUP)], plan }
     }
 
     /// Computes the coefficients of all orders, from the inputs at order 0; unknowns must solve their equations there.
@@ -287,7 +288,8 @@ impl<T: SeriesScalar> Plan<T> {
             return;
         }
         for i in 0..2 {
-            let weights = Weights { of: &self.halves[i][newest * self.stride..][..self.stride], plain: i == 0 };
+            let of = &self.halves[i][newest * self.stride..][..self.stride];
+            let weights = Weights { of, plain: i == 0, next: self.orders[k].1 };
             rows.multiply(&self.products[i], weights, newest, self.order - 1);
         }
     }

@@ -110,7 +110,10 @@ impl Tape {
         assert_eq!(outputs.len(), self.outputs, "outputs of a tape");
         assert_eq!(registers.len(), self.registers, "the workspace of another tape");
         registers[..self.inputs].copy_from_slice(inputs);
-        run(&self.body, registers);
+        T::vectorize(
+            #[inline(always)]
+            || run(&self.body, registers),
+        );
         outputs.copy_from_slice(&registers[self.inputs..self.inputs + self.outputs]);
     }
 
@@ -304,7 +307,7 @@ impl Assembly<'_> {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn run<T: Scalar>(instructions: &[Instruction], r: &mut [T]) {
     for instruction in instructions {
         match *instruction {

@@ -4,9 +4,11 @@
 //! already. Its time is the least of several; its error is the largest distance from the reference in the kinetic metric, over [`SAMPLES`]
 //! times. A run that fails is listed with its cause.
 
+mod ensemble;
 mod measure;
 mod truth;
 
+pub use ensemble::{MEMBERS, Throughput, ensemble_table, ensemble_throughput};
 pub use measure::{Measured, Point, Series};
 pub use truth::Truth;
 

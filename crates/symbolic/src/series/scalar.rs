@@ -3,7 +3,7 @@
 use crate::Scalar;
 
 /// Coefficients of a series are looked at in groups of so many.
-pub(crate) const LANES: usize = 8;
+pub(crate) const GROUP: usize = 8;
 
 /// A product of two series that goes, scaled, into a third: places of their first coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +21,8 @@ pub struct Weights<'a, T> {
     pub(crate) of: &'a [T],
     /// Are they 1 as long as `j < newest`?
     pub(crate) plain: bool,
+    /// The weight of all terms of order `newest + 1`, each taken once.
+    pub(crate) next: T,
 }
 
 /// Coefficients, one series after the other.
@@ -37,7 +39,8 @@ pub trait Store<T> {
     /// target[newest + j] += scale (left[newest] right[j] + right[newest] left[j]) weight[j],    newest + j ≤ last
     /// ```
     ///
-    /// What is beyond `last` is left undefined.
+    /// What is beyond `last` is left undefined. Orders over `newest + 1` may be left for later: called for every `newest` in turn, this has
+    /// added all terms of order `newest + 1` when that order is due.
     fn multiply(&mut self, products: &[Product<T>], weights: Weights<T>, newest: usize, last: usize);
 }
 
@@ -111,6 +114,9 @@ pub trait Task<T> {
 /// impl SeriesScalar for Own {}
 /// ```
 pub trait SeriesScalar: Scalar {
+    /// Coefficients of a series are looked at in groups of so many; a series is followed by as many places that may be read.
+    const GROUP: usize = 1;
+
     /// How many places to allocate where so many are needed.
     fn room(places: usize) -> usize {
         places
@@ -127,8 +133,10 @@ const SMALL: usize = 1 << 13;
 const LARGE: usize = 1 << 16;
 
 impl SeriesScalar for f64 {
+    const GROUP: usize = GROUP;
+
     fn room(places: usize) -> usize {
-        let sizes = [SMALL, LARGE].map(|size| size + LANES);
+        let sizes = [SMALL, LARGE].map(|size| size + GROUP);
         sizes.into_iter().find(|size| places <= *size).unwrap_or(places)
     }
 
@@ -147,23 +155,23 @@ impl<F: Task<f64>> pulp::NullaryFnOnce for Vectorized<'_, F> {
 
     #[inline(always)]
     fn call(self) {
-        if let Ok(rows) = <&mut [f64; SMALL + LANES]>::try_from(&mut *self.rows) {
-            self.task.run(&mut Lanes(rows));
-        } else if let Ok(rows) = <&mut [f64; LARGE + LANES]>::try_from(&mut *self.rows) {
-            self.task.run(&mut Lanes(rows));
+        if let Ok(rows) = <&mut [f64; SMALL + GROUP]>::try_from(&mut *self.rows) {
+            self.task.run(&mut Grouped(rows));
+        } else if let Ok(rows) = <&mut [f64; LARGE + GROUP]>::try_from(&mut *self.rows) {
+            self.task.run(&mut Grouped(rows));
         } else {
-            self.task.run(&mut Lanes(self.rows));
+            self.task.run(&mut Grouped(self.rows));
         }
     }
 }
 
 /// Rows of f64 that are looked at in groups.
-struct Lanes<'a, R: ?Sized>(&'a mut R);
+struct Grouped<'a, R: ?Sized>(&'a mut R);
 
 trait Groups {
     fn at(&self, place: usize) -> f64;
     fn one(&mut self, place: usize) -> &mut f64;
-    fn group(&mut self, place: usize) -> &mut [f64; LANES];
+    fn group(&mut self, place: usize) -> &mut [f64; GROUP];
 }
 
 impl Groups for [f64] {
@@ -178,7 +186,7 @@ impl Groups for [f64] {
     }
 
     #[inline(always)]
-    fn group(&mut self, place: usize) -> &mut [f64; LANES] {
+    fn group(&mut self, place: usize) -> &mut [f64; GROUP] {
         self[place..].first_chunk_mut().expect("rows end with a group to spare")
     }
 }
@@ -187,21 +195,21 @@ impl Groups for [f64] {
 impl<const N: usize> Groups for [f64; N] {
     #[inline(always)]
     fn at(&self, place: usize) -> f64 {
-        self[place & (N - LANES - 1)]
+        self[place & (N - GROUP - 1)]
     }
 
     #[inline(always)]
     fn one(&mut self, place: usize) -> &mut f64 {
-        &mut self[place & (N - LANES - 1)]
+        &mut self[place & (N - GROUP - 1)]
     }
 
     #[inline(always)]
-    fn group(&mut self, place: usize) -> &mut [f64; LANES] {
-        self[place & (N - LANES - 1)..].first_chunk_mut().expect("the array has a group to spare")
+    fn group(&mut self, place: usize) -> &mut [f64; GROUP] {
+        self[place & (N - GROUP - 1)..].first_chunk_mut().expect("the array has a group to spare")
     }
 }
 
-impl<R: Groups + ?Sized> Lanes<'_, R> {
+impl<R: Groups + ?Sized> Grouped<'_, R> {
     #[inline(always)]
     fn add_products(
         &mut self,
@@ -214,14 +222,14 @@ impl<R: Groups + ?Sized> Lanes<'_, R> {
             let (a, b) = (*self.0.one(left + newest) * scale, *self.0.one(right + newest) * scale);
             let (x, y) = (*self.0.group(left + first), *self.0.group(right + first));
             let target = self.0.group(target + newest + first);
-            for l in 0..LANES {
+            for l in 0..GROUP {
                 target[l] += weigh(a * y[l] + b * x[l], l);
             }
         }
     }
 }
 
-impl<R: Groups + ?Sized> Store<f64> for Lanes<'_, R> {
+impl<R: Groups + ?Sized> Store<f64> for Grouped<'_, R> {
     #[inline(always)]
     fn get(&self, place: usize) -> f64 {
         self.0.at(place)
@@ -237,14 +245,14 @@ impl<R: Groups + ?Sized> Store<f64> for Lanes<'_, R> {
         let count = newest.min(last - newest);
         let mut first = 1;
         while first <= count {
-            let mut weight = [0.0; LANES];
-            weight.copy_from_slice(&weights.of[first..first + LANES]);
-            if weights.plain && first + LANES <= newest {
+            let mut weight = [0.0; GROUP];
+            weight.copy_from_slice(&weights.of[first..first + GROUP]);
+            if weights.plain && first + GROUP <= newest {
                 self.add_products(products, newest, first, |x, _| x);
             } else {
                 self.add_products(products, newest, first, |x, l| x * weight[l]);
             }
-            first += LANES;
+            first += GROUP;
         }
     }
 }

@@ -1,0 +1,231 @@
+//! Ensembles: many starts and parameters of one system at once, over the lanes of the processor's vectors and over its cores.
+
+mod run;
+#[cfg(test)]
+mod tests;
+
+use integrate::Method;
+use mechanics::{
+    Compiled, ConstantsRule, Equations, FreeConstant, LaneEquations, Outputs, Removal, Scene, State, System,
+    complete_removal_start,
+};
+
+use crate::motion::resolve;
+use crate::run::Prepared;
+use crate::{Choice, Setting, Settings, SolveError, default_constants, derive_at, formulation, setting};
+pub use run::{EnsembleOptions, MemberRun};
+
+/// Equations of a scene in one formulation, derived and compiled once for members that differ by start, by the values of some parameters, by free
+/// constants and by duration.
+///
+/// Members are integrated by [`Method::Taylor`], eight at a time. One that does not go well in company is integrated alone, and says so
+/// ([`MemberRun::alone`]): where the form of the equations is not to be trusted, at singularities, and always where a block of equations is left to be
+/// solved numerically ([`Ensemble::refusal`]).
+///
+/// ```
+/// # let text = r#"
+/// # title = "Ice sledge on an incline"
+/// # [parameters]
+/// # g = 9.81
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + g*x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#;
+/// use deltaq::{Ensemble, EnsembleOptions, Settings, choices};
+/// let scene = |g: f64, phi: f64| mechanics::Scene::parse_with("sledge", text, &[("g".into(), g), ("phi".into(), phi)]);
+/// let base = scene(9.81, 0.3)?;
+/// let mut ensemble = Ensemble::new(&base, &choices(&base)[0], &["g"], &Settings::default())?;
+/// let mut members = Vec::new();
+/// for i in 0..20 {
+///     members.push(ensemble.member(&scene(9.0 + 0.1 * i as f64, 0.05 * i as f64)?)?);
+/// }
+/// // the sledge turns at a constant rate, y = (x, y, phi, …)
+/// for (i, run) in ensemble.run(&members, &[1.0], &EnsembleOptions::default()).into_iter().enumerate() {
+///     assert!((run?.states[0][2] - (1.0 + 0.05 * i as f64)).abs() < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Ensemble {
+    prepared: Prepared,
+    lanes: Result<LaneEquations, String>,
+    choice: Choice,
+    /// With the parameters of the scene.
+    system: System,
+    /// Those parameters of it that vary.
+    varied: Vec<usize>,
+    settings: Settings,
+}
+
+/// What a member starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct EnsembleStart<'a> {
+    /// `(t₀, q₀, v₀)`, on the constraint.
+    pub state: &'a State,
+    /// Time at which it is to end.
+    pub end: f64,
+    /// Values of the parameters that vary, in the order in which they were named.
+    pub parameters: &'a [f64],
+    /// Free constants.
+    pub constants: &'a ConstantsRule,
+}
+
+/// A member, ready to run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnsembleMember {
+    t: f64,
+    end: f64,
+    y: Vec<f64>,
+    /// Free constants, then the parameters that vary.
+    constants: Vec<f64>,
+    guess: Vec<f64>,
+}
+
+impl EnsembleMember {
+    /// `y(t₀)`.
+    pub fn start(&self) -> &[f64] {
+        &self.y
+    }
+}
+
+impl Ensemble {
+    /// Derives and compiles; the form of the equations is chosen at the start of `scene`, so that this should be one among the members.
+    ///
+    /// [`Settings::method`] counts for nothing.
+    ///
+    /// # Errors
+    /// As [`crate::solve_choice`]; [`SolveError::Member`] where a name is no parameter, or where parameters are to vary and the constants are natural at a horizon.
+    pub fn new(scene: &Scene, choice: &Choice, parameters: &[&str], settings: &Settings) -> Result<Self, SolveError> {
+        let mut equations = derive_at(&scene.system, &scene.start, choice)?;
+        let system = scene.system.clone();
+        if !parameters.is_empty() && matches!(choice.constants, ConstantsRule::Natural { .. }) {
+            let reason = "its constants are natural at a horizon, for which parameters have to be the same";
+            return Err(SolveError::Member { reason: reason.into() });
+        }
+        let mut varied = Vec::new();
+        let mut constants = vec![0.0; equations.free_constants.len()];
+        for name in parameters {
+            let place = system.parameters.iter().position(|p| system.graph.name(p.symbol) == *name);
+            let Some(place) = place.filter(|place| !varied.contains(place)) else {
+                return Err(SolveError::Member { reason: format!("`{name}` is no parameter, or named twice") });
+            };
+            let symbol = system.parameters[place].symbol;
+            equations.parameters.remove(&symbol);
+            equations.free_constants.push(FreeConstant { symbol, natural: None, memory: None });
+            constants.push(system.parameters[place].value);
+            varied.push(place);
+        }
+        let settings = Settings { method: Method::Taylor, ..settings.clone() };
+        let mut prepared = Prepared::around(setting(scene), equations, &constants, &settings)?;
+        let mut point = vec![scene.start.t];
+        point.extend(prepared.start(&constants));
+        point.extend(&constants);
+        let lanes = LaneEquations::new(&prepared.equations, &prepared.form, &point)?;
+        Ok(Ensemble { prepared, lanes, choice: choice.clone(), system, varied, settings })
+    }
+
+    /// Why no member can be integrated in company, if that is so.
+    pub fn refusal(&self) -> Option<&str> {
+        self.lanes.as_ref().err().map(String::as_str)
+    }
+
+    /// The equations of all members; parameters that vary are free constants in them, behind the others.
+    pub fn equations(&self) -> &Equations {
+        &self.prepared.equations
+    }
+
+    /// The equations compiled.
+    pub fn compiled(&self) -> &Compiled {
+        &self.prepared.compiled
+    }
+
+    /// The member that `scene` is: the same scene with other numbers. Its multipliers are the free constants where the formulation starts from them.
+    ///
+    /// # Errors
+    /// As [`Ensemble::member_at`]; [`SolveError::Member`] where another parameter than those that vary has changed.
+    pub fn member(&mut self, scene: &Scene) -> Result<EnsembleMember, SolveError> {
+        let Setting { end, .. } = setting(scene);
+        if scene.system.parameters.len() != self.system.parameters.len() {
+            return Err(SolveError::Member { reason: "another scene".into() });
+        }
+        for (i, (now, base)) in scene.system.parameters.iter().zip(&self.system.parameters).enumerate() {
+            if now.value != base.value && !self.varied.contains(&i) {
+                let name = self.system.graph.name(base.symbol);
+                let reason = format!("{name} is {} and not {}, and is not among what varies", now.value, base.value);
+                return Err(SolveError::Member { reason });
+            }
+        }
+        let parameters: Vec<f64> = self.varied.iter().map(|&i| scene.system.parameters[i].value).collect();
+        let constants = match formulation(self.choice.formulation) {
+            Some(formulation) if formulation.starts_multipliers => default_constants(formulation, scene),
+            _ => self.choice.constants.clone(),
+        };
+        let start = EnsembleStart { state: &scene.start, end, parameters: &parameters, constants: &constants };
+        self.member_at(start)
+    }
+
+    /// The member that starts there.
+    ///
+    /// # Errors
+    /// [`SolveError`] where there is no start; [`SolveError::Member`] for a wrong number of parameters or one that is not finite.
+    pub fn member_at(&mut self, start: EnsembleStart) -> Result<EnsembleMember, SolveError> {
+        let EnsembleStart { state, end, parameters, constants } = start;
+        if parameters.len() != self.varied.len() || !parameters.iter().all(|x| x.is_finite()) {
+            let reason = format!("{} finite values are needed for the parameters that vary", self.varied.len());
+            return Err(SolveError::Member { reason });
+        }
+        for (&place, value) in self.varied.iter().zip(parameters) {
+            self.system.parameters[place].value = *value;
+        }
+        let mut values = self.system.values_at(state);
+        if let Some(removal) = &self.prepared.equations.removal {
+            values.extend(self.removal_start(removal, state)?);
+        }
+        let prepared = &mut self.prepared;
+        for (symbol, x) in prepared.start_symbols.iter().zip(&mut prepared.start_inputs) {
+            if let Some(value) = values.get(symbol) {
+                *x = *value;
+            }
+        }
+        prepared.t = state.t;
+        let free = &mut prepared.equations.free_constants;
+        let of_parameters = free.split_off(free.len() - parameters.len());
+        let resolved = resolve(prepared, constants, &self.settings);
+        prepared.equations.free_constants.extend(of_parameters);
+        let mut constants = resolved?;
+        constants.extend(parameters);
+        let y = prepared.start(&constants);
+        Ok(EnsembleMember { t: state.t, end, y, constants, guess: prepared.guess.clone() })
+    }
+
+    fn removal_start(&self, removal: &Removal, state: &State) -> Result<Vec<(symbolic::Symbol, f64)>, SolveError> {
+        Ok(complete_removal_start(&self.system, removal, state)?.values().into_iter().collect())
+    }
+
+    /// Coordinates, velocities, multipliers and invariants of `member` where its states are `y`.
+    ///
+    /// # Errors
+    /// [`SolveError::Reading`].
+    pub fn read(&mut self, member: &EnsembleMember, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
+        let compiled = &mut self.prepared.compiled;
+        member.set(compiled);
+        compiled.outputs(t, y).map_err(|failure| SolveError::Reading { t, failure })
+    }
+}
+
+impl EnsembleMember {
+    fn set(&self, compiled: &mut Compiled) {
+        compiled.set_constants(&self.constants);
+        if compiled.needs_guess() {
+            compiled.set_guess(&self.guess);
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Members against single runs of scenes that are derived and compiled for themselves.
+
+use mechanics::Scene;
+use symbolic::LANES;
+
+use super::{Ensemble, EnsembleMember, EnsembleOptions};
+use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, solve_choice};
+use integrate::Method;
+
+const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
+
+/// Two states of which the first grows beyond all bounds at `t = 1 / u₀`: `x' = u`, `u' = b u²` by a force of its own.
+const BLOW_UP: &str = r#"
+title = "Velocity that grows with its square"
+[parameters]
+b = 1
+[coordinates]
+x = { start = 0 }
+y = { start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2)/2"
+constraints = ["y' - x'"]
+forces = { x = "2*b*x'^2" }
+[start.velocities]
+"x'" = 0.5
+[run]
+duration = 1.5
+"#;
+
+fn settings() -> Settings {
+    Settings { method: Method::Taylor, tolerance: 1e-10, ..Settings::default() }
+}
+
+fn scene(text: &str, overrides: &[(&str, f64)]) -> Scene {
+    let overrides: Vec<(String, f64)> = overrides.iter().map(|(name, x)| (name.to_string(), *x)).collect();
+    Scene::parse_with("member", text, &overrides).unwrap()
+}
+
+fn choice(scene: &Scene, formulation: &str) -> Choice {
+    choices(scene).into_iter().find(|c| c.formulation == formulation).unwrap()
+}
+
+/// Numbers between 0 and 1.
+fn golden(i: usize) -> f64 {
+    (0.618_033_988_749_894_9 * (i + 1) as f64).fract()
+}
+
+/// Sledges on slopes of their own, with starts and durations of their own.
+fn sledges(count: usize) -> Vec<Scene> {
+    let member = |i: usize| {
+        let x = |k: usize| golden(7 * i + k);
+        scene(
+            SLEDGE,
+            &[
+                ("alpha", 0.2 + 0.5 * x(0)),
+                ("k", 0.5 + x(1)),
+                ("phi", 2.0 * x(2) - 1.0),
+                ("phi'", 3.0 * x(3) - 1.5),
+                ("duration", 1.0 + 4.0 * x(4)),
+                ("mu1", x(5) - 0.5),
+            ],
+        )
+    };
+    (0..count).map(member).collect()
+}
+
+fn run(ensemble: &Ensemble, members: &[EnsembleMember], times: &[f64], threads: usize) -> Vec<MemberRun> {
+    let options = EnsembleOptions { threads, estimate: true };
+    ensemble.run(members, times, &options).into_iter().map(Result::unwrap).collect()
+}
+
+fn ready(scenes: &[Scene], formulation: &str, parameters: &[&str]) -> (Ensemble, Vec<EnsembleMember>) {
+    let choice = choice(&scenes[0], formulation);
+    let mut ensemble = Ensemble::new(&scenes[0], &choice, parameters, &settings()).unwrap();
+    let members = scenes.iter().map(|scene| ensemble.member(scene).unwrap()).collect();
+    (ensemble, members)
+}
+
+#[test]
+fn every_member_is_its_single_run() {
+    let scenes = sledges(2 * LANES + 3);
+    let times = [0.0, 0.3, 0.9, 2.0, 4.0];
+    for formulation in ["chetaev", "chetaev-reduced", "vakonomic", "vakonomic-costate"] {
+        let known = crate::formulation(formulation).unwrap();
+        let of = |scene: &Scene| Choice {
+            label: formulation.into(),
+            formulation: known.name,
+            removal: None,
+            constants: crate::default_constants(known, scene),
+        };
+        let mut ensemble = Ensemble::new(&scenes[0], &of(&scenes[0]), &["alpha", "k"], &settings()).unwrap();
+        assert_eq!(ensemble.refusal(), None, "{formulation}");
+        let members: Vec<EnsembleMember> = scenes.iter().map(|scene| ensemble.member(scene).unwrap()).collect();
+        let runs = run(&ensemble, &members, &times, 1);
+        for ((scene, member), run) in scenes.iter().zip(&members).zip(&runs) {
+            let mut single = solve_choice(scene, &of(scene), &settings()).unwrap();
+            assert_eq!((&run.ending, &run.alone), (&Ending::Completed, &None), "{formulation}");
+            let reached: Vec<f64> = times.iter().copied().filter(|&t| t <= scene.duration).collect();
+            assert_eq!((run.states.len(), run.differences.len()), (reached.len(), reached.len()));
+            for (&t, (states, difference)) in reached.iter().zip(run.states.iter().zip(&run.differences)) {
+                let (here, there) = (ensemble.read(member, t, states).unwrap(), single.at(t).unwrap());
+                let size = 1.0 + there.coordinates.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+                for (a, b) in here.coordinates.iter().zip(&there.coordinates) {
+                    assert!((a - b).abs() < 1e-9 * size, "{formulation} at {t}: {a} and {b}");
+                }
+                let worst = difference.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+                assert!(worst < 1e-7 * size, "{formulation} at {t}: {worst}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_member_is_the_same_to_the_last_bit_whatever_runs_beside_it() {
+    let scenes = sledges(3 * LANES + 1);
+    let (ensemble, members) = ready(&scenes, "vakonomic", &["alpha", "k"]);
+    let times = [0.5, 1.0];
+    let all = run(&ensemble, &members, &times, 1);
+    assert_eq!(run(&ensemble, &members, &times, 3), all);
+    let backwards: Vec<EnsembleMember> = members.iter().rev().cloned().collect();
+    let mut other = run(&ensemble, &backwards, &times, 2);
+    other.reverse();
+    assert_eq!(other, all);
+    for (member, expected) in members.iter().zip(&all).take(5) {
+        assert_eq!(run(&ensemble, std::slice::from_ref(member), &times, 1)[0], *expected);
+    }
+}
+
+#[test]
+fn members_that_stop_do_so_alone_and_where_they_should() {
+    let speeds = [0.5, 2.0, 0.1, 1.0, -1.0, 0.9, 0.3, 0.6, 4.0, 0.2];
+    let scenes: Vec<Scene> = speeds.iter().map(|&u| scene(BLOW_UP, &[("x'", u), ("b", 1.0)])).collect();
+    let (ensemble, members) = ready(&scenes, "chetaev", &["b"]);
+    for (u, run) in speeds.into_iter().zip(run(&ensemble, &members, &[0.2, 1.5], 1)) {
+        // u' = b u², x = −ln(1 − b u₀ t)/b
+        let stops = u * 1.5 > 1.0;
+        assert_eq!(run.alone.is_some(), stops, "{u}: {:?}", run.alone);
+        assert_eq!(run.states.len(), if stops { 1 } else { 2 }, "{u}");
+        let expected = -(1.0 - 0.2 * u).ln();
+        assert!((run.states[0][0] - expected).abs() < 1e-10, "{u}: {} and {expected}", run.states[0][0]);
+        match run.ending {
+            Ending::Completed => assert!(!stops, "{u}"),
+            Ending::Stopped { t, .. } => assert!(stops && (t - 1.0 / u).abs() < 1e-3, "{u}: {t}"),
+        }
+    }
+}
+
+#[test]
+fn what_is_no_member_is_refused() {
+    let base = scene(SLEDGE, &[]);
+    let chetaev = choice(&base, "chetaev");
+    let refused =
+        |names: &[&str]| matches!(Ensemble::new(&base, &chetaev, names, &settings()), Err(SolveError::Member { .. }));
+    assert!(refused(&["beta"]) && refused(&["g", "g"]));
+    let mut ensemble = Ensemble::new(&base, &chetaev, &["g"], &settings()).unwrap();
+    assert!(ensemble.member(&scene(SLEDGE, &[("g", 3.0)])).is_ok());
+    let error = ensemble.member(&scene(SLEDGE, &[("alpha", 0.1)])).unwrap_err();
+    assert!(error.to_string().contains("alpha is 0.1 and not 0.4"), "{error}");
+    let natural = choice(&base, "removed-constraint");
+    assert!(Ensemble::new(&base, &natural, &["g"], &settings()).is_err());
+    assert!(Ensemble::new(&base, &natural, &[], &settings()).is_ok());
+}

@@ -1,0 +1,370 @@
+//! Many motions of one problem at once by Taylor series, eight at a time, one a lane.
+//!
+//! Each lane has a time, a step and an end of its own, chosen as [`crate::Method::Taylor`] chooses them for a single motion; a lane whose motion is
+//! complete goes on with the next one. Lanes do not know of each other: what comes out for a motion is the same to the last bit, whichever
+//! motions run beside it.
+//!
+//! Only what goes well is done here. A motion is left to [`crate::integrate`] where its problem does not trust the rates, where a coefficient is
+//! not finite, an event function changes its sign, or steps become too short or too many: these are rare, and every lane would wait for them.
+
+mod problem;
+
+use std::array::from_fn;
+
+use crate::events::PARTS;
+use crate::options::{Options, Projection};
+use crate::status::{ProjectionReport, Work};
+use crate::stepper::shortest_step;
+use crate::taylor_step::{Ends, longest_step, order};
+use crate::time_loop::HALVINGS;
+pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
+
+/// Takes a member and what became of it.
+type Done<'a> = &'a mut dyn FnMut(usize, Result<LaneRun, Left>);
+
+/// One motion under way.
+#[derive(Clone, Debug)]
+struct Rider {
+    member: usize,
+    end: f64,
+    /// Its series starts a motion: no step leads to it.
+    fresh: bool,
+    failures: usize,
+    /// Times that have been passed.
+    read: usize,
+    run: LaneRun,
+}
+
+struct Lanes<'a, P> {
+    problem: &'a mut P,
+    times: &'a [f64],
+    options: &'a Options,
+    orders: usize,
+    riders: [Option<Rider>; LANES],
+    t: Lane,
+    unit: Lane,
+    coefficients: Vec<Lane>,
+    next_unit: Lane,
+    next_coefficients: Vec<Lane>,
+    absolute_tolerances: Vec<Lane>,
+    sizes: Vec<Lane>,
+    powers: Vec<Lane>,
+    step: Lane,
+    taken: Lane,
+    taken_to: Lane,
+    candidate: Vec<Lane>,
+    reached: Vec<Lane>,
+    slope: Vec<Lane>,
+    moved: Lane,
+    trusted: [bool; LANES],
+    finite: [bool; LANES],
+    smooth: [bool; LANES],
+    eventless: [bool; LANES],
+    /// Event functions at the time reached.
+    events: Vec<Lane>,
+    events_next: Vec<Lane>,
+    inner: Vec<Lane>,
+}
+
+/// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series with the tolerances of `options`; `done` gets each with its states at
+/// those of `times` (in the order in which they are passed) that are not after its end, or why it was left.
+///
+/// `options` must be those of a valid call of [`crate::integrate`]; its sizes, and what it says of dense output and interrupts, count for nothing.
+pub fn integrate_lanes<P: LaneProblem>(
+    problem: &mut P,
+    next: &mut dyn FnMut() -> Option<(usize, LaneStart)>,
+    times: &[f64],
+    options: &Options,
+    done: Done,
+) {
+    let mut lanes = Lanes::new(problem, times, options);
+    loop {
+        for lane in 0..LANES {
+            if lanes.riders[lane].is_none()
+                && let Some((member, start)) = next()
+            {
+                lanes.board(lane, member, &start);
+            }
+        }
+        if lanes.riders.iter().all(Option::is_none) {
+            return;
+        }
+        lanes.expand();
+        let adopted = from_fn(|lane| lanes.judge(lane, done));
+        lanes.adopt(&adopted);
+        for lane in 0..LANES {
+            lanes.choose(lane, done);
+        }
+        lanes.advance();
+    }
+}
+
+impl<'a, P: LaneProblem> Lanes<'a, P> {
+    fn new(problem: &'a mut P, times: &'a [f64], options: &'a Options) -> Self {
+        let (n, orders, events) = (problem.dimension(), order(options.relative_tolerance) + 1, problem.events());
+        let zeros = |count: usize| vec![[0.0; LANES]; count];
+        Lanes {
+            problem,
+            times,
+            options,
+            orders,
+            riders: from_fn(|_| None),
+            t: [0.0; LANES],
+            unit: [1.0; LANES],
+            coefficients: zeros(n * orders),
+            next_unit: [1.0; LANES],
+            next_coefficients: zeros(n * orders),
+            absolute_tolerances: vec![[1.0; LANES]; n],
+            sizes: zeros(orders),
+            powers: zeros(orders),
+            step: [0.0; LANES],
+            taken: [0.0; LANES],
+            taken_to: [0.0; LANES],
+            candidate: zeros(n),
+            reached: zeros(n),
+            slope: zeros(n),
+            moved: [0.0; LANES],
+            trusted: [true; LANES],
+            finite: [true; LANES],
+            smooth: [true; LANES],
+            eventless: [true; LANES],
+            events: zeros(events),
+            events_next: zeros(events),
+            inner: zeros(n),
+        }
+    }
+
+    fn board(&mut self, lane: usize, member: usize, start: &LaneStart) {
+        self.problem.load(lane, member);
+        (self.t[lane], self.taken_to[lane]) = (start.t, start.t);
+        (self.taken[lane], self.moved[lane]) = (0.0, 0.0);
+        self.next_unit[lane] = (start.end - start.t).abs();
+        for (i, y) in start.y.iter().enumerate() {
+            self.candidate[i][lane] = *y;
+            self.reached[i][lane] = *y;
+            self.slope[i][lane] = 0.0;
+            self.absolute_tolerances[i][lane] = self.options.absolute_tolerance * start.sizes[i];
+        }
+        let run = LaneRun { states: Vec::new(), work: Work::default(), projection: ProjectionReport::default() };
+        self.riders[lane] = Some(Rider { member, end: start.end, fresh: true, failures: 0, read: 0, run });
+    }
+
+    /// The coefficients at the ends of the candidates, and all that tells whether these are to be kept.
+    fn expand(&mut self) {
+        let (problem, order) = (&mut *self.problem, self.orders - 1);
+        self.trusted = problem.taylor(&self.taken_to, &self.candidate, &self.next_unit, &mut self.next_coefficients);
+        let (coefficients, share) = (&self.next_coefficients, from_fn(|l| self.taken[l] / self.next_unit[l]));
+        let (reached, candidate, slope) = (&self.reached, &self.candidate, &self.slope);
+        let ends = Ends { reached, candidate, slope, next_coefficients: coefficients, share };
+        let (absolute, relative) = (&self.absolute_tolerances, self.options.relative_tolerance);
+        (self.finite, self.smooth) = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                let defect = ends.defect(absolute, relative);
+                (finite(coefficients), from_fn(|l| defect.component(l).is_none()))
+            },
+        );
+        if self.events.is_empty() {
+            return;
+        }
+        self.eventless = [true; LANES];
+        for part in 1..=PARTS {
+            let theta = part as f64 / PARTS as f64;
+            let share: Lane = from_fn(|l| theta * self.taken[l] / self.unit[l]);
+            let t = if part == PARTS { self.taken_to } else { from_fn(|l| self.t[l] + theta * self.taken[l]) };
+            let (coefficients, inner) = (&self.coefficients, &mut self.inner);
+            let last = theta.powi(order as i32);
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    for ((y, row), i) in inner.iter_mut().zip(coefficients.chunks_exact(order + 1)).zip(0..) {
+                        *y = row.iter().rev().fold([0.0; LANES], |sum, c| from_fn(|l| c[l] + share[l] * sum[l]));
+                        *y = from_fn(|l| y[l] + last * (candidate[i][l] - reached[i][l]));
+                    }
+                },
+            );
+            self.problem.event_values(&t, inner, &mut self.events_next);
+            for (before, after) in self.events.iter().zip(&self.events_next) {
+                for l in 0..LANES {
+                    self.eventless[l] &= before[l] * after[l].signum() > 0.0 && after[l] != 0.0 && after[l].is_finite();
+                }
+            }
+        }
+    }
+
+    /// Whether the lane goes on from its candidate: it does not where its motion is over or left, or where the step is to be halved.
+    fn judge(&mut self, lane: usize, done: Done) -> bool {
+        let Some(rider) = &mut self.riders[lane] else { return false };
+        if self.finite[lane] {
+            rider.run.work.evaluations += 1;
+            rider.run.work.orders += self.orders - 1;
+        }
+        if !self.trusted[lane] || self.moved[lane].is_nan() {
+            return self.leave(lane, Left::Untrusted, done);
+        }
+        if !self.finite[lane] {
+            return self.leave(lane, Left::NotFinite, done);
+        }
+        if rider.fresh {
+            rider.fresh = false;
+            self.read(lane);
+            return true;
+        }
+        if !self.smooth[lane] {
+            rider.failures += 1;
+            rider.run.work.rejected += 1;
+            self.step[lane] = 0.5 * self.taken[lane].abs();
+            return if rider.failures > HALVINGS { self.leave(lane, Left::StepTooSmall, done) } else { false };
+        }
+        if !self.eventless[lane] {
+            return self.leave(lane, Left::Event, done);
+        }
+        rider.failures = 0;
+        rider.run.work.steps += 1;
+        if self.options.projection == Projection::EveryStep {
+            rider.run.projection.record(self.moved[lane]);
+        }
+        self.read(lane);
+        let complete = self.riders[lane].take_if(|rider| self.taken_to[lane] == rider.end);
+        if let Some(rider) = complete {
+            done(rider.member, Ok(rider.run));
+            self.park(lane);
+            return false;
+        }
+        true
+    }
+
+    fn leave(&mut self, lane: usize, why: Left, done: Done) -> bool {
+        if let Some(rider) = self.riders[lane].take() {
+            done(rider.member, Err(why));
+            self.park(lane);
+        }
+        false
+    }
+
+    /// What is computed in an idle lane counts for nothing.
+    fn park(&mut self, lane: usize) {
+        for row in [&mut self.candidate, &mut self.reached, &mut self.slope, &mut self.coefficients] {
+            row.iter_mut().for_each(|x| x[lane] = 0.0);
+        }
+        (self.taken[lane], self.step[lane]) = (0.0, 0.0);
+    }
+
+    /// The states at those times that the step passes.
+    fn read(&mut self, lane: usize) {
+        let (from, to) = (self.t[lane], self.taken_to[lane]);
+        let Some(rider) = &mut self.riders[lane] else { return };
+        while let Some(&time) = self.times.get(rider.read)
+            && (time - to) * (rider.end - from) <= 0.0
+        {
+            rider.read += 1;
+            let ends = self.reached.iter().zip(&self.candidate);
+            if time == to || from == to {
+                rider.run.states.extend(ends.map(|(_, y)| y[lane]));
+                continue;
+            }
+            let (share, theta) = ((time - from) / self.unit[lane], (time - from) / self.taken[lane]);
+            let last = theta.powi(self.orders as i32 - 1);
+            let rows = self.coefficients.chunks_exact(self.orders);
+            rider.run.states.extend(rows.zip(ends).map(|(row, (reached, y))| {
+                let sum = row.iter().rev().fold(0.0, |sum, c| c[lane] + share * sum);
+                sum + last * (y[lane] - reached[lane])
+            }));
+        }
+    }
+
+    /// Goes on from the candidates of these lanes, whose steps are chosen from their coefficients.
+    fn adopt(&mut self, lanes: &[bool; LANES]) {
+        let (coefficients, next) = (&mut self.coefficients, &self.next_coefficients);
+        let (absolute, relative, sizes) = (&self.absolute_tolerances, self.options.relative_tolerance, &mut self.sizes);
+        if lanes.contains(&false) {
+            for (c, next) in coefficients.iter_mut().zip(next) {
+                *c = from_fn(|l| if lanes[l] { next[l] } else { c[l] });
+            }
+        } else {
+            std::mem::swap(coefficients, &mut self.next_coefficients);
+        }
+        let theta = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || longest_step(&self.coefficients, absolute, relative, sizes),
+        );
+        for l in (0..LANES).filter(|&l| lanes[l]) {
+            (self.t[l], self.unit[l]) = (self.taken_to[l], self.next_unit[l]);
+            self.step[l] = theta[l] * self.unit[l];
+        }
+        if !self.events.is_empty() {
+            self.problem.event_values(&self.taken_to, &self.candidate, &mut self.events_next);
+            for (event, next) in self.events.iter_mut().zip(&self.events_next) {
+                *event = from_fn(|l| if lanes[l] { next[l] } else { event[l] });
+            }
+        }
+    }
+
+    /// The next step of a lane.
+    fn choose(&mut self, lane: usize, done: Done) {
+        let Some(rider) = &self.riders[lane] else { return };
+        let (t, step) = (self.t[lane], self.step[lane]);
+        let remaining = rider.end - t;
+        let last = step >= remaining.abs();
+        if rider.run.work.steps + rider.run.work.rejected >= self.options.max_steps {
+            self.leave(lane, Left::TooManySteps, done);
+        } else if !last && (step <= shortest_step(t) || step.is_nan()) {
+            self.leave(lane, Left::StepTooSmall, done);
+        } else {
+            self.taken[lane] = if last { remaining } else { step * remaining.signum() };
+            self.taken_to[lane] = if last { rider.end } else { t + self.taken[lane] };
+            self.next_unit[lane] = self.taken[lane].abs();
+        }
+    }
+
+    /// The candidates: the polynomials at the ends of the steps, projected.
+    fn advance(&mut self) {
+        let theta: Lane = from_fn(|l| self.taken[l] / self.unit[l]);
+        let (powers, coefficients) = (&mut self.powers, &self.coefficients);
+        let (reached, slope) = (&mut self.reached, &mut self.slope);
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || evaluate(coefficients, &theta, powers, reached, slope),
+        );
+        self.candidate.copy_from_slice(&self.reached);
+        if self.options.projection == Projection::EveryStep {
+            self.moved = self.problem.project(&self.taken_to, &mut self.candidate);
+        }
+    }
+}
+
+/// Values of the polynomials, and their slopes times `theta`.
+#[inline(always)]
+fn evaluate(coefficients: &[Lane], theta: &Lane, powers: &mut [Lane], values: &mut [Lane], slopes: &mut [Lane]) {
+    let mut power = [1.0; LANES];
+    for x in powers.iter_mut() {
+        *x = power;
+        power = from_fn(|l| power[l] * theta[l]);
+    }
+    let rows = coefficients.chunks_exact(powers.len());
+    for ((row, value), slope) in rows.zip(values).zip(slopes) {
+        let (mut sum, mut weighted) = ([0.0; LANES], [0.0; LANES]);
+        for ((c, power), k) in row.iter().zip(&*powers).zip(0..).skip(1) {
+            let k = f64::from(k);
+            for l in 0..LANES {
+                let term = c[l] * power[l];
+                sum[l] += term;
+                weighted[l] += term * k;
+            }
+        }
+        *value = from_fn(|l| row[0][l] + sum[l]);
+        *slope = weighted;
+    }
+}
+
+/// Lanes without NaN and infinity.
+#[inline(always)]
+fn finite(values: &[Lane]) -> [bool; LANES] {
+    let mut sums = [[0.0; LANES]; 2];
+    for pair in values.chunks(2) {
+        for (sum, x) in sums.iter_mut().zip(pair) {
+            *sum = from_fn(|l| sum[l] + 0.0 * x[l]);
+        }
+    }
+    from_fn(|l| sums[0][l] + sums[1][l] == 0.0)
+}

@@ -1,0 +1,74 @@
+//! What is integrated in lanes, and what comes out.
+
+use crate::status::{ProjectionReport, Work};
+
+/// Motions at a time.
+pub const LANES: usize = 8;
+
+/// A number for each of them.
+pub type Lane = [f64; LANES];
+
+/// A problem whose motions differ by their starts and by constants.
+pub trait LaneProblem {
+    /// Number of states.
+    fn dimension(&self) -> usize;
+
+    /// Number of event functions.
+    fn events(&self) -> usize;
+
+    /// Lane `lane` goes on with the motion `member`.
+    fn load(&mut self, lane: usize, member: usize);
+
+    /// Taylor coefficients as those of [`crate::Problem::taylor`]; whether they are to be trusted, by lane.
+    fn taylor(&mut self, t: &Lane, y: &[Lane], unit: &Lane, coefficients: &mut [Lane]) -> [bool; LANES];
+
+    /// Moves the states onto the invariant manifold, and says by what Euclidean length; NaN where that is not possible.
+    fn project(&mut self, t: &Lane, y: &mut [Lane]) -> Lane;
+
+    /// Values of the event functions.
+    fn event_values(&mut self, t: &Lane, y: &[Lane], values: &mut [Lane]);
+}
+
+/// What a motion starts from and where it ends.
+#[derive(Clone, Debug)]
+pub struct LaneStart {
+    /// `t₀`.
+    pub t: f64,
+    /// `y(t₀)`.
+    pub y: Vec<f64>,
+    /// `t₁`, which is not `t₀`.
+    pub end: f64,
+    /// As [`crate::Options::sizes`], but never empty.
+    pub sizes: Vec<f64>,
+}
+
+/// Why a motion was left to be integrated by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Left {
+    /// The problem does not trust what it computed.
+    #[error("the form of the equations is not to be trusted on the way")]
+    Untrusted,
+    /// A coefficient, a state or an event function is NaN or infinite.
+    #[error("not finite on the way")]
+    NotFinite,
+    /// An event function changes its sign or vanishes.
+    #[error("an event on the way")]
+    Event,
+    /// Steps are too short to move the time, or halved too often.
+    #[error("steps too short on the way")]
+    StepTooSmall,
+    /// [`crate::Options::max_steps`].
+    #[error("too many steps")]
+    TooManySteps,
+}
+
+/// A complete motion.
+#[derive(Clone, Debug)]
+pub struct LaneRun {
+    /// The states at the times asked for, one after the other.
+    pub states: Vec<f64>,
+    /// What it cost.
+    pub work: Work,
+    /// How far the projections moved the states.
+    pub projection: ProjectionReport,
+}

@@ -1,0 +1,112 @@
+//! Order and step of a Taylor series, and whether to trust it: for one motion or several at once, one a lane.
+
+use std::array::from_fn;
+
+/// Orders per factor e of the tolerance.
+const ORDERS: f64 = 1.0;
+/// Tolerances below are for the order as this one.
+const TIGHTEST: f64 = 1e-18;
+const LEAST_ORDER: f64 = 4.0;
+/// The last term, in tolerances: e⁻².
+const LAST: f64 = 0.135;
+/// So much may a term before the last two be over the geometric sequence.
+const SLACK: f64 = 1e3;
+/// The slope of the polynomial at the end of a step, times the step, may differ from the rates by so many tolerances, and by as many moves
+/// of a projection; a relative tolerance below round-off is read as that.
+const DEFECT: f64 = 100.0;
+const ROUND_OFF: f64 = 1e-14;
+
+/// The order for a relative tolerance.
+pub(crate) fn order(relative_tolerance: f64) -> usize {
+    (1.0 - ORDERS * relative_tolerance.max(TIGHTEST).ln()).ceil().max(LEAST_ORDER) as usize
+}
+
+/// The longest step over the unit of the coefficients (component after component) whose last terms are below the tolerance; infinite for a
+/// constant. `sizes` is room for the largest coefficient of each order, in tolerances.
+#[inline(always)]
+pub(crate) fn longest_step<const N: usize>(
+    coefficients: &[[f64; N]],
+    absolute_tolerances: &[[f64; N]],
+    relative_tolerance: f64,
+    sizes: &mut [[f64; N]],
+) -> [f64; N] {
+    sizes.fill([0.0; N]);
+    for (row, absolute) in coefficients.chunks_exact(sizes.len()).zip(absolute_tolerances) {
+        let scale: [f64; N] = from_fn(|l| 1.0 / (absolute[l] + relative_tolerance * row[0][l].abs()));
+        for (size, c) in sizes.iter_mut().zip(row) {
+            for l in 0..N {
+                let scaled = c[l].abs() * scale[l];
+                size[l] = if scaled > size[l] { scaled } else { size[l] };
+            }
+        }
+    }
+    let p = sizes.len() - 1;
+    let fall = (-1.0 / ORDERS).exp();
+    let root = |size: f64, k: usize| (-size.ln() / k as f64).exp();
+    let shorter = (-0.7 / (p - 1) as f64).exp();
+    let last = |l: usize| root(sizes[p][l] / LAST, p).min(root(sizes[p - 1][l] * fall / LAST, p - 1));
+    let mut theta: [f64; N] = from_fn(|l| last(l) * shorter);
+    let mut allowed = SLACK * LAST / fall.powi(p as i32 - 1);
+    let mut power = theta;
+    for (k, size) in sizes.iter().enumerate().take(p - 1).skip(1) {
+        let over: [bool; N] = from_fn(|l| size[l] * power[l] > allowed);
+        if over.contains(&true) {
+            for l in (0..N).filter(|&l| over[l]) {
+                theta[l] = root(size[l] / allowed, k);
+                power[l] = theta[l].powi(k as i32);
+            }
+        }
+        allowed *= fall;
+        for l in 0..N {
+            power[l] *= theta[l];
+        }
+    }
+    theta
+}
+
+/// The end of a step, component after component.
+pub(crate) struct Ends<'a, const N: usize> {
+    /// What the polynomial reaches, what a projection made of it, and the polynomial's slope times the step.
+    pub(crate) reached: &'a [[f64; N]],
+    pub(crate) candidate: &'a [[f64; N]],
+    pub(crate) slope: &'a [[f64; N]],
+    /// The coefficients there, and the step over their unit.
+    pub(crate) next_coefficients: &'a [[f64; N]],
+    pub(crate) share: [f64; N],
+}
+
+/// Largest difference of slope and rates, with its component, and largest move by a projection, in what is allowed of the first.
+pub(crate) struct Defect<const N: usize> {
+    worst: [f64; N],
+    component: [usize; N],
+    moved: [f64; N],
+}
+
+impl<const N: usize> Defect<N> {
+    /// The component whose rates are not those of the polynomial, if there is one.
+    pub(crate) fn component(&self, lane: usize) -> Option<usize> {
+        (self.worst[lane] > 1.0 + DEFECT * self.moved[lane]).then_some(self.component[lane])
+    }
+}
+
+impl<const N: usize> Ends<'_, N> {
+    /// How far the polynomial is from the rates.
+    #[inline(always)]
+    pub(crate) fn defect(&self, absolute_tolerances: &[[f64; N]], relative_tolerance: f64) -> Defect<N> {
+        let orders = self.next_coefficients.len() / self.candidate.len();
+        let relative = relative_tolerance.max(ROUND_OFF);
+        let mut found = Defect { worst: [0.0; N], component: [0; N], moved: [0.0; N] };
+        for (i, absolute) in absolute_tolerances.iter().enumerate() {
+            let (y, slope, rates) = (self.candidate[i], self.slope[i], self.next_coefficients[i * orders + 1]);
+            for l in 0..N {
+                let allowed = DEFECT * (absolute[l] + relative * y[l].abs().max(slope[l].abs()));
+                found.moved[l] = found.moved[l].max((y[l] - self.reached[i][l]).abs() / allowed);
+                let defect = (slope[l] - rates[l] * self.share[l]).abs() / allowed;
+                let larger = defect > found.worst[l];
+                found.worst[l] = if larger { defect } else { found.worst[l] };
+                found.component[l] = if larger { i } else { found.component[l] };
+            }
+        }
+        found
+    }
+}

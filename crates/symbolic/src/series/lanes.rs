@@ -1,0 +1,153 @@
+//! Several numbers at once: the same expressions at as many points, one a lane.
+
+use std::array::from_fn;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::scalar::{Product, SeriesScalar, Store, Task, Weights};
+use crate::Scalar;
+
+/// Number of [`Lanes`].
+pub const LANES: usize = 8;
+
+/// Eight numbers, each computed from those of the same place only, as if it were alone: no lane depends on another.
+///
+/// ```
+/// use symbolic::{Lanes, Scalar};
+/// let x = Lanes([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+/// assert_eq!((x * x + Lanes::from_f64(1.0)).0[3], 10.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
+pub struct Lanes(pub [f64; LANES]);
+
+impl Lanes {
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Lanes(from_fn(|l| f(self.0[l])))
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Lanes(from_fn(|l| f(self.0[l], other.0[l])))
+    }
+}
+
+macro_rules! operator {
+    ($($trait:ident $method:ident $sign:tt)*) => { $(
+        impl $trait for Lanes {
+            type Output = Lanes;
+            #[inline(always)]
+            fn $method(self, other: Lanes) -> Lanes {
+                self.zip(other, |a, b| a $sign b)
+            }
+        }
+    )* };
+}
+
+operator!(Add add + Sub sub - Mul mul * Div div /);
+
+impl Neg for Lanes {
+    type Output = Lanes;
+    #[inline(always)]
+    fn neg(self) -> Lanes {
+        self.map(|x| -x)
+    }
+}
+
+macro_rules! functions {
+    ($($name:ident)*) => { $(
+        fn $name(self) -> Lanes {
+            self.map(<f64 as Scalar>::$name)
+        }
+    )* };
+}
+
+impl Scalar for Lanes {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Lanes {
+        Lanes([x; LANES])
+    }
+
+    fn from_ratio(numerator: i64, denominator: i64) -> Lanes {
+        Lanes([f64::from_ratio(numerator, denominator); LANES])
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Lanes {
+        self.map(f64::sqrt)
+    }
+
+    fn sin_cos(self) -> (Lanes, Lanes) {
+        let both = self.0.map(f64::sin_cos);
+        (Lanes(both.map(|x| x.0)), Lanes(both.map(|x| x.1)))
+    }
+
+    functions!(sin cos tan sinh cosh tanh asin acos atan asinh acosh atanh exp log);
+
+    fn powf(self, exponent: Lanes) -> Lanes {
+        self.zip(exponent, f64::powf)
+    }
+
+    fn atan2(self, x: Lanes) -> Lanes {
+        self.zip(x, f64::atan2)
+    }
+
+    fn vectorize<F: FnOnce()>(task: F) {
+        pulp::Arch::new().dispatch(task);
+    }
+}
+
+impl SeriesScalar for Lanes {
+    fn dispatch<F: Task<Lanes>>(rows: &mut [Lanes], task: F) {
+        pulp::Arch::new().dispatch(Vectorized { rows, task });
+    }
+}
+
+struct Vectorized<'a, F> {
+    rows: &'a mut [Lanes],
+    task: F,
+}
+
+impl<F: Task<Lanes>> pulp::NullaryFnOnce for Vectorized<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.task.run(&mut Rows(self.rows));
+    }
+}
+
+/// Rows of lanes. A vector is filled already, so that an order is added up at once, in a register.
+struct Rows<'a>(&'a mut [Lanes]);
+
+impl Store<Lanes> for Rows<'_> {
+    #[inline(always)]
+    fn get(&self, place: usize) -> Lanes {
+        self.0[place]
+    }
+
+    #[inline(always)]
+    fn set(&mut self, place: usize, x: Lanes) {
+        self.0[place] = x;
+    }
+
+    #[inline(always)]
+    fn multiply(&mut self, products: &[Product<Lanes>], weights: Weights<Lanes>, newest: usize, _: usize) {
+        for Product { scale, target, left, right } in products {
+            let (x, y) = (&self.0[left + 1..][..newest], &self.0[right + 1..][..newest]);
+            let mut sums = [Lanes([0.0; LANES]); 2];
+            let pairs = |i: usize| x[i] * y[newest - 1 - i];
+            let half = newest / 2;
+            for i in 0..half {
+                sums[0] = sums[0] + pairs(i);
+                sums[1] = sums[1] + pairs(newest - 1 - i);
+            }
+            if newest % 2 == 1 {
+                sums[0] = sums[0] + pairs(half);
+            }
+            let sum = (sums[0] + sums[1]) * *scale;
+            let target = &mut self.0[target + newest + 1];
+            *target = *target + if weights.plain { sum } else { sum * weights.next };
+        }
+    }
+}
