@@ -159,7 +159,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let (absolute, relative) = (&self.absolute_tolerances, self.options.relative_tolerance);
         (self.finite, self.smooth) = pulp::Arch::new().dispatch(
             #[inline(always)]
-            || {
+            move || {
+                let ends = once(ends);
                 let defect = ends.defect(absolute, relative);
                 (finite(coefficients), from_fn(|l| defect.component(l).is_none()))
             },
@@ -286,7 +287,10 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         }
         let theta = pulp::Arch::new().dispatch(
             #[inline(always)]
-            || longest_step(&self.coefficients, absolute, relative, sizes),
+            move || {
+                let sizes = once(sizes);
+                longest_step(coefficients, absolute, relative, sizes)
+            },
         );
         for l in (0..LANES).filter(|&l| lanes[l]) {
             (self.t[l], self.unit[l]) = (self.taken_to[l], self.next_unit[l]);
@@ -324,13 +328,22 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let (reached, slope) = (&mut self.reached, &mut self.slope);
         pulp::Arch::new().dispatch(
             #[inline(always)]
-            || evaluate(coefficients, &theta, powers, reached, slope),
+            move || {
+                let powers = once(powers);
+                evaluate(coefficients, &theta, powers, reached, slope);
+            },
         );
         self.candidate.copy_from_slice(&self.reached);
         if self.options.projection == Projection::EveryStep {
             self.moved = self.problem.project(&self.taken_to, &mut self.candidate);
         }
     }
+}
+
+/// Moves what a closure has captured, so that it can be called once only: such a closure is inlined as a whole where it is dispatched.
+#[inline(always)]
+fn once<T>(captured: T) -> T {
+    captured
 }
 
 /// Values of the polynomials, and their slopes times `theta`.

@@ -110,9 +110,13 @@ impl Tape {
         assert_eq!(outputs.len(), self.outputs, "outputs of a tape");
         assert_eq!(registers.len(), self.registers, "the workspace of another tape");
         registers[..self.inputs].copy_from_slice(inputs);
+        let all = &mut *registers;
         T::vectorize(
             #[inline(always)]
-            || run(&self.body, registers),
+            move || {
+                let moved = all; // a closure that can be called once only is inlined as a whole
+                run(&self.body, moved);
+            },
         );
         outputs.copy_from_slice(&registers[self.inputs..self.inputs + self.outputs]);
     }
