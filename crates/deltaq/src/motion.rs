@@ -224,7 +224,10 @@ pub fn solve(
     let mut motion = Motion { work, projection, ..Motion::of(prepared, constants, ending, runs, seconds) };
     motion.form.fallbacks = fallbacks;
     if settings.method.takes_more_steps_at_less_tolerance() {
-        motion.doubt = doubt(&motion.kept.step_times(), &motion.looser.step_times(), motion.end);
+        let (start, end) = (motion.start(), motion.end);
+        // just before a singularity steps become short whatever the tolerance
+        let until = if motion.is_complete() { end } else { start + BEFORE_THE_END * (end - start) };
+        motion.doubt = doubt(&motion.kept.step_times(), &motion.looser.step_times(), until);
     }
     Ok(motion)
 }
@@ -265,6 +268,9 @@ pub(crate) fn unconfirmed(cause: &str) -> String {
 
 /// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
 const FEW_STEPS: usize = 200;
+
+/// Steps of a motion that stops are counted over this part of it.
+const BEFORE_THE_END: f64 = 0.9;
 
 /// A hundredth of the tolerance takes at least so many times the steps: 1.78 of a method of order 8.
 const MORE_STEPS: f64 = 1.1;
