@@ -241,12 +241,17 @@ pub fn page(outcomes: &[Outcome], provenance: &Provenance) -> String {
         "\n## From scene file to trajectory\n\nMilliseconds for derivation, compilation and one run, of the setting for which the sum is least (times those of ours; wanted: at least {TOTAL:.0}).\n"
     );
     page += &total;
-    page += "\n## Car with n trailers\n\nMilliseconds of one run to an error of 1e-10.\n\n";
-    page += &table(&trailers, |r| r.seconds, demanded);
-    page += "\nDerivation + compilation, milliseconds:\n\n";
-    page += &set_up(&trailers);
-    page += "\nMethod, tolerance and error:\n\n";
-    page += &settings(&trailers);
+    page += "\n## Car with n trailers\n\n";
+    if trailers.is_empty() {
+        page += "Not timed in this run: `cargo xtask peers --only trailers`.\n";
+    } else {
+        page += "Milliseconds of one run to an error of 1e-10.\n\n";
+        page += &table(&trailers, |r| r.seconds, demanded);
+        page += "\nDerivation + compilation, milliseconds:\n\n";
+        page += &set_up(&trailers);
+        page += "\nMethod, tolerance and error:\n\n";
+        page += &settings(&trailers);
+    }
     page += "\n## Error over time\n\n";
     for outcome in outcomes.iter().filter(|o| !o.rungs.is_empty()) {
         let _ = writeln!(page, "![{}]({})\n", outcome.problem.title, crate::figures::name(outcome));
