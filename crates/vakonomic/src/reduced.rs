@@ -79,7 +79,7 @@ const WHOLE: usize = 200;
 /// let equations = vakonomic::derive_reduced(&scene.system, &mechanics::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// // the speed along the blade is the momentum along it
-/// assert_eq!(line(2), "w_x - p_x*cos(phi) - p_y*sin(phi)");
+/// assert_eq!(line(3), "w_x - p_x*cos(phi) - p_y*sin(phi)");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
