@@ -72,7 +72,7 @@ pub struct Point {
     pub expressions: usize,
     /// Seconds from `System` to compiled tape.
     pub derivation: f64,
-    /// [`Compiled::operations`].
+    /// [`Compiled::cost`].
     pub operations: usize,
     /// Seconds of one right-hand side.
     pub right_hand_side: f64,
