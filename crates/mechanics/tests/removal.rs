@@ -44,6 +44,20 @@ fn a_constraint_that_is_nowhere_finite_cannot_be_checked() {
     assert!(matches!(&error, RemovalError::NotCheckable { constraint: 1, .. }), "{error}");
 }
 
+/// Products of such parameters are no fractions that fit: what cancels in them leaves `10⁻¹⁶ x'`.
+#[test]
+fn what_parameters_cancel_to_is_round_off() {
+    let third = [("a", 0.3333333333333333), ("b", 0.7777777777777778), ("c", 0.1415926535897931)];
+    let (system, state) = systems::kinetic(&["x", "y"], &third, &["y' - (a + b)*c*x'"]);
+    let mut removal = Removal::by_coordinates(&system, &state).unwrap();
+    let remains = |text: &str| {
+        removal.memory[0].rate = parse(&system, text);
+        removal.verify(&system).is_err()
+    };
+    let rates = ["x'*(a + b)*c", "a*c*x' + b*c*x'", "a*c*x' + b*c*x' + 1e-9*x'", "a*c*x' + (b + 1e-9)*c*x'"];
+    assert_eq!(rates.map(remains), [false, false, true, true]);
+}
+
 #[test]
 fn automatic_removals_need_linear_independent_constraints() {
     let automatic = [Removal::by_coordinates, Removal::by_quasi_velocities];

@@ -173,6 +173,16 @@ impl Arena {
         order
     }
 
+    /// Whether a number in `e` is not exact.
+    pub(crate) fn contains_float(&self, e: Expr) -> bool {
+        let float = |n: &Number| matches!(n, Number::Float(_));
+        self.reachable(&[e], |_| true).into_iter().any(|e| match self.node(e) {
+            Node::Number(n) => float(n),
+            Node::Sum(constant, terms) => float(constant) || terms.iter().any(|(_, c)| float(c)),
+            _ => false,
+        })
+    }
+
     /// `e` with its children replaced by what `image` says, simplified again.
     pub(crate) fn rebuild(&mut self, e: Expr, image: &FxHashMap<Expr, Expr>) -> Expr {
         let of = |c: &Expr| image.get(c).copied().unwrap_or(*c);
