@@ -76,6 +76,17 @@ pub enum SolveError {
         /// What the boundary-value solver says.
         error: BoundaryError,
     },
+    /// The search for free constants that satisfy the natural boundary condition takes too many steps.
+    #[error(
+        "natural boundary condition at the horizon {horizon}: given up after {steps} steps in all; the search has come to motions beside a singularity, which \
+         take far more steps than the one it started from: a shorter horizon, another removal or constants that are given may help"
+    )]
+    Search {
+        /// Horizon asked for.
+        horizon: f64,
+        /// Steps of all runs together.
+        steps: usize,
+    },
     /// There is no discrete motion, or it cannot be read off.
     #[error(transparent)]
     Discrete(#[from] DiscreteError),

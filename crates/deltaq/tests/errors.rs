@@ -113,6 +113,17 @@ fn a_horizon_beyond_a_singularity_has_no_constants() {
 }
 
 #[test]
+fn a_search_that_comes_to_a_singularity_is_given_up() {
+    let text = include_str!("../../../validation/scenes/ball-in-cone.toml");
+    let scene = Scene::parse("ball-in-cone", text).unwrap_or_else(|e| panic!("{e}"));
+    let removal = Removal::by_quasi_velocities(&scene.system, &scene.start).expect("linear constraints");
+    let natural = choice("removed-constraint", Some(&removal), ConstantsRule::Natural { horizon: 0.3 });
+    let settings = Settings { tolerance: 1e-9, ..Settings::default() };
+    let error = refused(solve_choice(&scene, &natural, &settings));
+    assert!(matches!(error, SolveError::Search { horizon: 0.3, steps: 1..200_000 }), "{error}");
+}
+
+#[test]
 fn forces_are_for_chetaev_only() {
     let text = SLEDGE.replace("[start.velocities]", "forces = { phi = 0.2, y = 0 }\n[start.velocities]");
     let scene = Scene::parse("sledge", &text).unwrap_or_else(|e| panic!("{e}"));
