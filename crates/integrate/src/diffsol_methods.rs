@@ -86,11 +86,10 @@ impl Call<'_, '_> {
         Eqn: OdeEquations<V = States, T = f64> + 'e,
         S: OdeSolverMethod<'e, Eqn>,
     {
-        let mut stepper = solver
+        let stepper = solver
             .map_err(|error| self.system.take_failure().map_or_else(|| solver_cause(&error), StopCause::from))
             .and_then(|solver| Library::new(self, solver, kind));
-        let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
-        time_loop::run(self.system, stepper, self.start, self.end, self.options)
+        time_loop::drive(self.system, stepper, self.start, self.end, self.options)
     }
 }
 

@@ -95,7 +95,7 @@ pub use problem::{EvaluationError, Problem, Start};
 pub use root::find_root;
 pub use status::{ProjectionReport, Solution, Status, StopCause, Work};
 
-use stepper::{Stepper, shortest_step};
+use stepper::shortest_step;
 use system::System;
 
 /// Integrates `y' = F(t, y)` from `start` to `end`, forwards or backwards.
@@ -113,19 +113,13 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
     let system = System::new(problem);
     Ok(match options.method {
         Method::Taylor => {
-            let mut stepper = taylor::Taylor::new(&system, start, end, options).map_err(StopCause::from);
-            let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
-            time_loop::run(&system, stepper, start, end, options)
+            time_loop::drive(&system, taylor::Taylor::new(&system, start, end, options), start, end, options)
         }
         Method::Dop853 => {
-            let mut stepper = dop853::Dop853::new(&system, start, end, options).map_err(StopCause::from);
-            let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
-            time_loop::run(&system, stepper, start, end, options)
+            time_loop::drive(&system, dop853::Dop853::new(&system, start, end, options), start, end, options)
         }
         Method::Radau5 => {
-            let mut stepper = radau5::Radau5::new(&system, start, end, options).map_err(StopCause::from);
-            let stepper = stepper.as_mut().map(|stepper| stepper as &mut dyn Stepper).map_err(|cause| cause.clone());
-            time_loop::run(&system, stepper, start, end, options)
+            time_loop::drive(&system, radau5::Radau5::new(&system, start, end, options), start, end, options)
         }
         Method::Tsit45 | Method::Bdf | Method::TrBdf2 | Method::Esdirk34 => {
             diffsol_methods::run(&system, start, end, options)

@@ -12,6 +12,20 @@ use crate::system::{Failure, System, check_finite};
 pub(crate) const HALVINGS: usize = 60;
 
 /// Integrates with `stepper`, or reports that it could not be set up.
+pub(crate) fn drive<S: Stepper>(
+    system: &System,
+    stepper: Result<S, impl Into<StopCause>>,
+    start: &Start,
+    end: f64,
+    options: &Options,
+) -> Solution {
+    match stepper {
+        Ok(mut stepper) => run(system, Ok(&mut stepper), start, end, options),
+        Err(cause) => run(system, Err(cause.into()), start, end, options),
+    }
+}
+
+/// [`drive`] with any stepper.
 pub(crate) fn run(
     system: &System,
     stepper: Result<&mut dyn Stepper, StopCause>,
