@@ -132,7 +132,7 @@ impl Compiled {
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
         let straight = (form.left.len() < blocks.len())
-            .then(|| Straight::new(equations, form, known.len(), &all, &rates, &outputs))
+            .then(|| Straight::new(equations, form, &all, &rates, &outputs))
             .transpose()?;
         Ok(Compiled {
             straight,

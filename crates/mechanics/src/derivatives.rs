@@ -24,10 +24,7 @@ impl Derivatives {
         let residuals: Vec<Expr> = equations.blocks.iter().flat_map(|block| block.residuals.clone()).collect();
         let (definitions, outputs) =
             jacobian(g, &equations.definitions, &[(&rates, &states), (&rates, &unknowns), (&residuals, &states)]);
-        let mut inputs = vec![equations.time];
-        inputs.extend(states);
-        inputs.extend(equations.constant_symbols());
-        inputs.extend(&unknowns);
+        let inputs = [&equations.known_symbols()[..], &unknowns].concat();
         let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
         Ok(Derivatives {
             program: Program::by_way_of(equations, &definitions, &inputs, &outputs)?,

@@ -54,6 +54,20 @@ impl Form {
         [known, self.definitions.clone(), waiting].concat()
     }
 
+    /// Places in `(t, y, constants, z)` of what the definitions take: of `z` the unknowns of blocks that are left.
+    pub(crate) fn places(&self, equations: &Equations) -> Vec<usize> {
+        let mut first = equations.known_symbols().len();
+        let mut places: Vec<usize> = (0..first).collect();
+        for (k, block) in equations.blocks.iter().enumerate() {
+            let end = first + block.unknowns.len();
+            if self.left.contains(&k) {
+                places.extend(first..end);
+            }
+            first = end;
+        }
+        places
+    }
+
     /// All blocks are solved by LU factorization.
     pub fn plain(equations: &Equations) -> Form {
         Form { left: (0..equations.blocks.len()).collect(), ..Form::default() }
@@ -146,9 +160,8 @@ fn golden(i: usize) -> f64 {
 
 /// Points all around the first, about as far from it as it is from zero.
 fn around(first: &[f64]) -> Vec<Vec<f64>> {
-    let part = |i: usize| (0.618_033_988_749_894_9 * i as f64).fract();
     let shifted = |k: usize| {
-        move |(i, x): (usize, &f64)| x + 1.5 * (1.0 + x.abs()) * (2.0 * part((i + 1) * (k + 1) * (k + 3)) - 1.0)
+        move |(i, x): (usize, &f64)| x + 1.5 * (1.0 + x.abs()) * (2.0 * golden((i + 1) * (k + 1) * (k + 3)) - 1.0)
     };
     (0..AROUND).map(|k| first.iter().enumerate().map(shifted(k)).collect()).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+use symbolic::{CompileError, Expr, Scalar, Symbol, Tape, Workspace};
 
 use crate::equations::{Block, Equations};
 use crate::linear::{Factors, PIVOT_LIMIT, Singular};
@@ -38,13 +38,13 @@ pub enum EvaluationFailure {
 
 /// A tape with its registers and outputs.
 #[derive(Clone)]
-pub(crate) struct Program {
+pub(crate) struct Program<S = f64> {
     tape: Tape,
-    registers: Workspace<f64>,
-    pub(crate) values: Vec<f64>,
+    registers: Workspace<S>,
+    pub(crate) values: Vec<S>,
 }
 
-impl Program {
+impl<S: Scalar> Program<S> {
     pub(crate) fn new(equations: &Equations, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
         Program::by_way_of(equations, &equations.definitions, inputs, outputs)
     }
@@ -57,7 +57,7 @@ impl Program {
         outputs: &[Expr],
     ) -> Result<Self, CompileError> {
         let tape = equations.tape_by(definitions, inputs, outputs)?;
-        Ok(Program { registers: tape.workspace(), values: vec![0.0; outputs.len()], tape })
+        Ok(Program { registers: tape.workspace(), values: vec![S::from_f64(0.0); outputs.len()], tape })
     }
 
     /// Number of instructions.
@@ -65,7 +65,7 @@ impl Program {
         self.tape.len()
     }
 
-    pub(crate) fn run(&mut self, inputs: &[f64]) -> &[f64] {
+    pub(crate) fn run(&mut self, inputs: &[S]) -> &[S] {
         self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
         &self.values
     }

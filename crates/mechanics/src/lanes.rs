@@ -1,10 +1,11 @@
 //! Equations of motion at several points at once, one a lane: for ensembles.
 
-use symbolic::{CompileError, Expr, LANES, Lanes, Scalar, SeriesTape, SeriesWorkspace, Symbol, Tape, Workspace};
+use symbolic::{CompileError, LANES, Lanes, Scalar, SeriesTape, SeriesWorkspace, Symbol};
 
 use crate::equations::{Block, Equations};
 use crate::form::Form;
 use crate::fresh_symbol;
+use crate::instant::Program;
 use crate::projection::{LIMIT, STEPS};
 use crate::series::Series;
 
@@ -15,8 +16,8 @@ use crate::series::Series;
 pub struct LaneEquations {
     series: SeriesTape,
     workspace: SeriesWorkspace<Lanes>,
-    condition: Option<Program>,
-    guards: Program,
+    condition: Option<Program<Lanes>>,
+    guards: Program<Lanes>,
     projection: Option<Projection>,
     states: usize,
     /// `t, y, constants`.
@@ -41,12 +42,12 @@ impl LaneEquations {
         let known = equations.known_symbols();
         let condition = form
             .condition
-            .map(|condition| Program::new(equations, &form.all_definitions(equations), &known, &[condition]));
+            .map(|condition| Program::by_way_of(equations, &form.all_definitions(equations), &known, &[condition]));
         Ok(Ok(LaneEquations {
             workspace: series.workspace(1),
             series,
             condition: condition.transpose()?,
-            guards: Program::new(equations, &equations.definitions, &known, &equations.guards)?,
+            guards: Program::new(equations, &known, &equations.guards)?,
             projection,
             states: equations.states.len(),
             inputs: vec![Lanes::from_f64(0.0); known.len()],
@@ -128,36 +129,11 @@ impl LaneEquations {
     }
 }
 
-/// A tape with its registers and outputs.
-#[derive(Clone)]
-struct Program {
-    tape: Tape,
-    registers: Workspace<Lanes>,
-    values: Vec<Lanes>,
-}
-
-impl Program {
-    fn new(
-        equations: &Equations,
-        definitions: &[(Symbol, Expr)],
-        inputs: &[Symbol],
-        outputs: &[Expr],
-    ) -> Result<Self, CompileError> {
-        let tape = equations.tape_by(definitions, inputs, outputs)?;
-        Ok(Program { registers: tape.workspace(), values: vec![Lanes::from_f64(0.0); outputs.len()], tape })
-    }
-
-    fn run(&mut self, inputs: &[Lanes]) -> &[Lanes] {
-        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
-        &self.values
-    }
-}
-
 /// The Newton step of [`crate::ConstraintProjection`], its linear equations eliminated beforehand.
 #[derive(Clone)]
 struct Projection {
     /// Outputs: `δv`, `f`, then the condition.
-    program: Program,
+    program: Program<Lanes>,
     places: Vec<usize>,
     constraints: usize,
 }
@@ -200,7 +176,7 @@ impl Projection {
         }
         let known = equations.known_symbols();
         let outputs = [&wanted[..], &projection.constraints, form.condition.as_slice()].concat();
-        let program = Program::new(&step, &form.all_definitions(&step), &known, &outputs)?;
+        let program = Program::by_way_of(&step, &form.all_definitions(&step), &known, &outputs)?;
         Ok(Ok(Some(Projection { program, places, constraints: h })))
     }
 

@@ -20,15 +20,7 @@ pub(crate) struct Series {
 
 impl Series {
     pub(crate) fn new(equations: &Equations, form: &Form) -> Result<Self, CompileError> {
-        let known = equations.known_symbols().len();
-        let mut places: Vec<usize> = (0..known).collect();
-        let mut first = known;
-        for (k, block) in equations.blocks.iter().enumerate() {
-            if form.left.contains(&k) {
-                places.extend(first..first + block.unknowns.len());
-            }
-            first += block.unknowns.len();
-        }
+        let places = form.places(equations);
         let tape = Series::tape(equations, form)?;
         let (workspace, inputs) = (tape.workspace(1), vec![0.0; places.len()]);
         Ok(Series { tape, workspace, left: form.left.clone(), places, inputs })

@@ -18,23 +18,15 @@ pub(crate) struct Straight {
 }
 
 impl Straight {
-    /// `known`: symbols of `t, y` and the constants; `all`: those and the unknowns.
+    /// `all`: symbols of `t, y`, the constants and the unknowns.
     pub(crate) fn new(
         equations: &Equations,
         form: &Form,
-        known: usize,
         all: &[Symbol],
         rates: &[Expr],
         outputs: &[Expr],
     ) -> Result<Self, CompileError> {
-        let mut first = known;
-        let mut places: Vec<usize> = (0..known).collect();
-        for (k, block) in equations.blocks.iter().enumerate() {
-            if form.left.contains(&k) {
-                places.extend(first..first + block.unknowns.len());
-            }
-            first += block.unknowns.len();
-        }
+        let places = form.places(equations);
         let inputs: Vec<Symbol> = places.iter().map(|&i| all[i]).collect();
         let definitions = form.all_definitions(equations);
         let program = |wanted: &[Expr]| {
