@@ -12,7 +12,7 @@ use crate::{Setting, Settings, SolveError};
 pub struct Ready {
     /// The equations.
     pub equations: Equations,
-    /// `ẏ = F(t, y)` with its Jacobian; the constants and the guess are set.
+    /// `ẏ = F(t, y)`, with its Jacobian after [`ready()`]; the constants and the guess are set.
     pub compiled: Compiled,
     /// The form in which it is evaluated.
     pub form: Form,
@@ -76,9 +76,7 @@ impl Ready {
         let (status, work, projection) = (run.solution.status.clone(), run.solution.work, run.solution.projection);
         Ok(SingleRun { status, work, projection, trajectory: run.trajectory() })
     }
-}
 
-impl Ready {
     /// Compiles what `method` needs beyond the rates, unless that is done: it is done by the first run anyway.
     ///
     /// # Errors
