@@ -1,7 +1,5 @@
 //! Taylor coefficients in time of everything in a trace, one order after another.
 
-use symbolic::{Function, Scalar};
-
 use crate::Wide;
 use crate::trace::{ABSENT, Node, Operation, Value};
 
@@ -90,7 +88,7 @@ impl<T: Wide> Series<T> {
             Operation::Div(a, b) => of(a) / of(b),
             Operation::Sqrt(a) => of(a).sqrt(),
             Operation::Integral { value, arguments: [a, b], .. } => match value {
-                Value::Function(function) => apply(function, of(a)),
+                Value::Function(function) => function.apply(of(a)),
                 Value::Power => of(a).powf(of(b)),
                 Value::Angle => of(a).atan2(of(b)),
             },
@@ -148,30 +146,12 @@ fn operands(operation: Operation) -> [Option<Node>; 2] {
     }
 }
 
-fn apply<T: Scalar>(function: Function, x: T) -> T {
-    match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Tan => x.tan(),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Asin => x.asin(),
-        Function::Acos => x.acos(),
-        Function::Atan => x.atan(),
-        Function::Asinh => x.asinh(),
-        Function::Acosh => x.acosh(),
-        Function::Atanh => x.atanh(),
-        Function::Exp => x.exp(),
-        Function::Log => x.log(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::DoubleDouble;
     use crate::trace::{Traced, record};
+    use symbolic::Scalar;
 
     /// Sum of the series of `e(a(t), b(t))` at `h` minus the value there, for `a = a₀ + t − t²/2` and `b = 3/4 + t/3`.
     fn misses(

@@ -98,7 +98,12 @@ impl Function {
         }
     }
 
-    pub(crate) fn apply<T: Scalar>(self, x: T) -> T {
+    /// Its value at `x`, in any numbers.
+    ///
+    /// ```
+    /// assert_eq!(symbolic::Function::Exp.apply(0.0), 1.0);
+    /// ```
+    pub fn apply<T: Scalar>(self, x: T) -> T {
         match self {
             Function::Sin => x.sin(),
             Function::Cos => x.cos(),
