@@ -1,25 +1,15 @@
 //! Chetaev in quasi-velocities is Chetaev: against the saddle-point form, and against Maggi's equations, which share no derivation with either.
 
 use mechanics::{Compiled, Equations, Scene, State};
-use proptest::prelude::*;
+use proptest::{prop_assert, test_runner::TestCaseError};
 use referees::maggi::Maggi;
 use symbolic::{Expr, Symbol};
-use validation::random::{Kind, Recipe, recipes_of};
 use validation::trailer::{self, Coordinates};
 
-use crate::support::{at, chetaev, common_times, equations, known_gap, linear_scenes, motion_of, must, scene, tight};
-
-/// Kinds of random systems with constraints linear in the velocities, and none at all.
-pub const LINEAR: [Kind; 8] = [
-    Kind::Free,
-    Kind::ChaplyginIntegrable,
-    Kind::Integrable,
-    Kind::HiddenIntegrable,
-    Kind::PartlyIntegrable,
-    Kind::Linear,
-    Kind::Affine,
-    Kind::TimeDependent,
-];
+use crate::support::{
+    at, chetaev, common_times, constraint_residual, equations, for_all_linear, jacobian_error, known_gap,
+    linear_scenes, motion_of, must, scene, tight,
+};
 
 fn reduced(scene: &Scene) -> Equations {
     equations(&scene.system, "chetaev-reduced", None)
@@ -78,26 +68,15 @@ fn reduced_rates_are_those_by_maggi_on_every_scene() {
 #[test]
 fn reduced_rates_are_those_by_maggi_on_random_systems() {
     let worst = std::cell::Cell::new(0.0_f64);
-    let config = ProptestConfig {
-        cases: 256,
-        failure_persistence: None,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(1894),
-        ..ProptestConfig::default()
-    };
-    let mut runner = proptest::test_runner::TestRunner::new(config);
-    let outcome = runner.run(&recipes_of(&LINEAR), |recipe: Recipe| {
-        let scene = recipe.scene("random");
+    for_all_linear(1894, |scene| {
         let derivation = mechanics::Derivation { removal: None, start: Some(&scene.start) };
         let form = deltaq::formulation("chetaev-reduced").expect("in the table");
         let equations = (form.derive)(&scene.system, &derivation).map_err(|e| TestCaseError::fail(e.to_string()))?;
-        let (rates, velocities) = differences(&scene, &equations.leave_out_unneeded(), &scene.start);
+        let (rates, velocities) = differences(scene, &equations.leave_out_unneeded(), &scene.start);
         worst.set(worst.get().max(rates));
         prop_assert!(rates < 1e-8 && velocities < 1e-10, "{rates:e}, {velocities:e}\n{}", scene.to_toml());
         Ok(())
     });
-    if let Err(error) = outcome {
-        panic!("{error}");
-    }
     println!("largest difference {:.1e}", worst.get());
     assert!(worst.get() > 0.0, "round-off is never zero on every system: nothing was compared");
 }
@@ -111,14 +90,8 @@ fn reduced_motions_are_chetaevs_on_every_scene_and_stay_on_the_constraint() {
         let guards = motion.equations.guards.len();
         assert!(guards > 0 || end > 0.99 * scene.duration, "{}: no guard, and stopped at {end}", scene.name);
         must(&format!("{}: quasi-velocities, {guards} guards, to {end:.2} s", scene.name), distance, 1e-9);
-        let mut metric = deltaq::Metric::new(&scene.system).expect("compiles");
-        let times = common_times(&[&motion]);
-        let residual = times.iter().map(|&t| {
-            let now = at(&mut motion, t);
-            let speed = now.velocities.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
-            metric.constraint_residual(t, &now.coordinates, &now.velocities) / speed
-        });
-        must(&format!("{}: |f| without projection", scene.name), residual.fold(0.0, f64::max), 1e-11);
+        let residual = constraint_residual(&scene, &mut motion);
+        must(&format!("{}: |f| without projection", scene.name), residual, 1e-11);
     }
 }
 
@@ -167,25 +140,7 @@ fn the_jacobian_goes_through_the_definitions() {
     for scene in [scene("disc", &[]), train(4, Coordinates::Maximal)] {
         let equations = reduced(&scene);
         let (y, _) = states_and_rates(&scene, &equations, &scene.start, &vec![0.0; scene.system.dimension()]);
-        let mut compiled = Compiled::new(&equations).and_then(|c| c.with_jacobian(&equations)).expect("compiles");
-        let n = y.len();
-        let mut jacobian = vec![0.0; n * n];
-        compiled.jacobian(0.0, &y, &mut jacobian).expect("regular");
-        let step = 1e-5;
-        let mut worst = 0.0_f64;
-        for j in 0..n {
-            let mut rates = |shift: f64| {
-                let mut moved = y.clone();
-                moved[j] += shift;
-                let mut rates = vec![0.0; n];
-                compiled.rates(0.0, &moved, &mut rates).expect("regular");
-                rates
-            };
-            let (ahead, behind) = (rates(step), rates(-step));
-            for i in 0..n {
-                worst = worst.max(((ahead[i] - behind[i]) / (2.0 * step) - jacobian[i * n + j]).abs());
-            }
-        }
+        let (worst, _) = jacobian_error(&equations, &y);
         must(&format!("{}: exact Jacobian against central differences", scene.name), worst, 1e-7);
     }
 }

@@ -5,14 +5,13 @@ use std::cell::Cell;
 use deltaq::{Settings, formulation};
 use integrate::Method;
 use mechanics::{Compiled, Derivation, Equations, Form, Outputs, Scene};
-use proptest::prelude::*;
-use validation::random::{Recipe, recipes_of};
+use proptest::prop_assert;
+use symbolic::Expr;
 use validation::trailer::{self, Coordinates};
 
-use crate::reduced_form::LINEAR;
 use crate::support::{
-    TIGHT, at, common_times, equations, known_gap, linear_scenes, motion_of, must, scene, some_multipliers, tight,
-    vakonomic, values,
+    TIGHT, at, constraint_residual, equations, for_all_linear, jacobian_error, known_gap, linear_scenes, motion_of,
+    must, scene, some_multipliers, tight, vakonomic, values,
 };
 
 fn raw(scene: &Scene, name: &str) -> Equations {
@@ -20,38 +19,33 @@ fn raw(scene: &Scene, name: &str) -> Equations {
     (formulation(name).expect("in the table").derive)(&scene.system, &derivation).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// `y(t₀)` with the multipliers `mu`.
-fn start(scene: &Scene, equations: &Equations, mu: &[f64]) -> Vec<f64> {
+/// Values at the start, with the multipliers `mu`.
+fn at_start(scene: &Scene, equations: &Equations, mu: &[f64], es: &[Expr]) -> Vec<f64> {
     let mut values = values(&scene.system, &scene.start);
     values.extend(equations.constant_symbols().into_iter().zip(mu.iter().copied()));
     let (symbols, inputs): (Vec<_>, Vec<f64>) = values.into_iter().unzip();
-    let starts: Vec<_> = equations.states.iter().map(|y| y.start).collect();
-    let tape = equations.tape(&symbols, &starts).expect("compiles");
-    let mut y = vec![0.0; starts.len()];
-    tape.evaluate(&inputs, &mut tape.workspace(), &mut y);
-    y
+    let tape = equations.tape(&symbols, es).expect("compiles");
+    let mut found = vec![0.0; es.len()];
+    tape.evaluate(&inputs, &mut tape.workspace(), &mut found);
+    found
+}
+
+/// `y(t₀)` with the multipliers `mu`.
+fn start(scene: &Scene, equations: &Equations, mu: &[f64]) -> Vec<f64> {
+    let starts: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
+    at_start(scene, equations, mu, &starts)
 }
 
 /// Rates and outputs at the start.
 fn instant(scene: &Scene, equations: &Equations, mut compiled: Compiled, mu: &[f64]) -> (Vec<f64>, Outputs) {
     let y = start(scene, equations, mu);
-    let unknowns = start_guess(scene, equations, mu);
+    let guess: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.guess.clone()).collect();
+    let unknowns = at_start(scene, equations, mu, &guess);
     compiled.set_constants(mu);
     compiled.set_guess(&unknowns);
     let mut rates = vec![0.0; y.len()];
     compiled.rates(scene.start.t, &y, &mut rates).expect("regular");
     (rates, compiled.outputs(scene.start.t, &y).expect("regular"))
-}
-
-fn start_guess(scene: &Scene, equations: &Equations, mu: &[f64]) -> Vec<f64> {
-    let mut values = values(&scene.system, &scene.start);
-    values.extend(equations.constant_symbols().into_iter().zip(mu.iter().copied()));
-    let (symbols, inputs): (Vec<_>, Vec<f64>) = values.into_iter().unzip();
-    let guess: Vec<_> = equations.blocks.iter().flat_map(|b| b.guess.clone()).collect();
-    let tape = equations.tape(&symbols, &guess).expect("compiles");
-    let mut z = vec![0.0; guess.len()];
-    tape.evaluate(&inputs, &mut tape.workspace(), &mut z);
-    z
 }
 
 /// Largest difference, relative to the largest entry.
@@ -105,26 +99,15 @@ fn rates_are_those_of_the_costate_form_on_every_scene() {
 #[test]
 fn rates_are_those_of_the_costate_form_on_random_systems() {
     let worst = Cell::new([0.0_f64; 3]);
-    let config = ProptestConfig {
-        cases: 256,
-        failure_persistence: None,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(1983),
-        ..ProptestConfig::default()
-    };
-    let mut runner = proptest::test_runner::TestRunner::new(config);
-    let outcome = runner.run(&recipes_of(&LINEAR), |recipe: Recipe| {
-        let scene = recipe.scene("random");
+    for_all_linear(1983, |scene| {
         if scene.system.has_forces() {
             return Ok(());
         }
-        let found = differences(&scene, &some_multipliers(&scene));
+        let found = differences(scene, &some_multipliers(scene));
         worst.set(std::array::from_fn(|i| worst.get()[i].max(found[i])));
         prop_assert!(found.iter().all(|&d| d < 1e-9), "{found:?}\n{}", scene.to_toml());
         Ok(())
     });
-    if let Err(error) = outcome {
-        panic!("{error}");
-    }
     println!("largest differences {:?}", worst.get().map(|d| format!("{d:.1e}")));
     assert!(worst.get()[0] > 0.0, "round-off is never zero on every system: nothing was compared");
 }
@@ -139,14 +122,8 @@ fn motions_are_those_of_the_multiplier_form() {
         let guards = motion.equations.guards.len();
         must(&format!("{}: quasi-velocities, {guards} guards, to {end:.2} s", scene.name), distance, 1e-9);
         assert!(guards > 0 || end > 0.0, "{}: nothing was compared", scene.name);
-        let mut metric = deltaq::Metric::new(&scene.system).expect("compiles");
-        let times = common_times(&[&motion]);
-        let residual = times.iter().map(|&t| {
-            let now = at(&mut motion, t);
-            let speed = now.velocities.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
-            metric.constraint_residual(t, &now.coordinates, &now.velocities) / speed
-        });
-        must(&format!("{}: |f| without projection", scene.name), residual.fold(0.0, f64::max), 1e-11);
+        let residual = constraint_residual(&scene, &mut motion);
+        must(&format!("{}: |f| without projection", scene.name), residual, 1e-11);
     }
 }
 
@@ -171,26 +148,7 @@ fn the_jacobian_goes_through_what_waits_for_the_unknowns() {
         let equations = equations(&scene.system, "vakonomic-reduced", None);
         let mu = some_multipliers(&scene);
         let y = start(&scene, &equations, &mu);
-        let mut compiled = Compiled::new(&equations).and_then(|c| c.with_jacobian(&equations)).expect("compiles");
-        let n = y.len();
-        let mut jacobian = vec![0.0; n * n];
-        compiled.jacobian(0.0, &y, &mut jacobian).expect("regular");
-        let step = 1e-5;
-        let (mut worst, mut largest) = (0.0_f64, 1.0_f64);
-        for j in 0..n {
-            let mut rates = |shift: f64| {
-                let mut moved = y.clone();
-                moved[j] += shift;
-                let mut rates = vec![0.0; n];
-                compiled.rates(0.0, &moved, &mut rates).expect("regular");
-                rates
-            };
-            let (ahead, behind) = (rates(step), rates(-step));
-            for i in 0..n {
-                largest = largest.max(jacobian[i * n + j].abs());
-                worst = worst.max(((ahead[i] - behind[i]) / (2.0 * step) - jacobian[i * n + j]).abs());
-            }
-        }
+        let (worst, largest) = jacobian_error(&equations, &y);
         must(&format!("{}: exact Jacobian against central differences", scene.name), worst / largest, 1e-7);
     }
 }

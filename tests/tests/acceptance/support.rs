@@ -2,10 +2,12 @@
 
 use std::collections::HashMap;
 
-use deltaq::{Choice, Motion, Settings, derive, formulation, setting, solve};
-use mechanics::{ConstantsRule, Equations, Outputs, Removal, Scene, State, System, complete_removal_start};
+use deltaq::{Choice, Metric, Motion, Settings, derive, formulation, setting, solve};
+use mechanics::{Compiled, ConstantsRule, Equations, Outputs, Removal, Scene, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
+use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use symbolic::{Expr, Graph, Matrix, Symbol};
+use validation::random::{Kind, recipes_of};
 
 /// The tolerance of the looser of the two runs of every motion; what is measured has a hundredth of it.
 pub const TIGHT: f64 = 1e-12;
@@ -26,6 +28,15 @@ pub fn scenes() -> Vec<Scene> {
 /// The built-in scenes in which something is constrained.
 pub fn constrained_scenes() -> Vec<Scene> {
     scenes().into_iter().filter(|scene| !scene.system.constraints.is_empty()).collect()
+}
+
+/// Puts `test` to random systems whose constraints are linear (or affine) in the velocities, or that have none.
+pub fn for_all_linear(seed: u64, test: impl Fn(&Scene) -> Result<(), TestCaseError>) {
+    let rng_seed = RngSeed::Fixed(seed);
+    let config = Config { cases: 256, failure_persistence: None, rng_seed, ..Config::default() };
+    let kinds = Kind::which(Kind::is_linear);
+    let outcome = TestRunner::new(config).run(&recipes_of(&kinds), |recipe| test(&recipe.scene("random")));
+    outcome.unwrap_or_else(|error| panic!("{error}"));
 }
 
 /// A built-in scene with other numbers.
@@ -155,6 +166,43 @@ pub fn error(motion: &mut Motion, exact: &dyn Fn(f64) -> Vec<f64>) -> f64 {
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, |m, d| if d.is_nan() { f64::INFINITY } else { m.max(d) })
+}
+
+/// Largest `|f|` along a motion, over the largest velocity where that is over 1.
+pub fn constraint_residual(scene: &Scene, motion: &mut Motion) -> f64 {
+    let mut metric = Metric::new(&scene.system).expect("compiles");
+    let times = common_times(&[motion]);
+    let residual = times.iter().map(|&t| {
+        let now = at(motion, t);
+        let speed = now.velocities.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
+        metric.constraint_residual(t, &now.coordinates, &now.velocities) / speed
+    });
+    residual.fold(0.0, f64::max)
+}
+
+/// Largest difference of an entry of the exact `∂F/∂y` at `(0, y)` from central differences, and the largest entry where that is over 1.
+pub fn jacobian_error(equations: &Equations, y: &[f64]) -> (f64, f64) {
+    let mut compiled = Compiled::new(equations).and_then(|c| c.with_jacobian(equations)).expect("compiles");
+    let n = y.len();
+    let mut jacobian = vec![0.0; n * n];
+    compiled.jacobian(0.0, y, &mut jacobian).expect("regular");
+    let step = 1e-5;
+    let (mut worst, mut largest) = (0.0_f64, 1.0_f64);
+    for j in 0..n {
+        let mut rates = |shift: f64| {
+            let mut moved = y.to_vec();
+            moved[j] += shift;
+            let mut rates = vec![0.0; n];
+            compiled.rates(0.0, &moved, &mut rates).expect("regular");
+            rates
+        };
+        let (ahead, behind) = (rates(step), rates(-step));
+        for i in 0..n {
+            largest = largest.max(jacobian[i * n + j].abs());
+            worst = worst.max(((ahead[i] - behind[i]) / (2.0 * step) - jacobian[i * n + j]).abs());
+        }
+    }
+    (worst, largest)
 }
 
 /// Fails with the figure where it is not under the limit, prints it otherwise.

@@ -64,6 +64,21 @@ impl Kind {
         Kind::NearRankLoss,
     ];
 
+    /// The kinds of which that is so, simplest first.
+    ///
+    /// ```
+    /// use validation::random::Kind;
+    /// assert_eq!(Kind::which(|kind| !kind.is_linear()), [Kind::Nonlinear, Kind::NearRankLoss]);
+    /// ```
+    pub fn which(is_so: impl Fn(Kind) -> bool) -> Vec<Kind> {
+        Kind::ALL.into_iter().filter(|&kind| is_so(kind)).collect()
+    }
+
+    /// Whether constraints are linear (or affine) in the velocities and well conditioned (or there is none).
+    pub fn is_linear(self) -> bool {
+        !matches!(self, Kind::Nonlinear | Kind::NearRankLoss)
+    }
+
     /// Whether all constraints are integrable (or there is none).
     pub fn is_integrable(self) -> bool {
         matches!(self, Kind::Free | Kind::ChaplyginIntegrable | Kind::Integrable | Kind::HiddenIntegrable)

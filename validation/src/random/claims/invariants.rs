@@ -27,19 +27,15 @@ impl Drift {
     }
 }
 
-/// Follows `e(symbols)` along a motion; `read` gives the values of `symbols` from time and outputs.
-fn drift(
-    system: &System,
-    e: Expr,
-    symbols: &[Symbol],
-    motion: &mut Motion,
-    read: &dyn Fn(f64, &Outputs) -> Vec<f64>,
-) -> Result<Drift, SolveError> {
-    let tape = system.graph.compile(symbols, &[e], &system.parameter_values())?;
+/// Follows `e(t, q, v, multipliers)` along a motion: the first of its multipliers, by the names in `multipliers`.
+fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) -> Result<Drift, SolveError> {
+    let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
+    let tape = system.graph.compile(&symbols, &[e], &system.parameter_values())?;
     let mut registers = tape.workspace::<f64>();
     let mut value = |t: f64, o: &Outputs| {
         let mut out = [0.0];
-        tape.evaluate(&read(t, o), &mut registers, &mut out);
+        let read = [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
+        tape.evaluate(&read, &mut registers, &mut out);
         out[0]
     };
     let (mut first, mut change, mut error, mut size) = (None, 0.0_f64, 0.0_f64, 1.0_f64);
@@ -54,15 +50,6 @@ fn drift(
     Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) })
 }
 
-/// `(t, q, v)` with further symbols read from the multipliers.
-fn symbols(system: &System, further: &[Symbol]) -> Vec<Symbol> {
-    [&[system.time], &system.positions()[..], &system.velocities(), further].concat()
-}
-
-fn read(t: f64, o: &Outputs) -> Vec<f64> {
-    [&[t], &o.coordinates[..], &o.velocities, &o.multipliers].concat()
-}
-
 /// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and with `G`, for the others wherever
 /// nothing depends on time.
 pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
@@ -74,8 +61,7 @@ pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
     let v = system.velocities();
     let of = |l: Expr| g.sub(g.dot(&g.variables(&v), &g.gradient(l, &v)), l);
     let plain = of(system.lagrangian);
-    let reaction = |t: f64, o: &Outputs| [&[t], &o.coordinates[..], &o.velocities].concat();
-    let drifted = drift(&system, plain, &symbols(&system, &[]), &mut case.chetaev, &reaction)?;
+    let drifted = drift(&system, plain, &[], &mut case.chetaev)?;
     if case.recipe.kind.is_homogeneous() {
         case.found.bound(6, "Chetaev: energy", drifted.change, drifted.limit);
     } else {
@@ -83,7 +69,7 @@ pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
     }
     let mu: Vec<Symbol> = (0..system.constraints.len()).map(|i| g.symbol(&format!("multiplier {i}"))).collect();
     let augmented = g.add(system.lagrangian, g.dot(&g.variables(&mu), &system.constraints));
-    let drifted = drift(&system, of(augmented), &symbols(&system, &mu), &mut case.vakonomic, &read)?;
+    let drifted = drift(&system, of(augmented), &mu, &mut case.vakonomic)?;
     case.found.bound(6, "vakonomic: energy", drifted.change, drifted.limit);
     for removed in &mut case.removed {
         let removal = &removed.removal;
@@ -100,7 +86,7 @@ pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
         let energy = g.sub(g.sum(&terms.collect::<Vec<_>>()), generating);
         // u̇ from (q, v): what the removal says of its own start holds all along
         let energy = g.substitute(energy, &removal.start.iter().map(|(&s, &e)| (s, e)).collect());
-        let drifted = drift(&system, energy, &symbols(&system, &read_out), &mut removed.motion, &read)?;
+        let drifted = drift(&system, energy, &read_out, &mut removed.motion)?;
         case.found.bound(6, "removed constraint: energy", drifted.change, drifted.limit);
     }
     Ok(())
@@ -118,12 +104,11 @@ pub(super) fn momentum(case: &mut Case) -> Result<(), CheckError> {
             continue;
         }
         let momentum = g.derivative(augmented, c.velocity);
-        let drifted = drift(&system, momentum, &symbols(&system, &mu), &mut case.vakonomic, &read)?;
+        let drifted = drift(&system, momentum, &mu, &mut case.vakonomic)?;
         case.found.bound(7, "vakonomic: momentum of a cyclic coordinate", drifted.change, drifted.limit);
         if system.constraints.iter().any(|&f| g.depends_on(f, c.velocity)) {
             let plain = g.derivative(system.lagrangian, c.velocity);
-            let reaction = |t: f64, o: &Outputs| [&[t], &o.coordinates[..], &o.velocities].concat();
-            let drifted = drift(&system, plain, &symbols(&system, &[]), &mut case.chetaev, &reaction)?;
+            let drifted = drift(&system, plain, &[], &mut case.chetaev)?;
             case.found.count(
                 7,
                 "a constraint acts on a cyclic coordinate, and Chetaev does not keep its momentum",
