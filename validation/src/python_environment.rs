@@ -39,10 +39,13 @@ pub enum NotRun {
     },
 }
 
+/// Files that cargo writes into the folder that it builds into; the first one only where it made that folder itself.
+const MARKS: [&str; 2] = ["CACHEDIR.TAG", ".rustc_info.json"];
+
 /// The folder that cargo builds into, from the place of this program; `target` in the current folder where that cannot be found.
 pub fn target() -> PathBuf {
     let program = std::env::current_exe().unwrap_or_default();
-    let marked = |folder: &&Path| folder.join("CACHEDIR.TAG").exists();
+    let marked = |folder: &&Path| MARKS.iter().any(|mark| folder.join(mark).exists());
     program.ancestors().find(marked).map_or_else(|| PathBuf::from("target"), Path::to_path_buf)
 }
 
