@@ -71,6 +71,9 @@ impl Results {
             let section = referees_section(&mut report.comparison, casadi.as_ref())?;
             if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
                 page.text += &section;
+                if sections.contains(&Section::ErrorVsTime) {
+                    page.text += "\nWhich method reaches which error in which time: [error against run time](../error-vs-time.md).\n";
+                }
             }
             scene_files.extend(report.files.clone());
         }
