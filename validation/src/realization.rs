@@ -107,8 +107,7 @@ pub fn distance(limit: &mut Motion, motion: &mut Motion, metric: &mut Metric) ->
     for k in 0..=INSTANTS {
         let t = 0.5 * (start + end) + 0.5 * (end - start) * k as f64 / INSTANTS as f64;
         let (one, two) = (limit.at(t)?, motion.at(t)?);
-        let difference: Vec<f64> = one.coordinates.iter().zip(&two.coordinates).map(|(a, b)| a - b).collect();
-        largest = largest.max(metric.length(t, &one.coordinates, &one.velocities, &difference));
+        largest = largest.max(metric.distance(t, &one.coordinates, &one.velocities, &two.coordinates));
     }
     Ok(largest)
 }

@@ -1,6 +1,5 @@
 //! The error estimate of a whole motion.
 
-use crate::gap::subtract;
 use crate::{Metric, Motion, Setting, SolveError};
 
 /// Instants at which it is taken.
@@ -36,9 +35,9 @@ pub fn error_estimate(motion: &mut Motion, setting: Setting) -> Result<ErrorEsti
     let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
     for t in motion.grid(SAMPLES) {
         let (now, difference) = motion.at_with_difference(t)?;
-        let mut length = |d: &[f64]| metric.length(t, &now.coordinates, &now.velocities, d);
-        absolute = absolute.max(length(&difference));
-        scale = scale.max(length(&subtract(&now.coordinates, &setting.start.q)));
+        let (q, v) = (&now.coordinates, &now.velocities);
+        absolute = absolute.max(metric.length(t, q, v, &difference));
+        scale = scale.max(metric.distance(t, q, v, &setting.start.q));
     }
     Ok(ErrorEstimate { absolute, relative: if scale > 0.0 { absolute / scale } else { absolute } })
 }

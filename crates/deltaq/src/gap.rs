@@ -128,7 +128,7 @@ pub fn compare_motions_by(
         for (estimate, error) in estimates.iter_mut().zip([&first_error, &second_error]) {
             *estimate = estimate.max(metric.length(t, q, v, error));
         }
-        scale = scale.max(metric.length(t, q, v, &subtract(q, &origin.coordinates)));
+        scale = scale.max(metric.distance(t, q, v, &origin.coordinates));
         largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
         let limit = CERTAINTY * (estimates[0] + estimates[1] + ROUND_OFF * largest_length);
         points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit });
@@ -151,9 +151,7 @@ pub fn compare_motions_by(
     }
     let mut gap_at = |t: f64| -> f64 {
         match (first.at(t), second.at(sampling.clock(t))) {
-            (Ok(one), Ok(two)) => {
-                metric.length(t, &one.coordinates, &one.velocities, &subtract(&one.coordinates, &two.coordinates))
-            }
+            (Ok(one), Ok(two)) => metric.distance(t, &one.coordinates, &one.velocities, &two.coordinates),
             _ => f64::NAN,
         }
     };

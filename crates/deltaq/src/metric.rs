@@ -6,6 +6,8 @@ use mechanics::System;
 use nalgebra::DMatrix;
 use symbolic::{CompileError, Graph, Matrix, Symbol, Tape, Workspace};
 
+use crate::gap::subtract;
+
 /// The length `sqrt(Δqᵀ M Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
 #[derive(Clone)]
 pub struct Metric {
@@ -54,6 +56,11 @@ impl Metric {
         let square: f64 =
             rows.zip(difference).map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>()).sum();
         square.abs().sqrt()
+    }
+
+    /// [`Metric::length`] of `q − other`.
+    pub fn distance(&mut self, t: f64, q: &[f64], v: &[f64], other: &[f64]) -> f64 {
+        self.length(t, q, v, &subtract(q, other))
     }
 
     /// Upper triangular `R` with `RᵀR = M` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`; where `M` is not positive

@@ -89,6 +89,17 @@ impl Removal {
         self.coordinates.iter().map(|&q| system.graph.total_derivative(q, &flow)).collect()
     }
 
+    /// What vanishes where the parametrization is at `(q, q̇)`: `qᵢ(u̇, u, w, t) − qᵢ` and its rate minus `q̇ᵢ`, what vanishes anyway left out.
+    pub fn residuals(&self, system: &System) -> Vec<Expr> {
+        let g = &system.graph;
+        let velocities = self.velocities(system);
+        let pairs = system.coordinates.iter().zip(&self.coordinates).zip(&velocities);
+        pairs
+            .flat_map(|((c, &q), &v)| [g.sub(q, g.variable(c.position)), g.sub(v, g.variable(c.velocity))])
+            .filter(|&e| !g.is_zero(e))
+            .collect()
+    }
+
     /// Rewrites an expression in `(q, v, t)` as one in `(ü, u̇, u, w, t)`.
     pub fn rewrite(&self, system: &System, e: Expr) -> Expr {
         let velocities = self.velocities(system);

@@ -150,13 +150,7 @@ fn complete<T: Wide>(
     }
     let unknowns: Vec<Symbol> = solved.iter().map(|(s, _)| *s).collect();
     let mut x: Vec<T> = solved.iter().map(|(_, x)| T::from_f64(*x)).collect();
-    let velocities = removal.velocities(system);
-    let mut equations = Vec::new();
-    for (i, c) in system.coordinates.iter().enumerate() {
-        equations.push(g.sub(removal.coordinates[i], g.variable(c.position)));
-        equations.push(g.sub(velocities[i], g.variable(c.velocity)));
-    }
-    equations.retain(|&e| !g.is_zero(e));
+    let equations = removal.residuals(system);
     let (m, n) = (equations.len(), unknowns.len());
     if n > 0 {
         let mut outputs = equations.clone();

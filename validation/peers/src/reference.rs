@@ -72,8 +72,7 @@ impl Reference {
             if q.len() != reference.len() {
                 bail!("{} coordinates in an answer", q.len());
             }
-            let difference: Vec<f64> = q.iter().zip(reference).map(|(a, b)| a - b).collect();
-            largest = largest.max(self.metric.length(self.times[place], reference, &self.velocities, &difference));
+            largest = largest.max(self.metric.distance(self.times[place], reference, &self.velocities, q));
         }
         Ok(largest)
     }

@@ -70,8 +70,7 @@ impl Truth {
         let mut places = Vec::new();
         for &t in &times {
             let (here, there) = (tighter.at(&mut ready, t)?, looser.at(&mut ready, t)?);
-            let apart: Vec<f64> = here.coordinates.iter().zip(&there.coordinates).map(|(a, b)| a - b).collect();
-            error = error.max(metric.length(t, &here.coordinates, &here.velocities, &apart));
+            error = error.max(metric.distance(t, &here.coordinates, &here.velocities, &there.coordinates));
             places.push((here.coordinates, here.velocities));
         }
         let origin = format!("DOP853 at tolerance 2e-15 (none in double-double arithmetic: {refused})");
@@ -89,8 +88,7 @@ impl Truth {
             Source::Wide(found) => found.distance(i, q),
             Source::Narrow(places, metric) => {
                 let (right, v) = &places[i];
-                let apart: Vec<f64> = q.iter().zip(right).map(|(a, b)| a - b).collect();
-                metric.length(self.times[i], right, v, &apart)
+                metric.distance(self.times[i], right, v, q)
             }
         }
     }

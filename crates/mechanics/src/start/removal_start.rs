@@ -53,20 +53,13 @@ pub fn complete_removal_start(system: &System, removal: &Removal, state: &State)
     if !known.values().all(|x| x.is_finite()) {
         return Err(fault(f64::INFINITY));
     }
-    let velocities = removal.velocities(system);
-    let mut equations = Vec::new();
-    for (i, c) in system.coordinates.iter().enumerate() {
-        equations.push(g.sub(removal.coordinates[i], g.variable(c.position)));
-        equations.push(g.sub(velocities[i], g.variable(c.velocity)));
-    }
-    equations.retain(|&e| !g.is_zero(e));
     let variables: Vec<Symbol> = removal
         .parameters
         .iter()
         .flat_map(|u| [u.symbol, u.rate])
         .chain(removal.memory.iter().map(|w| w.symbol))
         .collect();
-    let problem = Problem::new(system, equations, &g.variables(&variables), known);
+    let problem = Problem::new(system, removal.residuals(system), &g.variables(&variables), known);
     let mut smallest = f64::INFINITY;
     for default in [0.0, 1.0, -1.0, 0.1, -0.1] {
         match problem.solve(&HashMap::new(), default)? {
