@@ -101,3 +101,12 @@ pub fn interpreter(name: &str, requirements: &str) -> Result<PathBuf, NotRun> {
     }
     Ok(place.join(python))
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_target_folder_is_the_one_that_this_program_was_built_into() {
+        let (program, target) = (std::env::current_exe().unwrap(), super::target());
+        assert!(target.is_absolute() && program.starts_with(&target), "{} in {}", program.display(), target.display());
+    }
+}

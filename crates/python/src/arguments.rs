@@ -10,17 +10,6 @@ use pyo3::types::{PyDict, PyString};
 use crate::arrays::FloatList;
 use crate::errors;
 
-/// Names of the methods.
-pub(crate) const METHODS: [(&str, Method); 7] = [
-    ("taylor", Method::Taylor),
-    ("dop853", Method::Dop853),
-    ("tsit45", Method::Tsit45),
-    ("bdf", Method::Bdf),
-    ("tr-bdf2", Method::TrBdf2),
-    ("esdirk34", Method::Esdirk34),
-    ("radau5", Method::Radau5),
-];
-
 /// How to integrate, and the flag that ends it.
 pub(crate) fn settings(
     method: &str,
@@ -28,13 +17,13 @@ pub(crate) fn settings(
     project: bool,
     max_steps: usize,
 ) -> PyResult<(Settings, Interrupt)> {
-    let Some((_, method)) = METHODS.iter().find(|m| m.0 == method) else {
-        return Err(unknown("method", method, METHODS.iter().map(|m| m.0)));
+    let Some(method) = Method::ALL.into_iter().find(|m| m.name() == method) else {
+        return Err(unknown("method", method, Method::ALL.into_iter().map(Method::name)));
     };
     let interrupt = Interrupt::default();
     let settings = Settings {
         tolerance,
-        method: *method,
+        method,
         projection: if project { Projection::EveryStep } else { Projection::Off },
         max_steps,
         interrupt: Some(interrupt.clone()),

@@ -29,6 +29,7 @@ mod _native {
     #[pymodule_export]
     use crate::system::{State, System, load, parse};
 
+    use integrate::Method;
     use pyo3::prelude::*;
     use pyo3::types::{PyModule, PyTuple};
 
@@ -36,7 +37,7 @@ mod _native {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let names = |list: Vec<&str>| PyTuple::new(module.py(), list);
         module.add("FORMULATIONS", names(deltaq::FORMULATIONS.iter().map(|f| f.name).collect())?)?;
-        module.add("METHODS", names(crate::arguments::METHODS.iter().map(|m| m.0).collect())?)?;
+        module.add("METHODS", names(Method::ALL.map(Method::name).to_vec())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -2,6 +2,7 @@
 
 use deltaq::{Ending, Settings, choices, solve_choice};
 use mechanics::Scene;
+use validation::scaling::exponent;
 
 use crate::{Ball, Contacts, EngineError, Mapping, Pose, Run, Setup, Trajectory};
 
@@ -259,14 +260,10 @@ impl Finding {
     }
 }
 
-/// Slope of `ln distance` over `ln dt`, first target.
+/// Slope of `ln distance` over `ln dt`, first target; NaN for fewer than three levels.
 fn order(levels: &[Level]) -> f64 {
-    let points: Vec<(f64, f64)> = levels.iter().map(|l| (l.dt.ln(), l.distances[0].ln())).collect();
-    let count = points.len() as f64;
-    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / count, y + p.1 / count));
-    let (up, down) =
-        points.iter().fold((0.0, 0.0), |(up, down), p| (up + (p.0 - x) * (p.1 - y), down + (p.0 - x).powi(2)));
-    up / down
+    let points: Vec<(f64, f64)> = levels.iter().map(|level| (level.dt, level.distances[0])).collect();
+    exponent(&points).map_or(f64::NAN, |fit| fit.value)
 }
 
 #[cfg(test)]
