@@ -130,7 +130,7 @@ pub(crate) struct Motion {
     /// Values of the free constants, by name.
     #[pyo3(get)]
     constants: Py<PyDict>,
-    /// What the kept run cost: steps, rejected, evaluations, jacobians.
+    /// What the kept run cost: steps, rejected, evaluations, jacobians, orders (of Taylor series, summed).
     #[pyo3(get)]
     work: Py<PyDict>,
     /// What the projections moved: count, largest, total (Euclidean lengths of changes of the velocities).
