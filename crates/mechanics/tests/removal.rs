@@ -126,6 +126,14 @@ fn quasi_velocity_of_the_knife_edge_is_the_arc_length() {
     let speed = state.v[0] * state.q[2].cos() + state.v[1] * state.q[2].sin();
     assert!((start[&blade.rate] - speed).abs() < 1e-14);
     assert_eq!(start[&blade.symbol], 0.0);
+    // q̇ = v is left of the parametrization, but for the turn, which is a coordinate; it holds at the start
+    let residuals = removal.residuals(&system);
+    assert_eq!(residuals.len(), 2);
+    let mut values = system.values_at(&state);
+    values.extend(start);
+    for e in residuals {
+        assert!(system.graph.evaluate(e, &values).unwrap().abs() < 1e-14, "{}", system.graph.plain(e));
+    }
 }
 
 /// Found by random systems: what is zero without simplifying to zero was taken for a rate, and `q2' = 0` could not be started.

@@ -6,12 +6,11 @@ use deltaq::{Settings, formulation};
 use integrate::Method;
 use mechanics::{Compiled, Derivation, Equations, Form, Outputs, Scene};
 use proptest::prop_assert;
-use symbolic::Expr;
 use validation::trailer::{self, Coordinates};
 
 use crate::support::{
     TIGHT, at, constraint_residual, equations, for_all_linear, jacobian_error, known_gap, linear_scenes, motion_of,
-    must, scene, some_multipliers, tight, vakonomic, values,
+    must, scene, some_multipliers, start, tight, vakonomic,
 };
 
 fn raw(scene: &Scene, name: &str) -> Equations {
@@ -19,30 +18,11 @@ fn raw(scene: &Scene, name: &str) -> Equations {
     (formulation(name).expect("in the table").derive)(&scene.system, &derivation).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Values at the start, with the multipliers `mu`.
-fn at_start(scene: &Scene, equations: &Equations, mu: &[f64], es: &[Expr]) -> Vec<f64> {
-    let mut values = values(&scene.system, &scene.start);
-    values.extend(equations.constant_symbols().into_iter().zip(mu.iter().copied()));
-    let (symbols, inputs): (Vec<_>, Vec<f64>) = values.into_iter().unzip();
-    let tape = equations.tape(&symbols, es).expect("compiles");
-    let mut found = vec![0.0; es.len()];
-    tape.evaluate(&inputs, &mut tape.workspace(), &mut found);
-    found
-}
-
-/// `y(t₀)` with the multipliers `mu`.
-fn start(scene: &Scene, equations: &Equations, mu: &[f64]) -> Vec<f64> {
-    let starts: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
-    at_start(scene, equations, mu, &starts)
-}
-
 /// Rates and outputs at the start.
 fn instant(scene: &Scene, equations: &Equations, mut compiled: Compiled, mu: &[f64]) -> (Vec<f64>, Outputs) {
-    let y = start(scene, equations, mu);
-    let guess: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.guess.clone()).collect();
-    let unknowns = at_start(scene, equations, mu, &guess);
+    let (y, guess) = start(scene, equations, mu);
     compiled.set_constants(mu);
-    compiled.set_guess(&unknowns);
+    compiled.set_guess(&guess);
     let mut rates = vec![0.0; y.len()];
     compiled.rates(scene.start.t, &y, &mut rates).expect("regular");
     (rates, compiled.outputs(scene.start.t, &y).expect("regular"))
@@ -147,8 +127,7 @@ fn the_jacobian_goes_through_what_waits_for_the_unknowns() {
     for scene in [scene("disc", &[]), trailer::scene(4, Coordinates::Maximal).expect("parses")] {
         let equations = equations(&scene.system, "vakonomic-reduced", None);
         let mu = some_multipliers(&scene);
-        let y = start(&scene, &equations, &mu);
-        let (worst, largest) = jacobian_error(&equations, &y);
+        let (worst, largest) = jacobian_error(&scene, &equations, &mu);
         must(&format!("{}: exact Jacobian against central differences", scene.name), worst / largest, 1e-7);
     }
 }
