@@ -15,7 +15,7 @@ use crate::events::PARTS;
 use crate::options::{Options, Projection};
 use crate::status::{ProjectionReport, Work};
 use crate::stepper::shortest_step;
-use crate::taylor_step::{Ends, longest_step, order};
+use crate::taylor_step::{Ends, longest_step, once, order};
 use crate::time_loop::HALVINGS;
 pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
 
@@ -338,12 +338,6 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.moved = self.problem.project(&self.taken_to, &mut self.candidate);
         }
     }
-}
-
-/// Moves what a closure has captured, so that it can be called once only: such a closure is inlined as a whole where it is dispatched.
-#[inline(always)]
-fn once<T>(captured: T) -> T {
-    captured
 }
 
 /// Values of the polynomials, and their slopes times `theta`.

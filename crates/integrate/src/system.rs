@@ -32,14 +32,14 @@ impl From<Failure> for StopCause {
 /// The first NaN or infinite component, if any, as a failure.
 pub(crate) fn check_finite(values: &[f64]) -> Result<(), Failure> {
     // 0 · x is 0 for finite x and NaN otherwise: one pass without branches, in sums that do not wait for each other.
-    let mut groups = values.chunks_exact(8);
+    let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];
-    for group in groups.by_ref() {
+    for group in groups.iter().map(|g| &g[..]).chain([rest]) {
         for (sum, x) in sums.iter_mut().zip(group) {
             *sum += 0.0 * x;
         }
     }
-    if groups.remainder().iter().chain(&sums).fold(0.0, |sum, x| sum + 0.0 * x) == 0.0 {
+    if sums.iter().sum::<f64>() == 0.0 {
         return Ok(());
     }
     let component = values.iter().position(|x| !x.is_finite()).unwrap_or(0);

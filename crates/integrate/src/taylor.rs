@@ -22,13 +22,15 @@
 //! Source: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order Taylor methods*,
 //! Experimental Mathematics 14 (2005), section 3.
 
+use std::array::from_fn;
+
 use crate::dense::Basis;
 use crate::options::Options;
 use crate::problem::Start;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, shortest_step};
 use crate::system::{Failure, System};
-use crate::taylor_step::{Ends, longest_step, order};
+use crate::taylor_step::{Ends, first_powers, longest_step, once, order};
 
 /// Where coefficients overflow, the unit of time is shortened by this factor, so many times.
 const SHORTER_UNIT: f64 = 1e-8;
@@ -56,9 +58,9 @@ pub(crate) struct Taylor<'s, 'p> {
     /// Largest coefficient of each order, in tolerances.
     sizes: Vec<f64>,
     /// Powers of the step over the unit, terms of the polynomial at its end, and the numbers 0, 1, 2, …
-    powers: Vec<f64>,
+    powers: Vec<Parts>,
     terms: Vec<f64>,
-    exponents: Vec<f64>,
+    exponents: Vec<Parts>,
     /// The step of the candidate, of either sign, and its end.
     taken: f64,
     taken_to: f64,
@@ -69,6 +71,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
     pub(crate) fn new(system: &'s System<'p>, start: &Start, end: f64, options: &Options) -> Result<Self, Failure> {
         let n = system.dimension();
         let order = order(options.relative_tolerance);
+        let groups = (order + 1).div_ceil(PARTS);
         let mut taylor = Self {
             system,
             end,
@@ -85,9 +88,9 @@ impl<'s, 'p> Taylor<'s, 'p> {
             slope: vec![0.0; n],
             step: 0.0,
             sizes: vec![0.0; order + 1],
-            powers: vec![0.0; order + 1],
+            powers: vec![[0.0; PARTS]; groups],
             terms: vec![0.0; (order + 1) * n],
-            exponents: (0..=order).map(|k| k as f64).collect(),
+            exponents: (0..groups).map(|i| from_fn(|l| (i * PARTS + l) as f64)).collect(),
             taken: 0.0,
             taken_to: start.t,
         };
@@ -125,34 +128,26 @@ impl<'s, 'p> Taylor<'s, 'p> {
     /// Terms, candidate and slope of the polynomial at the end of the step.
     fn evaluate(&mut self, theta: f64) {
         let orders = self.order + 1;
-        let mut power = 1.0;
-        for x in &mut self.powers {
-            *x = power;
-            power *= theta;
-        }
+        let (powers, exponents) = (&mut self.powers[..], &self.exponents[..]);
         let rows = self.coefficients.chunks_exact(orders).zip(self.terms.chunks_exact_mut(orders));
-        for ((row, terms), (y, slope)) in rows.zip(self.candidate.iter_mut().zip(&mut self.slope)) {
-            let (mut sum, mut weighted) = ([0.0; 4], [0.0; 4]);
-            for ((term, c), power) in terms.iter_mut().zip(row).zip(&self.powers) {
-                *term = c * power;
-            }
-            let (first, rest) = (terms[0], &terms[1..]);
-            let mut groups = rest.chunks_exact(4);
-            let mut exponents = self.exponents[1..].chunks_exact(4);
-            for (group, k) in groups.by_ref().zip(exponents.by_ref()) {
-                for l in 0..4 {
-                    sum[l] += group[l];
-                    weighted[l] += group[l] * k[l];
+        let ends = self.reached.iter_mut().zip(&mut self.slope);
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            move || {
+                let powers = once(powers);
+                let (first, [step]) = first_powers([theta]);
+                let mut scale = 1.0;
+                for group in powers.iter_mut() {
+                    *group = first.map(|[power]| power * scale);
+                    scale *= step;
                 }
-            }
-            for (term, k) in groups.remainder().iter().zip(exponents.remainder()) {
-                sum[0] += term;
-                weighted[0] += term * k;
-            }
-            *y = first + ((sum[0] + sum[1]) + (sum[2] + sum[3]));
-            *slope = (weighted[0] + weighted[1]) + (weighted[2] + weighted[3]);
-        }
-        self.reached.copy_from_slice(&self.candidate);
+                powers[0][0] = 0.0;
+                for ((row, terms), (y, slope)) in rows.zip(ends) {
+                    (*y, *slope) = sums(row, powers, exponents, terms);
+                }
+            },
+        );
+        self.candidate.copy_from_slice(&self.reached);
     }
 
     /// Compares the slope of the polynomial at the end with the rates there.
@@ -171,10 +166,44 @@ impl<'s, 'p> Taylor<'s, 'p> {
     /// The longest step, of positive length, whose last terms are below the tolerance; infinite for a constant.
     fn choose_step(&mut self) -> f64 {
         let (coefficients, absolute) = (self.coefficients.as_chunks::<1>().0, self.absolute_tolerances.as_chunks().0);
-        let sizes = self.sizes.as_chunks_mut().0;
-        let [theta] = longest_step(coefficients, absolute, self.relative_tolerance, sizes);
+        let (relative, sizes) = (self.relative_tolerance, self.sizes.as_chunks_mut().0);
+        let [theta] = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            move || longest_step(coefficients, absolute, relative, once(sizes)),
+        );
         theta * self.unit
     }
+}
+
+/// Sums are added up in so many parts.
+const PARTS: usize = 8;
+type Parts = [f64; PARTS];
+
+/// Writes the terms of a polynomial; their sum, and their sum weighted by the exponents. The first power is 0 instead of 1. Powers and
+/// exponents may go on behind the last term.
+#[inline(always)]
+fn sums(row: &[f64], powers: &[Parts], exponents: &[Parts], terms: &mut [f64]) -> (f64, f64) {
+    let (mut sum, mut weighted) = ([0.0; PARTS], [0.0; PARTS]);
+    let (of_row, rest_of_row) = row.as_chunks::<PARTS>();
+    let (groups, rest) = terms.as_chunks_mut::<PARTS>();
+    let last = groups.len();
+    for (((group, c), power), k) in groups.iter_mut().zip(of_row).zip(powers).zip(exponents) {
+        let terms: Parts = from_fn(|l| c[l] * power[l]);
+        *group = terms;
+        for l in 0..PARTS {
+            sum[l] += terms[l];
+            weighted[l] += terms[l] * k[l];
+        }
+    }
+    for (l, (term, c)) in rest.iter_mut().zip(rest_of_row).enumerate() {
+        *term = c * powers[last][l];
+        sum[l] += *term;
+        weighted[l] += *term * exponents[last][l];
+    }
+    // The first term is not among the summands, so that none is lost in it.
+    terms[0] = row[0];
+    let total = |x: Parts| ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+    (row[0] + total(sum), total(weighted))
 }
 
 impl Stepper for Taylor<'_, '_> {

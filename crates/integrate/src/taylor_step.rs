@@ -46,22 +46,57 @@ pub(crate) fn longest_step<const N: usize>(
     let shorter = (-0.7 / (p - 1) as f64).exp();
     let last = |l: usize| root(sizes[p][l] / LAST, p).min(root(sizes[p - 1][l] * fall / LAST, p - 1));
     let mut theta: [f64; N] = from_fn(|l| last(l) * shorter);
-    let mut allowed = SLACK * LAST / fall.powi(p as i32 - 1);
+    // Terms may be so large: size · (theta/fall)^k ≤ bound. It is rare that one is over.
+    let bound = SLACK * LAST / fall.powi(p as i32);
+    if !any_over(&sizes[1..p - 1], from_fn(|l| theta[l] / fall), bound) {
+        return theta;
+    }
+    let mut allowed = bound * fall;
     let mut power = theta;
     for (k, size) in sizes.iter().enumerate().take(p - 1).skip(1) {
-        let over: [bool; N] = from_fn(|l| size[l] * power[l] > allowed);
-        if over.contains(&true) {
-            for l in (0..N).filter(|&l| over[l]) {
+        for l in 0..N {
+            if size[l] * power[l] > allowed {
                 theta[l] = root(size[l] / allowed, k);
                 power[l] = theta[l].powi(k as i32);
             }
-        }
-        allowed *= fall;
-        for l in 0..N {
             power[l] *= theta[l];
         }
+        allowed *= fall;
     }
     theta
+}
+
+/// Products are made so many at a time, none waiting for the one before.
+const GROUP: usize = 8;
+
+/// The first powers `x⁰ … x⁷`, and `x⁸`.
+#[inline(always)]
+pub(crate) fn first_powers<const N: usize>(x: [f64; N]) -> ([[f64; N]; GROUP], [f64; N]) {
+    let times = |a: [f64; N], b: [f64; N]| -> [f64; N] { from_fn(|l| a[l] * b[l]) };
+    let (x2, one) = (times(x, x), [1.0; N]);
+    let (x3, x4) = (times(x2, x), times(x2, x2));
+    ([one, x, x2, x3, x4, times(x4, x), times(x4, x2), times(x4, x3)], times(x4, x4))
+}
+
+/// Whether `sizes[i] x^(i+1)` is over the bound for any `i`, in any lane.
+#[inline(always)]
+fn any_over<const N: usize>(sizes: &[[f64; N]], x: [f64; N], bound: f64) -> bool {
+    let (powers, step) = first_powers(x);
+    let (mut scale, mut over) = (x, false);
+    let mut look = |group: &[[f64; N]], scale: &[f64; N]| {
+        for (size, power) in group.iter().zip(&powers) {
+            for l in 0..N {
+                over |= size[l] * (power[l] * scale[l]) > bound;
+            }
+        }
+    };
+    let (groups, rest) = sizes.as_chunks::<GROUP>();
+    for group in groups {
+        look(group, &scale);
+        scale = from_fn(|l| scale[l] * step[l]);
+    }
+    look(rest, &scale);
+    over
 }
 
 /// The end of a step, component after component.
@@ -109,4 +144,10 @@ impl<const N: usize> Ends<'_, N> {
         }
         found
     }
+}
+
+/// Moves what a closure has captured, so that it can be called once only: such a closure is inlined as a whole where it is dispatched.
+#[inline(always)]
+pub(crate) fn once<T>(captured: T) -> T {
+    captured
 }

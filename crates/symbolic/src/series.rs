@@ -6,7 +6,8 @@ mod scalar;
 
 use crate::tape::{Tape, Workspace};
 pub use lanes::{LANES, Lanes};
-pub use scalar::{Product, SeriesScalar, Store, Task, Weights};
+use scalar::Place;
+pub use scalar::{Product, SeriesScalar, Store, Task, Weights, Window};
 
 /// What an input of a [`SeriesTape`] is as a function of time.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -42,14 +43,29 @@ pub(crate) struct Bilinear {
     pub(crate) right: Row,
 }
 
-/// A series whose coefficient is a sum of `weight · coefficient` of the same order, over `terms`, and of what products put there.
+/// `target = start + Σ weight · row`, coefficients of the same order or, where a term is late, `weight · unit · row` with that of the order
+/// before. Two terms each: a longer sum starts from what is in its target already, so that no sum is a loop of its own.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Definition {
+pub(crate) struct Addition {
+    pub(crate) target: Row,
+    /// Where products are added up, a row of zeros, or the target.
+    pub(crate) start: Row,
+    pub(crate) terms: [Term; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term {
+    pub(crate) weight: Slot,
     pub(crate) row: Row,
-    /// Where its products are added up; a row of zeros if it has none.
-    pub(crate) products: Row,
-    /// End of its terms; they begin where those of the definition before end.
-    pub(crate) end: usize,
+    pub(crate) late: bool,
+}
+
+/// A series whose rate is `factor · rate`: a state, or a function of states.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    pub(crate) row: Row,
+    pub(crate) rate: Source,
+    pub(crate) factor: Slot,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -74,6 +90,10 @@ pub(crate) struct Implicit {
 /// and no dispatch on operations: over pairs (these need orders below `k` only, so that none waits for another) and over the linear terms.
 /// Sums are taken into what uses them.
 ///
+/// What inputs do in time saves pairs. A factor that is linear in time, as a state with a constant rate is, has two coefficients:
+/// `(a b)_k = a₀ b_k + a₁ b_{k−1}`. And a function of a linear combination of states is integrated like these, `(sin φ)' = φ' cos φ`: the pair is
+/// that of a product of which equations of motion are full, and which is often there already; where φ' is constant there is none.
+///
 /// Sources: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order Taylor methods*, Experimental
 /// Mathematics 14 (2005), section 2; A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13.
 ///
@@ -87,25 +107,25 @@ pub struct SeriesTape {
     pub(crate) rows: usize,
     pub(crate) inputs: Vec<Option<Row>>,
     pub(crate) time: Option<Row>,
-    /// State and its rate.
-    pub(crate) states: Vec<(Row, Source)>,
+    pub(crate) states: Vec<State>,
     pub(crate) outputs: Vec<Source>,
     pub(crate) blocks: Vec<Implicit>,
     /// Pairs without and with the factor 1/k.
     pub(crate) products: [Vec<Bilinear>; 2],
-    pub(crate) definitions: Vec<Definition>,
-    /// Ends of the definitions that depend on no unknown, on those of block 0, of block 1 …
+    pub(crate) additions: Vec<Addition>,
+    /// Ends of the additions that depend on no unknown, on those of block 0, of block 1 …
     pub(crate) stages: Vec<usize>,
-    pub(crate) terms: Vec<(Slot, Row)>,
     /// (τ x', x)
     pub(crate) slopes: Vec<(Row, Row)>,
 }
 
 /// The series of one thread that works with one [`SeriesTape`].
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct SeriesWorkspace<T> {
     /// Coefficients, series after series.
     rows: Vec<T>,
+    /// So many of them are of series.
+    used: usize,
     plan: Plan<T>,
 }
 
@@ -118,12 +138,10 @@ struct Plan<T> {
     /// Outputs of order 0.
     values: Vec<T>,
     products: [Vec<Product<T>>; 2],
-    definitions: Vec<Placed>,
-    /// Weight and place of the operand.
-    terms: Vec<(T, usize)>,
-    /// State and rate.
-    states: Vec<(usize, usize)>,
-    slopes: Vec<(usize, usize)>,
+    additions: Vec<Placed<T>>,
+    /// State, rate, and the factor of the latter over the unit of time.
+    states: Vec<(Place, Place, T)>,
+    slopes: Vec<(Place, Place)>,
     /// Weights of pairs, `stride` a newest order, without and with 1/k.
     halves: [Vec<T>; 2],
     /// k and 1/k
@@ -131,12 +149,21 @@ struct Plan<T> {
     residual: Vec<T>,
 }
 
-/// A [`Definition`] with the places of first coefficients.
+/// An [`Addition`] with places of coefficients of order 1, or 0 where a term is late.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
-    row: usize,
-    products: usize,
-    terms: usize,
+struct Placed<T> {
+    target: Place,
+    start: Place,
+    terms: [(T, Place); 2],
+}
+
+/// Most of the room is never touched; nor is it by a copy.
+impl<T: SeriesScalar> Clone for SeriesWorkspace<T> {
+    fn clone(&self) -> Self {
+        let mut rows = vec![T::from_f64(0.0); self.rows.len()];
+        rows[..self.used].copy_from_slice(&self.rows[..self.used]);
+        SeriesWorkspace { rows, used: self.used, plan: self.plan.clone() }
+    }
 }
 
 impl<T: SeriesScalar> SeriesWorkspace<T> {
@@ -164,9 +191,9 @@ impl SeriesTape {
         self.outputs.len()
     }
 
-    /// Number of products of series, and of linear terms, in one order: what an order costs.
+    /// Number of products of series, and of linear terms (an odd one in a sum counts as two), in one order: what an order costs.
     pub fn work(&self) -> (usize, usize) {
-        (self.products[0].len() + self.products[1].len(), self.terms.len())
+        (self.products[0].len() + self.products[1].len(), 2 * self.additions.len())
     }
 
     /// Room for states up to `order ≥ 1` (other values: one less).
@@ -174,7 +201,8 @@ impl SeriesTape {
         let order = order.max(1);
         let stride = (order + 1 + T::GROUP).next_multiple_of(T::GROUP);
         let zero = T::from_f64(0.0);
-        let at = |row: Row| row as usize * stride;
+        let stride_of_places = Place::try_from(stride).expect("an order below 2^32");
+        let at = |row: Row| row * stride_of_places;
         let place = |p: &Bilinear| Product { scale: zero, target: at(p.target), left: at(p.left), right: at(p.right) };
         let mut halves = [vec![zero; order * stride], vec![zero; order * stride]];
         for newest in 1..order {
@@ -184,14 +212,12 @@ impl SeriesTape {
                 halves[1][newest * stride + j] = half / T::from_f64((newest + j) as f64);
             }
         }
-        let mut begin = 0;
-        let definitions = self.definitions.iter().map(|d| {
-            let terms = d.end - begin;
-            begin = d.end;
-            Placed { row: at(d.row), products: at(d.products), terms }
-        });
-        let moving = self.states.iter().filter_map(|(state, rate)| match rate {
-            Source::Row(rate) => Some((at(*state), at(*rate))),
+        let placed = |a: &Addition| {
+            let terms = a.terms.map(|t| (zero, at(t.row) + Place::from(!t.late)));
+            Placed { target: at(a.target) + 1, start: at(a.start) + 1, terms }
+        };
+        let moving = self.states.iter().filter_map(|state| match state.rate {
+            Source::Row(rate) => Some((at(state.row), at(rate), zero)),
             Source::Steady(_) => None,
         });
         let plan = Plan {
@@ -200,15 +226,14 @@ impl SeriesTape {
             registers: self.first.workspace(),
             values: vec![zero; self.first.outputs()],
             products: [0, 1].map(|i: usize| self.products[i].iter().map(place).collect()),
-            definitions: definitions.collect(),
-            terms: self.terms.iter().map(|(_, row)| (zero, at(*row))).collect(),
+            additions: self.additions.iter().map(placed).collect(),
             states: moving.collect(),
             slopes: self.slopes.iter().map(|(slope, of)| (at(*slope), at(*of))).collect(),
             halves,
             orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
         };
-        SeriesWorkspace { rows: vec![zero; T::room(self.rows * stride + T::GROUP)], plan }
+        SeriesWorkspace { rows: vec![zero; T::room(self.rows, stride)], used: self.rows * stride, plan }
     }
 
     /// Computes the coefficients of all orders, from the inputs at order 0; unknowns must solve their equations there.
@@ -228,13 +253,13 @@ impl SeriesTape {
         sweeps: usize,
         correct: Correct<T>,
     ) {
-        let SeriesWorkspace { rows, plan } = workspace;
+        let SeriesWorkspace { rows, used, plan } = workspace;
         assert!(
-            plan.values.len() == self.first.outputs() && plan.terms.len() == self.terms.len(),
+            plan.values.len() == self.first.outputs() && plan.additions.len() == self.additions.len(),
             "the workspace of another tape"
         );
         self.start(inputs, unit, rows, plan);
-        T::dispatch(rows, Expansion { tape: self, unit, plan, sweeps, correct });
+        T::dispatch(rows, *used, Expansion { tape: self, plan, sweeps, correct });
     }
 
     /// The coefficients of an input, orders 0 to that of the workspace; `None` if it is constant in time.
@@ -263,9 +288,11 @@ impl SeriesTape {
         if let Some(time) = self.time {
             rows[time as usize * plan.stride + 1] = unit;
         }
-        for (state, rate) in &self.states {
-            if let Source::Steady(slot) = rate {
-                rows[*state as usize * plan.stride + 1] = values[*slot as usize] * unit;
+        let mut moving = plan.states.iter_mut();
+        for State { row, rate, factor } in &self.states {
+            match rate {
+                Source::Steady(slot) => rows[*row as usize * plan.stride + 1] = values[*slot as usize] * unit,
+                Source::Row(_) => moving.next().expect("a place for each").2 = values[*factor as usize] * unit,
             }
         }
         for (placed, products) in plan.products.iter_mut().zip(&self.products) {
@@ -273,8 +300,11 @@ impl SeriesTape {
                 placed.scale = values[product.scale as usize];
             }
         }
-        for (placed, (slot, _)) in plan.terms.iter_mut().zip(&self.terms) {
-            placed.0 = values[*slot as usize];
+        for (placed, addition) in plan.additions.iter_mut().zip(&self.additions) {
+            for (placed, term) in placed.terms.iter_mut().zip(&addition.terms) {
+                let weight = values[term.weight as usize];
+                placed.0 = if term.late { weight * unit } else { weight };
+            }
         }
     }
 }
@@ -294,23 +324,18 @@ impl<T: SeriesScalar> Plan<T> {
         }
     }
 
-    /// Order `k` of `definitions`, whose terms are the first of `terms`.
+    /// Order `k` of sums.
     #[inline(always)]
-    fn add_terms<S: Store<T> + ?Sized>(rows: &mut S, k: usize, definitions: &[Placed], terms: &[(T, usize)]) {
-        let mut terms = terms.iter();
-        for definition in definitions {
-            let mut sum = rows.get(definition.products + k);
-            for (weight, operand) in terms.by_ref().take(definition.terms) {
-                sum = sum + *weight * rows.get(operand + k);
-            }
-            rows.set(definition.row + k, sum);
+    fn add<S: Store<T> + ?Sized>(rows: &mut S, k: usize, additions: &[Placed<T>]) {
+        let rows = rows.window(k - 1);
+        for Placed { target, start, terms: [(v, a), (w, b)] } in additions {
+            rows.set(*target, rows.get(*start) + *v * rows.get(*a) + *w * rows.get(*b));
         }
     }
 }
 
 struct Expansion<'a, 'c, T> {
     tape: &'a SeriesTape,
-    unit: T,
     plan: &'a mut Plan<T>,
     sweeps: usize,
     correct: Correct<'c, T>,
@@ -323,22 +348,21 @@ impl<T: SeriesScalar> Expansion<'_, '_, T> {
         let (tape, plan) = (self.tape, &mut *self.plan);
         let (from, to) = (tape.stages[block], tape.stages[block + 1]);
         let Implicit { unknowns, residuals } = &tape.blocks[block];
-        let first = if from == 0 { 0 } else { tape.definitions[from - 1].end };
         for _ in 0..self.sweeps {
-            Plan::add_terms(rows, k, &plan.definitions[from..to], &plan.terms[first..]);
+            Plan::add(rows, k, &plan.additions[from..to]);
+            let (newest, stride) = (rows.window(k), plan.stride as Place);
             for (residual, source) in plan.residual.iter_mut().zip(residuals) {
                 *residual = match source {
-                    Source::Row(row) => rows.get(*row as usize * plan.stride + k),
+                    Source::Row(row) => newest.get(row * stride),
                     Source::Steady(_) => T::from_f64(0.0),
                 };
             }
             (self.correct)(block, &mut plan.residual[..residuals.len()]);
             for (unknown, change) in unknowns.iter().zip(&plan.residual) {
-                let at = *unknown as usize * plan.stride + k;
-                rows.set(at, rows.get(at) + *change);
+                newest.set(unknown * stride, newest.get(unknown * stride) + *change);
             }
         }
-        Plan::add_terms(rows, k, &plan.definitions[from..to], &plan.terms[first..]);
+        Plan::add(rows, k, &plan.additions[from..to]);
     }
 }
 
@@ -352,20 +376,21 @@ impl<T: SeriesScalar> Task<T> for Expansion<'_, '_, T> {
                 self.plan.multiply(rows, k);
             }
             // Only now, so that no product waits for a coefficient that was just written.
-            let share = self.unit * self.plan.orders[k].1;
-            for (state, rate) in &self.plan.states {
-                rows.set(state + k, rows.get(rate + k - 1) * share);
+            let (before, share) = (rows.window(k - 1), self.plan.orders[k].1);
+            for (state, rate, factor) in &self.plan.states {
+                before.set(state + 1, before.get(*rate) * (*factor * share));
             }
             if k == order {
                 return;
             }
-            Plan::add_terms(rows, k, &self.plan.definitions[..explicit], &self.plan.terms);
+            Plan::add(rows, k, &self.plan.additions[..explicit]);
             for block in 0..self.tape.blocks.len() {
                 self.solve(rows, k, block);
             }
             let factor = self.plan.orders[k].0;
+            let newest = rows.window(k);
             for (slope, of) in &self.plan.slopes {
-                rows.set(slope + k, rows.get(of + k) * factor);
+                newest.set(*slope, newest.get(*of) * factor);
             }
         }
     }

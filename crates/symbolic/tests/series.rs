@@ -284,6 +284,39 @@ fn unknowns_of_implicit_equations_are_series() {
 }
 
 #[test]
+fn functions_of_states_are_integrated_and_lines_are_no_series() {
+    // x = 0.2 + t/2 and y = 0.3 eᵗ; in terms of time alone nothing is a combination of states.
+    let g = Graph::new();
+    let [t, x, y, k] = ["t", "x", "y", "k"].map(|name| g.symbol(name));
+    let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
+    let parse = |formula: &str| g.parse(formula, &scope, &[]).unwrap();
+    let of_time = HashMap::from([(x, parse("0.2 + t/2")), (y, parse("0.3*exp(t)"))]);
+    let inputs =
+        [(t, SeriesInput::Time), (k, SeriesInput::Steady), (x, SeriesInput::State(0)), (y, SeriesInput::State(1))];
+    let functions = ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp"];
+    let arguments = ["y", "x", "-y/k", "k*(x - 2*y) - t + 1", "2 - (t - y)"];
+    let mut formulas: Vec<String> =
+        functions.iter().flat_map(|f| arguments.map(|a| format!("{f}({a}) + y*{f}({a})"))).collect();
+    let lines = ["x*y", "x*x - t*x", "(t - k*x)^2*y", "y/(1 + x)", "1/(t - 3)", "(x + t)/(k - t)*(y - x)*(2*t + 1)"];
+    formulas.extend(lines.map(str::to_owned));
+    for formula in formulas {
+        let e = parse(&formula);
+        let outputs = [parse("1/2"), g.variable(y), e];
+        let tape = g.compile_series(&inputs, &[], &outputs, &[], &HashMap::new()).unwrap();
+        let mut workspace = tape.workspace::<f64>(9);
+        let start = [0.3, 0.7, 0.2 + 0.3 / 2.0, 0.3 * 0.3_f64.exp()];
+        tape.expand(&start, 1.0, &mut workspace, 0, &mut |_, _| {});
+        let found: Vec<f64> = (0..=8).map(|i| tape.output(2, i, &workspace)).collect();
+        agree(&formula, &found, &coefficients(&g, t, k, g.substitute_all(&[e], &of_time)[0], 8), 1e-12);
+    }
+    let work = |formula: &str| {
+        let outputs = [parse("1/2"), g.variable(y), parse(formula)];
+        g.compile_series(&inputs, &[], &outputs, &[], &HashMap::new()).unwrap().work().0
+    };
+    assert_eq!((work("x*y"), work("sin(x)*cos(x)"), work("sin(y)*y")), (0, 1, 2));
+}
+
+#[test]
 fn states_that_do_not_move_are_no_series() {
     let g = Graph::new();
     let [x, y, c] = ["x", "y", "c"].map(|name| g.symbol(name));

@@ -1,12 +1,15 @@
 //! From a straight-line program to a [`SeriesTape`].
 
+mod assemble;
 mod decide;
 mod functions;
+mod motion;
 
-use super::{Bilinear, Definition, Implicit, Row, SeriesInput, SeriesTape, Slot, Source};
+use motion::Motion;
+
+use super::{Row, SeriesInput, SeriesTape};
 use crate::number::{Number, Rational};
 use crate::program::{Id, Program, Value};
-use crate::tape::Tape;
 use rustc_hash::FxHashMap;
 
 /// The tape for `outputs`, of which those behind the rates are residuals of blocks, `blocks` a length each.
@@ -24,7 +27,8 @@ pub(crate) fn build(
         other => other == SeriesInput::Steady,
     };
     let inputs: Vec<SeriesInput> = inputs.iter().map(|i| if steady(i) { SeriesInput::Steady } else { *i }).collect();
-    let mut builder = Builder::new(program, &inputs);
+    let mut builder = Builder::new(program, &inputs, outputs);
+    builder.integrate_functions();
     builder.decide(outputs);
     for id in 0..builder.decisions.len() {
         if builder.decisions[id] == Decision::Row {
@@ -47,17 +51,44 @@ enum Decision {
     Peeled,
 }
 
+/// `weight · row`, of the same order or, `late`, `weight · τ · row`, of the order before; the weight is a value of order 0.
+#[derive(Clone, Copy)]
+struct Part {
+    weight: Id,
+    row: Row,
+    late: bool,
+}
+
+impl Part {
+    fn of(weight: Id, row: Row) -> Part {
+        Part { weight, row, late: false }
+    }
+}
+
 /// Terms of a series; weights are values of order 0.
 #[derive(Default)]
 struct Sum {
-    terms: Vec<(Id, Row)>,
+    terms: Vec<Part>,
     pairs: Vec<(Id, Row, Row)>,
     pairs_over_k: Vec<(Id, Row, Row)>,
+}
+
+/// A function of states whose rate is `factor · rate`, the factor constant in time.
+#[derive(Clone, Copy)]
+struct Integrated {
+    id: Id,
+    factor: Id,
+    rate: Id,
 }
 
 struct Builder<'i> {
     program: Program,
     inputs: &'i [SeriesInput],
+    outputs: &'i [Id],
+    /// How values move, as far as that is known.
+    motions: Vec<Motion>,
+    /// Functions that are integrated.
+    integrated: Vec<Integrated>,
     /// 0: constant in time; else 1 + number of the block on whose unknowns the value depends last, counted from 1.
     stages: Vec<usize>,
     decisions: Vec<Decision>,
@@ -72,11 +103,14 @@ struct Builder<'i> {
 }
 
 impl<'i> Builder<'i> {
-    fn new(mut program: Program, inputs: &'i [SeriesInput]) -> Self {
+    fn new(mut program: Program, inputs: &'i [SeriesInput], outputs: &'i [Id]) -> Self {
         let one = program.constant(Number::ONE);
         let mut builder = Builder {
             program,
             inputs,
+            outputs,
+            motions: Vec::new(),
+            integrated: Vec::new(),
             stages: Vec::new(),
             decisions: Vec::new(),
             rows: FxHashMap::default(),
@@ -87,6 +121,7 @@ impl<'i> Builder<'i> {
             one,
         };
         builder.extend_stages();
+        builder.extend_motions();
         builder
     }
 
@@ -111,6 +146,7 @@ impl<'i> Builder<'i> {
     fn push(&mut self, value: Value) -> Id {
         let id = self.program.push(value);
         self.extend_stages();
+        self.extend_motions();
         id
     }
 
@@ -211,7 +247,7 @@ impl<'i> Builder<'i> {
             }
             if !whole && !self.is_absorbed(id) {
                 let row = self.row(id);
-                sum.terms.push((weight, row));
+                sum.push(weight, row);
                 continue;
             }
             if let Some((factor, a)) = self.multiple(id) {
@@ -232,19 +268,27 @@ impl<'i> Builder<'i> {
         }
     }
 
-    /// `weight · a · b` into the sum; both vary.
+    /// `weight · a · b` into the sum; both vary. A factor that is linear in time needs no series: `(a b)_k = a₀ b_k + a₁ b_{k−1}`.
     fn product(&mut self, sum: &mut Sum, a: Id, b: Id, weight: Id) {
         let ((a, weight), square) = (self.peel(a, weight), a == b);
         let (b, weight) = self.peel(b, weight);
-        let rows = (self.row(a), self.row(b));
-        sum.pairs.push((weight, rows.0, rows.1));
+        let (a, b) = if self.is_line(b) && !self.is_line(a) { (b, a) } else { (a, b) };
+        let other = self.row(b);
+        if self.is_line(a) {
+            let slope = self.rate(a);
+            sum.push(self.times(weight, a), other);
+            sum.push_late(self.times(weight, slope), other);
+            return;
+        }
+        let row = self.row(a);
+        sum.pairs.push((weight, row, other));
         if square {
             let two = self.number(2);
             let double = self.times(weight, two);
-            sum.terms.push((self.times(double, a), rows.0));
+            sum.push(self.times(double, a), row);
         } else {
-            sum.terms.push((self.times(weight, b), rows.0));
-            sum.terms.push((self.times(weight, a), rows.1));
+            sum.push(self.times(weight, b), row);
+            sum.push(self.times(weight, a), other);
         }
     }
 
@@ -258,113 +302,15 @@ impl<'i> Builder<'i> {
         }
         (id, weight)
     }
+}
 
-    fn finish(mut self, inputs: &[SeriesInput], outputs: &[Id], own_outputs: usize, blocks: &[usize]) -> SeriesTape {
-        let input_ids: Vec<Id> = (0..inputs.len()).map(|i| self.push(Value::Input(i as u32))).collect();
-        let input_rows: Vec<Option<Row>> =
-            input_ids.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();
-        let of_outputs: Vec<Option<Row>> =
-            outputs.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();
-
-        // By stage; within one as they were made, operands first.
-        let mut definitions = std::mem::take(&mut self.definitions);
-        let stage = |row: Row| self.of_row[row as usize].map_or(1, |id| self.stages[id as usize]);
-        definitions.sort_by_key(|(row, _)| stage(*row));
-        let stages = (0..=blocks.len()).map(|b| definitions.partition_point(|(row, _)| stage(*row) <= 1 + b)).collect();
-
-        // Operands in the order in which they are known: the last one is what a sum waits for.
-        let mut known: Vec<usize> = vec![0; self.of_row.len()];
-        for (place, (row, _)) in definitions.iter().enumerate() {
-            known[*row as usize] = 1 + place;
-        }
-        for (slope, of) in &self.slope_list {
-            known[*slope as usize] = known[*of as usize];
-        }
-        let none = self.fresh(None);
-        let mut totals: Vec<Row> = Vec::new();
-        for (_, sum) in &mut definitions {
-            let bare = sum.pairs.is_empty() && sum.pairs_over_k.is_empty();
-            totals.push(if bare { none } else { self.fresh(None) });
-            let terms = std::mem::take(&mut sum.terms);
-            sum.terms = self.merged(terms);
-            sum.terms.sort_by_key(|(_, operand)| known[*operand as usize]);
-        }
-        let zero = self.push(Value::Constant(Number::ZERO));
-        let mut first: Vec<Id> = self.of_row.iter().map(|id| id.unwrap_or(zero)).collect();
-        let mut slots: FxHashMap<Id, Slot> = FxHashMap::default();
-        let mut slot = |id: Id| {
-            *slots.entry(id).or_insert_with(|| {
-                first.push(id);
-                Slot::try_from(first.len() - 1).expect("fewer than 2^32 values")
-            })
-        };
-        let mut products = [Vec::new(), Vec::new()];
-        let (mut terms, mut ends) = (Vec::new(), Vec::new());
-        for ((row, sum), total) in definitions.iter().zip(&totals) {
-            terms.extend(sum.terms.iter().map(|(weight, operand)| (slot(*weight), *operand)));
-            ends.push(Definition { row: *row, products: *total, end: terms.len() });
-            for (list, pairs) in products.iter_mut().zip([&sum.pairs, &sum.pairs_over_k]) {
-                list.extend(pairs.iter().map(|(scale, left, right)| Bilinear {
-                    scale: slot(*scale),
-                    target: *total,
-                    left: *left,
-                    right: *right,
-                }));
-            }
-        }
-        // So that coefficients have been written for a while when they are read in groups.
-        for list in &mut products {
-            list.sort_by_key(|product: &Bilinear| known[product.left as usize].max(known[product.right as usize]));
-        }
-        let sources: Vec<Source> = outputs
-            .iter()
-            .zip(&of_outputs)
-            .map(|(id, row)| row.map_or_else(|| Source::Steady(slot(*id)), Source::Row))
-            .collect();
-        let rows = self.of_row.len();
-        self.program.fuse(&first);
-        let mut states = Vec::new();
-        let mut time = None;
-        let mut implicit: Vec<Implicit> = Vec::new();
-        let mut next = own_outputs;
-        for size in blocks {
-            implicit.push(Implicit { unknowns: Vec::new(), residuals: sources[next..next + size].to_vec() });
-            next += size;
-        }
-        for (input, row) in inputs.iter().zip(&input_rows) {
-            match (*input, *row) {
-                (SeriesInput::State(rate), Some(row)) => states.push((row, sources[rate])),
-                (SeriesInput::Unknown(block), Some(row)) => implicit[block].unknowns.push(row),
-                (SeriesInput::Time, row) => time = row,
-                _ => {}
-            }
-        }
-        SeriesTape {
-            first: Tape::assemble(&self.program, inputs.len(), &first),
-            rows,
-            inputs: input_rows,
-            time,
-            states,
-            outputs: sources[..own_outputs].to_vec(),
-            blocks: implicit,
-            products,
-            definitions: ends,
-            stages,
-            terms,
-            slopes: self.slope_list,
-        }
+impl Sum {
+    fn push(&mut self, weight: Id, row: Row) {
+        self.terms.push(Part::of(weight, row));
     }
 
-    /// Terms with the same operand become one.
-    fn merged(&mut self, terms: Vec<(Id, Row)>) -> Vec<(Id, Row)> {
-        let mut merged: Vec<(Id, Row)> = Vec::new();
-        for (weight, row) in terms {
-            match merged.iter_mut().find(|(_, other)| *other == row) {
-                Some((total, _)) => *total = self.push(Value::Add(*total, weight)),
-                None => merged.push((weight, row)),
-            }
-        }
-        merged
+    fn push_late(&mut self, weight: Id, row: Row) {
+        self.terms.push(Part { weight, row, late: true });
     }
 }
 

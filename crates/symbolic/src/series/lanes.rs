@@ -98,7 +98,7 @@ impl Scalar for Lanes {
 }
 
 impl SeriesScalar for Lanes {
-    fn dispatch<F: Task<Lanes>>(rows: &mut [Lanes], task: F) {
+    fn dispatch<F: Task<Lanes>>(rows: &mut [Lanes], _: usize, task: F) {
         pulp::Arch::new().dispatch(Vectorized { rows, task });
     }
 }
@@ -121,19 +121,17 @@ impl<F: Task<Lanes>> pulp::NullaryFnOnce for Vectorized<'_, F> {
 struct Rows<'a>(&'a mut [Lanes]);
 
 impl Store<Lanes> for Rows<'_> {
-    #[inline(always)]
-    fn get(&self, place: usize) -> Lanes {
-        self.0[place]
-    }
+    type Window = [Lanes];
 
     #[inline(always)]
-    fn set(&mut self, place: usize, x: Lanes) {
-        self.0[place] = x;
+    fn window(&mut self, first: usize) -> &mut [Lanes] {
+        &mut self.0[first..]
     }
 
     #[inline(always)]
     fn multiply(&mut self, products: &[Product<Lanes>], weights: Weights<Lanes>, newest: usize, _: usize) {
         for Product { scale, target, left, right } in products {
+            let [target, left, right] = [target, left, right].map(|p| *p as usize);
             let (x, y) = (&self.0[left + 1..][..newest], &self.0[right + 1..][..newest]);
             let mut sums = [Lanes([0.0; LANES]); 2];
             let pairs = |i: usize| x[i] * y[newest - 1 - i];

@@ -5,13 +5,16 @@ use crate::Scalar;
 /// Coefficients of a series are looked at in groups of so many.
 pub(crate) const GROUP: usize = 8;
 
+/// A place of a coefficient, from the beginning of a [`Window`].
+pub(crate) type Place = u32;
+
 /// A product of two series that goes, scaled, into a third: places of their first coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Product<T> {
     pub(crate) scale: T,
-    pub(crate) target: usize,
-    pub(crate) left: usize,
-    pub(crate) right: usize,
+    pub(crate) target: Place,
+    pub(crate) left: Place,
+    pub(crate) right: Place,
 }
 
 /// Weights of the terms of products by the order of the older coefficient.
@@ -25,13 +28,22 @@ pub struct Weights<'a, T> {
     pub(crate) next: T,
 }
 
-/// Coefficients, one series after the other.
-pub trait Store<T> {
+/// Coefficients from some place on.
+pub trait Window<T> {
     /// The coefficient at a place.
-    fn get(&self, place: usize) -> T;
+    fn get(&self, place: u32) -> T;
 
     /// Puts a coefficient at a place.
-    fn set(&mut self, place: usize, x: T);
+    fn set(&mut self, place: u32, x: T);
+}
+
+/// Coefficients, one series after the other.
+pub trait Store<T> {
+    /// What [`Store::window`] gives.
+    type Window: Window<T> + ?Sized;
+
+    /// The coefficients from a place on: places of order `k` in all series are those of order 0 in the window from `k` on.
+    fn window(&mut self, first: usize) -> &mut Self::Window;
 
     /// The products of the newest coefficients, of order `newest`, with all those from order 1 on: for each product and `1 ≤ j ≤ newest`
     ///
@@ -44,21 +56,31 @@ pub trait Store<T> {
     fn multiply(&mut self, products: &[Product<T>], weights: Weights<T>, newest: usize, last: usize);
 }
 
-impl<T: Scalar> Store<T> for [T] {
+impl<T: Scalar> Window<T> for [T] {
     #[inline(always)]
-    fn get(&self, place: usize) -> T {
-        self[place]
+    fn get(&self, place: u32) -> T {
+        self[place as usize]
     }
 
     #[inline(always)]
-    fn set(&mut self, place: usize, x: T) {
-        self[place] = x;
+    fn set(&mut self, place: u32, x: T) {
+        self[place as usize] = x;
+    }
+}
+
+impl<T: Scalar> Store<T> for [T] {
+    type Window = [T];
+
+    #[inline(always)]
+    fn window(&mut self, first: usize) -> &mut [T] {
+        &mut self[first..]
     }
 
     #[inline(always)]
     fn multiply(&mut self, products: &[Product<T>], weights: Weights<T>, newest: usize, last: usize) {
         let count = newest.min(last - newest);
         for Product { scale, target, left, right } in products {
+            let [target, left, right] = [target, left, right].map(|p| *p as usize);
             let (a, b) = (self[left + newest] * *scale, self[right + newest] * *scale);
             for j in 1..=count {
                 let sum = a * self[right + j] + b * self[left + j];
@@ -117,36 +139,37 @@ pub trait SeriesScalar: Scalar {
     /// Coefficients of a series are looked at in groups of so many; a series is followed by as many places that may be read.
     const GROUP: usize = 1;
 
-    /// How many places to allocate where so many are needed.
-    fn room(places: usize) -> usize {
-        places
+    /// How many places to allocate for so many series, `stride` places each.
+    fn room(series: usize, stride: usize) -> usize {
+        series * stride
     }
 
-    /// Runs `task` on coefficients with the instructions that are best for this type.
-    fn dispatch<F: Task<Self>>(rows: &mut [Self], task: F) {
+    /// Runs `task` on coefficients, at places below `places`, with the instructions that are best for this type.
+    fn dispatch<F: Task<Self>>(rows: &mut [Self], _places: usize, task: F) {
         task.run(rows);
     }
 }
 
-/// Sizes for which places are masked instead of checked, and what is read past a place.
-const SMALL: usize = 1 << 13;
-const LARGE: usize = 1 << 16;
+/// So many places have numbers of 16 bits: these need no check in a window of this size, whose last place is followed by a group.
+const PLACES: usize = 1 << 16;
+const WINDOW: usize = PLACES + GROUP;
 
 impl SeriesScalar for f64 {
     const GROUP: usize = GROUP;
 
-    fn room(places: usize) -> usize {
-        let sizes = [SMALL, LARGE].map(|size| size + GROUP);
-        sizes.into_iter().find(|size| places <= *size).unwrap_or(places)
+    fn room(series: usize, stride: usize) -> usize {
+        let places = series * stride;
+        if places <= PLACES { WINDOW + stride } else { places + GROUP }
     }
 
-    fn dispatch<F: Task<f64>>(rows: &mut [f64], task: F) {
-        pulp::Arch::new().dispatch(Vectorized { rows, task });
+    fn dispatch<F: Task<f64>>(rows: &mut [f64], places: usize, task: F) {
+        pulp::Arch::new().dispatch(Vectorized { rows, places, task });
     }
 }
 
 struct Vectorized<'a, F> {
     rows: &'a mut [f64],
+    places: usize,
     task: F,
 }
 
@@ -155,104 +178,116 @@ impl<F: Task<f64>> pulp::NullaryFnOnce for Vectorized<'_, F> {
 
     #[inline(always)]
     fn call(self) {
-        if let Ok(rows) = <&mut [f64; SMALL + GROUP]>::try_from(&mut *self.rows) {
-            self.task.run(&mut Grouped(rows));
-        } else if let Ok(rows) = <&mut [f64; LARGE + GROUP]>::try_from(&mut *self.rows) {
-            self.task.run(&mut Grouped(rows));
+        if self.places <= PLACES {
+            self.task.run(&mut Narrow(self.rows));
         } else {
-            self.task.run(&mut Grouped(self.rows));
+            self.task.run(&mut Wide(self.rows));
         }
     }
 }
 
-/// Rows of f64 that are looked at in groups.
-struct Grouped<'a, R: ?Sized>(&'a mut R);
+/// Coefficients that are looked at in groups, all of them at places of 16 bits.
+struct Narrow<'a>(&'a mut [f64]);
 
-trait Groups {
-    fn at(&self, place: usize) -> f64;
-    fn one(&mut self, place: usize) -> &mut f64;
-    fn group(&mut self, place: usize) -> &mut [f64; GROUP];
+/// The same at any places.
+struct Wide<'a>(&'a mut [f64]);
+
+trait Groups: Window<f64> {
+    fn group(&mut self, place: u32) -> &mut [f64; GROUP];
 }
 
 impl Groups for [f64] {
     #[inline(always)]
-    fn at(&self, place: usize) -> f64 {
-        self[place]
-    }
-
-    #[inline(always)]
-    fn one(&mut self, place: usize) -> &mut f64 {
-        &mut self[place]
-    }
-
-    #[inline(always)]
-    fn group(&mut self, place: usize) -> &mut [f64; GROUP] {
-        self[place..].first_chunk_mut().expect("rows end with a group to spare")
+    fn group(&mut self, place: u32) -> &mut [f64; GROUP] {
+        self[place as usize..].first_chunk_mut().expect("rows end with a group to spare")
     }
 }
 
-/// A mask instead of a check at each access: all places are below the size, so that it changes none.
-impl<const N: usize> Groups for [f64; N] {
+impl Window<f64> for [f64; WINDOW] {
     #[inline(always)]
-    fn at(&self, place: usize) -> f64 {
-        self[place & (N - GROUP - 1)]
+    fn get(&self, place: u32) -> f64 {
+        self[usize::from(place as u16)]
     }
 
     #[inline(always)]
-    fn one(&mut self, place: usize) -> &mut f64 {
-        &mut self[place & (N - GROUP - 1)]
-    }
-
-    #[inline(always)]
-    fn group(&mut self, place: usize) -> &mut [f64; GROUP] {
-        self[place & (N - GROUP - 1)..].first_chunk_mut().expect("the array has a group to spare")
+    fn set(&mut self, place: u32, x: f64) {
+        self[usize::from(place as u16)] = x;
     }
 }
 
-impl<R: Groups + ?Sized> Grouped<'_, R> {
+impl Groups for [f64; WINDOW] {
     #[inline(always)]
-    fn add_products(
-        &mut self,
-        products: &[Product<f64>],
-        newest: usize,
-        first: usize,
-        weigh: impl Fn(f64, usize) -> f64,
-    ) {
-        for Product { scale, target, left, right } in products {
-            let (a, b) = (*self.0.one(left + newest) * scale, *self.0.one(right + newest) * scale);
-            let (x, y) = (*self.0.group(left + first), *self.0.group(right + first));
-            let target = self.0.group(target + newest + first);
-            for l in 0..GROUP {
-                target[l] += weigh(a * y[l] + b * x[l], l);
-            }
+    fn group(&mut self, place: u32) -> &mut [f64; GROUP] {
+        self[usize::from(place as u16)..].first_chunk_mut().expect("the window has a group to spare")
+    }
+}
+
+#[inline(always)]
+fn add_products<S: Store<f64, Window: Groups>>(
+    rows: &mut S,
+    products: &[Product<f64>],
+    newest: usize,
+    first: usize,
+    weigh: impl Fn(f64, usize) -> f64,
+) {
+    for Product { scale, target, left, right } in products {
+        let window = rows.window(newest);
+        let (a, b) = (window.get(*left) * scale, window.get(*right) * scale);
+        let window = rows.window(first);
+        let (x, y) = (*window.group(*left), *window.group(*right));
+        let target = rows.window(newest + first).group(*target);
+        for l in 0..GROUP {
+            target[l] += weigh(a * y[l] + b * x[l], l);
         }
     }
 }
 
-impl<R: Groups + ?Sized> Store<f64> for Grouped<'_, R> {
-    #[inline(always)]
-    fn get(&self, place: usize) -> f64 {
-        self.0.at(place)
+#[inline(always)]
+fn multiply_groups<S: Store<f64, Window: Groups>>(
+    rows: &mut S,
+    products: &[Product<f64>],
+    weights: Weights<f64>,
+    newest: usize,
+    last: usize,
+) {
+    let count = newest.min(last - newest);
+    let mut first = 1;
+    while first <= count {
+        let mut weight = [0.0; GROUP];
+        weight.copy_from_slice(&weights.of[first..first + GROUP]);
+        if weights.plain && first + GROUP <= newest {
+            add_products(rows, products, newest, first, |x, _| x);
+        } else {
+            add_products(rows, products, newest, first, |x, l| x * weight[l]);
+        }
+        first += GROUP;
     }
+}
+
+impl Store<f64> for Narrow<'_> {
+    type Window = [f64; WINDOW];
 
     #[inline(always)]
-    fn set(&mut self, place: usize, x: f64) {
-        *self.0.one(place) = x;
+    fn window(&mut self, first: usize) -> &mut [f64; WINDOW] {
+        self.0[first..].first_chunk_mut().expect("room for windows up to the highest order and a group")
     }
 
     #[inline(always)]
     fn multiply(&mut self, products: &[Product<f64>], weights: Weights<f64>, newest: usize, last: usize) {
-        let count = newest.min(last - newest);
-        let mut first = 1;
-        while first <= count {
-            let mut weight = [0.0; GROUP];
-            weight.copy_from_slice(&weights.of[first..first + GROUP]);
-            if weights.plain && first + GROUP <= newest {
-                self.add_products(products, newest, first, |x, _| x);
-            } else {
-                self.add_products(products, newest, first, |x, l| x * weight[l]);
-            }
-            first += GROUP;
-        }
+        multiply_groups(self, products, weights, newest, last);
+    }
+}
+
+impl Store<f64> for Wide<'_> {
+    type Window = [f64];
+
+    #[inline(always)]
+    fn window(&mut self, first: usize) -> &mut [f64] {
+        &mut self.0[first..]
+    }
+
+    #[inline(always)]
+    fn multiply(&mut self, products: &[Product<f64>], weights: Weights<f64>, newest: usize, last: usize) {
+        multiply_groups(self, products, weights, newest, last);
     }
 }

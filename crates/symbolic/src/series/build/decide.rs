@@ -12,6 +12,11 @@ impl Builder<'_> {
         for o in outputs {
             linear[*o as usize] += 2;
         }
+        let mut integrated = vec![false; n];
+        for i in &self.integrated {
+            integrated[i.id as usize] = true;
+            linear[i.rate as usize] += 2;
+        }
         for id in (0..n).rev() {
             let (terms, factors) = (linear[id], factor[id]);
             if terms + factors == 0 || !self.varies(id as Id) {
@@ -42,8 +47,12 @@ impl Builder<'_> {
                 }
                 Value::Div(a, b) => {
                     linear[a as usize] += 1;
-                    factor[b as usize] += 1;
+                    factor[b as usize] += usize::from(!self.is_line(b));
                 }
+                Value::Recip(b) if self.is_line(b) => {}
+                Value::Mul(a, b) if self.is_line(a) => factor[b as usize] += 1,
+                Value::Mul(a, b) if self.is_line(b) => factor[a as usize] += 1,
+                Value::Call(..) if integrated[id] => {}
                 _ => {
                     let (operands, count) = value.operands();
                     for o in &operands[..count] {

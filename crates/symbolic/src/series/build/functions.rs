@@ -1,6 +1,6 @@
 //! What equations the coefficients of quotients, roots and functions satisfy.
 
-use super::{Builder, Sum};
+use super::{Builder, Part, Sum};
 use crate::Function;
 use crate::program::{Id, Value};
 use crate::series::Row;
@@ -39,11 +39,17 @@ impl Builder<'_> {
         if let Some(a) = numerator {
             self.absorb(&mut sum, a, reciprocal, false);
         }
+        let minus = self.minus(reciprocal);
+        if self.is_line(b) {
+            let (slope, row) = (self.rate(b), self.fresh(Some(id)));
+            sum.push_late(self.times(minus, slope), row);
+            self.definitions.push((row, sum));
+            return row;
+        }
         let divisor = self.row(b);
         let row = self.fresh(Some(id));
-        let minus = self.minus(reciprocal);
         sum.pairs.push((minus, divisor, row));
-        sum.terms.push((self.times(minus, id), divisor));
+        sum.push(self.times(minus, id), divisor);
         self.definitions.push((row, sum));
         row
     }
@@ -63,6 +69,9 @@ impl Builder<'_> {
 
     fn call(&mut self, id: Id, function: Function, a: Id) -> Row {
         use Function::*;
+        if self.integrated.iter().any(|i| i.id == id) {
+            return self.fresh(Some(id));
+        }
         match function {
             Sin | Cos => self.sine_and_cosine(id, a, (Sin, Cos), true),
             Sinh | Cosh => self.sine_and_cosine(id, a, (Sinh, Cosh), false),
@@ -91,7 +100,8 @@ impl Builder<'_> {
         let argument = self.row(a);
         let slope = self.slope(argument);
         let row = self.fresh(Some(id));
-        let sum = Sum { terms: vec![(id, argument)], pairs_over_k: vec![(self.one, slope, row)], ..Sum::default() };
+        let sum =
+            Sum { terms: vec![Part::of(id, argument)], pairs_over_k: vec![(self.one, slope, row)], ..Sum::default() };
         self.definitions.push((row, sum));
         row
     }
@@ -104,9 +114,13 @@ impl Builder<'_> {
         let rows = (self.fresh(Some(s)), self.fresh(Some(c)));
         let (one, minus_one) = (self.one, self.number(-1));
         let (sign, weight) = if circle { (minus_one, self.minus(s)) } else { (one, s) };
-        let of_sine = Sum { terms: vec![(c, argument)], pairs_over_k: vec![(one, slope, rows.1)], ..Sum::default() };
-        let of_cosine =
-            Sum { terms: vec![(weight, argument)], pairs_over_k: vec![(sign, slope, rows.0)], ..Sum::default() };
+        let of_sine =
+            Sum { terms: vec![Part::of(c, argument)], pairs_over_k: vec![(one, slope, rows.1)], ..Sum::default() };
+        let of_cosine = Sum {
+            terms: vec![Part::of(weight, argument)],
+            pairs_over_k: vec![(sign, slope, rows.0)],
+            ..Sum::default()
+        };
         self.definitions.push((rows.0, of_sine));
         self.definitions.push((rows.1, of_cosine));
         if id == s { rows.0 } else { rows.1 }
@@ -123,7 +137,8 @@ impl Builder<'_> {
             Some(row) => *row,
             None => self.fresh(Some(u)),
         };
-        let sum = Sum { terms: vec![(u, argument)], pairs_over_k: vec![(self.one, slope, of_u)], ..Sum::default() };
+        let sum =
+            Sum { terms: vec![Part::of(u, argument)], pairs_over_k: vec![(self.one, slope, of_u)], ..Sum::default() };
         self.definitions.push((row, sum));
         let mut sum = Sum::default();
         self.absorb(&mut sum, u, self.one, true);
@@ -158,7 +173,7 @@ impl Builder<'_> {
         let scaled = self.times(r, reciprocal);
         let (of_base, of_power) = (self.slope(base), self.slope(row));
         let sum = Sum {
-            terms: vec![(self.times(scaled, id), base)],
+            terms: vec![Part::of(self.times(scaled, id), base)],
             pairs_over_k: vec![(scaled, of_base, row), (self.minus(reciprocal), of_power, base)],
             ..Sum::default()
         };
@@ -178,7 +193,7 @@ impl Builder<'_> {
         let mut sum = Sum::default();
         for (moving, other, factor, weight) in [(of_y, of_x, x, reciprocal), (of_x, of_y, y, minus)] {
             let Some(moving) = moving else { continue };
-            sum.terms.push((self.times(weight, factor), moving));
+            sum.push(self.times(weight, factor), moving);
             if let Some(other) = other {
                 let slope = self.slope(moving);
                 sum.pairs_over_k.push((weight, slope, other));

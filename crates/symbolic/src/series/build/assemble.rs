@@ -1,0 +1,141 @@
+//! From definitions of series to the tape.
+
+use super::{Builder, Part};
+use crate::number::Number;
+use crate::program::{Id, Value};
+use crate::series::{Addition, Bilinear, Implicit, Row, SeriesInput, SeriesTape, Slot, Source, State, Term};
+use crate::tape::Tape;
+use rustc_hash::FxHashMap;
+
+impl Builder<'_> {
+    pub(super) fn finish(
+        mut self,
+        inputs: &[SeriesInput],
+        outputs: &[Id],
+        own_outputs: usize,
+        blocks: &[usize],
+    ) -> SeriesTape {
+        let input_ids: Vec<Id> = (0..inputs.len()).map(|i| self.push(Value::Input(i as u32))).collect();
+        let input_rows: Vec<Option<Row>> =
+            input_ids.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();
+        let of_outputs: Vec<Option<Row>> =
+            outputs.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();
+
+        // By stage; within one as they were made, operands first.
+        let mut definitions = std::mem::take(&mut self.definitions);
+        let stage = |row: Row| self.of_row[row as usize].map_or(1, |id| self.stages[id as usize]);
+        definitions.sort_by_key(|(row, _)| stage(*row));
+        let ends: Vec<usize> =
+            (0..=blocks.len()).map(|b| definitions.partition_point(|(row, _)| stage(*row) <= 1 + b)).collect();
+
+        // Operands in the order in which they are known: the last one is what a sum waits for.
+        let mut known: Vec<usize> = vec![0; self.of_row.len()];
+        for (place, (row, _)) in definitions.iter().enumerate() {
+            known[*row as usize] = 1 + place;
+        }
+        for (slope, of) in &self.slope_list {
+            known[*slope as usize] = known[*of as usize];
+        }
+        let none = self.fresh(None);
+        let mut totals: Vec<Row> = Vec::new();
+        for (_, sum) in &mut definitions {
+            let bare = sum.pairs.is_empty() && sum.pairs_over_k.is_empty();
+            totals.push(if bare { none } else { self.fresh(None) });
+            let terms = std::mem::take(&mut sum.terms);
+            sum.terms = self.merged(terms);
+            sum.terms.sort_by_key(|term| if term.late { 0 } else { known[term.row as usize] });
+        }
+        let zero = self.push(Value::Constant(Number::ZERO));
+        let mut first: Vec<Id> = self.of_row.iter().map(|id| id.unwrap_or(zero)).collect();
+        let mut slots: FxHashMap<Id, Slot> = FxHashMap::default();
+        let mut slot = |id: Id| {
+            *slots.entry(id).or_insert_with(|| {
+                first.push(id);
+                Slot::try_from(first.len() - 1).expect("fewer than 2^32 values")
+            })
+        };
+        let mut products = [Vec::new(), Vec::new()];
+        let (mut additions, mut places) = (Vec::new(), vec![0]);
+        let nothing = Term { weight: slot(zero), row: none, late: false };
+        for ((row, sum), total) in definitions.iter().zip(&totals) {
+            let mut terms: Vec<Term> =
+                sum.terms.iter().map(|t| Term { weight: slot(t.weight), row: t.row, late: t.late }).collect();
+            // what is known last stays last
+            let missing = if terms.is_empty() { 2 } else { terms.len() % 2 };
+            terms.splice(..0, vec![nothing; missing]);
+            let mut start = *total;
+            for pair in terms.as_chunks().0 {
+                additions.push(Addition { target: *row, start, terms: *pair });
+                start = *row;
+            }
+            places.push(additions.len());
+            for (list, pairs) in products.iter_mut().zip([&sum.pairs, &sum.pairs_over_k]) {
+                list.extend(pairs.iter().map(|(scale, left, right)| Bilinear {
+                    scale: slot(*scale),
+                    target: *total,
+                    left: *left,
+                    right: *right,
+                }));
+            }
+        }
+        // So that coefficients have been written for a while when they are read in groups.
+        for list in &mut products {
+            list.sort_by_key(|product: &Bilinear| known[product.left as usize].max(known[product.right as usize]));
+        }
+        let sources: Vec<Source> = outputs
+            .iter()
+            .zip(&of_outputs)
+            .map(|(id, row)| row.map_or_else(|| Source::Steady(slot(*id)), Source::Row))
+            .collect();
+        let rows = self.of_row.len();
+        let one = slot(self.one);
+        let integrated: Vec<State> = self
+            .integrated
+            .iter()
+            .map(|i| State { row: self.rows[&i.id], rate: Source::Row(self.rows[&i.rate]), factor: slot(i.factor) })
+            .collect();
+        self.program.fuse(&first);
+        let mut states = Vec::new();
+        let mut time = None;
+        let mut implicit: Vec<Implicit> = Vec::new();
+        let mut next = own_outputs;
+        for size in blocks {
+            implicit.push(Implicit { unknowns: Vec::new(), residuals: sources[next..next + size].to_vec() });
+            next += size;
+        }
+        for (input, row) in inputs.iter().zip(&input_rows) {
+            match (*input, *row) {
+                (SeriesInput::State(rate), Some(row)) => states.push(State { row, rate: sources[rate], factor: one }),
+                (SeriesInput::Unknown(block), Some(row)) => implicit[block].unknowns.push(row),
+                (SeriesInput::Time, row) => time = row,
+                _ => {}
+            }
+        }
+        states.extend(integrated);
+        SeriesTape {
+            first: Tape::assemble(&self.program, inputs.len(), &first),
+            rows,
+            inputs: input_rows,
+            time,
+            states,
+            outputs: sources[..own_outputs].to_vec(),
+            blocks: implicit,
+            products,
+            additions,
+            stages: ends.into_iter().map(|end| places[end]).collect(),
+            slopes: self.slope_list,
+        }
+    }
+
+    /// Terms with the same operand become one.
+    fn merged(&mut self, terms: Vec<Part>) -> Vec<Part> {
+        let mut merged: Vec<Part> = Vec::new();
+        for term in terms {
+            match merged.iter_mut().find(|other| (other.row, other.late) == (term.row, term.late)) {
+                Some(total) => total.weight = self.push(Value::Add(total.weight, term.weight)),
+                None => merged.push(term),
+            }
+        }
+        merged
+    }
+}
