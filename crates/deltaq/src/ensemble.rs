@@ -1,18 +1,23 @@
 //! Ensembles: many starts and parameters of one system at once, over the lanes of the processor's vectors and over its cores.
 
+mod motions;
 mod run;
 #[cfg(test)]
 mod tests;
+mod threads;
+
+use std::sync::Mutex;
 
 use integrate::Method;
 use mechanics::{
-    Compiled, ConstantsRule, Equations, FreeConstant, LaneEquations, Outputs, Removal, Scene, State, System,
+    Compiled, ConstantsRule, Equations, FreeConstant, LaneEquations, Removal, Scene, State, System,
     complete_removal_start,
 };
 
 use crate::motion::resolve;
 use crate::run::Prepared;
-use crate::{Choice, Setting, Settings, SolveError, default_constants, derive_at, formulation, setting};
+use crate::{Choice, Metric, Setting, Settings, SolveError, default_constants, derive_at, formulation, setting};
+pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 
 /// Equations of a scene in one formulation, derived and compiled once for members that differ by start, by the values of some parameters, by free
@@ -63,6 +68,9 @@ pub struct Ensemble {
     /// Those parameters of it that vary.
     varied: Vec<usize>,
     settings: Settings,
+    metric: Metric,
+    /// The equations once more, in whose words a member says why it stopped: for all threads.
+    words: Mutex<Equations>,
 }
 
 /// What a member starts from.
@@ -129,7 +137,10 @@ impl Ensemble {
         point.extend(prepared.start(&constants));
         point.extend(&constants);
         let lanes = LaneEquations::new(&prepared.equations, &prepared.form, &point)?;
-        Ok(Ensemble { prepared, lanes, choice: choice.clone(), system, varied, settings })
+        let symbols: Vec<_> = varied.iter().map(|&place| system.parameters[place].symbol).collect();
+        let metric = Metric::varying(&system, &symbols)?;
+        let words = Mutex::new(prepared.equations.clone());
+        Ok(Ensemble { prepared, lanes, choice: choice.clone(), system, varied, settings, metric, words })
     }
 
     /// Why no member can be integrated in company, if that is so.
@@ -208,16 +219,6 @@ impl Ensemble {
 
     fn removal_start(&self, removal: &Removal, state: &State) -> Result<Vec<(symbolic::Symbol, f64)>, SolveError> {
         Ok(complete_removal_start(&self.system, removal, state)?.values().into_iter().collect())
-    }
-
-    /// Coordinates, velocities, multipliers and invariants of `member` where its states are `y`.
-    ///
-    /// # Errors
-    /// [`SolveError::Reading`].
-    pub fn read(&mut self, member: &EnsembleMember, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
-        let compiled = &mut self.prepared.compiled;
-        member.set(compiled);
-        compiled.outputs(t, y).map_err(|failure| SolveError::Reading { t, failure })
     }
 }
 

@@ -4,7 +4,7 @@ use mechanics::Scene;
 use symbolic::LANES;
 
 use super::{Ensemble, EnsembleMember, EnsembleOptions};
-use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, solve_choice};
+use crate::{Choice, Ending, MemberMotion, MemberRun, Settings, SolveError, choices, solve_choice};
 use integrate::Method;
 
 const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
@@ -91,14 +91,16 @@ fn every_member_is_its_single_run() {
         let mut ensemble = Ensemble::new(&scenes[0], &of(&scenes[0]), &["alpha", "k"], &settings()).unwrap();
         assert_eq!(ensemble.refusal(), None, "{formulation}");
         let members: Vec<EnsembleMember> = scenes.iter().map(|scene| ensemble.member(scene).unwrap()).collect();
-        let runs = run(&ensemble, &members, &times, 1);
-        for ((scene, member), run) in scenes.iter().zip(&members).zip(&runs) {
+        let motions = ensemble.motions(&members, &times, &EnsembleOptions::default());
+        for (scene, motion) in scenes.iter().zip(motions) {
+            let MemberMotion { run, outputs, estimate } = motion.unwrap();
+            assert!(estimate.is_some_and(|e| e.relative < 1e-8), "{formulation}: {estimate:?}");
             let mut single = solve_choice(scene, &of(scene), &settings()).unwrap();
             assert_eq!((&run.ending, &run.alone), (&Ending::Completed, &None), "{formulation}");
             let reached: Vec<f64> = times.iter().copied().filter(|&t| t <= scene.duration).collect();
             assert_eq!((run.states.len(), run.differences.len()), (reached.len(), reached.len()));
-            for (&t, (states, difference)) in reached.iter().zip(run.states.iter().zip(&run.differences)) {
-                let (here, there) = (ensemble.read(member, t, states).unwrap(), single.at(t).unwrap());
+            for (&t, (here, difference)) in reached.iter().zip(outputs.iter().zip(&run.differences)) {
+                let there = single.at(t).unwrap();
                 let size = 1.0 + there.coordinates.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
                 for (a, b) in here.coordinates.iter().zip(&there.coordinates) {
                     assert!((a - b).abs() < 1e-9 * size, "{formulation} at {t}: {a} and {b}");
