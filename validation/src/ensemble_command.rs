@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Settings, default_constants, formulation, setting,
+    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Settings, constants_of, formulation, setting,
 };
 use integrate::{Method, Projection};
-use mechanics::{ConstantsRule, Scene, SceneErrorKind, State};
+use mechanics::{Scene, SceneErrorKind};
 
 use crate::catalogue::{self, NotFound};
 use crate::cli::EnsembleArguments;
@@ -23,14 +23,6 @@ use output::{Answers, Outcome, Seconds};
 
 /// Members integrated before they are written down.
 const CHUNK: usize = 4096;
-
-/// What a member starts from.
-struct MemberStart {
-    state: State,
-    end: f64,
-    parameters: Vec<f64>,
-    constants: ConstantsRule,
-}
 
 /// Runs the command.
 ///
@@ -76,8 +68,7 @@ pub fn run(arguments: &EnsembleArguments) -> Result<Answer> {
         let ready: Vec<Result<EnsembleMember, String>> = chunk
             .iter()
             .map(|start| {
-                let MemberStart { state, end, parameters, constants } = start.as_ref().map_err(String::clone)?;
-                let start = EnsembleStart { state, end: *end, parameters, constants };
+                let start = start.as_ref().map_err(String::clone)?;
                 ensemble.member_at(start).map_err(|error| error.to_string())
             })
             .collect();
@@ -129,18 +120,12 @@ fn starts(
     members: &Members,
     parameters: &[&str],
     choice: &Choice,
-) -> Result<Vec<Result<MemberStart, String>>> {
-    let entry = formulation(choice.formulation).filter(|entry| entry.starts_multipliers);
+) -> Result<Vec<Result<EnsembleStart, String>>> {
     let given = arguments.motion.mu0.is_some();
     let start = |row: &Vec<f64>| match catalogue::find(&arguments.scene, &overrides(arguments, members, row)) {
         Ok(scene) => {
-            let value = |name: &&str| members.names.iter().position(|known| known == name).map(|i| row[i]);
-            let constants = match entry {
-                Some(entry) if !given => default_constants(entry, &scene),
-                _ => choice.constants.clone(),
-            };
-            let parameters = parameters.iter().filter_map(value).collect();
-            Ok(Ok(MemberStart { end: setting(&scene).end, state: scene.start, parameters, constants }))
+            let constants = if given { choice.constants.clone() } else { constants_of(choice, &scene) };
+            Ok(Ok(EnsembleStart::of(&scene, parameters, constants)))
         }
         Err(NotFound::Fault(fault)) => match &*fault.kind {
             SceneErrorKind::UnknownName { name, .. } if fault.line == 0 => {

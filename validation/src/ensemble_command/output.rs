@@ -1,6 +1,6 @@
 //! What became of the members, for machines.
 
-use deltaq::{Choice, Ending, MemberMotion};
+use deltaq::{Choice, MemberMotion};
 use mechanics::{Equations, Outputs, Scene};
 use serde_json::{Map, Value, json};
 
@@ -29,12 +29,9 @@ impl Outcome {
         match motion {
             Err(cause) => Outcome { status: "refused", cause: Some(cause), motion: None },
             Ok(motion) => {
-                let doubt = motion.estimate.and_then(|estimate| estimate.complaint());
-                let (status, cause) = match (&motion.run.ending, doubt) {
-                    (Ending::Stopped { t, cause }, _) => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
-                    (Ending::Completed, Some(words)) => ("untrusted", Some(words + "; ask for a smaller --tolerance")),
-                    (Ending::Completed, None) => ("completed", None),
-                };
+                let (status, cause) = motion.status();
+                let advice = if status == "untrusted" { "; ask for a smaller --tolerance" } else { "" };
+                let cause = cause.map(|words| words + advice);
                 Outcome { status, cause, motion: Some(motion) }
             }
         }

@@ -3,10 +3,10 @@
 use mechanics::{Compiled, Outputs};
 
 use super::run::Outcome;
-use super::threads::over_threads;
+use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::gap::subtract;
-use crate::{ErrorEstimate, Metric, SolveError};
+use crate::{Ending, ErrorEstimate, Metric, SolveError};
 
 /// What became of a member, read off.
 #[derive(Clone, Debug)]
@@ -18,6 +18,18 @@ pub struct MemberMotion {
     pub estimate: Option<ErrorEstimate>,
     /// The run behind it.
     pub run: MemberRun,
+}
+
+impl MemberMotion {
+    /// `completed`, `untrusted` (its estimate is too large: [`ErrorEstimate::complaint`]) or `stopped`, and why it is not completed.
+    pub fn status(&self) -> (&'static str, Option<String>) {
+        let doubt = self.estimate.and_then(|estimate| estimate.complaint());
+        match (&self.run.ending, doubt) {
+            (Ending::Stopped { t, cause }, _) => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
+            (Ending::Completed, Some(words)) => ("untrusted", Some(words)),
+            (Ending::Completed, None) => ("completed", None),
+        }
+    }
 }
 
 impl Ensemble {
@@ -32,7 +44,7 @@ impl Ensemble {
     ) -> Vec<Result<MemberMotion, SolveError>> {
         let runs = self.run(members, times, options);
         let (compiled, metric) = (&self.prepared.compiled, &self.metric);
-        let read = over_threads(options.threads, members.len(), 1, |take| {
+        let read = shared(options.threads, members.len(), 1, |take| {
             let mut reader = Reader { compiled: compiled.clone(), metric: metric.clone(), times };
             let mut done = Vec::new();
             while let Some(index) = take() {

@@ -5,11 +5,11 @@ use std::sync::{Mutex, PoisonError};
 use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Work};
 use mechanics::{Compiled, Equations, LaneEquations};
 
-use super::threads::{Take, over_threads};
+use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
 use crate::motion::{ending, joint_ending};
 use crate::run::{Origin, integrate_once, move_last_digits, sizes};
-use crate::{Ending, SolveError, TIGHTER};
+use crate::{Ending, Settings, SolveError, TIGHTER};
 
 /// How an ensemble is run.
 #[derive(Clone, Copy, Debug)]
@@ -73,12 +73,7 @@ impl Ensemble {
         origin: Origin,
         threads: usize,
     ) -> Vec<Outcome> {
-        let settings = &self.settings;
-        let mut options = Options::with_tolerance(tolerance);
-        options.method = settings.method;
-        options.projection = settings.projection;
-        options.max_steps = settings.max_steps;
-        options.interrupt = settings.interrupt.clone();
+        let options = options(&self.settings, tolerance);
         let task = Task {
             members,
             times,
@@ -90,13 +85,23 @@ impl Ensemble {
             left: Mutex::default(),
         };
         let group = if task.lanes.is_ok() { LANES } else { 1 };
-        let results = over_threads(threads, members.len(), group, |take| task.work(take));
+        let results = shared(threads, members.len(), group, |take| task.work(take));
         let interrupted = |member: &EnsembleMember| {
             let ending = Ending::Stopped { t: member.t, cause: integrate::StopCause::Interrupted.to_string() };
             Ok(MemberRun { ending, ..MemberRun::empty() })
         };
         results.into_iter().zip(members).map(|(outcome, m)| outcome.unwrap_or_else(|| interrupted(m))).collect()
     }
+}
+
+/// Of a run at `tolerance`.
+pub(super) fn options(settings: &Settings, tolerance: f64) -> Options {
+    let mut options = Options::with_tolerance(tolerance);
+    options.method = settings.method;
+    options.projection = settings.projection;
+    options.max_steps = settings.max_steps;
+    options.interrupt = settings.interrupt.clone();
+    options
 }
 
 /// The tighter run with what the looser one says of it.

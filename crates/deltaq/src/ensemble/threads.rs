@@ -7,7 +7,7 @@ pub(super) type Take<'a> = &'a dyn Fn() -> Option<usize>;
 
 /// `work` on this thread and, where there are more items than a `group`, on others beside it, `threads` in all (0: as many as there are processors). Each takes
 /// items `0..count` as it gets to them; what came of them is in their order, `None` of those that came to nothing.
-pub(super) fn over_threads<T: Send>(
+pub(super) fn shared<T: Send>(
     threads: usize,
     count: usize,
     group: usize,
@@ -30,4 +30,14 @@ pub(super) fn over_threads<T: Send>(
         }
     });
     results
+}
+
+/// `work` of each of `0..count`, over this many threads (0: as many as there are processors), in their order.
+///
+/// ```
+/// assert_eq!(deltaq::over_threads(2, 5, |i| i * i), [0, 1, 4, 9, 16]);
+/// ```
+pub fn over_threads<T: Send>(threads: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let all = shared(threads, count, 1, |take| std::iter::from_fn(take).map(|index| (index, work(index))).collect());
+    all.into_iter().flatten().collect()
 }
