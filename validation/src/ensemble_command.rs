@@ -44,26 +44,23 @@ pub fn run(arguments: &EnsembleArguments) -> Result<Answer> {
     let parameters: Vec<&str> = members.names.iter().map(String::as_str).filter(|n| is_parameter(&base, n)).collect();
     let starts = starts(arguments, &members, &parameters, &choice)?;
     let start = clock.elapsed().as_secs_f64();
-    let clock = Instant::now();
-    let first = starts.iter().zip(&members.rows).find_map(|(start, row)| start.is_ok().then_some(row));
-    let Some(first) = first else {
+    if starts.iter().all(Result::is_err) {
         let cause = starts.iter().find_map(|start| start.as_ref().err()).map_or("", String::as_str);
         bail!("none of {} members can be started; the first: {cause}", starts.len());
-    };
-    // the form of the equations is chosen at the start of a member
-    let scene = catalogue::find(&arguments.scene, &overrides(arguments, &members, first))?;
+    }
+    let clock = Instant::now();
     let settings = Settings {
         tolerance: arguments.tolerance,
         method: Method::Taylor,
         projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
         ..Settings::default()
     };
-    let mut ensemble = Ensemble::new(&scene, &choice, &parameters, &settings)?;
+    let mut ensemble = Ensemble::new(&base, &choice, &parameters, &settings)?;
     let derive = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
     let options = EnsembleOptions { threads: arguments.threads.map_or(0, usize::from), estimate: true };
-    let mut answers = Answers::new(arguments.format, &scene, &choice, ensemble.equations(), &members, &times);
+    let mut answers = Answers::new(arguments.format, &base, &choice, ensemble.equations(), &members, &times);
     for chunk in starts.chunks(CHUNK) {
         let ready: Vec<Result<EnsembleMember, String>> = chunk
             .iter()
