@@ -7,9 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use deltaq::{
-    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Settings, constants_of, formulation, setting,
-};
+use deltaq::{Choice, Ensemble, EnsembleOptions, EnsembleStart, Settings, constants_of, formulation, setting};
 use integrate::{Method, Projection};
 use mechanics::{Scene, SceneErrorKind};
 
@@ -55,27 +53,14 @@ pub fn run(arguments: &EnsembleArguments) -> Result<Answer> {
         projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
         ..Settings::default()
     };
-    let mut ensemble = Ensemble::new(&base, &choice, &parameters, &settings)?;
+    let ensemble = Ensemble::new(&base, &choice, &parameters, &settings)?;
     let derive = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
     let options = EnsembleOptions { threads: arguments.threads.map_or(0, usize::from), estimate: true };
     let mut answers = Answers::new(arguments.format, &base, &choice, ensemble.equations(), &members, &times);
     for chunk in starts.chunks(CHUNK) {
-        let ready: Vec<Result<EnsembleMember, String>> = chunk
-            .iter()
-            .map(|start| {
-                let start = start.as_ref().map_err(String::clone)?;
-                ensemble.member_at(start).map_err(|error| error.to_string())
-            })
-            .collect();
-        let run: Vec<EnsembleMember> = ready.iter().flatten().cloned().collect();
-        let mut motions = ensemble.motions(&run, &times, &options).into_iter();
-        for member in ready {
-            let motion = member.and_then(|_| {
-                let motion = motions.next().context("a member without an answer").map_err(|error| error.to_string());
-                motion.and_then(|motion| motion.map_err(|error| error.to_string()))
-            });
+        for motion in ensemble.answers(chunk, &times, &options) {
             answers.add(Outcome::of(motion));
         }
     }

@@ -6,7 +6,8 @@ mod run;
 mod tests;
 mod threads;
 
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use integrate::{Method, Start};
 use mechanics::{
@@ -60,6 +61,7 @@ pub use threads::over_threads;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[derive(Clone)]
 pub struct Ensemble {
     prepared: Prepared,
     lanes: Result<LaneEquations, String>,
@@ -71,7 +73,7 @@ pub struct Ensemble {
     settings: Settings,
     metric: Metric,
     /// The equations once more, in whose words a member says why it stopped: for all threads.
-    words: Mutex<Equations>,
+    words: Arc<Mutex<Equations>>,
 }
 
 /// What a member starts from.
@@ -161,7 +163,7 @@ impl Ensemble {
         let lanes = LaneEquations::new(&prepared.equations, &prepared.form, &point)?;
         let symbols: Vec<_> = varied.iter().map(|&place| system.parameters[place].symbol).collect();
         let metric = Metric::varying(&system, &symbols)?;
-        let words = Mutex::new(prepared.equations.clone());
+        let words = Arc::new(Mutex::new(prepared.equations.clone()));
         Ok(Ensemble { prepared, lanes, choice: choice.clone(), system, varied, settings, metric, words })
     }
 
@@ -234,6 +236,20 @@ impl Ensemble {
         constants.extend(parameters);
         let y = prepared.start(&constants);
         Ok(EnsembleMember { t: state.t, end, y, constants, guess: prepared.guess.clone() })
+    }
+
+    /// [`Ensemble::member_at`] of all of them, over threads as [`EnsembleOptions::threads`] says: constants that are natural at a horizon take longer to find than a
+    /// motion to integrate.
+    pub fn members(&self, starts: &[EnsembleStart], threads: usize) -> Vec<Result<EnsembleMember, SolveError>> {
+        let threads = threads::number(threads).clamp(1, starts.len().max(1));
+        let copies: Vec<Mutex<Ensemble>> = (0..threads).map(|_| Mutex::new(self.clone())).collect();
+        let next = AtomicUsize::new(0);
+        let members = threads::shared(threads, starts.len(), 1, |take| {
+            let copy = &copies[next.fetch_add(1, Ordering::Relaxed) % threads];
+            let mut copy = copy.lock().unwrap_or_else(PoisonError::into_inner);
+            std::iter::from_fn(take).map(|index| (index, copy.member_at(&starts[index]))).collect()
+        });
+        members.into_iter().flatten().collect()
     }
 
     fn removal_start(&self, removal: &Removal, state: &State) -> Result<Vec<(symbolic::Symbol, f64)>, SolveError> {

@@ -129,6 +129,7 @@ impl Run {
 }
 
 /// Equations compiled and started: what every run of the same motion shares.
+#[derive(Clone)]
 pub(crate) struct Prepared {
     pub(crate) equations: Equations,
     pub(crate) compiled: Compiled,

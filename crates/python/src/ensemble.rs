@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use deltaq::{
-    Choice, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, Settings, SolveError, constants_of,
-    over_threads, setting,
+    Choice, EnsembleOptions, EnsembleStart, MemberMotion, Settings, SolveError, constants_of, over_threads, setting,
 };
 use integrate::Interrupt;
 use mechanics::{Outputs, Scene, SceneError, SceneErrorKind};
@@ -124,19 +123,8 @@ impl Task<'_> {
             }
         });
         let starts = starts.into_iter().collect::<Result<Vec<_>, Refused>>()?;
-        let mut ensemble = deltaq::Ensemble::new(&scene, &choice, &parameters, &settings).map_err(Refused::Solve)?;
-        let members: Vec<Result<EnsembleMember, String>> = starts
-            .iter()
-            .map(|start| ensemble.member_at(start.as_ref().map_err(String::clone)?).map_err(|error| error.to_string()))
-            .collect();
-        let run: Vec<EnsembleMember> = members.iter().flatten().cloned().collect();
-        let options = EnsembleOptions { threads, estimate: true };
-        let mut motions = ensemble.motions(&run, &times, &options).into_iter();
-        let motions = members.into_iter().map(|member| {
-            let motion = member.and_then(|_| motions.next().ok_or_else(String::new))?;
-            motion.map_err(|error| error.to_string())
-        });
-        let motions = motions.collect();
+        let ensemble = deltaq::Ensemble::new(&scene, &choice, &parameters, &settings).map_err(Refused::Solve)?;
+        let motions = ensemble.answers(&starts, &times, &EnsembleOptions { threads, estimate: true });
         let equations = ensemble.equations();
         let named = |list: &[mechanics::Named]| list.iter().map(|n| n.name.clone()).collect();
         Ok(Integrated {

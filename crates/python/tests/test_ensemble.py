@@ -40,7 +40,8 @@ def test_free_constants(system):
     varied = system.ensemble("vakonomic", [0, 3], vary={"mu1": [-0.2, 0.3]})
     np.testing.assert_array_equal(varied.multipliers["mu_1"][:, 0], [-0.2, 0.3])
     given = system.ensemble("vakonomic", [0, 3], vary={"k": [0.7, 0.7]}, mu0=[0.3])
-    np.testing.assert_array_equal(given.coordinates[1], varied.coordinates[1])
+    # what varies is not put into the expressions: other round-off
+    np.testing.assert_allclose(given.coordinates[1], varied.coordinates[1], atol=1e-12)
     natural = system.ensemble("removed-constraint", [10], vary={"phi": [0.1, 0.3]})
     assert natural.removal == "arc-length"
     np.testing.assert_allclose(natural.multipliers["P_x"], 0, atol=1e-8)

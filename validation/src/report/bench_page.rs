@@ -106,7 +106,7 @@ fn ensemble_section(measured: &[Throughput]) -> String {
     let mut text = format!(
         "\n## Many motions at once\n\nSledges with random starts, {} of each formulation, by `taylor` at {:.0e} over the time of the scene: one by one, eight at a time in the lanes of \
          the processor's vectors, and in lanes over {} cores. Compiled once, states at the end only. *Lanes* is the throughput in lanes over that one by one, *cores* that over all cores \
-         over that on one. *Processor time* is what all cores spent in lanes on one core over what they spent together: 1 where dividing the work costs nothing, whatever else runs on \
+         over that on one. *Processor time* is that spent in lanes on one core over that spent together on all: 1 where dividing the work costs nothing, whatever else runs on \
          the machine. *Difference* is the largest of a state at the end, one by one and in lanes; over the cores there is none, to the last bit{}. So few members are for a look: \
          `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n\n\
          | formulation | members | steps of one | one by one (µs each) | lanes (µs each) | all cores (µs each) | lanes | cores | processor time | difference | alone |\n\

@@ -4,7 +4,7 @@ use mechanics::{Compiled, Outputs};
 
 use super::run::Outcome;
 use super::threads::shared;
-use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
+use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
 use crate::gap::subtract;
 use crate::{Ending, ErrorEstimate, Metric, SolveError};
 
@@ -61,6 +61,33 @@ impl Ensemble {
         };
         runs.into_iter().zip(read).map(joined).collect()
     }
+}
+
+impl Ensemble {
+    /// [`Ensemble::members`] and [`Ensemble::motions`] of starts of which some may have been refused already, with a cause; an `Err` says why a member was.
+    pub fn answers(
+        &self,
+        starts: &[Result<EnsembleStart, String>],
+        times: &[f64],
+        options: &EnsembleOptions,
+    ) -> Vec<Result<MemberMotion, String>> {
+        let members = of_the_rest(starts, |starts| self.members(starts, options.threads));
+        of_the_rest(&members, |members| self.motions(members, times, options))
+    }
+}
+
+/// What `work` makes of those that are not refused, which remain so.
+fn of_the_rest<A: Clone, B>(
+    given: &[Result<A, String>],
+    work: impl FnOnce(&[A]) -> Vec<Result<B, SolveError>>,
+) -> Vec<Result<B, String>> {
+    let rest: Vec<A> = given.iter().flatten().cloned().collect();
+    let mut made = work(&rest).into_iter();
+    let answer = |given: &Result<A, String>| match given {
+        Err(cause) => Some(Err(cause.clone())),
+        Ok(_) => made.next().map(|made| made.map_err(|error| error.to_string())),
+    };
+    given.iter().filter_map(answer).collect()
 }
 
 struct Reader<'a> {

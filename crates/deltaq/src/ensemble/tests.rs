@@ -206,6 +206,27 @@ fn members_that_fail_at_the_start_do_not_disturb_the_others() {
 }
 
 #[test]
+fn starts_and_natural_constants_do_not_depend_on_threads_and_order() {
+    let scenes = sledges(LANES + 1);
+    let base = scene(SLEDGE, &[]);
+    let removed = choice(&base, "removed-constraint");
+    let mut ensemble = Ensemble::new(&base, &removed, &[], &settings()).unwrap();
+    let starts: Vec<EnsembleStart> =
+        scenes.iter().map(|scene| EnsembleStart::of(scene, &[], removed.constants.clone())).collect();
+    let members: Vec<EnsembleMember> = ensemble.members(&starts, 3).into_iter().map(Result::unwrap).collect();
+    for (start, member) in starts.iter().zip(&members).rev() {
+        assert_eq!(ensemble.member_at(start).unwrap(), *member);
+    }
+    // P_x = g sin α (T − t), of the scene's own slope: parameters are those of the ensemble
+    let natural = members.iter().map(|member| member.constants[0] - 9.81 * 0.4_f64.sin() * 10.0);
+    assert!(natural.fold(0.0, |a: f64, x| a.max(x.abs())) < 1e-8);
+    let refused =
+        ensemble.answers(&[Ok(starts[0].clone()), Err("no start".into())], &[0.5], &EnsembleOptions::default());
+    assert!(refused[0].as_ref().is_ok_and(|motion| motion.status() == ("completed", None)));
+    assert_eq!(refused[1].as_ref().unwrap_err(), "no start");
+}
+
+#[test]
 fn members_with_very_different_steps_do_not_wait_for_one_another_in_their_results() {
     let rates = [0.01, 300.0, 1.0, 30.0, 0.1, 100.0, 3.0, 10.0, 0.03, 200.0, 0.3];
     let scenes: Vec<Scene> = rates.iter().map(|&w| scene(SLEDGE, &[("phi'", w), ("duration", 2.0)])).collect();

@@ -5,6 +5,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Gives the next item that no thread has taken yet.
 pub(super) type Take<'a> = &'a dyn Fn() -> Option<usize>;
 
+/// That many threads; 0: as many as there are processors.
+pub(super) fn number(threads: usize) -> usize {
+    match threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        given => given,
+    }
+}
+
 /// `work` on this thread and, where there are more items than a `group`, on others beside it, `threads` in all (0: as many as there are processors). Each takes
 /// items `0..count` as it gets to them; what came of them is in their order, `None` of those that came to nothing.
 pub(super) fn shared<T: Send>(
@@ -13,10 +21,7 @@ pub(super) fn shared<T: Send>(
     group: usize,
     work: impl Fn(Take) -> Vec<(usize, T)> + Sync,
 ) -> Vec<Option<T>> {
-    let threads = match threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        given => given,
-    };
+    let threads = number(threads);
     let next = AtomicUsize::new(0);
     let take = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&index| index < count);
     let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();
