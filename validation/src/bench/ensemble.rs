@@ -231,10 +231,11 @@ fn one_by_one(
 /// A table of them.
 pub fn ensemble_table(measured: &[Throughput]) -> String {
     let mut text = format!(
-        "{:<36} {:>9} {:>8} {:>11} {:>11} {:>11} {:>7} {:>7} {:>7} {:>9} {:>15} {:>6}\n",
+        "{:<36} {:>9} {:>8} {:>9} {:>11} {:>11} {:>11} {:>7} {:>7} {:>7} {:>9} {:>15} {:>6}\n",
         "formulation",
         "tolerance",
         "members",
+        "start",
         "one by one",
         "lanes",
         "all cores",
@@ -247,9 +248,10 @@ pub fn ensemble_table(measured: &[Throughput]) -> String {
     );
     for m in measured {
         let per_member = m.microseconds().map(|s| format!("{s:.2} µs"));
+        let start = format!("{:.2} µs", 1e6 * m.prepare / m.members as f64);
         let steps = m.mean_steps().map(|steps| format!("{steps:.1}")).join(", ");
         text += &format!(
-            "{:<36} {:>9.0e} {:>8} {:>11} {:>11} {:>11} {:>7.2} {:>7.2} {:>7} {:>9.1e} {steps:>15} {:>6}\n",
+            "{:<36} {:>9.0e} {:>8} {start:>9} {:>11} {:>11} {:>11} {:>7.2} {:>7.2} {:>7} {:>9.1e} {steps:>15} {:>6}\n",
             m.label,
             m.tolerance,
             m.members,
@@ -266,7 +268,7 @@ pub fn ensemble_table(measured: &[Throughput]) -> String {
             text += &format!("  alone, the first of them: {why}\n");
         }
     }
-    text += "ratio: throughput in lanes over one by one; cores: on all cores over one; proc: processor time on one core over that on all, 1 where dividing the work \
+    text += "start: to find what a member starts from, in no other column; ratio: throughput in lanes over one by one; cores: on all cores over one; proc: processor time on one core over that on all, 1 where dividing the work \
              costs nothing; differ: largest difference at the end; steps: of a member, one by one and in lanes\n";
     text
 }
