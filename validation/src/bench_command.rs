@@ -31,7 +31,7 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     let names: Vec<&str> = if given.is_empty() { all() } else { given };
     let benches = bench_all(&names, &arguments.overrides, &effort, arguments.quiet)?;
     if let Some(folder) = &arguments.out {
-        write_all(folder, &bench_files(&benches)?)?;
+        write_all(folder, &bench_files(&benches, &[])?)?;
     }
     Ok(match arguments.format {
         TextOrJson::Text => bench_table(&benches),

@@ -1,10 +1,13 @@
 //! The command line.
 
+mod ensemble;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::random::Kind;
+pub use ensemble::{EnsembleArguments, MOST_MEMBERS, MotionArguments, Range};
 
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
 #[derive(Parser, Debug)]
@@ -66,6 +69,8 @@ pub enum Command {
     Show(ShowArguments),
     /// Integrate a scene in one formulation.
     Solve(SolveArguments),
+    /// Integrate many starts or parameters of a scene at once, by Taylor series, in one formulation.
+    Ensemble(EnsembleArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
     /// Put the claims T1 to T14 to the test on random systems.
@@ -98,19 +103,9 @@ pub struct ShowArguments {
 pub struct SolveArguments {
     /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
     pub scene: String,
-    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced or removed-constraint.
-    #[arg(long, short)]
-    pub formulation: String,
-    /// Vakonomic multipliers at the start, one a constraint.
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
-    pub mu0: Option<Vec<f64>>,
-    /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
-    #[arg(long, value_name = "NAME")]
-    pub removal: Option<String>,
-    /// Free constants of the removed-constraint equations: `zero`, `horizon=T` or `start=A,B,…` (P(t₀), in the order of the
-    /// memory variables). Those of the removal if left out.
-    #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
-    pub constants: Option<String>,
+    /// Which motion of it.
+    #[command(flatten)]
+    pub motion: MotionArguments,
     /// Time-stepping method.
     #[arg(long, value_enum, default_value_t = MethodName::Dop853)]
     pub method: MethodName,

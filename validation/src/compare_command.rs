@@ -1,21 +1,20 @@
 //! `deltaq compare`: the protocol for scenes of the user's own.
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use deltaq::Settings;
 
 use crate::catalogue;
 use crate::cli::CompareArguments;
 use crate::main_job::scene_files;
 use crate::report::write_all;
+use crate::solve_command::check_tolerance;
 
 /// Runs the command: returns the pages, or writes pages and pictures to a folder and says so.
 ///
 /// # Errors
 /// Bad input, with its place; then nothing is written.
 pub fn run(arguments: &CompareArguments) -> Result<String> {
-    if !(arguments.tolerance > 0.0 && arguments.tolerance < 1.0) {
-        bail!("--tolerance is {}; it must be above 0 and below 1", arguments.tolerance);
-    }
+    check_tolerance(arguments.tolerance)?;
     let settings = Settings { tolerance: arguments.tolerance, ..Settings::default() };
     let mut all = Vec::new();
     for name in &arguments.scenes {

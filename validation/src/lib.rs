@@ -7,6 +7,7 @@ pub mod casadi_job;
 pub mod catalogue;
 pub mod cli;
 pub mod compare_command;
+pub mod ensemble_command;
 pub mod main_job;
 pub mod parallel;
 pub mod picture;

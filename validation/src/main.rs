@@ -1,5 +1,5 @@
 //! The `deltaq` command. Exit code 2 for bad input; `solve` ends with 0 only where its trajectory can be trusted, and with 3 where the
-//! integration had to stop or its error estimate is too large.
+//! integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -9,8 +9,8 @@ use clap::Parser;
 use validation::cli::{Cli, Command};
 use validation::solve_command::Answer;
 use validation::{
-    bench_command, compare_command, main_job, random_command, scaling_command, show_command, solve_command,
-    stability_command,
+    bench_command, compare_command, ensemble_command, main_job, random_command, scaling_command, show_command,
+    solve_command, stability_command,
 };
 
 fn main() -> ExitCode {
@@ -49,6 +49,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Scaling(arguments)) => scaling_command::run(&arguments)?,
         Some(Command::Random(arguments)) => return random_command::run(&arguments),
         Some(Command::Stability(arguments)) => return stability_command::run(&arguments),
+        Some(Command::Ensemble(arguments)) => return ensemble_command::run(&arguments),
         Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
     };
     Ok(Answer { text, complaint: None })

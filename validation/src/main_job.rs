@@ -10,7 +10,7 @@ use deltaq::{Comparison, Settings, compare};
 use mechanics::Scene;
 use serde_json::Value;
 
-use crate::bench::{self, Bench, Effort};
+use crate::bench::{self, Bench, Effort, Throughput};
 use crate::casadi_job::{self, Outcome};
 use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
@@ -49,6 +49,10 @@ pub fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
 /// Random systems of the main job.
 const RANDOM_SYSTEMS: u64 = 1_000;
 
+/// Tolerance of the ensembles of the main job, and repeats of every way to integrate them.
+const ENSEMBLE_TOLERANCE: f64 = 1e-10;
+const ENSEMBLE_REPEATS: usize = 3;
+
 /// What the main job computed.
 struct Results {
     comparisons: Vec<Comparison>,
@@ -59,6 +63,7 @@ struct Results {
     realization: Option<RealizationReport>,
     audit: Option<AuditReport>,
     benches: Vec<Bench>,
+    ensembles: Vec<Throughput>,
     stability: Option<StabilityReport>,
 }
 
@@ -84,14 +89,27 @@ impl Results {
             sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
         let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
         let stability = sections.contains(&Section::Stability).then(|| StabilityReport::new(quiet)).transpose()?;
-        let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
         // last, and one after the other: nothing else is to run beside what is timed
-        let benches = if sections.contains(&Section::ErrorVsTime) {
-            bench_all(names, &[], &Effort::brief(), quiet)?
-        } else {
-            Vec::new()
-        };
-        Ok(Results { comparisons, scene_files, casadi, batch, records, realization, audit, stability, benches })
+        let (mut benches, mut ensembles) = (Vec::new(), Vec::new());
+        if sections.contains(&Section::ErrorVsTime) {
+            benches = bench_all(names, &[], &Effort::brief(), quiet)?;
+            if names.contains(&bench::ENSEMBLE_SCENE) {
+                ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;
+            }
+        }
+        let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
+        Ok(Results {
+            comparisons,
+            scene_files,
+            casadi,
+            batch,
+            records,
+            realization,
+            audit,
+            stability,
+            benches,
+            ensembles,
+        })
     }
 
     fn verdicts(&self) -> Value {
@@ -141,7 +159,7 @@ impl Results {
             files.extend(stability.files()?);
         }
         if !self.benches.is_empty() {
-            files.extend(bench_files(&self.benches)?);
+            files.extend(bench_files(&self.benches, &self.ensembles)?);
         }
         Ok(files)
     }

@@ -11,7 +11,7 @@ use mechanics::{ConstantsRule, Removal, Scene};
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
-use crate::cli::{Format, MethodName, SolveArguments};
+use crate::cli::{Format, MethodName, MotionArguments, SolveArguments};
 
 /// Times at which invariants are sampled.
 const SAMPLES: usize = 200;
@@ -29,11 +29,9 @@ pub struct Answer {
 /// # Errors
 /// Bad input: the scene, the formulation, the removal, the constants, the times.
 pub fn run(arguments: &SolveArguments) -> Result<Answer> {
-    if !(arguments.tolerance > 0.0 && arguments.tolerance < 1.0) {
-        bail!("--tolerance is {}; it must be above 0 and below 1", arguments.tolerance);
-    }
+    check_tolerance(arguments.tolerance)?;
     let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
-    let choice = choice(&scene, arguments)?;
+    let choice = choice(&scene, &arguments.motion)?;
     let defaults = Settings::default();
     let settings = Settings {
         tolerance: arguments.tolerance,
@@ -41,7 +39,10 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
         projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
         ..defaults
     };
-    let wanted = times(arguments.times.as_deref(), &scene)?;
+    let wanted = match &arguments.times {
+        Some(text) => times(text, &scene)?,
+        None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
+    };
     let mut motion = match steps(arguments)? {
         None => solve_choice(&scene, &choice, &settings)?,
         Some(steps) => solve_by_steps(&scene, &choice, steps, &settings)?,
@@ -85,7 +86,16 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
     Ok(Some(Steps { step, composition: composition.with_context(|| format!("there is no order {order}"))? }))
 }
 
-fn choice(scene: &Scene, arguments: &SolveArguments) -> Result<Choice> {
+/// Tolerances that make sense.
+pub(crate) fn check_tolerance(tolerance: f64) -> Result<()> {
+    if tolerance > 0.0 && tolerance < 1.0 {
+        return Ok(());
+    }
+    bail!("--tolerance is {tolerance}; it must be above 0 and below 1");
+}
+
+/// The formulation with the removal and the constants that were asked for.
+pub(crate) fn choice(scene: &Scene, arguments: &MotionArguments) -> Result<Choice> {
     let Some(entry) = formulation(&arguments.formulation) else {
         let names: Vec<&str> = FORMULATIONS.iter().chain(FORMS).map(|f| f.name).collect();
         bail!("unknown formulation `{}`; known: {}", arguments.formulation, names.join(", "));
@@ -139,12 +149,13 @@ fn constants_rule(text: &str) -> Result<ConstantsRule> {
     }
 }
 
-fn times(text: Option<&str>, scene: &Scene) -> Result<Vec<f64>> {
+fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| from + (to - from) * i as f64 / (count.max(2) - 1) as f64).collect()
+}
+
+/// The times that `text` says: `a,b,c` or `from:to:count`, all of them within the run.
+pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
     let (start, end) = (scene.start.t, scene.start.t + scene.duration);
-    let range = |from: f64, to: f64, count: usize| -> Vec<f64> {
-        (0..count).map(|i| from + (to - from) * i as f64 / (count.max(2) - 1) as f64).collect()
-    };
-    let Some(text) = text else { return Ok(range(start, end, 101)) };
     let number = |x: &str| -> Result<f64> {
         x.trim().parse().with_context(|| format!("`{x}` in --times {text} is not a number"))
     };
@@ -154,7 +165,7 @@ fn times(text: Option<&str>, scene: &Scene) -> Result<Vec<f64>> {
             if !(1..=1_000_000).contains(&count) {
                 bail!("--times {text} asks for {count} times; 1 to 1000000 are possible");
             }
-            range(number(from)?, number(to)?, count)
+            equidistant(number(from)?, number(to)?, count)
         }
         [list] => list.split(',').map(number).collect::<Result<_>>()?,
         _ => bail!("--times {text} is neither `a,b,c` nor `from:to:count`"),

@@ -1,7 +1,7 @@
 //! `deltaq bench`: what is measured is right, and what fails is listed.
 
 use integrate::Method;
-use validation::bench::{Effort, measure, prepare};
+use validation::bench::{Effort, ensemble_throughput, measure, prepare};
 use validation::report::{bench_files, bench_json};
 
 fn effort(max_steps: usize) -> Effort {
@@ -31,7 +31,29 @@ fn every_formulation_is_measured_by_every_method() {
 #[test]
 fn failures_are_listed_with_their_cause() {
     let bench = measure(prepare("sledge", &[]).unwrap(), &effort(20), |_| ()).unwrap();
-    let files = bench_files(&[bench]).unwrap();
+    let files = bench_files(&[bench], &[]).unwrap();
     let page = &files.iter().find(|f| f.path.ends_with("error-vs-time.md")).unwrap().text;
     assert!(page.contains("more than 20 steps"), "{page}");
+}
+
+#[test]
+fn ensembles_are_measured_and_reported_with_what_they_agree_to() {
+    let measured = ensemble_throughput(37, 1e-9, 1).unwrap();
+    assert_eq!(measured.len(), 3);
+    for m in &measured {
+        assert_eq!((m.members, m.over_cores), (37, 0.0), "{}", m.label);
+        assert!(m.difference < 1e-7 && m.over_single() > 0.0, "{}: {:.1e}", m.label, m.difference);
+        let [single, lanes] = m.mean_steps();
+        assert!(single > 1.0 && (single - lanes).abs() <= 0.05 * single, "{}: {single} and {lanes} steps", m.label);
+        assert!(m.efficiency().is_none_or(|e| e > 0.0 && e.is_finite()), "{}: {:?}", m.label, m.efficiency());
+    }
+    let page = bench_files(&[], &measured).unwrap().pop().unwrap().text;
+    let section = page.split("## Many motions at once").nth(1).expect("a section on ensembles");
+    assert_eq!(
+        section.lines().filter(|line| line.starts_with("| ") && line.contains("| 37 |")).count(),
+        3,
+        "{section}"
+    );
+    assert!(section.contains("`deltaq bench --ensemble 1e-10`"), "{section}");
+    assert!(!bench_files(&[], &[]).unwrap().pop().unwrap().text.contains("Many motions"));
 }

@@ -1,19 +1,26 @@
 //! Ensembles: many starts and parameters of one system at once, over the lanes of the processor's vectors and over its cores.
 
+mod motions;
 mod run;
 #[cfg(test)]
 mod tests;
+mod threads;
 
-use integrate::Method;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use integrate::{Method, Start};
 use mechanics::{
-    Compiled, ConstantsRule, Equations, FreeConstant, LaneEquations, Outputs, Removal, Scene, State, System,
+    Compiled, ConstantsRule, Equations, FreeConstant, LaneEquations, Removal, Scene, State, System,
     complete_removal_start,
 };
 
 use crate::motion::resolve;
 use crate::run::Prepared;
-use crate::{Choice, Setting, Settings, SolveError, default_constants, derive_at, formulation, setting};
+use crate::{Choice, Metric, Settings, SolveError, default_constants, derive_at, formulation, setting};
+pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
+pub use threads::over_threads;
 
 /// Equations of a scene in one formulation, derived and compiled once for members that differ by start, by the values of some parameters, by free
 /// constants and by duration.
@@ -54,6 +61,7 @@ pub use run::{EnsembleOptions, MemberRun};
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[derive(Clone)]
 pub struct Ensemble {
     prepared: Prepared,
     lanes: Result<LaneEquations, String>,
@@ -63,19 +71,40 @@ pub struct Ensemble {
     /// Those parameters of it that vary.
     varied: Vec<usize>,
     settings: Settings,
+    metric: Metric,
+    /// The equations once more, in whose words a member says why it stopped: for all threads.
+    words: Arc<Mutex<Equations>>,
 }
 
 /// What a member starts from.
-#[derive(Clone, Copy, Debug)]
-pub struct EnsembleStart<'a> {
+#[derive(Clone, Debug)]
+pub struct EnsembleStart {
     /// `(t₀, q₀, v₀)`, on the constraint.
-    pub state: &'a State,
+    pub state: State,
     /// Time at which it is to end.
     pub end: f64,
     /// Values of the parameters that vary, in the order in which they were named.
-    pub parameters: &'a [f64],
+    pub parameters: Vec<f64>,
     /// Free constants.
-    pub constants: &'a ConstantsRule,
+    pub constants: ConstantsRule,
+}
+
+impl EnsembleStart {
+    /// The start of `scene` with the values that these parameters have there.
+    pub fn of(scene: &Scene, parameters: &[&str], constants: ConstantsRule) -> Self {
+        let system = &scene.system;
+        let value = |name: &&str| system.parameters.iter().find(|p| system.graph.name(p.symbol) == *name);
+        let parameters = parameters.iter().filter_map(value).map(|p| p.value).collect();
+        EnsembleStart { state: scene.start.clone(), end: setting(scene).end, parameters, constants }
+    }
+}
+
+/// The free constants of `choice` for a motion of `scene`: its multipliers where the formulation starts from them.
+pub fn constants_of(choice: &Choice, scene: &Scene) -> ConstantsRule {
+    match formulation(choice.formulation) {
+        Some(formulation) if formulation.starts_multipliers => default_constants(formulation, scene),
+        _ => choice.constants.clone(),
+    }
 }
 
 /// A member, ready to run.
@@ -126,10 +155,16 @@ impl Ensemble {
         let settings = Settings { method: Method::Taylor, ..settings.clone() };
         let mut prepared = Prepared::around(setting(scene), equations, &constants, &settings)?;
         let mut point = vec![scene.start.t];
-        point.extend(prepared.start(&constants));
+        let y = prepared.start(&constants);
+        point.extend(&y);
+        let options = run::options(&settings, settings.tolerance);
+        integrate::check_start(&Start { t: scene.start.t, y }, setting(scene).end, &options)?;
         point.extend(&constants);
         let lanes = LaneEquations::new(&prepared.equations, &prepared.form, &point)?;
-        Ok(Ensemble { prepared, lanes, choice: choice.clone(), system, varied, settings })
+        let symbols: Vec<_> = varied.iter().map(|&place| system.parameters[place].symbol).collect();
+        let metric = Metric::varying(&system, &symbols)?;
+        let words = Arc::new(Mutex::new(prepared.equations.clone()));
+        Ok(Ensemble { prepared, lanes, choice: choice.clone(), system, varied, settings, metric, words })
     }
 
     /// Why no member can be integrated in company, if that is so.
@@ -152,7 +187,6 @@ impl Ensemble {
     /// # Errors
     /// As [`Ensemble::member_at`]; [`SolveError::Member`] where another parameter than those that vary has changed.
     pub fn member(&mut self, scene: &Scene) -> Result<EnsembleMember, SolveError> {
-        let Setting { end, .. } = setting(scene);
         if scene.system.parameters.len() != self.system.parameters.len() {
             return Err(SolveError::Member { reason: "another scene".into() });
         }
@@ -163,21 +197,19 @@ impl Ensemble {
                 return Err(SolveError::Member { reason });
             }
         }
-        let parameters: Vec<f64> = self.varied.iter().map(|&i| scene.system.parameters[i].value).collect();
-        let constants = match formulation(self.choice.formulation) {
-            Some(formulation) if formulation.starts_multipliers => default_constants(formulation, scene),
-            _ => self.choice.constants.clone(),
-        };
-        let start = EnsembleStart { state: &scene.start, end, parameters: &parameters, constants: &constants };
-        self.member_at(start)
+        let names: Vec<String> =
+            self.varied.iter().map(|&i| self.system.graph.name(self.system.parameters[i].symbol)).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        self.member_at(&EnsembleStart::of(scene, &names, constants_of(&self.choice, scene)))
     }
 
     /// The member that starts there.
     ///
     /// # Errors
     /// [`SolveError`] where there is no start; [`SolveError::Member`] for a wrong number of parameters or one that is not finite.
-    pub fn member_at(&mut self, start: EnsembleStart) -> Result<EnsembleMember, SolveError> {
+    pub fn member_at(&mut self, start: &EnsembleStart) -> Result<EnsembleMember, SolveError> {
         let EnsembleStart { state, end, parameters, constants } = start;
+        let end = *end;
         if parameters.len() != self.varied.len() || !parameters.iter().all(|x| x.is_finite()) {
             let reason = format!("{} finite values are needed for the parameters that vary", self.varied.len());
             return Err(SolveError::Member { reason });
@@ -206,18 +238,22 @@ impl Ensemble {
         Ok(EnsembleMember { t: state.t, end, y, constants, guess: prepared.guess.clone() })
     }
 
-    fn removal_start(&self, removal: &Removal, state: &State) -> Result<Vec<(symbolic::Symbol, f64)>, SolveError> {
-        Ok(complete_removal_start(&self.system, removal, state)?.values().into_iter().collect())
+    /// [`Ensemble::member_at`] of all of them, over threads as [`EnsembleOptions::threads`] says: constants that are natural at a horizon take longer to find than a
+    /// motion to integrate.
+    pub fn members(&self, starts: &[EnsembleStart], threads: usize) -> Vec<Result<EnsembleMember, SolveError>> {
+        let threads = threads::number(threads).clamp(1, starts.len().max(1));
+        let copies: Vec<Mutex<Ensemble>> = (0..threads).map(|_| Mutex::new(self.clone())).collect();
+        let next = AtomicUsize::new(0);
+        let members = threads::shared(threads, starts.len(), 1, |take| {
+            let copy = &copies[next.fetch_add(1, Ordering::Relaxed) % threads];
+            let mut copy = copy.lock().unwrap_or_else(PoisonError::into_inner);
+            std::iter::from_fn(take).map(|index| (index, copy.member_at(&starts[index]))).collect()
+        });
+        members.into_iter().flatten().collect()
     }
 
-    /// Coordinates, velocities, multipliers and invariants of `member` where its states are `y`.
-    ///
-    /// # Errors
-    /// [`SolveError::Reading`].
-    pub fn read(&mut self, member: &EnsembleMember, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
-        let compiled = &mut self.prepared.compiled;
-        member.set(compiled);
-        compiled.outputs(t, y).map_err(|failure| SolveError::Reading { t, failure })
+    fn removal_start(&self, removal: &Removal, state: &State) -> Result<Vec<(symbolic::Symbol, f64)>, SolveError> {
+        Ok(complete_removal_start(&self.system, removal, state)?.values().into_iter().collect())
     }
 }
 

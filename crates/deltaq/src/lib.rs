@@ -32,7 +32,9 @@ pub use comparison::{
     Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, forms,
     removals, setting, solve_choice,
 };
-pub use ensemble::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
+pub use ensemble::{
+    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, constants_of, over_threads,
+};
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
 pub use estimate::{ErrorEstimate, TRUSTED, error_estimate};

@@ -24,13 +24,21 @@ impl Metric {
     /// # Errors
     /// [`CompileError`] where `L` or `f` contain a symbol that is not defined.
     pub fn new(system: &System) -> Result<Self, CompileError> {
+        Metric::varying(system, &[])
+    }
+
+    /// The same, with parameters whose values are set by [`Metric::set_parameters`].
+    pub(crate) fn varying(system: &System, parameters: &[Symbol]) -> Result<Self, CompileError> {
         let system = system.clone(); // the Hessian is built in a graph of its own
         let mut outputs = system.velocity_hessian().entries().to_vec();
         outputs.extend(&system.constraints);
         let mut inputs = vec![system.time];
         inputs.extend(system.positions());
         inputs.extend(system.velocities());
-        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values())?;
+        inputs.extend(parameters);
+        let mut values = system.parameter_values();
+        values.retain(|symbol, _| !parameters.contains(symbol));
+        let tape = system.graph.compile(&inputs, &outputs, &values)?;
         Ok(Metric {
             registers: tape.workspace(),
             dimension: system.dimension(),
@@ -40,11 +48,21 @@ impl Metric {
         })
     }
 
+    /// Values of the parameters that vary.
+    pub(crate) fn set_parameters(&mut self, values: &[f64]) {
+        self.inputs[1 + 2 * self.dimension..].copy_from_slice(values);
+    }
+
+    /// Number of the parameters that vary.
+    pub(crate) fn parameters(&self) -> usize {
+        self.inputs.len() - 1 - 2 * self.dimension
+    }
+
     fn load(&mut self, t: f64, q: &[f64], v: &[f64]) {
         let n = self.dimension;
         self.inputs[0] = t;
         self.inputs[1..=n].copy_from_slice(q);
-        self.inputs[1 + n..].copy_from_slice(v);
+        self.inputs[1 + n..=2 * n].copy_from_slice(v);
         self.tape.evaluate(&self.inputs, &mut self.registers, &mut self.values);
     }
 

@@ -211,13 +211,7 @@ pub fn solve(
     let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, Origin::Start, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
     let mut end = |run: &Solution| ending(&prepared.equations, &mut prepared.compiled, run);
-    let ending = match (end(&kept.solution), end(&looser.solution)) {
-        (Ending::Completed, Ending::Stopped { t, cause }) => Ending::Stopped { t, cause: unconfirmed(&cause) },
-        (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later, setting) => {
-            Ending::Stopped { t, cause: unconfirmed(&cause) }
-        }
-        (ending, _) => ending,
-    };
+    let ending = joint_ending(end(&kept.solution), end(&looser.solution), [setting.start.t, setting.end]);
     let (work, projection, fallbacks) = (kept.solution.work, kept.solution.projection, kept.fallbacks);
     let runs = [kept.trajectory(), looser.trajectory()];
     let seconds = Seconds { derive: 0.0, compile, integrate };
@@ -289,10 +283,18 @@ fn doubt(kept: &[f64], looser: &[f64], end: f64) -> Option<String> {
     })
 }
 
-/// Both runs stop near the same singularity, or for different causes.
-fn much_before(t: f64, later: f64, setting: Setting) -> bool {
+/// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.
+pub(crate) fn joint_ending(kept: Ending, looser: Ending, [start, end]: [f64; 2]) -> Ending {
+    // both stop near the same singularity, or for different causes
     const NEAR: f64 = 1e-3;
-    (later - t) * (setting.end - setting.start.t).signum() > NEAR * (later - setting.start.t).abs()
+    let much_before = |t: f64, later: f64| (later - t) * (end - start).signum() > NEAR * (later - start).abs();
+    match (kept, looser) {
+        (Ending::Completed, Ending::Stopped { t, cause }) => Ending::Stopped { t, cause: unconfirmed(&cause) },
+        (Ending::Stopped { t: later, .. }, Ending::Stopped { t, cause }) if much_before(t, later) => {
+            Ending::Stopped { t, cause: unconfirmed(&cause) }
+        }
+        (ending, _) => ending,
+    }
 }
 
 /// How far before a singularity a motion is read off, as fractions of its length.

@@ -48,8 +48,7 @@ impl Trajectory {
     pub(crate) fn state(&mut self, compiled: &mut Compiled, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         match &mut self.path {
             Path::Dense(dense) => {
-                let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
-                if let Some((_, unknowns)) = nearest {
+                if let Some(unknowns) = nearest(&self.anchors, t) {
                     compiled.set_guess(unknowns);
                 }
                 dense.evaluate(t, state);
@@ -69,6 +68,12 @@ impl Trajectory {
         self.state(compiled, t, state)?;
         compiled.outputs(t, state).map_err(|failure| SolveError::Reading { t, failure })
     }
+}
+
+/// The unknowns that are known nearest to `t`.
+fn nearest(anchors: &[(f64, Vec<f64>)], t: f64) -> Option<&[f64]> {
+    let nearest = anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
+    nearest.map(|(_, unknowns)| &unknowns[..])
 }
 
 /// Where a run starts.
@@ -113,12 +118,18 @@ pub(crate) struct Run {
 }
 
 impl Run {
+    /// The unknowns of the instant near `t`, where its equations have several roots.
+    pub(crate) fn unknowns_near(&self, t: f64) -> Option<&[f64]> {
+        nearest(&self.anchors, t)
+    }
+
     pub(crate) fn trajectory(self) -> Trajectory {
         Trajectory { path: Path::Dense(self.solution.dense), anchors: self.anchors }
     }
 }
 
 /// Equations compiled and started: what every run of the same motion shares.
+#[derive(Clone)]
 pub(crate) struct Prepared {
     pub(crate) equations: Equations,
     pub(crate) compiled: Compiled,

@@ -12,7 +12,7 @@ mod problem;
 use std::array::from_fn;
 
 use crate::events::PARTS;
-use crate::options::{Options, Projection};
+use crate::options::{Interrupt, Options, Projection};
 use crate::status::{ProjectionReport, Work};
 use crate::stepper::shortest_step;
 use crate::taylor_step::{Ends, longest_step, once, order};
@@ -69,7 +69,7 @@ struct Lanes<'a, P> {
 /// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series with the tolerances of `options`; `done` gets each with its states at
 /// those of `times` (in the order in which they are passed) that are not after its end, or why it was left.
 ///
-/// `options` must be those of a valid call of [`crate::integrate`]; its sizes, and what it says of dense output and interrupts, count for nothing.
+/// `options` must be those of a valid call of [`crate::integrate`]; its sizes and what it says of dense output count for nothing.
 pub fn integrate_lanes<P: LaneProblem>(
     problem: &mut P,
     next: &mut dyn FnMut() -> Option<(usize, LaneStart)>,
@@ -87,6 +87,12 @@ pub fn integrate_lanes<P: LaneProblem>(
             }
         }
         if lanes.riders.iter().all(Option::is_none) {
+            return;
+        }
+        if options.interrupt.as_ref().is_some_and(Interrupt::is_raised) {
+            for lane in 0..LANES {
+                lanes.leave(lane, Left::Interrupted, done);
+            }
             return;
         }
         lanes.expand();

@@ -1,4 +1,4 @@
-//! The Python module `deltaq`: scenes, equations as functions of arrays, motions, comparisons.
+//! The Python module `deltaq`: scenes, equations as functions of arrays, motions, ensembles, comparisons.
 //!
 //! Nothing is derived, integrated or decided here: arguments are read, the facade is called, arrays are handed back. What integrates runs on
 //! a thread of its own without Python's lock ([`background`]).
@@ -7,9 +7,11 @@ mod arguments;
 mod arrays;
 mod background;
 mod comparison;
+mod ensemble;
 mod equations;
 mod errors;
 mod motion;
+mod reading;
 mod scene_text;
 mod system;
 
@@ -18,6 +20,8 @@ mod _native {
     #[pymodule_export]
     use crate::comparison::{Comparison, Fit, Growth, LeadingTerm, Pair, Run};
     #[pymodule_export]
+    use crate::ensemble::Ensemble;
+    #[pymodule_export]
     use crate::equations::Equations;
     #[pymodule_export]
     use crate::errors::{
@@ -25,9 +29,11 @@ mod _native {
         SceneError, SolveError, StartError,
     };
     #[pymodule_export]
-    use crate::motion::{Motion, Outputs};
+    use crate::motion::{Motion, Outputs, State};
     #[pymodule_export]
-    use crate::system::{State, System, load, parse};
+    use crate::reading::{load, parse};
+    #[pymodule_export]
+    use crate::system::System;
 
     use integrate::Method;
     use pyo3::prelude::*;

@@ -1,7 +1,6 @@
 //! Systems, and what can be asked of them.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{derive_at, ready, removals, setting, solve_choice};
@@ -13,28 +12,11 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, finite, times};
 use crate::comparison::{Comparison, check_tolerance, compare};
+use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
-use crate::motion::{Motion, Sampled};
+use crate::motion::{Motion, Sampled, State};
 use crate::scene_text::{Arguments, write};
-use crate::{arguments, background, errors};
-
-/// A point of a motion: time, coordinates, velocities.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct State {
-    /// Time.
-    t: f64,
-    /// Coordinates, shape (n,), in the units of the system.
-    q: Py<PyArrayDyn<f64>>,
-    /// Velocities, shape (n,), in units of the coordinates per unit of time.
-    v: Py<PyArrayDyn<f64>>,
-}
-
-#[pymethods]
-impl State {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)
-    }
-}
+use crate::{arguments, background, errors, reading};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
@@ -52,39 +34,25 @@ impl State {
 ///
 /// SceneError names the line of the scene file that the arguments amount to.
 #[pyclass(frozen, module = "deltaq")]
-pub(crate) struct System(Mutex<Scene>);
-
-/// A system from a scene file of at most 1 MiB.
-///
-/// overrides: name to number, in the place of a parameter, a start value ("x", "x'"), "time", "duration", or a multiplier ("mu1", ...).
-#[pyfunction]
-#[pyo3(signature = (path, overrides=None))]
-pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<String, f64>>) -> PyResult<System> {
-    let overrides: Vec<(String, f64)> = overrides.into_iter().flatten().collect();
-    System::from(py, py.detach(|| Scene::load_with(&path, &overrides)))
+pub(crate) struct System {
+    scene: Mutex<Scene>,
+    /// The text that the scene was read from, and what was put in the place of some of its numbers.
+    text: String,
+    overrides: Overrides,
 }
 
-/// A system from the text of a scene file. `name` stands for the file in errors; overrides as in `load`.
-#[pyfunction]
-#[pyo3(signature = (text, overrides=None, *, name="scene"))]
-pub(crate) fn parse(
-    py: Python<'_>,
-    text: &str,
-    overrides: Option<HashMap<String, f64>>,
-    name: &str,
-) -> PyResult<System> {
-    let overrides: Vec<(String, f64)> = overrides.into_iter().flatten().collect();
-    System::from(py, py.detach(|| Scene::parse_with(name, text, &overrides)))
-}
+/// Name to number.
+pub(crate) type Overrides = Vec<(String, f64)>;
 
 impl System {
-    fn from(py: Python<'_>, scene: Result<Scene, mechanics::SceneError>) -> PyResult<System> {
-        scene.map(|scene| System(Mutex::new(scene))).map_err(|error| errors::scene(py, &error))
+    /// The system of a scene that was read from `text`.
+    pub(crate) fn of(scene: Scene, text: String, overrides: Overrides) -> System {
+        System { scene: Mutex::new(scene), text, overrides }
     }
 
     /// The scene. No lock of Python is waited for while it is held.
     fn scene(&self) -> MutexGuard<'_, Scene> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.scene.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -137,7 +105,7 @@ impl System {
             multipliers,
             duration,
         })?;
-        System::from(py, py.detach(|| Scene::parse(name, &text)))
+        reading::parsed(py, name, text, Overrides::new())
     }
 
     /// Name: that of the file without its ending.
@@ -356,6 +324,45 @@ impl System {
             Sampled::new(motion, setting(&scene), times)
         };
         Motion::new(py, background::run(py, &interrupt, work)?.map_err(errors::solve)?)
+    }
+
+    /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
+    ///
+    /// vary: name to an array of shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...), as `overrides` in `load`.
+    /// times: where they are read off, shape (k,), in ascending order; they are integrated up to the last. By default the end of `duration` alone.
+    /// threads: 0 for one a processor; results do not depend on it. All else as in `solve`; the free constants given are those of all members.
+    ///
+    /// Members that cannot be started or that stop are in the answer with their cause. Other threads go on meanwhile; Ctrl-C ends it.
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
+        max_steps=1_000_000, threads=0
+    ))]
+    fn ensemble(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        times: Option<FloatList<'_>>,
+        vary: &Bound<'_, PyDict>,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+        tolerance: f64,
+        project: bool,
+        max_steps: usize,
+        threads: usize,
+    ) -> PyResult<Ensemble> {
+        let constants = arguments::constants(constants.as_ref(), mu0)?;
+        let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps)?;
+        let (scene, given) = (self.scene().clone(), constants.is_some());
+        let choice = arguments::choice(&scene, formulation, removal, constants)?;
+        let times = ensemble::times(times, &scene)?;
+        let name = scene.name.clone();
+        let with = |values: Overrides| Scene::parse_with(&name, &self.text, &[&self.overrides[..], &values].concat());
+        let varied = Varied::read(vary)?;
+        let task = ensemble::Task { varied, scene, with: &with, choice, given, times, settings, threads };
+        let integrated = background::run(py, &interrupt, move || task.run())?;
+        Ensemble::new(py, integrated.map_err(|refused| ensemble::refused(py, refused))?)
     }
 
     /// Computes the motions of all formulations and compares them pair by pair; tolerance and max_steps as in `solve`.

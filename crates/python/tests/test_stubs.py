@@ -60,4 +60,5 @@ def same_parameters(stub, real, without=0):
     assert [a.arg for a in arguments.kwonlyargs] == [p.name for p in found if p.kind is p.KEYWORD_ONLY], stub.name
     defaults = [p.default for p in found if p.kind is p.KEYWORD_ONLY]
     for node, default in zip(arguments.kw_defaults, defaults):
-        assert ast.literal_eval(node) == default, stub.name
+        expected = inspect.Parameter.empty if node is None else ast.literal_eval(node)
+        assert expected == default, stub.name

@@ -52,12 +52,13 @@ def test_two_threads_give_what_one_gives(system):
         np.testing.assert_array_equal(again, rates)
 
 
-@pytest.mark.parametrize("ask", ["solve", "compare", "horizon"])
+@pytest.mark.parametrize("ask", ["solve", "compare", "horizon", "ensemble"])
 def test_control_c(sledge, system, ask):
     endless = {
         "solve": lambda: system.solve(times=[0, LONG], max_steps=2**60),
         "compare": lambda: sledge.system(duration=LONG).compare(max_steps=2**60),
         "horizon": lambda: system.solve("removed-constraint", constants={"horizon": LONG}, max_steps=2**60),
+        "ensemble": lambda: system.ensemble(times=[LONG], vary={"g": [1, 2, 3]}, max_steps=2**60),
     }[ask]
     # a process that was started in the background ignores Ctrl-C from the start, and Python with it
     before = signal.signal(signal.SIGINT, signal.default_int_handler)

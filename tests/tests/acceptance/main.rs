@@ -3,6 +3,7 @@
 mod closed_forms;
 mod control;
 mod derivations;
+mod ensembles;
 mod formulations_agree;
 mod invariants;
 mod leading_term;

@@ -7,15 +7,20 @@ use std::time::Instant;
 
 use anyhow::{Result, bail, ensure};
 use deltaq::{
-    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Settings, choices, ready_to_run, setting,
+    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Ready, Settings, choices, ready_to_run, setting,
 };
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, Scene, State};
 
 use crate::catalogue;
 
-/// Members of an ensemble whose throughput is measured.
+/// The scene whose members they are.
+pub const ENSEMBLE_SCENE: &str = "sledge";
+
+/// Members of an ensemble whose throughput is measured, and in the main job, which has other things to do as well.
 pub const MEMBERS: usize = 4096;
+/// See [`MEMBERS`].
+pub const FEW_MEMBERS: usize = 512;
 
 /// What was measured of one formulation.
 #[derive(Clone, Debug)]
@@ -30,11 +35,15 @@ pub struct Throughput {
     pub alone: (usize, Option<String>),
     /// Seconds to find starts of the members' states, which no way of integrating them includes.
     pub prepare: f64,
-    /// Seconds for all members one by one, in lanes on one core, and in lanes on `threads` cores; each the least of several.
-    pub seconds: [f64; 3],
+    /// All members one by one, in lanes on one core, and in lanes on `threads` cores.
+    pub one_by_one: Time,
+    /// See above.
+    pub lanes: Time,
+    /// See above.
+    pub cores: Time,
     /// Cores of the last of these.
     pub threads: usize,
-    /// Steps of all members, one by one and in lanes.
+    /// Accepted steps of all members, one by one and in lanes.
     pub steps: [usize; 2],
     /// Largest difference of a state at the end between a member in lanes and the same member one by one, over the larger of 1 and that state.
     pub difference: f64,
@@ -42,15 +51,65 @@ pub struct Throughput {
     pub over_cores: f64,
 }
 
+/// What something took, the least of several times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Time {
+    /// Seconds of the clock.
+    pub clock: f64,
+    /// Seconds of all processors that worked for this process, where the system tells: whatever else they worked for does not count.
+    pub processors: Option<f64>,
+}
+
+impl Time {
+    const NEVER: Time = Time { clock: f64::INFINITY, processors: Some(f64::INFINITY) };
+
+    /// Runs `work`, and keeps its time if it is less.
+    fn of<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let (clock, before) = (Instant::now(), processor_seconds());
+        let result = work();
+        let spent = processor_seconds().zip(before).map(|(now, before)| now - before);
+        self.processors = self.processors.zip(spent).map(|(least, spent)| least.min(spent));
+        self.clock = self.clock.min(clock.elapsed().as_secs_f64());
+        result
+    }
+}
+
+#[cfg(unix)]
+fn processor_seconds() -> Option<f64> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+}
+
+#[cfg(not(unix))]
+fn processor_seconds() -> Option<f64> {
+    None
+}
+
 impl Throughput {
     /// Throughput in lanes over that one by one.
     pub fn over_single(&self) -> f64 {
-        self.seconds[0] / self.seconds[1]
+        self.one_by_one.clock / self.lanes.clock
     }
 
     /// Throughput on all cores over that on one.
     pub fn over_one_core(&self) -> f64 {
-        self.seconds[1] / self.seconds[2]
+        self.lanes.clock / self.cores.clock
+    }
+
+    /// Processor time in lanes on one core over that on all of them: 1 where dividing the work costs nothing. Times the number of cores, it is what [`Throughput::over_one_core`]
+    /// would be if these had nothing else to do and none waited for another.
+    pub fn efficiency(&self) -> Option<f64> {
+        Some(self.lanes.processors? / self.cores.processors?)
+    }
+
+    /// Microseconds of the clock for a member, in the order of the fields.
+    pub fn microseconds(&self) -> [f64; 3] {
+        [self.one_by_one, self.lanes, self.cores].map(|time| 1e6 * time.clock / self.members as f64)
+    }
+
+    /// Accepted steps of a member on average, one by one and in lanes.
+    pub fn mean_steps(&self) -> [f64; 2] {
+        self.steps.map(|steps| steps as f64 / self.members as f64)
     }
 }
 
@@ -76,7 +135,7 @@ fn starts(count: usize) -> Vec<State> {
 /// # Errors
 /// Where the scene or a start is at fault, or a member stops before its end.
 pub fn ensemble_throughput(count: usize, tolerance: f64, repeats: usize) -> Result<Vec<Throughput>> {
-    let scene = catalogue::find("sledge", &[])?;
+    let scene = catalogue::find(ENSEMBLE_SCENE, &[])?;
     let starts = starts(count);
     let wanted = ["chetaev", "vakonomic", "removed-constraint"];
     let all = choices(&scene);
@@ -93,9 +152,15 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
     let choice = Choice { constants: ConstantsRule::Given(ready.constants.clone()), ..choice };
     let mut ensemble = Ensemble::new(scene, &choice, &[], &settings)?;
     let clock = Instant::now();
-    let start = |state| EnsembleStart { state, end, parameters: &[], constants: &choice.constants };
+    let constants = &choice.constants;
+    let start = |state: &State| EnsembleStart {
+        state: state.clone(),
+        end,
+        parameters: Vec::new(),
+        constants: constants.clone(),
+    };
     let members: Vec<EnsembleMember> =
-        starts.iter().map(|state| ensemble.member_at(start(state))).collect::<Result<_, _>>()?;
+        starts.iter().map(|state| ensemble.member_at(&start(state))).collect::<Result<_, _>>()?;
     let prepare = clock.elapsed().as_secs_f64();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut options = Options::with_tolerance(tolerance);
@@ -108,34 +173,18 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
         members: members.len(),
         alone: (0, None),
         prepare,
-        seconds: [f64::INFINITY; 3],
+        one_by_one: Time::NEVER,
+        lanes: Time::NEVER,
+        cores: Time::NEVER,
         threads,
         steps: [0; 2],
         difference: 0.0,
         over_cores: 0.0,
     };
     for _ in 0..repeats.max(1) {
-        let clock = Instant::now();
-        let mut single = Vec::with_capacity(members.len());
-        let mut steps = 0;
-        for member in &members {
-            ready.start.copy_from_slice(member.start());
-            let mut run = ready.integrate(end, &options)?;
-            if let Status::Stopped { t, cause } = &run.status {
-                bail!("{}: a member stops at t = {t:.3}: {cause}", choice.label);
-            }
-            let mut y = vec![0.0; member.start().len()];
-            run.states_at(&mut ready, end, &mut y)?;
-            steps += run.work.steps;
-            single.push(y);
-        }
-        result.seconds[0] = result.seconds[0].min(clock.elapsed().as_secs_f64());
-        let clock = Instant::now();
-        let lanes = ensemble.run(&members, &[end], &one);
-        result.seconds[1] = result.seconds[1].min(clock.elapsed().as_secs_f64());
-        let clock = Instant::now();
-        let cores = ensemble.run(&members, &[end], &many);
-        result.seconds[2] = result.seconds[2].min(clock.elapsed().as_secs_f64());
+        let (single, steps) = result.one_by_one.of(|| one_by_one(&mut ready, &members, end, &options))?;
+        let lanes = result.lanes.of(|| ensemble.run(&members, &[end], &one));
+        let cores = result.cores.of(|| ensemble.run(&members, &[end], &many));
         result.steps = [steps, 0];
         result.alone = (0, None);
         for ((single, lanes), cores) in single.iter().zip(lanes).zip(cores) {
@@ -157,16 +206,52 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
     Ok(result)
 }
 
+/// States at the end, and accepted steps.
+fn one_by_one(
+    ready: &mut Ready,
+    members: &[EnsembleMember],
+    end: f64,
+    options: &Options,
+) -> Result<(Vec<Vec<f64>>, usize)> {
+    let (mut states, mut steps) = (Vec::with_capacity(members.len()), 0);
+    for member in members {
+        ready.start.copy_from_slice(member.start());
+        let mut run = ready.integrate(end, options)?;
+        if let Status::Stopped { t, cause } = &run.status {
+            bail!("a member stops at t = {t:.3}: {cause}");
+        }
+        let mut y = vec![0.0; member.start().len()];
+        run.states_at(ready, end, &mut y)?;
+        steps += run.work.steps;
+        states.push(y);
+    }
+    Ok((states, steps))
+}
+
 /// A table of them.
 pub fn ensemble_table(measured: &[Throughput]) -> String {
     let mut text = format!(
-        "{:<36} {:>9} {:>8} {:>11} {:>11} {:>11} {:>7} {:>7} {:>9} {:>6}\n",
-        "formulation", "tolerance", "members", "one by one", "lanes", "all cores", "ratio", "cores", "differ", "alone"
+        "{:<36} {:>9} {:>8} {:>9} {:>11} {:>11} {:>11} {:>7} {:>7} {:>7} {:>9} {:>15} {:>6}\n",
+        "formulation",
+        "tolerance",
+        "members",
+        "start",
+        "one by one",
+        "lanes",
+        "all cores",
+        "ratio",
+        "cores",
+        "proc",
+        "differ",
+        "steps",
+        "alone"
     );
     for m in measured {
-        let per_member = m.seconds.map(|s| format!("{:.2} µs", 1e6 * s / m.members as f64));
+        let per_member = m.microseconds().map(|s| format!("{s:.2} µs"));
+        let start = format!("{:.2} µs", 1e6 * m.prepare / m.members as f64);
+        let steps = m.mean_steps().map(|steps| format!("{steps:.1}")).join(", ");
         text += &format!(
-            "{:<36} {:>9.0e} {:>8} {:>11} {:>11} {:>11} {:>7.2} {:>7.2} {:>9.1e} {:>6}\n",
+            "{:<36} {:>9.0e} {:>8} {start:>9} {:>11} {:>11} {:>11} {:>7.2} {:>7.2} {:>7} {:>9.1e} {steps:>15} {:>6}\n",
             m.label,
             m.tolerance,
             m.members,
@@ -175,6 +260,7 @@ pub fn ensemble_table(measured: &[Throughput]) -> String {
             per_member[2],
             m.over_single(),
             m.over_one_core(),
+            m.efficiency().map_or("-".into(), |e| format!("{e:.2}")),
             m.difference,
             m.alone.0
         );
@@ -182,5 +268,7 @@ pub fn ensemble_table(measured: &[Throughput]) -> String {
             text += &format!("  alone, the first of them: {why}\n");
         }
     }
+    text += "start: to find what a member starts from, in no other column; ratio: throughput in lanes over one by one; cores: on all cores over one; proc: processor time on one core over that on all, 1 where dividing the work \
+             costs nothing; differ: largest difference at the end; steps: of a member, one by one and in lanes\n";
     text
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 use serde_json::{Value, json};
 
-use crate::bench::{Bench, Entry, Fastest, Measurements, Series, TARGETS};
+use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
 use crate::picture::{Axis, Curve, Panel, PictureError, SmallMultiples, Style};
 use crate::report::File;
 use crate::report::numbers::{enumerate, short};
@@ -35,11 +35,11 @@ pub fn bench_headline(benches: &[Bench]) -> String {
     )
 }
 
-/// Page and pictures.
+/// Page and pictures, with a section on ensembles where any were measured.
 ///
 /// # Errors
 /// Where a picture cannot be drawn.
-pub fn bench_files(benches: &[Bench]) -> Result<Vec<File>> {
+pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<File>> {
     let mut files = Vec::new();
     let mut page = format!("# Error against run time\n\n**{}**\n\n", bench_headline(benches));
     page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor; what it takes to get to the \
@@ -47,6 +47,7 @@ pub fn bench_files(benches: &[Bench]) -> Result<Vec<File>> {
              and from run to run; the numbers of evaluations do not. (`solve` and the other reports integrate every motion twice, for the sake of an error estimate.)\n\n\
              ## The fastest setting\n\n";
     page += &bench_table(benches);
+    page += &ensemble_section(ensembles);
     for bench in benches {
         let _ = writeln!(page, "\n## {}\n", bench.title);
         match picture(bench) {
@@ -97,6 +98,40 @@ fn fastest(found: Option<Fastest>) -> String {
     found.map_or("not reached".into(), |f| {
         format!("{} ms, {} at {:.0e}", short(1e3 * f.seconds), f.method.name(), f.tolerance)
     })
+}
+
+/// Throughput of ensembles.
+fn ensemble_section(measured: &[Throughput]) -> String {
+    let Some(first) = measured.first() else { return String::new() };
+    let mut text = format!(
+        "\n## Many motions at once\n\nSledges with random starts, {} of each formulation, by `taylor` at {:.0e} over the time of the scene: one by one, eight at a time in the lanes of \
+         the processor's vectors, and in lanes over {} cores. Compiled once, states at the end only. *Lanes* is the throughput in lanes over that one by one, *cores* that over all cores \
+         over that on one. *Processor time* is that spent in lanes on one core over that spent together on all: 1 where dividing the work costs nothing, whatever else runs on \
+         the machine. *Difference* is the largest of a state at the end, one by one and in lanes; over the cores there is none, to the last bit{}. So few members are for a look: \
+         `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n\n\
+         | formulation | members | steps of one | one by one (µs each) | lanes (µs each) | all cores (µs each) | lanes | cores | processor time | difference | alone |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+        first.members,
+        first.tolerance,
+        first.threads,
+        if measured.iter().all(|m| m.over_cores == 0.0) { "" } else { " (**not so here**)" },
+    );
+    for m in measured {
+        let [single, lanes, cores] = m.microseconds().map(short);
+        let efficiency = m.efficiency().map_or("–".into(), |e| format!("{e:.2}"));
+        let _ = writeln!(
+            text,
+            "| {} | {} | {:.0} | {single} | {lanes} | {cores} | {:.2} | {:.2} | {efficiency} | {:.1e} | {} |",
+            m.label,
+            m.members,
+            m.mean_steps()[1],
+            m.over_single(),
+            m.over_one_core(),
+            m.difference,
+            m.alone.0,
+        );
+    }
+    text
 }
 
 fn section(entry: &Entry) -> String {

@@ -1,15 +1,15 @@
 //! Members integrated in lanes, over threads; those that have to be, alone.
 
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Work};
 use mechanics::{Compiled, Equations, LaneEquations};
 
+use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
-use crate::motion::{ending, unconfirmed};
-use crate::run::{Origin, Prepared, integrate_once, move_last_digits, sizes};
-use crate::{Ending, SolveError, TIGHTER};
+use crate::motion::{ending, joint_ending};
+use crate::run::{Origin, integrate_once, move_last_digits, sizes};
+use crate::{Ending, Settings, SolveError, TIGHTER};
 
 /// How an ensemble is run.
 #[derive(Clone, Copy, Debug)]
@@ -43,9 +43,11 @@ pub struct MemberRun {
     pub projection: ProjectionReport,
     /// Why the kept run was integrated alone, if it was.
     pub alone: Option<String>,
+    /// Unknowns of the instant near these times, where its equations have several roots; otherwise empty.
+    pub(super) unknowns: Vec<Vec<f64>>,
 }
 
-type Outcome = Result<MemberRun, SolveError>;
+pub(super) type Outcome = Result<MemberRun, SolveError>;
 
 impl Ensemble {
     /// Integrates `members`; states are read at `times`, which have to be in the order in which they are passed.
@@ -59,7 +61,8 @@ impl Ensemble {
         }
         let looser = self.run_once(members, times, tolerance, Origin::LastDigit, options.threads);
         let kept = self.run_once(members, times, tolerance * TIGHTER, Origin::Start, options.threads);
-        kept.into_iter().zip(looser).map(|(kept, looser)| Ok(confirmed(kept?, looser?))).collect()
+        let runs = kept.into_iter().zip(looser).zip(members);
+        runs.map(|((kept, looser), member)| Ok(confirmed(kept?, looser?, member))).collect()
     }
 
     fn run_once(
@@ -70,50 +73,44 @@ impl Ensemble {
         origin: Origin,
         threads: usize,
     ) -> Vec<Outcome> {
-        let settings = &self.settings;
-        let mut options = Options::with_tolerance(tolerance);
-        options.method = settings.method;
-        options.projection = settings.projection;
-        options.max_steps = settings.max_steps;
-        options.interrupt = settings.interrupt.clone();
-        let task = Task { members, times, origin, options: &options, next: AtomicUsize::new(0) };
-        let threads = match threads {
-            0 => std::thread::available_parallelism().map_or(1, usize::from),
-            count => count,
+        let options = options(&self.settings, tolerance);
+        let task = Task {
+            members,
+            times,
+            origin,
+            options: &options,
+            compiled: &self.prepared.compiled,
+            lanes: self.lanes.as_ref(),
+            words: &self.words,
+            left: Mutex::default(),
         };
-        let results: Vec<Mutex<Option<Outcome>>> = members.iter().map(|_| Mutex::new(None)).collect();
-        if threads.min(members.len()) <= 1 {
-            task.work(self.tools(), &results);
-        } else {
-            std::thread::scope(|scope| {
-                for _ in 0..threads.min(members.len().div_ceil(LANES)) {
-                    let tools = self.tools();
-                    scope.spawn(|| task.work(tools, &results));
-                }
-            });
-        }
+        let group = if task.lanes.is_ok() { LANES } else { 1 };
+        let results = shared(threads, members.len(), group, |take| task.work(take));
         let interrupted = |member: &EnsembleMember| {
             let ending = Ending::Stopped { t: member.t, cause: integrate::StopCause::Interrupted.to_string() };
             Ok(MemberRun { ending, ..MemberRun::empty() })
         };
-        let inner = |slot: Mutex<Option<Outcome>>| slot.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-        results.into_iter().zip(members).map(|(slot, m)| inner(slot).unwrap_or_else(|| interrupted(m))).collect()
-    }
-
-    fn tools(&self) -> Tools {
-        let Prepared { equations, compiled, .. } = &self.prepared;
-        Tools { equations: equations.clone(), compiled: compiled.clone(), lanes: self.lanes.clone() }
+        results.into_iter().zip(members).map(|(outcome, m)| outcome.unwrap_or_else(|| interrupted(m))).collect()
     }
 }
 
+/// Of a run at `tolerance`.
+pub(super) fn options(settings: &Settings, tolerance: f64) -> Options {
+    let mut options = Options::with_tolerance(tolerance);
+    options.method = settings.method;
+    options.projection = settings.projection;
+    options.max_steps = settings.max_steps;
+    options.interrupt = settings.interrupt.clone();
+    options
+}
+
 /// The tighter run with what the looser one says of it.
-fn confirmed(mut kept: MemberRun, looser: MemberRun) -> MemberRun {
+fn confirmed(mut kept: MemberRun, looser: MemberRun, member: &EnsembleMember) -> MemberRun {
     kept.states.truncate(looser.states.len());
+    kept.unknowns.truncate(looser.states.len());
     let pairs = kept.states.iter().zip(&looser.states);
     kept.differences = pairs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect();
-    if let (Ending::Completed, Ending::Stopped { t, cause }) = (&kept.ending, looser.ending) {
-        kept.ending = Ending::Stopped { t, cause: unconfirmed(&cause) };
-    }
+    kept.ending = joint_ending(kept.ending, looser.ending, [member.t, member.end]);
     kept
 }
 
@@ -126,73 +123,76 @@ impl MemberRun {
             work: Work::default(),
             projection: ProjectionReport::default(),
             alone: None,
+            unknowns: Vec::new(),
         }
     }
 }
 
-/// What a thread works with.
-struct Tools {
-    equations: Equations,
-    compiled: Compiled,
-    lanes: Result<LaneEquations, String>,
-}
-
-/// Members to be integrated once, taken by whichever thread has a free lane.
+/// Members to be integrated once, by whichever thread has a free lane.
 struct Task<'a> {
     members: &'a [EnsembleMember],
     times: &'a [f64],
     origin: Origin,
     options: &'a Options,
-    next: AtomicUsize,
+    compiled: &'a Compiled,
+    lanes: Result<&'a LaneEquations, &'a String>,
+    words: &'a Mutex<Equations>,
+    /// Those that have to go alone, and why: for whichever thread has no lanes to fill any more.
+    left: Mutex<Vec<(usize, String)>>,
 }
 
 impl Task<'_> {
-    fn work(&self, tools: Tools, results: &[Mutex<Option<Outcome>>]) {
-        let put = |index: usize, outcome: Outcome| {
-            *results[index].lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(outcome);
+    fn work(&self, take: Take) -> Vec<(usize, Outcome)> {
+        let mut compiled = self.compiled.clone();
+        let mut done = Vec::new();
+        match self.lanes {
+            Err(why) => {
+                while let Some(index) = take().filter(|_| !self.is_interrupted()) {
+                    done.push((index, self.alone(&mut compiled, index, why.clone())));
+                }
+            }
+            Ok(lanes) => self.in_lanes(lanes.clone(), &mut compiled, take, &mut done),
+        }
+        while let Some((index, why)) = self.take_left() {
+            done.push((index, self.alone(&mut compiled, index, why)));
+        }
+        done
+    }
+
+    fn in_lanes(&self, lanes: LaneEquations, compiled: &mut Compiled, take: Take, done: &mut Vec<(usize, Outcome)>) {
+        let n = lanes.dimension();
+        let mut refused = Vec::new();
+        let mut problem = Riders { lanes, members: self.members };
+        let mut next = || {
+            loop {
+                let index = take().filter(|_| !self.is_interrupted())?;
+                match self.start(compiled, index) {
+                    Ok(start) => return Some((index, start)),
+                    Err(error) => refused.push((index, Err(error))),
+                }
+            }
         };
-        let Tools { equations, mut compiled, lanes } = tools;
-        let mut left: Vec<(usize, String)> = Vec::new();
-        match lanes {
-            Err(why) => left.extend(std::iter::from_fn(|| self.take()).map(|index| (index, why.clone()))),
-            Ok(lanes) => {
-                let n = lanes.dimension();
-                let mut problem = Riders { lanes, members: self.members };
-                let mut next = || {
-                    loop {
-                        let index = self.take()?;
-                        match self.start(&mut compiled, index) {
-                            Ok(start) => return Some((index, start)),
-                            Err(error) => put(index, Err(error)),
-                        }
-                    }
-                };
-                integrate::integrate_lanes(&mut problem, &mut next, self.times, self.options, &mut |index, outcome| {
-                    match outcome {
-                        Ok(run) => {
-                            let states = run.states.chunks_exact(n).map(<[f64]>::to_vec).collect();
-                            let (work, projection) = (run.work, run.projection);
-                            put(index, Ok(MemberRun { states, work, projection, ..MemberRun::empty() }));
-                        }
-                        Err(why) => left.push((index, why.to_string())),
-                    }
-                });
+        integrate::integrate_lanes(&mut problem, &mut next, self.times, self.options, &mut |index, outcome| {
+            match outcome {
+                Ok(run) => {
+                    let states = run.states.chunks_exact(n).map(<[f64]>::to_vec).collect();
+                    let (work, projection) = (run.work, run.projection);
+                    done.push((index, Ok(MemberRun { states, work, projection, ..MemberRun::empty() })));
+                }
+                Err(why) => {
+                    self.left.lock().unwrap_or_else(PoisonError::into_inner).push((index, why.to_string()));
+                }
             }
-        }
-        for (index, why) in left {
-            if !self.is_interrupted() {
-                put(index, self.alone(&equations, &mut compiled, index, why));
-            }
-        }
+        });
+        done.append(&mut refused);
+    }
+
+    fn take_left(&self) -> Option<(usize, String)> {
+        if self.is_interrupted() { None } else { self.left.lock().unwrap_or_else(PoisonError::into_inner).pop() }
     }
 
     fn is_interrupted(&self) -> bool {
         self.options.interrupt.as_ref().is_some_and(Interrupt::is_raised)
-    }
-
-    fn take(&self) -> Option<usize> {
-        let index = self.next.fetch_add(1, Ordering::Relaxed);
-        (index < self.members.len() && !self.is_interrupted()).then_some(index)
     }
 
     fn states(&self, index: usize) -> Vec<f64> {
@@ -214,7 +214,7 @@ impl Task<'_> {
         Ok(LaneStart { t: member.t, y, end: member.end, sizes })
     }
 
-    fn alone(&self, equations: &Equations, compiled: &mut Compiled, index: usize, why: String) -> Outcome {
+    fn alone(&self, compiled: &mut Compiled, index: usize, why: String) -> Outcome {
         let member = &self.members[index];
         member.set(compiled);
         let start = Start { t: member.t, y: self.states(index) };
@@ -222,14 +222,16 @@ impl Task<'_> {
         let solution = &run.solution;
         let (reached, direction) = (solution.dense.end(), member.end - member.t);
         let passed = self.times.iter().take_while(|&&t| (t - reached) * direction <= 0.0);
-        let states = passed.map(|&t| {
+        let states = passed.clone().map(|&t| {
             let mut y = vec![0.0; member.y.len()];
             solution.dense.evaluate(t, &mut y);
             y
         });
+        let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(MemberRun {
             states: states.collect(),
-            ending: ending(equations, compiled, solution),
+            unknowns: passed.filter_map(|&t| run.unknowns_near(t).map(<[f64]>::to_vec)).collect(),
+            ending: ending(&words, compiled, solution),
             work: solution.work,
             projection: solution.projection,
             alone: Some(why),

@@ -1,10 +1,10 @@
 //! Members against single runs of scenes that are derived and compiled for themselves.
 
-use mechanics::Scene;
+use mechanics::{ConstantsRule, Scene};
 use symbolic::LANES;
 
-use super::{Ensemble, EnsembleMember, EnsembleOptions};
-use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, solve_choice};
+use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart};
+use crate::{Choice, Ending, MemberMotion, MemberRun, Settings, SolveError, choices, solve_choice};
 use integrate::Method;
 
 const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
@@ -91,14 +91,16 @@ fn every_member_is_its_single_run() {
         let mut ensemble = Ensemble::new(&scenes[0], &of(&scenes[0]), &["alpha", "k"], &settings()).unwrap();
         assert_eq!(ensemble.refusal(), None, "{formulation}");
         let members: Vec<EnsembleMember> = scenes.iter().map(|scene| ensemble.member(scene).unwrap()).collect();
-        let runs = run(&ensemble, &members, &times, 1);
-        for ((scene, member), run) in scenes.iter().zip(&members).zip(&runs) {
+        let motions = ensemble.motions(&members, &times, &EnsembleOptions::default());
+        for (scene, motion) in scenes.iter().zip(motions) {
+            let MemberMotion { run, outputs, estimate } = motion.unwrap();
+            assert!(estimate.is_some_and(|e| e.relative < 1e-8), "{formulation}: {estimate:?}");
             let mut single = solve_choice(scene, &of(scene), &settings()).unwrap();
             assert_eq!((&run.ending, &run.alone), (&Ending::Completed, &None), "{formulation}");
             let reached: Vec<f64> = times.iter().copied().filter(|&t| t <= scene.duration).collect();
             assert_eq!((run.states.len(), run.differences.len()), (reached.len(), reached.len()));
-            for (&t, (states, difference)) in reached.iter().zip(run.states.iter().zip(&run.differences)) {
-                let (here, there) = (ensemble.read(member, t, states).unwrap(), single.at(t).unwrap());
+            for (&t, (here, difference)) in reached.iter().zip(outputs.iter().zip(&run.differences)) {
+                let there = single.at(t).unwrap();
                 let size = 1.0 + there.coordinates.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
                 for (a, b) in here.coordinates.iter().zip(&there.coordinates) {
                     assert!((a - b).abs() < 1e-9 * size, "{formulation} at {t}: {a} and {b}");
@@ -156,7 +158,111 @@ fn what_is_no_member_is_refused() {
     assert!(ensemble.member(&scene(SLEDGE, &[("g", 3.0)])).is_ok());
     let error = ensemble.member(&scene(SLEDGE, &[("alpha", 0.1)])).unwrap_err();
     assert!(error.to_string().contains("alpha is 0.1 and not 0.4"), "{error}");
+    for tolerance in [0.0, 1.0, -1e-9, f64::NAN, f64::INFINITY] {
+        let settings = Settings { tolerance, ..settings() };
+        let refused = Ensemble::new(&base, &chetaev, &[], &settings);
+        assert!(matches!(refused, Err(SolveError::Call(_))), "tolerance {tolerance}");
+    }
     let natural = choice(&base, "removed-constraint");
     assert!(Ensemble::new(&base, &natural, &["g"], &settings()).is_err());
     assert!(Ensemble::new(&base, &natural, &[], &settings()).is_ok());
+}
+
+#[test]
+fn members_that_fail_at_the_start_do_not_disturb_the_others() {
+    let scenes = sledges(LANES + 5);
+    let (mut ensemble, mut members) = ready(&scenes, "vakonomic", &["alpha", "k"]);
+    let times = [0.7];
+    let expected = run(&ensemble, &members, &times, 1);
+    // a start that is no number, and one without a length
+    let broken = |member: &EnsembleMember, i: usize| match i % 2 {
+        0 => EnsembleMember { y: member.y.iter().map(|_| f64::NAN).collect(), ..member.clone() },
+        _ => EnsembleMember { end: member.t, ..member.clone() },
+    };
+    let mut order = Vec::new();
+    for (i, member) in members.split_off(0).into_iter().enumerate() {
+        if i % 3 == 0 {
+            members.push(broken(&member, i));
+            order.push(None);
+        }
+        members.push(member);
+        order.push(Some(i));
+    }
+    for threads in [1, 2] {
+        let options = EnsembleOptions { threads, estimate: true };
+        for (outcome, i) in ensemble.run(&members, &times, &options).into_iter().zip(&order) {
+            match i {
+                Some(i) => assert_eq!(outcome.unwrap(), expected[*i]),
+                None => assert!(matches!(outcome, Err(SolveError::Call(_))), "{outcome:?}"),
+            }
+        }
+    }
+    let state = mechanics::State { t: 0.0, q: vec![0.0; 3], v: vec![0.0; 3] };
+    let constants = ConstantsRule::Given(vec![f64::NAN]);
+    let start = EnsembleStart { state, end: 1.0, parameters: vec![0.3, 0.7], constants };
+    assert!(matches!(ensemble.member_at(&start), Err(SolveError::ConstantNotFinite { .. })));
+    let start = EnsembleStart { parameters: vec![0.3], constants: ConstantsRule::Zero, ..start };
+    assert!(matches!(ensemble.member_at(&start), Err(SolveError::Member { .. })));
+}
+
+#[test]
+fn starts_and_natural_constants_do_not_depend_on_threads_and_order() {
+    let scenes = sledges(LANES + 1);
+    let base = scene(SLEDGE, &[]);
+    let removed = choice(&base, "removed-constraint");
+    let mut ensemble = Ensemble::new(&base, &removed, &[], &settings()).unwrap();
+    let starts: Vec<EnsembleStart> =
+        scenes.iter().map(|scene| EnsembleStart::of(scene, &[], removed.constants.clone())).collect();
+    let members: Vec<EnsembleMember> = ensemble.members(&starts, 3).into_iter().map(Result::unwrap).collect();
+    for (start, member) in starts.iter().zip(&members).rev() {
+        assert_eq!(ensemble.member_at(start).unwrap(), *member);
+    }
+    // P_x = g sin α (T − t), of the scene's own slope: parameters are those of the ensemble
+    let natural = members.iter().map(|member| member.constants[0] - 9.81 * 0.4_f64.sin() * 10.0);
+    assert!(natural.fold(0.0, |a: f64, x| a.max(x.abs())) < 1e-8);
+    let refused =
+        ensemble.answers(&[Ok(starts[0].clone()), Err("no start".into())], &[0.5], &EnsembleOptions::default());
+    assert!(refused[0].as_ref().is_ok_and(|motion| motion.status() == ("completed", None)));
+    assert_eq!(refused[1].as_ref().unwrap_err(), "no start");
+}
+
+#[test]
+fn members_with_very_different_steps_do_not_wait_for_one_another_in_their_results() {
+    let rates = [0.01, 300.0, 1.0, 30.0, 0.1, 100.0, 3.0, 10.0, 0.03, 200.0, 0.3];
+    let scenes: Vec<Scene> = rates.iter().map(|&w| scene(SLEDGE, &[("phi'", w), ("duration", 2.0)])).collect();
+    let (ensemble, members) = ready(&scenes, "chetaev", &[]);
+    let runs = run(&ensemble, &members, &[1.1, 2.0], 2);
+    let steps: Vec<usize> = runs.iter().map(|run| run.work.steps).collect();
+    assert!(steps[1] > 50 * steps[0], "{steps:?}");
+    for ((w, scene), run) in rates.iter().zip(&scenes).zip(&runs) {
+        // φ = φ₀ + w t, u = u₀ + (g sin α/w)(sin φ − sin φ₀) along the blade: Neimark & Fufaev 1972
+        let (phi, a) = (0.3 + 2.0 * w, 9.81 * 0.4_f64.sin());
+        let u = 0.5 + a / w * (phi.sin() - 0.3_f64.sin());
+        let state = &run.states[1];
+        assert_eq!(run.ending, Ending::Completed);
+        for (found, known) in [(state[2], phi), (state[3], u * phi.cos()), (state[4], u * phi.sin())] {
+            assert!((found - known).abs() < 1e-9 * (1.0 + known.abs()), "w = {w}: {found} and {known}");
+        }
+        let single = solve_choice(scene, &choice(scene, "chetaev"), &settings()).unwrap();
+        assert_eq!(run.work.steps.abs_diff(single.work.steps), 0, "w = {w}");
+    }
+}
+
+#[test]
+fn an_interrupt_ends_members_on_the_way() {
+    let interrupt = integrate::Interrupt::default();
+    let endless = scene(SLEDGE, &[("duration", 1e9)]);
+    let settings = Settings { interrupt: Some(interrupt.clone()), max_steps: usize::MAX, ..settings() };
+    let mut ensemble = Ensemble::new(&endless, &choice(&endless, "chetaev"), &[], &settings).unwrap();
+    let members = vec![ensemble.member(&endless).unwrap(); 3];
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            interrupt.raise();
+        });
+        for run in ensemble.run(&members, &[], &EnsembleOptions { threads: 1, estimate: true }) {
+            let Ending::Stopped { cause, .. } = run.unwrap().ending else { panic!("an end of what is endless") };
+            assert!(cause.contains("interrupt"), "{cause}");
+        }
+    });
 }

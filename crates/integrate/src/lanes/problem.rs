@@ -60,6 +60,9 @@ pub enum Left {
     /// [`crate::Options::max_steps`].
     #[error("too many steps")]
     TooManySteps,
+    /// [`crate::Options::interrupt`]: nothing is to be integrated any more.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// A complete motion.

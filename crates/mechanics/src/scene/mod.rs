@@ -132,10 +132,25 @@ impl Scene {
     /// # Errors
     /// As [`Scene::load`].
     pub fn load_with(path: &Path, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+        Scene::parse_file(path, &Scene::read(path)?, overrides)
+    }
+
+    /// The text of a scene file.
+    ///
+    /// # Errors
+    /// [`SceneErrorKind::Unreadable`], [`SceneErrorKind::TooLarge`] and [`SceneErrorKind::NotUtf8`].
+    pub fn read(path: &Path) -> Result<String, SceneError> {
+        read(&path.display().to_string(), path)
+    }
+
+    /// [`Scene::load_with`] for who has read the file already.
+    ///
+    /// # Errors
+    /// As [`Scene::parse_with`].
+    pub fn parse_file(path: &Path, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
         let file = path.display().to_string();
-        let text = read(&file, path)?;
         let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
-        loader::load(&name, &file, &text, overrides)
+        loader::load(&name, &file, text, overrides)
     }
 
     /// The scene as a file, with every start value as a number: [`Scene::parse`] of it gives the same system, start and

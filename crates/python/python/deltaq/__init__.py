@@ -3,6 +3,7 @@
     import deltaq
     system = deltaq.load("sledge.toml")           # or deltaq.System(...), deltaq.parse(text)
     motion = system.solve("chetaev")              # Motion: times, coordinates, velocities, ...
+    many = system.ensemble("chetaev", vary={"g": [1.6, 9.8]})   # Ensemble: as a motion, one axis more
     equations = system.equations("vakonomic")     # Equations: text, latex, rates(t, y), jacobian(t, y), ...
     comparison = system.compare()                 # Comparison: pairs with verdicts, fits of the free constants
 
@@ -18,6 +19,7 @@ from ._native import (
     CompileError,
     DeltaqError,
     DerivationError,
+    Ensemble,
     Equations,
     EvaluationError,
     Fit,
@@ -47,6 +49,7 @@ __all__ = [
     "CompileError",
     "DeltaqError",
     "DerivationError",
+    "Ensemble",
     "Equations",
     "EvaluationError",
     "Fit",

@@ -1,0 +1,131 @@
+//! Members integrated and read off.
+
+use mechanics::{Compiled, Outputs};
+
+use super::run::Outcome;
+use super::threads::shared;
+use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
+use crate::gap::subtract;
+use crate::{Ending, ErrorEstimate, Metric, SolveError};
+
+/// What became of a member, read off.
+#[derive(Clone, Debug)]
+pub struct MemberMotion {
+    /// Coordinates, velocities, multipliers and invariants at the times asked for, as far as the motion came.
+    pub outputs: Vec<Outputs>,
+    /// Largest difference of the two runs at these times, in the kinetic metric and over the largest distance from the start; zero where there is
+    /// none of these times, none without [`EnsembleOptions::estimate`].
+    pub estimate: Option<ErrorEstimate>,
+    /// The run behind it.
+    pub run: MemberRun,
+}
+
+impl MemberMotion {
+    /// `completed`, `untrusted` (its estimate is too large: [`ErrorEstimate::complaint`]) or `stopped`, and why it is not completed.
+    pub fn status(&self) -> (&'static str, Option<String>) {
+        let doubt = self.estimate.and_then(|estimate| estimate.complaint());
+        match (&self.run.ending, doubt) {
+            (Ending::Stopped { t, cause }, _) => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
+            (Ending::Completed, Some(words)) => ("untrusted", Some(words)),
+            (Ending::Completed, None) => ("completed", None),
+        }
+    }
+}
+
+impl Ensemble {
+    /// [`Ensemble::run`], and what its states say: multipliers, invariants, the error estimate.
+    ///
+    /// An `Err` is a member that could not be started or, with [`SolveError::Reading`], not be read off.
+    pub fn motions(
+        &self,
+        members: &[EnsembleMember],
+        times: &[f64],
+        options: &EnsembleOptions,
+    ) -> Vec<Result<MemberMotion, SolveError>> {
+        let runs = self.run(members, times, options);
+        let (compiled, metric) = (&self.prepared.compiled, &self.metric);
+        let read = shared(options.threads, members.len(), 1, |take| {
+            let mut reader = Reader { compiled: compiled.clone(), metric: metric.clone(), times };
+            let mut done = Vec::new();
+            while let Some(index) = take() {
+                if let Ok(run) = &runs[index] {
+                    done.push((index, reader.read(&members[index], run, options)));
+                }
+            }
+            done
+        });
+        let joined = |(run, read): (Outcome, Option<Result<_, SolveError>>)| {
+            let run = run?;
+            let (outputs, estimate) = read.unwrap_or_else(|| Ok((Vec::new(), None)))?;
+            Ok(MemberMotion { outputs, estimate, run })
+        };
+        runs.into_iter().zip(read).map(joined).collect()
+    }
+}
+
+impl Ensemble {
+    /// [`Ensemble::members`] and [`Ensemble::motions`] of starts of which some may have been refused already, with a cause; an `Err` says why a member was.
+    pub fn answers(
+        &self,
+        starts: &[Result<EnsembleStart, String>],
+        times: &[f64],
+        options: &EnsembleOptions,
+    ) -> Vec<Result<MemberMotion, String>> {
+        let members = of_the_rest(starts, |starts| self.members(starts, options.threads));
+        of_the_rest(&members, |members| self.motions(members, times, options))
+    }
+}
+
+/// What `work` makes of those that are not refused, which remain so.
+fn of_the_rest<A: Clone, B>(
+    given: &[Result<A, String>],
+    work: impl FnOnce(&[A]) -> Vec<Result<B, SolveError>>,
+) -> Vec<Result<B, String>> {
+    let rest: Vec<A> = given.iter().flatten().cloned().collect();
+    let mut made = work(&rest).into_iter();
+    let answer = |given: &Result<A, String>| match given {
+        Err(cause) => Some(Err(cause.clone())),
+        Ok(_) => made.next().map(|made| made.map_err(|error| error.to_string())),
+    };
+    given.iter().filter_map(answer).collect()
+}
+
+struct Reader<'a> {
+    compiled: Compiled,
+    metric: Metric,
+    times: &'a [f64],
+}
+
+impl Reader<'_> {
+    fn at(&mut self, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
+        self.compiled.outputs(t, y).map_err(|failure| SolveError::Reading { t, failure })
+    }
+
+    fn read(
+        &mut self,
+        member: &EnsembleMember,
+        run: &MemberRun,
+        options: &EnsembleOptions,
+    ) -> Result<(Vec<Outputs>, Option<ErrorEstimate>), SolveError> {
+        member.set(&mut self.compiled);
+        self.metric.set_parameters(&member.constants[member.constants.len() - self.metric.parameters()..]);
+        let start = self.at(member.t, &member.y)?.coordinates;
+        let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
+        let mut outputs = Vec::with_capacity(run.states.len());
+        for (i, (&t, y)) in self.times.iter().zip(&run.states).enumerate() {
+            if let Some(unknowns) = run.unknowns.get(i) {
+                self.compiled.set_guess(unknowns);
+            }
+            let now = self.at(t, y)?;
+            if let Some(difference) = run.differences.get(i) {
+                let other = self.at(t, &subtract(y, difference))?.coordinates;
+                let mut length = |d: Vec<f64>| self.metric.length(t, &now.coordinates, &now.velocities, &d);
+                absolute = absolute.max(length(subtract(&now.coordinates, &other)));
+                scale = scale.max(length(subtract(&now.coordinates, &start)));
+            }
+            outputs.push(now);
+        }
+        let relative = if scale > 0.0 { absolute / scale } else { absolute };
+        Ok((outputs, options.estimate.then_some(ErrorEstimate { absolute, relative })))
+    }
+}

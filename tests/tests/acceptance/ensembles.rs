@@ -1,0 +1,127 @@
+//! Members of ensembles against motions of scenes that are derived and solved one by one, in every formulation of every scene.
+
+use deltaq::{
+    Choice, Ending, Ensemble, EnsembleOptions, EnsembleStart, Settings, choices, constants_of, error_estimate, forms,
+    setting, solve_choice,
+};
+use integrate::Method;
+use mechanics::{ConstantsRule, Equations, Scene};
+use validation::catalogue::{SCENES, find};
+
+/// Not divisible by the number of lanes.
+const MEMBERS: usize = 11;
+
+/// What became of the members of all ensembles.
+#[derive(Default, Debug)]
+struct Count {
+    completed: usize,
+    stopped: usize,
+    refused: usize,
+    other_pivots: usize,
+    alone: Vec<String>,
+}
+
+fn guards(equations: &Equations) -> Vec<String> {
+    equations.guards.iter().map(|&guard| equations.graph.plain(guard)).collect()
+}
+
+/// The scene with other values of a parameter and of a coordinate at the start, as far as it allows that.
+fn members(name: &str, base: &Scene, parameter: Option<&str>) -> Vec<Scene> {
+    let value = |name: &str| {
+        let mut parameters = base.system.parameters.iter();
+        parameters.find(|p| base.system.graph.name(p.symbol) == name).map_or(0.0, |p| p.value)
+    };
+    let member = |i: usize| {
+        let mut overrides = vec![("duration".to_string(), 0.3 * base.duration * (1.0 + 0.1 * i as f64))];
+        overrides.extend(parameter.map(|name| (name.to_string(), value(name) * (1.0 + 0.03 * i as f64))));
+        let place = i % base.system.dimension();
+        let moved = (base.system.coordinates[place].name.clone(), base.start.q[place] + 0.04 * i as f64);
+        let with = [&overrides[..], &[moved]].concat();
+        find(name, &with).or_else(|_| find(name, &overrides)).ok()
+    };
+    (0..MEMBERS).filter_map(member).collect()
+}
+
+fn compare(name: &str, base: &Scene, choice: &Choice, count: &mut Count) {
+    let settings = Settings { method: Method::Taylor, tolerance: 1e-9, ..Settings::default() };
+    let natural = matches!(choice.constants, ConstantsRule::Natural { .. });
+    let parameter = base.system.parameters.first().map(|p| base.system.graph.name(p.symbol)).filter(|_| !natural);
+    let what = format!("{name}, {}", choice.label);
+    let Ok(mut ensemble) = Ensemble::new(base, choice, parameter.as_deref().as_slice(), &settings) else {
+        assert!(solve_choice(base, choice, &settings).is_err(), "{what}: no ensemble where there is a motion");
+        return;
+    };
+    let scenes = members(name, base, parameter.as_deref());
+    let mut ready = Vec::new();
+    for scene in &scenes {
+        let start = EnsembleStart::of(scene, parameter.as_deref().as_slice(), constants_of(choice, scene));
+        ready.push(ensemble.member_at(&start));
+    }
+    let members: Vec<_> = ready.iter().flatten().cloned().collect();
+    let (start, length) = (base.start.t, base.duration);
+    let times: Vec<f64> = [0.0, 0.01, 0.1, 0.25, 0.3, 0.4, 0.5].map(|part| start + part * length).to_vec();
+    let mut motions = ensemble.motions(&members, &times, &EnsembleOptions::default()).into_iter();
+    for (scene, member) in scenes.iter().zip(ready) {
+        // a removal is made of expressions of its own scene
+        let mut own = choices(scene).into_iter().chain(forms(scene));
+        let own = own.find(|own| own.label == choice.label).expect("the same choice");
+        let choice = Choice { constants: constants_of(choice, scene), ..own };
+        let single = solve_choice(scene, &choice, &settings);
+        let here = member.and_then(|_| motions.next().expect("an answer for every member"));
+        let (mut single, here) = match (single, here) {
+            (Ok(single), Ok(here)) => (single, here),
+            (Err(_), Err(_)) => {
+                count.refused += 1;
+                continue;
+            }
+            (single, here) => panic!("{what}: {:?} alone, {:?} in an ensemble", single.err(), here.err()),
+        };
+        let there = error_estimate(&mut single, setting(scene)).expect("a motion that can be read off");
+        let estimate = here.estimate.expect("an estimate").absolute + there.absolute;
+        // pivots are chosen at a start: that of the ensemble is not that of the member, and forms with other pivots end elsewhere
+        let same = guards(ensemble.equations()) == guards(&single.equations);
+        match (&here.run.ending, &single.ending) {
+            _ if !same => count.other_pivots += 1,
+            (Ending::Completed, Ending::Completed) => count.completed += 1,
+            (Ending::Stopped { t: a, .. }, Ending::Stopped { t: b, .. }) => {
+                assert!((a - b).abs() < 1e-3 * length, "{what}: stopped at {a} and {b}");
+                count.stopped += 1;
+            }
+            (a, b) => panic!("{what}: {a:?} in an ensemble, {b:?} alone"),
+        }
+        if let Some(why) = &here.run.alone
+            && !count.alone.contains(why)
+        {
+            count.alone.push(why.clone());
+        }
+        let reached = times.iter().filter(|&&t| t <= single.end()).count();
+        let differ = here.outputs.len().abs_diff(reached);
+        assert!(differ <= 1 || !same, "{what}: {} and {reached} times", here.outputs.len());
+        for (&t, outputs) in times.iter().zip(&here.outputs).take(reached) {
+            let expected = single.at(t).expect("a time that was reached");
+            let size = expected.coordinates.iter().fold(1.0_f64, |a, x| a.max(x.abs()));
+            for (a, b) in outputs.coordinates.iter().zip(&expected.coordinates) {
+                // what is estimated in the kinetic metric is 100 times smaller than this in any coordinate of these scenes
+                let limit = 1e-9 * size + 1e2 * estimate;
+                assert!((a - b).abs() <= limit, "{what} at {t}: {a} and {b}, limit {limit:.1e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn members_are_single_motions_in_every_formulation_of_every_scene() {
+    let mut count = Count::default();
+    for (name, _) in SCENES {
+        let base = find(name, &[]).expect("a scene");
+        for choice in choices(&base).iter().chain(&forms(&base)) {
+            compare(name, &base, choice, &mut count);
+        }
+    }
+    println!("{count:?}");
+    assert!(count.completed > 500, "{count:?}");
+    assert!(count.stopped > 20, "members that stop: {count:?}");
+    for why in ["an event on the way", "not in lanes", "not to be trusted"] {
+        assert!(count.alone.iter().any(|words| words.contains(why)), "no member left for `{why}`: {count:?}");
+    }
+}

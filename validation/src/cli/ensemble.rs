@@ -1,0 +1,96 @@
+//! Options of `deltaq ensemble`, and those that it has in common with `deltaq solve`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Format, assignment};
+
+/// Members of an ensemble, at most.
+pub const MOST_MEMBERS: usize = 1_000_000;
+
+/// Formulation, removal and free constants.
+#[derive(Args, Debug)]
+pub struct MotionArguments {
+    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced or removed-constraint.
+    #[arg(long, short)]
+    pub formulation: String,
+    /// Vakonomic multipliers at the start, one a constraint.
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
+    pub mu0: Option<Vec<f64>>,
+    /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
+    #[arg(long, value_name = "NAME")]
+    pub removal: Option<String>,
+    /// Free constants of the removed-constraint equations: `zero`, `horizon=T` or `start=A,B,…` (P(t₀), in the order of the
+    /// memory variables). Those of the removal if left out.
+    #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
+    pub constants: Option<String>,
+}
+
+/// `deltaq ensemble`.
+#[derive(Args, Debug)]
+pub struct EnsembleArguments {
+    /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
+    pub scene: String,
+    /// File with one member a line: commas between numbers, the first line names what they replace (a parameter, a coordinate or a velocity at the start, mu1, …).
+    #[arg(long, value_name = "FILE")]
+    pub members: Option<PathBuf>,
+    /// Equidistant values of one of these, both ends included; several are combined with each other and with the lines of the file.
+    #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range, required_unless_present = "members")]
+    pub vary: Vec<Range>,
+    /// Which motion of it.
+    #[command(flatten)]
+    pub motion: MotionArguments,
+    /// Tolerance. A second run of each member has a hundredth of it; the difference is the error estimate.
+    #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
+    pub tolerance: f64,
+    /// Times to print: `a,b,c` or `from:to:count`. The end if left out.
+    #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// Replace a parameter, a start value or `duration` for all members.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub overrides: Vec<(String, f64)>,
+    /// No projection onto the constraint.
+    #[arg(long)]
+    pub no_projection: bool,
+    /// Number of threads; one a processor if left out. Results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    pub format: Format,
+    /// File to write; to the terminal if left out.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// Equidistant values of something that varies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Range {
+    /// What varies.
+    pub name: String,
+    /// First value.
+    pub from: f64,
+    /// Last value.
+    pub to: f64,
+    /// Number of values.
+    pub count: usize,
+}
+
+fn range(text: &str) -> Result<Range, String> {
+    let parts = text.split_once('=').and_then(|(name, rest)| {
+        let (ends, count) = rest.rsplit_once(':')?;
+        let (from, to) = ends.split_once("..")?;
+        Some((name.trim(), from, to, count))
+    });
+    let (name, from, to, count) = parts.ok_or_else(|| format!("`{text}` is not NAME=FROM..TO:COUNT"))?;
+    let number = |x: &str| match x.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{x}` in `{text}` is not a finite number")),
+    };
+    let count: usize = count.trim().parse().map_err(|_| format!("`{count}` in `{text}` is not a count"))?;
+    if !(1..=MOST_MEMBERS).contains(&count) {
+        return Err(format!("`{text}` asks for {count} values; 1 to {MOST_MEMBERS} are possible"));
+    }
+    Ok(Range { name: name.into(), from: number(from)?, to: number(to)?, count })
+}

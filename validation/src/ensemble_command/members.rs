@@ -1,0 +1,182 @@
+//! What the members of an ensemble differ by: a file, ranges, or both.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use mechanics::Scene;
+
+use crate::cli::{EnsembleArguments, MOST_MEMBERS, Range};
+
+/// Values of what varies, one row a member.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Members {
+    /// What varies.
+    pub names: Vec<String>,
+    /// One value a name.
+    pub rows: Vec<Vec<f64>>,
+    /// Where each name is from, for complaints.
+    places: Vec<String>,
+}
+
+impl Members {
+    /// Those of the file, each combined with all values of the ranges, of which the last one changes fastest.
+    ///
+    /// # Errors
+    /// Bad input, with the place; a name that is not one of `scene`.
+    pub fn of(arguments: &EnsembleArguments, scene: &Scene) -> Result<Members> {
+        let mut members = match &arguments.members {
+            Some(path) => Members::read(path)?,
+            None => Members { names: Vec::new(), rows: vec![Vec::new()], places: Vec::new() },
+        };
+        for range in &arguments.vary {
+            members.combine(range)?;
+        }
+        let known = known(scene);
+        for (name, place) in members.names.iter().zip(&members.places) {
+            if name == "duration" || name == "time" {
+                bail!("{place}: `{name}` is the same for all members; see --set");
+            }
+            if !known.contains(name) {
+                bail!("{place}: the scene has no `{name}` that could vary; it has {}", known.join(", "));
+            }
+            if arguments.overrides.iter().any(|(set, _)| set == name) {
+                bail!("{place}: `{name}` varies, and --set fixes it");
+            }
+        }
+        Ok(members)
+    }
+
+    fn read(path: &Path) -> Result<Members> {
+        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        parse(&path.display().to_string(), &text)
+    }
+
+    fn combine(&mut self, range: &Range) -> Result<()> {
+        let place = format!("--vary {}={}..{}:{}", range.name, range.from, range.to, range.count);
+        if let Some(i) = self.names.iter().position(|name| *name == range.name) {
+            bail!("{place}: `{}` varies already: {}", range.name, self.places[i]);
+        }
+        let count = self.rows.len().saturating_mul(range.count);
+        ensure!(count <= MOST_MEMBERS, "{place}: that makes {count} members; at most {MOST_MEMBERS} are possible");
+        let last = (range.count.max(2) - 1) as f64;
+        let value = |i: usize| range.from + (range.to - range.from) * i as f64 / last;
+        let row = |row: &Vec<f64>| (0..range.count).map(|i| [&row[..], &[value(i)]].concat()).collect::<Vec<_>>();
+        self.rows = self.rows.iter().flat_map(row).collect();
+        self.names.push(range.name.clone());
+        self.places.push(place);
+        Ok(())
+    }
+
+    /// Where the name is from, of which a fault of the scene says that it means nothing.
+    pub fn place(&self, name: &str) -> &str {
+        self.names.iter().position(|known| known == name).map_or("--set", |i| &self.places[i])
+    }
+}
+
+/// What can vary.
+fn known(scene: &Scene) -> Vec<String> {
+    let system = &scene.system;
+    let parameters = system.parameters.iter().map(|p| system.graph.name(p.symbol));
+    let coordinates = system.coordinates.iter().map(|c| c.name.clone());
+    let velocities = system.coordinates.iter().map(|c| format!("{}'", c.name));
+    let multipliers = (1..=system.constraints.len()).map(|i| format!("mu{i}"));
+    parameters.chain(coordinates).chain(velocities).chain(multipliers).collect()
+}
+
+/// The cells of a line with their columns, in characters from 1, without blanks and quotation marks around them.
+fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut column = 1;
+    line.split(',').map(move |cell| {
+        let blanks = cell.chars().take_while(|c| c.is_whitespace()).count();
+        let place = column + blanks;
+        column += cell.chars().count() + 1;
+        let inner = cell.trim();
+        (place, inner.strip_prefix('"').and_then(|x| x.strip_suffix('"')).unwrap_or(inner).trim())
+    })
+}
+
+fn parse(file: &str, text: &str) -> Result<Members> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let numbered = text.lines().zip(1..).map(|(line, number)| (number, line));
+    let mut lines = numbered.filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
+    let Some((number, header)) = lines.next() else { bail!("{file}: no line that names what varies") };
+    let (mut names, mut places) = (Vec::new(), Vec::<String>::new());
+    for (column, name) in cells(header) {
+        let place = format!("{file}:{number}:{column}");
+        ensure!(!name.is_empty(), "{place}: a name is missing between the commas");
+        if let Some(i) = names.iter().position(|known| known == name) {
+            bail!("{place}: `{name}` stands at {} already", places[i]);
+        }
+        names.push(name.to_string());
+        places.push(place);
+    }
+    let mut rows = Vec::new();
+    for (number, line) in lines {
+        let mut row = Vec::with_capacity(names.len());
+        for (column, cell) in cells(line) {
+            let place = format!("{file}:{number}:{column}");
+            ensure!(
+                row.len() < names.len(),
+                "{place}: more numbers than the {} that the first line names",
+                names.len()
+            );
+            let name = &names[row.len()];
+            match cell.parse::<f64>() {
+                Ok(value) if value.is_finite() => row.push(value),
+                Ok(value) => bail!("{place}: `{name}` is {value}; it must be finite"),
+                Err(_) => bail!("{place}: `{cell}` is not a number, for `{name}`"),
+            }
+        }
+        let column = line.chars().count() + 1;
+        let (found, expected) = (row.len(), names.len());
+        ensure!(found == expected, "{file}:{number}:{column}: {found} numbers; the first line names {expected}");
+        rows.push(row);
+        ensure!(rows.len() <= MOST_MEMBERS, "{file}:{number}:1: more than {MOST_MEMBERS} members");
+    }
+    ensure!(!rows.is_empty(), "{file}:{}:1: no members below the names", number + 1);
+    Ok(Members { names, rows, places })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(text: &str) -> String {
+        parse("m.csv", text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_file_is_read_with_its_marks_and_blanks() {
+        let members = parse("m.csv", "\u{feff}# slopes\n\n \"x'\" , g\r\n1, 2e0\r\n# no\r\n-3,4\n").unwrap();
+        assert_eq!(members.names, ["x'", "g"]);
+        assert_eq!(members.rows, [[1.0, 2.0], [-3.0, 4.0]]);
+        assert_eq!(members.places, ["m.csv:3:2", "m.csv:3:9"]);
+    }
+
+    #[test]
+    fn faults_have_their_place() {
+        assert_eq!(fault("g, g\n1,2\n"), "m.csv:1:4: `g` stands at m.csv:1:1 already");
+        assert_eq!(fault("g,,k\n"), "m.csv:1:3: a name is missing between the commas");
+        assert_eq!(fault("g,k\n1,2\n\n3,  ä\n"), "m.csv:4:5: `ä` is not a number, for `k`");
+        assert_eq!(fault("g,k\n1,inf\n"), "m.csv:2:3: `k` is inf; it must be finite");
+        assert_eq!(fault("g,k\n1\n"), "m.csv:2:2: 1 numbers; the first line names 2");
+        assert_eq!(fault("g,k\n1,2,3\n"), "m.csv:2:5: more numbers than the 2 that the first line names");
+        assert_eq!(fault("g,k\n"), "m.csv:2:1: no members below the names");
+        assert_eq!(fault("\n"), "m.csv: no line that names what varies");
+    }
+
+    #[test]
+    fn ranges_are_combined_and_end_where_they_should() {
+        let mut members = parse("m.csv", "g\n1\n2\n").unwrap();
+        members.combine(&Range { name: "k".into(), from: 0.1, to: 0.7, count: 3 }).unwrap();
+        assert_eq!(members.names, ["g", "k"]);
+        assert_eq!(members.rows.len(), 6);
+        assert_eq!((&members.rows[2][..], &members.rows[3][..]), (&[1.0, 0.7][..], &[2.0, 0.1][..]));
+        members.combine(&Range { name: "one".into(), from: 3.0, to: 5.0, count: 1 }).unwrap();
+        assert!(members.rows.len() == 6 && members.rows.iter().all(|row| row[2] == 3.0));
+        let error = members.combine(&Range { name: "g".into(), from: 0.0, to: 1.0, count: 2 }).unwrap_err();
+        assert_eq!(error.to_string(), "--vary g=0..1:2: `g` varies already: m.csv:1:1");
+        let error = members.combine(&Range { name: "x".into(), from: 0.0, to: 1.0, count: 999_999 }).unwrap_err();
+        assert!(error.to_string().contains("5999994 members; at most 1000000"), "{error}");
+    }
+}

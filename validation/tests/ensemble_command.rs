@@ -1,0 +1,158 @@
+//! `deltaq ensemble`, run as a user runs it: members are single motions, none is dropped, faults have their place.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn deltaq(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_deltaq")).args(arguments).output().expect("the command runs")
+}
+
+#[track_caller]
+fn answer(arguments: &[&str], code: i32) -> (String, String) {
+    let output = deltaq(&[&["ensemble"], arguments].concat());
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).expect("UTF-8");
+    let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    (stdout, stderr)
+}
+
+#[track_caller]
+fn refused(arguments: &[&str], words: &[&str]) {
+    let (stdout, stderr) = answer(arguments, 2);
+    assert!(stdout.is_empty(), "{arguments:?}: a partial answer: {stdout}");
+    for word in words {
+        assert!(stderr.contains(word), "{arguments:?}: `{word}` is not in {stderr}");
+    }
+}
+
+/// Names of the columns and the cells of every row; causes, which are quoted, stand last.
+fn table(text: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+    let rows = lines.map(|line| line.splitn(names.len(), ',').collect::<Vec<_>>());
+    let rows: Vec<Vec<&str>> = rows.collect();
+    assert!(rows.iter().all(|row| row.len() == names.len()), "{text}");
+    (names, rows)
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("a file");
+    path.display().to_string()
+}
+
+#[test]
+fn members_are_the_motions_of_solve() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "m.csv", "g, phi'\n9.81, 1.1\n3.7, -0.4\n1.6, 2\n");
+    let automatic = ["removed-constraint", "--removal", "quasi-velocities", "--constants", "start=0.5"];
+    for formulation in [&["chetaev"][..], &["chetaev-reduced"], &["vakonomic"], &automatic] {
+        let arguments = [&["sledge", "--times", "0,2.5,10", "-f"], formulation].concat();
+        let (text, _) = answer(&[&arguments[..], &["--members", &file, "--vary", "phi=0..0.6:2"]].concat(), 0);
+        let (names, rows) = table(&text);
+        assert_eq!(&names[..5], ["member", "set g", "set phi'", "set phi", "t"]);
+        assert_eq!(rows.len(), 3 * 2 * 3);
+        for member in rows.chunks(3) {
+            let set: Vec<String> = (1..4).map(|i| format!("{}={}", &names[i][4..], member[0][i])).collect();
+            let set = set.iter().flat_map(|x| ["--set", x]).collect::<Vec<_>>();
+            let single = deltaq(&[&["solve"], &arguments[..], &["--method", "taylor"], &set].concat());
+            let single = String::from_utf8(single.stdout).expect("UTF-8");
+            let (known, expected) = table(&single);
+            assert_eq!(&names[4..4 + known.len()], known);
+            for (row, expected) in member.iter().zip(&expected) {
+                for (here, there) in row[4..].iter().zip(expected) {
+                    let [here, there] = [here, there].map(|x| x.parse::<f64>().expect("a number"));
+                    assert!((here - there).abs() < 1e-8 * there.abs().max(1.0), "{formulation:?} {set:?}: {row:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn members_that_fail_are_listed_with_their_cause() {
+    // the first and the second blade turn across the slope, where x is no parameter of the motion; the third comes back before
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = write(folder.path(), "m.csv", "phi,phi'\n0.3,1.1\n0.3,-0.2\n0.1,-1.5\n");
+    let removed = ["sledge", "-f", "removed-constraint", "--removal", "along-x", "--constants", "zero"];
+    let arguments = [&removed[..], &["--members", &file, "--times", "0:0.8:3"]].concat();
+    let (text, complaint) = answer(&arguments, 3);
+    let (names, rows) = table(&text);
+    let of = |member: &str| rows.iter().filter(|row| row[0] == member).collect::<Vec<_>>();
+    let (status, cause) = (names.len() - 2, names.len() - 1);
+    assert_eq!(of("1").len(), 2, "{text}");
+    assert!(of("1").iter().all(|row| row[status] == "stopped" && row[cause].contains("cos(phi) vanishes")), "{text}");
+    assert_eq!(of("2").len(), 3, "{text}");
+    assert!(of("2").iter().all(|row| row[status] == "stopped"), "the run goes on to 10 s: {text}");
+    assert!(complaint.contains("member 1 (phi = 0.3, phi' = 1.1): stopped at t = 0.69"), "{complaint}");
+
+    let (text, complaint) = answer(&["ball-in-cone", "-f", "chetaev", "--vary", "theta=-0.4..0.4:3"], 3);
+    let (_, rows) = table(&text);
+    assert_eq!(rows.iter().map(|row| row[status_of(&text)]).collect::<Vec<_>>(), ["completed", "refused", "completed"]);
+    assert!(rows[1].iter().filter(|cell| cell.is_empty()).count() > 10, "{text}");
+    assert!(text.contains("not determined") && complaint.starts_with("deltaq: 1 of 3 members"), "{complaint}");
+
+    let json = ["ball-in-cone", "-f", "chetaev", "--vary", "theta=-0.4..0.4:3", "--format", "json"];
+    let value: Value = serde_json::from_str(&answer(&json, 3).0).expect("JSON");
+    assert_eq!(value["count"], serde_json::json!({ "completed": 2, "untrusted": 0, "stopped": 0, "refused": 1 }));
+    assert_eq!(value["members"][1]["set"]["theta"], 0.0);
+    assert!(value["members"][1]["cause"].as_str().is_some_and(|cause| cause.contains("not determined")));
+    assert_eq!(value["members"][0]["coordinates"]["theta"].as_array().map(Vec::len), Some(1));
+}
+
+fn status_of(text: &str) -> usize {
+    table(text).0.iter().position(|name| *name == "status").expect("a status")
+}
+
+#[test]
+fn the_answer_does_not_depend_on_threads_and_is_written_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["sledge", "-f", "vakonomic", "--vary", "mu1=-0.3..0.3:7", "--vary", "k=0.5..1:3"];
+    let (text, _) = answer(&arguments, 0);
+    for threads in ["1", "3"] {
+        let out = folder.path().join(threads).join("members.csv");
+        let given = ["--threads", threads, "--out", out.to_str().expect("UTF-8")];
+        let (told, _) = answer(&[&arguments[..], &given].concat(), 0);
+        assert!(told.starts_with("21 members in "), "{told}");
+        assert_eq!(std::fs::read_to_string(&out).expect("the file"), text);
+        let beside = std::fs::read_dir(out.parent().expect("a folder")).expect("files").count();
+        assert_eq!(beside, 1, "something was left beside the answer");
+    }
+}
+
+#[test]
+fn faults_have_their_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sledge = ["sledge", "-f", "chetaev"];
+    let file = |text: &str, words: &[&str]| {
+        let path = write(folder.path(), "m.csv", text);
+        refused(&[&sledge[..], &["--members", &path]].concat(), words);
+    };
+    file("g,phi\n9,1\n9,one\n", &["m.csv:3:3", "`one`", "phi"]);
+    file("g,phi\n9,1,2\n", &["m.csv:2:5", "more numbers than the 2"]);
+    file("g,gg\n9,1\n", &["m.csv:1:3", "`gg`", "alpha"]);
+    file("duration\n9\n", &["m.csv:1:1", "--set"]);
+    file("mu1\n9\n", &["m.csv:1:1", "vakonomic"]);
+    refused(&sledge, &["--vary"]);
+    refused(&[&sledge[..], &["--members", "nowhere.csv"]].concat(), &["nowhere.csv"]);
+    for (bad, word) in
+        [("g", "NAME="), ("g=1..2", "NAME="), ("g=1..2:0", "1000000"), ("g=1..x:3", "`x`"), ("g=1..inf:3", "inf")]
+    {
+        refused(&[&sledge[..], &["--vary", bad]].concat(), &[word]);
+    }
+    let vary = [&sledge[..], &["--vary", "g=1..2:3"]].concat();
+    refused(&[&vary[..], &["--vary", "g=1..2:3"]].concat(), &["varies already"]);
+    refused(&[&vary[..], &["--vary", "k=1..2:999999"]].concat(), &["2999997 members", "1000000"]);
+    refused(&[&vary[..], &["--set", "g=2"]].concat(), &["--set fixes it"]);
+    refused(&[&vary[..], &["--times", "11"]].concat(), &["outside of the run"]);
+    refused(&[&vary[..], &["--times", "2,1"]].concat(), &["ascending"]);
+    refused(&["sledge", "-f", "newton", "--vary", "g=1..2:3"], &["newton"]);
+    refused(&["sledge", "-f", "removed-constraint", "--vary", "g=1..2:3"], &["natural at a horizon"]);
+    refused(&["sledge", "-f", "chetaev", "--vary", "y'=1..2:3"], &["none of 3 members", "contradict"]);
+    for tolerance in ["0", "-1", "1", "nan", "inf"] {
+        refused(&[&vary[..], &[&format!("--tolerance={tolerance}")]].concat(), &["olerance"]);
+    }
+}
