@@ -5,7 +5,7 @@ use deltaq::{
 };
 use integrate::Method;
 use mechanics::{ConstantsRule, Equations, Recombination, Scene};
-use validation::stability::{CASES, Cell, Question, Reference, Verdict, run};
+use validation::stability::{CASES, Cell, LONG, Long, MILLION, Question, Reference, Stepping, Verdict, long_runs, run};
 
 fn questions(case: &str) -> Vec<Question> {
     let case = CASES.iter().find(|c| c.name == case).expect("a case of that name");
@@ -37,6 +37,59 @@ fn nothing_is_wrong_and_no_case_is_only_refused() {
     for method in Method::ALL {
         assert!(cells.iter().filter(accurate).any(|cell| cell.method == method), "{method:?} has no accurate answer");
     }
+}
+
+#[test]
+fn a_million_steps_keep_what_they_are_to_keep() {
+    let runs = long_runs(true).expect("references reach as far");
+    assert_eq!(runs.len(), LONG.len() * Stepping::ALL.len());
+    for run in &runs {
+        assert_eq!(run.verdict.word(), "accurate", "{run:?}");
+        assert!(run.constraint < 1e-10, "{run:?}");
+        if run.stepping == Stepping::Leapfrog {
+            assert_eq!(run.steps, MILLION);
+            assert!(run.constraint < 1e-15, "{run:?}");
+            // where the motion comes back, its energy does
+            assert!(run.duration < 100.0 || run.trend < 1e-2 * run.energy, "{run:?}");
+        }
+    }
+}
+
+#[test]
+fn a_long_run_that_goes_elsewhere_is_called_wrong() {
+    let elsewhere = |_: &str| Reference::Closed(Box::new(|t| vec![0.0, 0.0, 0.3 + 1.1 * t]));
+    let known = LONG[0].reference;
+    for (reference, word) in [(known, "accurate"), (Some(elsewhere as fn(&str) -> Reference), "wrong")] {
+        let long = Long { scene: "sledge", formulation: "chetaev", duration: 20.0, constants: None, reference };
+        let run = long.run(Stepping::Adaptive(Method::Dop853)).expect("a scene");
+        assert_eq!(run.verdict.word(), word, "{run:?}");
+    }
+}
+
+#[test]
+fn radau_steps_over_friction_whatever_its_strength() {
+    for strength in [1e1, 1e4, 1e7, 1e10] {
+        let motion = motion(&question("viscous", strength, "Newton, with friction"), Method::Radau5, 1e-7, 4_000);
+        assert!(motion.is_complete() && motion.doubt.is_none(), "N = {strength:e}: {:?}", motion.ending);
+        // 1400 at the tighter tolerance, whatever N
+        assert!(motion.work.steps + motion.work.rejected < 2500, "N = {strength:e}: {:?}", motion.work);
+    }
+}
+
+#[test]
+fn what_nearly_dependent_constraints_lose_is_in_the_estimate() {
+    // at an angle of 1e-9 round-off in the constraints is worth 1e-7
+    let point = 2.0_f64.powi(-30);
+    for cell in question("dependent", point, "Chetaev").cells("dependent").expect("a reference") {
+        let Verdict::Accurate { error, estimate } = cell.verdict else { panic!("{cell:?}") };
+        assert!(error < estimate, "{cell:?}");
+    }
+}
+
+#[test]
+fn steps_that_round_off_decides_are_said() {
+    let noisy = motion(&question("added-mass", 1e10, "Newton, with added mass"), Method::Dop853, 1e-10, 4_000);
+    assert!(noisy.doubt.as_ref().is_some_and(|words| words.contains("round-off limits")), "{:?}", noisy.doubt);
 }
 
 #[test]

@@ -54,8 +54,10 @@ pub struct Long {
     pub formulation: &'static str,
     /// How long.
     pub duration: f64,
-    constants: Option<f64>,
-    reference: Option<fn(&str) -> Reference>,
+    /// Every free constant, where it is not that of the scene.
+    pub constants: Option<f64>,
+    /// What is known of it, in a formulation.
+    pub reference: Option<fn(&str) -> Reference>,
 }
 
 /// The long motions: those of the sledge have a reference. Its vakonomic and its removed-constraint motion turn ever faster, as `g t/k`, so that equal steps
@@ -82,7 +84,7 @@ pub const LONG: [Long; 4] = [
         constants: None,
         reference: Some(sledge_reference),
     },
-    Long { scene: "disc", formulation: "vakonomic", duration: 10_000.0, constants: Some(0.1), reference: None },
+    Long { scene: "disc", formulation: "vakonomic", duration: 5_000.0, constants: Some(0.1), reference: None },
 ];
 
 /// What became of a long run.
