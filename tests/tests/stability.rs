@@ -71,8 +71,8 @@ fn radau_steps_over_friction_whatever_its_strength() {
     for strength in [1e1, 1e4, 1e7, 1e10] {
         let motion = motion(&question("viscous", strength, "Newton, with friction"), Method::Radau5, 1e-7, 4_000);
         assert!(motion.is_complete() && motion.doubt.is_none(), "N = {strength:e}: {:?}", motion.ending);
-        // 1400 at the tighter tolerance, whatever N
-        assert!(motion.work.steps + motion.work.rejected < 2500, "N = {strength:e}: {:?}", motion.work);
+        // 900 to 1100 at the tighter tolerance, 1e-9, whatever N
+        assert!(motion.work.steps + motion.work.rejected < 1500, "N = {strength:e}: {:?}", motion.work);
     }
 }
 
@@ -152,16 +152,16 @@ fn steps_that_the_tolerance_does_not_decide_are_said() {
 
 #[test]
 fn a_motion_ends_where_the_run_for_its_estimate_ends() {
-    // close to the end of the chart, the looser run gets stuck in its own round-off before the tighter one
-    let stuck = questions("cone-chart").iter().filter(|q| q.point < 1e-2).any(|q| {
-        (q.subject)().is_ok_and(|_| {
-            let motion = motion(q, Method::Dop853, 1e-10, 4_000);
-            let Ending::Stopped { t, cause } = &motion.ending else { panic!("complete at θ = {}", q.point) };
-            assert!(motion.end() >= 0.99 * t, "ends at {}, says {t}: {cause}", motion.end());
-            cause.starts_with("the run that estimates the error stops here")
-        })
-    });
-    assert!(stuck, "no run for an estimate stops first: another example is needed");
+    // a stiff problem by series: of lower order they are stable for shorter steps only, so that the looser run is the first to have taken them all
+    let stiff = motion(&question("viscous", 1e6, "Newton, with friction"), Method::Taylor, 1e-10, 4_000);
+    let Ending::Stopped { t, cause } = &stiff.ending else { panic!("complete") };
+    assert!(cause.starts_with("the run that estimates the error stops here"), "{cause}");
+    assert!(stiff.end() >= 0.99 * t, "ends at {}, says {t}", stiff.end());
+    // close to the end of a chart, the tighter run follows its round-off and stops first, and the looser one goes no farther
+    let asked = question("cone-chart", 1e-5, "Chetaev");
+    let stuck = motion(&asked, Method::Dop853, 1e-10, 4_000);
+    let Ending::Stopped { t, .. } = &stuck.ending else { panic!("complete") };
+    assert!(stuck.end() <= *t && stuck.end() >= 0.99 * t, "ends at {}, says {t}", stuck.end());
 }
 
 const NEARLY_ONE: &str = r#"

@@ -107,7 +107,7 @@ impl StabilityReport {
         let _ = writeln!(
             page,
             "\n## million-steps\n\nWhat a long run loses. *Leapfrog* takes {MILLION} equal steps of order 2 that keep the structure of the motion (`--method leapfrog`); the others go as far, \
-             with projection, in as many steps as their tolerance asks for, of which they may take as many. The \
+             with projection, in as many steps as their tolerance asks for. The \
              vakonomic and the removed-constraint sledge turn ever faster, so that equal steps do for a time only.\n\n\
              *Energy*: largest |E − E₀|, in parts of the largest v·Mv. *Trend*: how far the mean energies of ten parts of the run are apart; what is left of the energy error is \
              an oscillation. *Constraint*: largest |f|/(|∂f/∂v||v|). All read off at 20001 times, where the other methods have polynomials that no projection was applied to. *Places* have a verdict as above for the \
