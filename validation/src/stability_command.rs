@@ -8,29 +8,39 @@ use serde_json::{Value, json};
 
 use crate::cli::{StabilityArguments, TextOrJson};
 use crate::solve_command::Answer;
-use crate::stability::{CASES, Case, Cell, Verdict, run as answer};
+use crate::stability::{CASES, Case, Cell, LongRun, Verdict, long_runs, run as answer};
+
+/// Name of the runs of a million steps.
+const LONG_RUNS: &str = "million-steps";
 
 /// Runs the stiff and extreme cases.
 ///
 /// # Errors
 /// Where a case is unknown, or a reference cannot be had.
 pub fn run(arguments: &StabilityArguments) -> Result<Answer> {
-    let known: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+    let known: Vec<&str> = CASES.iter().map(|case| case.name).chain([LONG_RUNS]).collect();
     if let Some(unknown) = arguments.cases.iter().find(|name| !known.contains(&name.as_str())) {
         bail!("unknown case `{unknown}`; known: {}", known.join(", "));
     }
-    let chosen = |case: &&Case| arguments.cases.is_empty() || arguments.cases.iter().any(|name| name == case.name);
-    let cases: Vec<&Case> = CASES.iter().filter(chosen).collect();
+    let chosen = |name: &str| arguments.cases.is_empty() || arguments.cases.iter().any(|asked| asked == name);
+    let cases: Vec<&Case> = CASES.iter().filter(|case| chosen(case.name)).collect();
     let clock = Instant::now();
     let cells = answer(&cases, arguments.quiet)?;
-    let wrong = cells.iter().filter(|cell| matches!(cell.verdict, Verdict::Wrong { .. })).count();
+    let runs = if chosen(LONG_RUNS) { long_runs(arguments.quiet)? } else { Vec::new() };
+    let verdicts = cells.iter().map(|cell| &cell.verdict).chain(runs.iter().map(|run| &run.verdict));
+    let wrong = verdicts.filter(|verdict| matches!(verdict, Verdict::Wrong { .. })).count();
+    let answers = cells.len() + runs.len();
     let text = match arguments.format {
-        TextOrJson::Json => serde_json::to_string_pretty(&cells.iter().map(json_of).collect::<Vec<_>>())? + "\n",
+        TextOrJson::Json => {
+            let values: Vec<Value> = cells.iter().map(json_of).chain(runs.iter().map(json_of_run)).collect();
+            serde_json::to_string_pretty(&values)? + "\n"
+        }
         TextOrJson::Text => {
-            table(&cells) + &format!("\n{} cells, {:.1} s\n", cells.len(), clock.elapsed().as_secs_f64())
+            let seconds = clock.elapsed().as_secs_f64();
+            table(&cells) + &table_of_runs(&runs) + &format!("\n{answers} cells, {seconds:.1} s\n")
         }
     };
-    let complaint = (wrong > 0).then(|| format!("{wrong} of {} cells are wrong", cells.len()));
+    let complaint = (wrong > 0).then(|| format!("{wrong} of {answers} cells are wrong"));
     Ok(Answer { text, complaint })
 }
 
@@ -43,7 +53,30 @@ fn json_of(cell: &Cell) -> Value {
         "verdict": cell.verdict.word(),
         "steps": cell.steps,
     });
-    match &cell.verdict {
+    write_verdict(&mut value, &cell.verdict);
+    value
+}
+
+fn json_of_run(run: &LongRun) -> Value {
+    let mut value = json!({
+        "case": LONG_RUNS,
+        "scene": run.scene,
+        "duration": run.duration,
+        "formulation": run.formulation,
+        "method": run.stepping.name(),
+        "verdict": run.verdict.word(),
+        "by_place": run.by_place,
+        "steps": run.steps,
+        "energy": run.energy,
+        "trend": run.trend,
+        "constraint": run.constraint,
+    });
+    write_verdict(&mut value, &run.verdict);
+    value
+}
+
+fn write_verdict(value: &mut Value, verdict: &Verdict) {
+    match verdict {
         Verdict::Accurate { error, estimate } | Verdict::Admitted { error, estimate } => {
             (value["error"], value["estimate"]) = (json!(error), json!(estimate));
         }
@@ -52,7 +85,6 @@ fn json_of(cell: &Cell) -> Value {
             (value["error"], value["estimate"], value["t"]) = (json!(error), json!(estimate), json!(t));
         }
     }
-    value
 }
 
 fn table(cells: &[Cell]) -> String {
@@ -67,6 +99,27 @@ fn table(cells: &[Cell]) -> String {
             format!("{:?}", cell.method),
             cell.verdict.word(),
             figures(&cell.verdict)
+        );
+    }
+    text
+}
+
+fn table_of_runs(runs: &[LongRun]) -> String {
+    let mut text = String::new();
+    for run in runs {
+        let _ = writeln!(
+            text,
+            "{:<15} {:>9.2e} {:<24} {:<9} {:<9}{}; {} steps, energy {:.1e}, its trend {:.1e}, constraint {:.1e}",
+            run.scene,
+            run.duration,
+            run.formulation,
+            run.stepping.name(),
+            run.verdict.word(),
+            figures(&run.verdict),
+            run.steps,
+            run.energy,
+            run.trend,
+            run.constraint
         );
     }
     text

@@ -181,10 +181,14 @@ fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Resul
 /// # Errors
 /// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
 pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
+    let combined = Recombination::at(system, start);
     if choice.removal.is_some() {
-        return derive(system, choice); // in which the constraints stand no more
+        // the constraints stand no more in the equations, but they gave the start
+        let mut equations = derive(system, choice)?;
+        equations.lost_digits = combined.ok().flatten().map_or(1.0, |combined| combined.ratio.recip());
+        return Ok(equations);
     }
-    match Recombination::at(system, start)? {
+    match combined? {
         None => derive_from(system, Some(start), choice),
         Some(combined) => Ok(combined.restore(derive_from(&combined.system(system), Some(start), choice)?)),
     }

@@ -207,8 +207,8 @@ pub fn solve(
     let compile = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     let constants = resolve(&mut prepared, constants, settings)?;
-    let looser = prepared.run(&constants, setting.end, settings.tolerance, Origin::LastDigit, settings)?;
     let kept = prepared.run(&constants, setting.end, settings.tolerance * TIGHTER, Origin::Start, settings)?;
+    let looser = prepared.second_run(&constants, setting.end, &kept, settings)?;
     let integrate = clock.elapsed().as_secs_f64();
     let mut end = |run: &Solution| ending(&prepared.equations, &mut prepared.compiled, run);
     let ending = joint_ending(end(&kept.solution), end(&looser.solution), [setting.start.t, setting.end]);
@@ -217,12 +217,10 @@ pub fn solve(
     let seconds = Seconds { derive: 0.0, compile, integrate };
     let mut motion = Motion { work, projection, ..Motion::of(prepared, constants, ending, runs, seconds) };
     motion.form.fallbacks = fallbacks;
-    if settings.method.takes_more_steps_at_less_tolerance() {
-        let (start, end) = (motion.start(), motion.end);
-        // just before a singularity steps become short whatever the tolerance
-        let until = if motion.is_complete() { end } else { start + BEFORE_THE_END * (end - start) };
-        motion.doubt = doubt(&motion.kept.step_times(), &motion.looser.step_times(), until);
-    }
+    let (start, end) = (motion.start(), motion.end);
+    // just before a singularity steps become short whatever the tolerance
+    let until = if motion.is_complete() { end } else { start + BEFORE_THE_END * (end - start) };
+    motion.doubt = doubt(&motion.kept.step_times(), &motion.looser.step_times(), until, settings.method);
     Ok(motion)
 }
 
@@ -266,21 +264,30 @@ const FEW_STEPS: usize = 200;
 /// Steps of a motion that stops are counted over this part of it.
 const BEFORE_THE_END: f64 = 0.9;
 
-/// A hundredth of the tolerance takes at least so many times the steps: 1.78 of a method of order 8.
-const MORE_STEPS: f64 = 1.1;
+/// A hundredth of the tolerance takes at least this power of what the order of the method asks for.
+const MORE_STEPS: f64 = 1.0 / 3.0;
 
-/// Two runs with the same steps have the same error, which their difference does not show.
-fn doubt(kept: &[f64], looser: &[f64], end: f64) -> Option<String> {
+/// A hundredth of the tolerance takes at most so many times what the order of the method asks for, or it is round-off that is looked at.
+const TOO_MANY: f64 = 10.0;
+
+/// Two runs with the same steps have the same error, which their difference does not show; and a run whose steps follow its round-off is no better than
+/// the looser one.
+fn doubt(kept: &[f64], looser: &[f64], end: f64, method: Method) -> Option<String> {
     let sign = (end - kept[0]).signum();
     let count = |times: &[f64]| times.iter().filter(|&&t| (end - t) * sign >= 0.0).count();
     let (tight, loose) = (count(kept), count(looser));
-    let same = loose >= FEW_STEPS && (tight as f64) < MORE_STEPS * loose as f64;
-    same.then(|| {
-        format!(
-            "the error estimate is not to be trusted: {loose} steps at one tolerance, {tight} at a hundredth of it, so that something else limits \
-             the steps"
-        )
-    })
+    let expected = method.order_in_steps().map(|order| TIGHTER.recip().powf(1.0 / order));
+    let part = tight as f64 / loose.max(1) as f64;
+    let what = if expected.is_some_and(|expected| loose >= FEW_STEPS && part < expected.powf(MORE_STEPS)) {
+        "something else limits the steps"
+    } else if tight >= FEW_STEPS && part > TOO_MANY * expected.unwrap_or(1.0) {
+        "round-off limits the steps"
+    } else {
+        return None;
+    };
+    Some(format!(
+        "the error estimate is not to be trusted: {loose} steps at one tolerance, {tight} at a hundredth of it, so that {what}"
+    ))
 }
 
 /// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.

@@ -1,7 +1,7 @@
 //! Runs of the time loop: equations compiled and started, states over time.
 
 use integrate::{DenseOutput, Method, Options, Problem, Solution, Start};
-use mechanics::{Compiled, Equations, EvaluationFailure, Form, Outputs, complete_removal_start};
+use mechanics::{Compiled, Equations, EvaluationFailure, Form, Outputs, Role, complete_removal_start};
 use symbolic::Symbol;
 
 use crate::nodes::Nodes;
@@ -85,15 +85,23 @@ pub(crate) enum Origin {
     LastDigit,
 }
 
+/// Units in the last place by which a start is moved.
+const UNITS: f64 = 4.0;
+
 /// A few units in the last place, up or down as the place in `y` has it.
 pub(crate) fn move_last_digits(y: &mut [f64]) {
-    const UNITS: f64 = 4.0 * f64::EPSILON;
+    move_digits(y, |_| UNITS);
+}
+
+/// So many units in the last place of each, up or down as the place in `y` has it.
+fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
     let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-    for x in y {
+    for (i, x) in y.iter_mut().enumerate() {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        *x *= if state & 1 == 0 { 1.0 + UNITS } else { 1.0 - UNITS };
+        let part = units(i) * f64::EPSILON;
+        *x *= if state & 1 == 0 { 1.0 + part } else { 1.0 - part };
     }
 }
 
@@ -115,6 +123,8 @@ pub(crate) struct Run {
     /// Evaluations that fell back on the plain form.
     pub(crate) fallbacks: usize,
     anchors: Vec<(f64, Vec<f64>)>,
+    /// [`Options::sizes`] of the run.
+    sizes: Vec<f64>,
 }
 
 impl Run {
@@ -205,6 +215,23 @@ impl Prepared {
         values
     }
 
+    /// The run that estimates the error of `kept`, no farther than that one came.
+    pub(crate) fn second_run(
+        &mut self,
+        constants: &[f64],
+        end: f64,
+        kept: &Run,
+        settings: &Settings,
+    ) -> Result<Run, SolveError> {
+        let reached = kept.solution.dense.end();
+        let options = Options { sizes: kept.sizes.clone(), ..self.options(settings.tolerance, settings) };
+        if kept.solution.work.steps == 0 || reached == end {
+            return self.run(constants, end, settings.tolerance, Origin::LastDigit, settings);
+        }
+        let start = self.at(constants, Origin::LastDigit);
+        integrate_once(&mut self.compiled, start, reached, &options)
+    }
+
     /// One run.
     pub(crate) fn run(
         &mut self,
@@ -214,20 +241,34 @@ impl Prepared {
         start: Origin,
         settings: &Settings,
     ) -> Result<Run, SolveError> {
-        let mut y = self.start(constants);
-        if start == Origin::LastDigit {
-            move_last_digits(&mut y);
+        let options = self.options(tolerance, settings);
+        let start = self.at(constants, start);
+        integrate_once(&mut self.compiled, start, end, &options)
+    }
+
+    fn options(&self, tolerance: f64, settings: &Settings) -> Options {
+        Options {
+            method: settings.method,
+            projection: settings.projection,
+            max_steps: settings.max_steps,
+            interrupt: settings.interrupt.clone(),
+            ..Options::with_tolerance(tolerance)
         }
-        let mut options = Options::with_tolerance(tolerance);
-        options.method = settings.method;
-        options.projection = settings.projection;
-        options.max_steps = settings.max_steps;
-        options.interrupt = settings.interrupt.clone();
-        integrate_once(&mut self.compiled, Start { t: self.t, y }, end, &options)
+    }
+
+    fn at(&mut self, constants: &[f64], origin: Origin) -> Start {
+        let mut y = self.start(constants);
+        if origin == Origin::LastDigit {
+            // places are exact; what moves is known as well as the constraints can tell it
+            let place = |role: Role| matches!(role, Role::Position | Role::DisplacementParameter | Role::Memory);
+            let (states, lost) = (&self.equations.states, self.equations.lost_digits.max(UNITS));
+            move_digits(&mut y, |i| if place(states[i].role) { UNITS } else { lost });
+        }
+        Start { t: self.t, y }
     }
 }
 
-/// One run of the time loop from `start`; the constants and the guess of `compiled` are set.
+/// One run of the time loop from `start`, with the sizes of its own start where `options` have none; the constants and the guess of `compiled` are set.
 pub(crate) fn integrate_once(
     compiled: &mut Compiled,
     start: Start,
@@ -241,12 +282,15 @@ pub(crate) fn integrate_once(
     }
     let mut rates = vec![0.0; start.y.len()];
     compiled.rates(start.t, &start.y, &mut rates).map_err(SolveError::AtStart)?;
-    let options = Options { sizes: sizes(&start.y, &rates, end - start.t), ..options.clone() };
+    let mut options = options.clone();
+    if options.sizes.is_empty() {
+        options.sizes = sizes(&start.y, &rates, end - start.t);
+    }
     let before = compiled.fallbacks();
     let mut runner = Runner { compiled, anchors };
     let solution = integrate::integrate(&mut runner, &start, end, &options)?;
     let anchors = runner.anchors;
-    Ok(Run { solution, anchors, fallbacks: compiled.fallbacks() - before })
+    Ok(Run { solution, anchors, fallbacks: compiled.fallbacks() - before, sizes: options.sizes })
 }
 
 /// Compiled equations as the time integrator sees them.

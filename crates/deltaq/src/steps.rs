@@ -6,7 +6,7 @@ use discrete::{Composition, Discrete, Ends, RemovedStart};
 use integrate::Work;
 use mechanics::Scene;
 
-use crate::motion::resolve;
+use crate::motion::{resolve, unconfirmed};
 use crate::nodes::Nodes;
 use crate::run::{Prepared, Trajectory};
 use crate::{Choice, Ending, Motion, Seconds, Settings, SolveError, derive, setting};
@@ -106,9 +106,12 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
     let kept = discrete.trajectory(count)?;
     let looser = discrete.trajectory(count.div_ceil(2))?;
     let integrate = clock.elapsed().as_secs_f64();
-    let ending = match kept.stop.as_ref().or(looser.stop.as_ref()) {
-        None => Ending::Completed,
-        Some(error) => Ending::Stopped { t: kept.end().min(looser.end()), cause: error.to_string() },
+    // a motion ends where the first of its runs ends, for that run's reason
+    let before = (kept.end() - looser.end()) * scene.duration.signum() > 0.0;
+    let ending = match (&kept.stop, &looser.stop) {
+        (_, Some(error)) if before => Ending::Stopped { t: looser.end(), cause: unconfirmed(&error.to_string()) },
+        (Some(error), _) | (None, Some(error)) => Ending::Stopped { t: kept.end(), cause: error.to_string() },
+        (None, None) => Ending::Completed,
     };
     let work = Work { steps: kept.times().len() - 1, ..Work::default() };
     let runs = [kept, looser].map(|run| Trajectory::of_nodes(Nodes::new(run, &prepared, &scene.system)));

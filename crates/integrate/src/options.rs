@@ -41,9 +41,17 @@ impl Method {
         }
     }
 
-    /// Whether less tolerance takes more steps: not where it takes a higher order instead.
-    pub fn takes_more_steps_at_less_tolerance(self) -> bool {
-        self != Method::Taylor
+    /// The number of steps grows as `tolerance^(−1/order)` with this order, for [`Method::Bdf`] at least with it; [`Method::Taylor`] takes a higher order
+    /// instead of more steps, and has none.
+    pub fn order_in_steps(self) -> Option<f64> {
+        match self {
+            Method::Taylor => None,
+            Method::Dop853 => Some(8.0),
+            Method::Tsit45 => Some(5.0),
+            Method::Bdf => Some(6.0),
+            Method::TrBdf2 => Some(3.0),
+            Method::Esdirk34 | Method::Radau5 => Some(4.0),
+        }
     }
 
     /// Whether the method asks for [`crate::Problem::jacobian`].

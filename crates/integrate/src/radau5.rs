@@ -2,18 +2,20 @@
 //!
 //! Newton iteration, error estimate, step control and starting values as in E. Hairer's and G. Wanner's code RADAU5: the three stages are
 //! transformed so that one real and one complex matrix of n rows are factorized, `(γ/h) − J` and `((α + iβ)/h) − J`; Jacobian and factors are
-//! kept while the iteration contracts well. Dense output is the collocation polynomial, of degree 3. The estimate has order 3 too, and unlike in RADAU5,
-//! which asks for `0.1 · tolerance^(2/3)` of it, it is held under the tolerance as it stands: so the dense output is as good as the tolerance,
+//! kept while the iteration contracts well. Where it does not, unlike there, each stage has a Jacobian of its own ([`newton`]).
+//! Dense output is the collocation polynomial, of degree 3. The estimate has order 3 too, and unlike in RADAU5, which asks for `0.1 · tolerance^(2/3)` of it, it is held under the tolerance as it stands: so the dense output is as good as the tolerance,
 //! and the ends of the steps are better by orders. That estimate does not see what is stiff, whose polynomial may be wrong between collocation points;
 //! so a second one compares the ends of the steps with where the polynomial before leads.
 //!
 //! E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, IV.8.
 
-use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+mod newton;
+
+use nalgebra::{Complex, DVector, Dyn, LU};
 
 use crate::options::Options;
 use crate::problem::Start;
-use crate::radau5_tableau::{ERROR, NODES, T, T_INVERSE, eigenvalues};
+use crate::radau5_tableau::{ERROR, NODES};
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, shortest_step};
 use crate::system::{Failure, System, check_finite};
@@ -52,6 +54,9 @@ pub(crate) struct Radau5<'s, 'p> {
     /// Whether the Jacobian was evaluated at `(t, y)`.
     jacobian_is_new: bool,
     factors: Option<Factors>,
+    /// Factors of the matrix with the Jacobians of all stages, and so many steps that are still to be solved with such.
+    all_stages: Option<LU<f64, Dyn, Dyn>>,
+    proper_steps: usize,
     /// `z_i = Y_i − y` of the three stages, and their transforms.
     z: [Vec<f64>; 3],
     w: [Vec<f64>; 3],
@@ -102,6 +107,8 @@ impl<'s, 'p> Radau5<'s, 'p> {
             jacobian: vec![0.0; n * n],
             jacobian_is_new: false,
             factors: None,
+            all_stages: None,
+            proper_steps: 0,
             z: empty(),
             w: empty(),
             stages: empty(),
@@ -124,116 +131,6 @@ impl<'s, 'p> Radau5<'s, 'p> {
 
     fn scale(&self, i: usize) -> f64 {
         self.absolute[i] + self.relative * self.y[i].abs()
-    }
-
-    /// Jacobian and factors for steps of length `h`, as far as they are not there.
-    fn prepare(&mut self, h: f64) -> Result<(), Failure> {
-        if !self.jacobian_is_new && (self.factors.is_none() || self.contraction > GOOD_CONTRACTION) {
-            self.system.jacobian(self.t, &self.y, &mut self.jacobian)?;
-            self.jacobian_is_new = true;
-            self.factors = None;
-        }
-        if self.factors.as_ref().is_some_and(|factors| factors.step == h) {
-            return Ok(());
-        }
-        let n = self.y.len();
-        let [gamma, alpha, beta] = eigenvalues();
-        let mut real = DMatrix::from_row_iterator(n, n, self.jacobian.iter().map(|j| -j));
-        let mut complex = real.map(|x| Complex::new(x, 0.0));
-        for i in 0..n {
-            real[(i, i)] += gamma / h;
-            complex[(i, i)] += Complex::new(alpha / h, beta / h);
-        }
-        let (real, complex) = (real.lu(), complex.lu());
-        if !(real.is_invertible() && complex.is_invertible()) {
-            return Err(Failure::Evaluation { reason: format!("γ/h − ∂F/∂y is singular at t = {}", self.t) });
-        }
-        self.factors = Some(Factors { step: h, real, complex });
-        Ok(())
-    }
-
-    /// The last step's polynomial beyond its end, or zero.
-    fn guess(&mut self, h: f64) {
-        let n = self.y.len();
-        for (stage, c) in NODES.into_iter().enumerate() {
-            for i in 0..n {
-                self.z[stage][i] = self.last.as_ref().map_or(0.0, |(before, [one, two, three])| {
-                    let s = c * h / before;
-                    let inner = two[i] + (s - (NODES[0] - 1.0)) * three[i];
-                    s * (one[i] + (s - (NODES[1] - 1.0)) * inner)
-                });
-            }
-        }
-        self.guessed_end.copy_from_slice(&self.z[2]);
-        for i in 0..n {
-            for (row, w) in T_INVERSE.iter().zip(&mut self.w) {
-                w[i] = row[0] * self.z[0][i] + row[1] * self.z[1][i] + row[2] * self.z[2][i];
-            }
-        }
-    }
-
-    /// Solves the stages; the number of iterations, or by what the step is to be shortened.
-    fn newton(&mut self, h: f64) -> Result<Result<usize, f64>, Failure> {
-        let n = self.y.len();
-        let [gamma, alpha, beta] = eigenvalues().map(|x| x / h);
-        self.margin = self.margin.max(f64::EPSILON).powf(0.8);
-        self.contraction = GOOD_CONTRACTION;
-        let (mut before, mut ratio_before) = (0.0, 0.0);
-        for iteration in 1..=ITERATIONS {
-            for (stage, c) in NODES.into_iter().enumerate() {
-                for i in 0..n {
-                    self.argument[i] = self.y[i] + self.z[stage][i];
-                }
-                self.system.rates(self.t + c * h, &self.argument, &mut self.stages[stage])?;
-            }
-            let Some(factors) = &self.factors else { return Ok(Err(0.5)) };
-            let transformed = |row: usize, i: usize| -> f64 {
-                (0..3).map(|stage| T_INVERSE[row][stage] * self.stages[stage][i]).sum()
-            };
-            let mut real = DVector::from_fn(n, |i, _| transformed(0, i) - gamma * self.w[0][i]);
-            let mut complex = DVector::from_fn(n, |i, _| {
-                let (u, v) = (self.w[1][i], self.w[2][i]);
-                Complex::new(transformed(1, i) - alpha * u + beta * v, transformed(2, i) - alpha * v - beta * u)
-            });
-            if !(factors.real.solve_mut(&mut real) && factors.complex.solve_mut(&mut complex)) {
-                return Ok(Err(0.5));
-            }
-            let mut sum = 0.0;
-            for i in 0..n {
-                let changes = [real[i], complex[i].re, complex[i].im];
-                for (w, change) in self.w.iter_mut().zip(changes) {
-                    w[i] += change;
-                }
-                let scale = self.absolute[i] + self.relative * self.y[i].abs();
-                sum += changes.iter().map(|x| (x / scale).powi(2)).sum::<f64>();
-                for (row, z) in T.iter().zip(&mut self.z) {
-                    z[i] = row[0] * self.w[0][i] + row[1] * self.w[1][i] + row[2] * self.w[2][i];
-                }
-            }
-            let size = (sum / (3 * n) as f64).sqrt();
-            if !size.is_finite() {
-                return Ok(Err(0.5));
-            }
-            if iteration > 1 && iteration < ITERATIONS {
-                let ratio = size / before;
-                self.contraction = if iteration == 2 { ratio } else { (ratio * ratio_before).sqrt() };
-                ratio_before = ratio;
-                if self.contraction >= 0.99 {
-                    return Ok(Err(0.5));
-                }
-                self.margin = self.contraction / (1.0 - self.contraction);
-                let left = (ITERATIONS - 1 - iteration) as i32;
-                let at_last = self.margin * size * self.contraction.powi(left) / self.newton_tolerance;
-                if at_last >= 1.0 {
-                    return Ok(Err(0.8 * at_last.clamp(1e-4, 20.0).powf(-1.0 / (4.0 + f64::from(left)))));
-                }
-            }
-            before = size.max(f64::EPSILON);
-            if self.margin * size <= self.newton_tolerance {
-                return Ok(Ok(iteration));
-            }
-        }
-        Ok(Err(0.5))
     }
 
     /// The error of the polynomial between collocation points in units of the tolerance: both it and that of its predecessor's continuation are
@@ -296,8 +193,7 @@ impl Stepper for Radau5<'_, '_> {
         if let Err(failure) = self.prepare(h) {
             return Attempt::Failed(failure);
         }
-        self.guess(h);
-        let iterations = match self.newton(h) {
+        let iterations = match self.stages(h) {
             Err(failure) => return Attempt::Failed(failure),
             Ok(Ok(iterations)) => iterations,
             Ok(Err(factor)) => {

@@ -28,13 +28,19 @@ pub(crate) fn eigenvalues() -> [f64; 3] {
     [30.0 / (6.0 + a - b), alpha / size, beta / size]
 }
 
+/// `A⁻¹`.
+pub(crate) fn inverse() -> [[f64; 3]; 3] {
+    let [gamma, alpha, beta] = eigenvalues();
+    product(&product(&T, &[[gamma, 0.0, 0.0], [0.0, alpha, -beta], [0.0, beta, alpha]]), &T_INVERSE)
+}
+
+fn product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
-    }
 
     #[test]
     fn the_transformation_diagonalizes_the_inverse_of_the_collocation_matrix() {
@@ -45,10 +51,7 @@ mod tests {
             [(296.0 + 169.0 * s) / 1800.0, (88.0 + 7.0 * s) / 360.0, (-2.0 - 3.0 * s) / 225.0],
             [(16.0 - s) / 36.0, (16.0 + s) / 36.0, 1.0 / 9.0],
         ];
-        let [gamma, alpha, beta] = eigenvalues();
-        let blocks = [[gamma, 0.0, 0.0], [0.0, alpha, -beta], [0.0, beta, alpha]];
-        let inverse = product(&product(&T, &blocks), &T_INVERSE);
-        for (what, found) in [("A A⁻¹", product(&a, &inverse)), ("T T⁻¹", product(&T, &T_INVERSE))] {
+        for (what, found) in [("A A⁻¹", product(&a, &inverse())), ("T T⁻¹", product(&T, &T_INVERSE))] {
             for (i, row) in found.iter().enumerate() {
                 for (j, x) in row.iter().enumerate() {
                     let unit = if i == j { 1.0 } else { 0.0 };

@@ -152,6 +152,8 @@ pub struct Equations {
     pub statements: Vec<Statement>,
     /// What this system did not need.
     pub left_out: Vec<LeftOut>,
+    /// So many units in the last place are velocities and momenta known to, where constraints are nearly dependent; 1 without such.
+    pub lost_digits: f64,
     /// The removal behind the equations, whose parameters and memory variables have to be started.
     pub removal: Option<Removal>,
 }
@@ -176,6 +178,7 @@ impl Equations {
             guards: Vec::new(),
             statements: Vec::new(),
             left_out: Vec::new(),
+            lost_digits: 1.0,
             removal: None,
         }
     }

@@ -13,13 +13,17 @@
 //! `e(t)` is the largest difference of the motion's two runs up to `t`; `s(t)` the largest distance from the start up to `t`, the first tenth of the
 //! run at least; `u(t)` what the reference itself may be off by; `b` the larger of 10⁻⁷ and ten times the tolerance that was asked of the kept run.
 //! Lengths in the kinetic metric. Where 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked of it.
+//!
+//! [`long_runs`] are judged likewise; where no reference reaches as far, energy and constraint stand in the place of the coordinates.
 
 mod cases;
 mod judge;
+mod long_runs;
 mod question;
 mod reference;
 
 pub use cases::CASES;
 pub use judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
+pub use long_runs::{LONG, Long, LongRun, MILLION, Stepping, long_runs};
 pub use question::{Case, Cell, MAX_STEPS, Question, Subject, run, tolerance};
 pub use reference::{Known, Reference};

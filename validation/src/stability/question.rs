@@ -10,7 +10,7 @@ use super::reference::{Known, Reference};
 use crate::parallel;
 
 /// Limit on the steps of one run: what needs more is refused.
-pub const MAX_STEPS: usize = 4_000;
+pub const MAX_STEPS: usize = 8_000;
 
 /// Tolerance of the looser run, as the order of the method allows within [`MAX_STEPS`].
 pub fn tolerance(method: Method) -> f64 {

@@ -1,7 +1,8 @@
 //! What a motion should have been: closed forms, and equations derived by hand in other variables.
 
+use deltaq::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
-use mechanics::{State, System};
+use mechanics::{ConstantsRule, State, System};
 use referees::maggi::{self, Form, Maggi};
 
 /// Coordinates over time.
@@ -22,6 +23,14 @@ pub enum Reference {
     Closed(Road),
     /// Chetaev's motion by Maggi's equations, of a system in the same coordinates with equivalent constraints.
     Maggi(Posed),
+    /// The motion of the same formulation, free constants zero, of a system in the same coordinates with equivalent constraints that are
+    /// regular where those judged are not. It does not share the failure, but it shares the derivation.
+    Equivalent {
+        /// The system and the start.
+        posed: Posed,
+        /// The formulation, which has no removal.
+        formulation: &'static str,
+    },
     /// Equations in other variables, derived by hand and well conditioned where the judged ones are not.
     Ode {
         /// `y(t₀)`.
@@ -37,7 +46,7 @@ pub enum Reference {
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
 const STEPS: usize = 2_000_000;
 
-/// Tolerances of the two runs of a [`Reference::Maggi`], whose solves of one instant leave more round-off.
+/// Tolerances of the two runs of a [`Reference::Maggi`] and of a [`Reference::Equivalent`], whose solves of one instant leave more round-off.
 const MAGGI: [f64; 2] = [1e-10, 1e-12];
 
 /// A reference that stops within this part of the time before the motion stops at the same singularity; nothing is compared in between.
@@ -61,6 +70,8 @@ pub enum Known<'a> {
     },
     /// From two runs of Maggi's equations, the second one tighter.
     Maggi(Box<[maggi::Motion; 2]>),
+    /// From the two runs of a motion.
+    Motion(Box<Motion>),
     /// From two runs, the second one tighter.
     Runs {
         /// How the states are read.
@@ -95,6 +106,17 @@ impl Reference {
                     }
                 };
                 Ok(Known::Maggi(Box::new([run(MAGGI[0])?, run(MAGGI[1])?])))
+            }
+            Reference::Equivalent { posed, formulation } => {
+                let (system, start) = posed()?;
+                let end = if end == start.t { start.t + SHORTEST } else { end };
+                let motion = derived(&system, &start, end, formulation).map_err(|error| error.to_string())?;
+                match &motion.ending {
+                    Ending::Stopped { t, cause } if (end - t).abs() > SAME_STOP * (end - start.t).abs() => {
+                        Err(format!("the reference stops at {t}: {cause}"))
+                    }
+                    _ => Ok(Known::Motion(Box::new(motion))),
+                }
             }
             Reference::Ode { y, read, .. } if end == start => Ok(Known::Start { read, t: start, y }),
             Reference::Closed(road) => Ok(Known::Closed(road)),
@@ -135,6 +157,16 @@ impl Known<'_> {
                 };
                 (read(kept), read(looser))
             }
+            Known::Motion(motion) => {
+                if t > motion.end() {
+                    return None;
+                }
+                let size = motion.equations.coordinates.len();
+                motion.at_in_both_runs(t).map_or_else(
+                    |_| (vec![f64::NAN; size], vec![f64::NAN; size]),
+                    |(a, b)| (a.coordinates, b.coordinates),
+                )
+            }
             Known::Start { read, t, y } => (read(*t, y), read(*t, y)),
             Known::Runs { read, runs } => {
                 let mut y = vec![0.0; runs[0].dimension()];
@@ -146,6 +178,13 @@ impl Known<'_> {
             }
         })
     }
+}
+
+fn derived(system: &System, start: &State, end: f64, formulation: &'static str) -> Result<Motion, deltaq::SolveError> {
+    let constants = ConstantsRule::Zero;
+    let choice = Choice { label: formulation.into(), formulation, removal: None, constants: constants.clone() };
+    let settings = Settings { tolerance: MAGGI[0], max_steps: STEPS, ..Settings::default() };
+    solve(Setting { system, start, end }, derive_at(system, start, &choice)?, &constants, &settings)
 }
 
 struct Field<'a> {

@@ -82,6 +82,7 @@ impl Recombination {
             self.ratio
         );
         equations.left_out.push(LeftOut { variables: Vec::new(), words });
+        equations.lost_digits = self.ratio.recip();
         equations
     }
 }

@@ -35,11 +35,16 @@ pub const CASES: &[Case] = &[
     blow_up::MOVING,
 ];
 
+/// What is known of the sledge of the scene, in a formulation.
+pub(super) fn sledge_reference(formulation: &str) -> Reference {
+    sledge::Sledge { k: sledge::RADIUS }.reference(formulation)
+}
+
 /// The formulations of a scene that has multipliers: two forms of the vakonomic one among them.
 const FORMULATIONS: [&str; 4] = ["chetaev", "vakonomic", "vakonomic-costate", "removed-constraint"];
 
 /// The first choice of a scene with that formulation, free constants zero where the scene gives none.
-fn choice(scene: &Scene, name: &str) -> Result<Choice, String> {
+pub(super) fn choice(scene: &Scene, name: &str) -> Result<Choice, String> {
     let found = choices(scene).into_iter().find(|c| c.formulation == name);
     let mut choice = found.ok_or_else(|| format!("no formulation {name}"))?;
     if choice.removal.is_some() {

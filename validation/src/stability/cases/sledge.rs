@@ -32,7 +32,7 @@ fn by_gyration() -> Vec<Question> {
 }
 
 fn by_duration() -> Vec<Question> {
-    powers(0, 3, 1).flat_map(|duration| questions(duration, 0.7, duration)).collect()
+    powers(0, 3, 1).flat_map(|duration| questions(duration, RADIUS, duration)).collect()
 }
 
 fn questions(point: f64, k: f64, duration: f64) -> Vec<Question> {
@@ -48,6 +48,8 @@ pub(super) struct Sledge {
     pub(super) k: f64,
 }
 
+/// Radius of gyration of the scene.
+pub(super) const RADIUS: f64 = 0.7;
 const GRAVITY: f64 = 9.81;
 const SLOPE: f64 = 0.4;
 const PHI: f64 = 0.3;

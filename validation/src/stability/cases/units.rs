@@ -80,8 +80,8 @@ fn subject(scaling: &Scaling, name: &str) -> Result<Subject, String> {
 fn in_time_unit(reference: Reference, unit: f64) -> Reference {
     match reference {
         Reference::Closed(road) => Reference::Closed(Box::new(move |t| road(t * unit))),
-        // Maggi's equations are in the coordinates and the time of what they judge
-        same @ Reference::Maggi(_) => same,
+        // these are in the coordinates and the time of what they judge
+        same @ (Reference::Maggi(_) | Reference::Equivalent { .. }) => same,
         Reference::Ode { y, rates, read } => Reference::Ode {
             y,
             rates: Box::new(move |t, y, out| {

@@ -12,7 +12,9 @@ use crate::stability::reference::Reference;
 pub(super) const CASE: Case = Case {
     name: "viscous",
     about: "The sledge without its constraint, with friction −N Aᵀf across the blade instead (T8): the slip decays within 1/N. An explicit method \
-            has to follow that for 10 s; an implicit one may step over it, and must not step over the motion.",
+            has to follow that for 10 s; an implicit one may step over it, and must not step over the motion. The stiff direction turns with the blade: \
+            Radau5 has a Jacobian for each stage of its step where one for all does not do; the library behind the other implicit methods takes \
+            one Jacobian, that of the last point, and an iteration that contracts only for h N (h ω)² ≪ 1.",
     reference: "closed form: across and along the blade the velocities obey a linear system with constant coefficients and a harmonic force",
     variable: "N",
     questions,
