@@ -28,7 +28,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use mechanics::{
-    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, QuasiVelocities, Role,
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Frame, Named, QuasiVelocities, Role,
     StateVariable, Statement, System,
 };
 use symbolic::{Expr, Symbol};
@@ -84,20 +84,27 @@ type Sparse = BTreeMap<usize, Expr>;
 pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
     let system = system.clone();
     let g = &system.graph;
-    let quasi = QuasiVelocities::new(&system, derivation.start)
+    let frame = Frame::new(&system, derivation.start);
+    let quasi = QuasiVelocities::new(&system, frame.as_ref(), derivation.start)
         .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
     let mut equations = Equations::new(REDUCED_FORM.name, &system);
     let mut definitions = quasi.coefficients.clone();
-    for d in &quasi.dependent {
+    let dependent = quasi.dependent.iter().map(|d| {
         let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
-        let velocity = g.sum(&terms);
-        definitions.define(d.symbol, velocity);
-        let left = g.variable(d.symbol);
+        (d.symbol, g.sum(&terms))
+    });
+    for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
+        definitions.define(symbol, velocity);
+        let left = g.variable(symbol);
         equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
     }
     let columns = quasi.columns(g, &mut definitions);
     let gamma = drift(&system, &quasi, &mut definitions);
-    let Balance { mass, force, momenta } = balance(&system, &gamma, &mut definitions);
+    let momenta = g.gradient(system.lagrangian, &system.velocities());
+    let Balance { mass, force } = match &frame {
+        None => balance(&system, &momenta, &gamma, &mut definitions),
+        Some(frame) => balance_in_frame(&system, frame, &momenta, &gamma, &mut definitions),
+    };
 
     // SᵀMS ẇ + Sᵀ force = 0
     let reduced = columns.reduced(g, &mass, &mut definitions);
@@ -159,28 +166,58 @@ struct Balance {
     mass: Vec<Sparse>,
     /// `d/dt L_v − L_q − Q` with `v̇ = γ`, by coordinate.
     force: Vec<Expr>,
-    /// `L_v`.
-    momenta: Vec<Expr>,
 }
 
-fn balance(system: &System, gamma: &[Expr], definitions: &mut Definitions) -> Balance {
+fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut Definitions) -> Balance {
     let g = &system.graph;
     let (q, v) = (system.positions(), system.velocities());
     let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
-    let momenta = g.gradient(system.lagrangian, &v);
     let gradient = g.gradient(system.lagrangian, &q);
     let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
     flow.extend(v.iter().copied().zip(gamma.iter().copied()));
     flow.push((system.time, g.one()));
-    let inertia = g.total_derivatives(&momenta, &flow);
+    let inertia = g.total_derivatives(momenta, &flow);
     let force = (0..q.len()).map(|i| {
         let rest = g.sub(inertia[i], g.add(gradient[i], system.forces[i]));
         definitions.short(g, "r", SHORT, rest)
     });
     let force = force.collect();
     let row = |row: Vec<(Symbol, Expr)>| row.into_iter().map(|(s, e)| (places[&s], e)).collect::<Sparse>();
-    let mass = g.sparse_jacobian(&momenta, &v).into_iter().map(row).collect();
-    Balance { mass, force, momenta }
+    let mass = g.sparse_jacobian(momenta, &v).into_iter().map(row).collect();
+    Balance { mass, force }
+}
+
+/// The balance in a frame: its mass matrix is diagonal and constant, and
+///
+/// ```text
+/// force_k = c_k γ_k + Σ_c c_c u_c dω^c(q̇, e_k) + e_k · (d/dt R_v − R_q − Q) ,      R = L − ½ vᵀMv.
+/// ```
+fn balance_in_frame(
+    system: &System,
+    frame: &Frame,
+    momenta: &[Expr],
+    gamma: &[Expr],
+    definitions: &mut Definitions,
+) -> Balance {
+    let g = &system.graph;
+    let (q, v) = (system.positions(), system.velocities());
+    let at_rest: HashMap<Symbol, Expr> = v.iter().map(|&v| (v, g.zero())).collect();
+    let linear = g.substitute_all(momenta, &at_rest);
+    let rest = g.add(g.substitute(system.lagrangian, &at_rest), g.dot(&linear, &g.variables(&v)));
+    let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
+    flow.push((system.time, g.one()));
+    let (inertia, gradient) = (g.total_derivatives(&linear, &flow), g.gradient(rest, &q));
+    let applied: Vec<Expr> = (0..q.len()).map(|i| g.sub(inertia[i], g.add(gradient[i], system.forces[i]))).collect();
+    let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
+    let own: Vec<Expr> = frame.inertia.iter().zip(u).map(|(&c, u)| g.mul(c, u)).collect();
+    let (turned, applied) = (frame.turned(g, &own), frame.along(g, &applied));
+    let force = (0..q.len()).map(|k| {
+        let whole = g.sum(&[g.mul(frame.inertia[k], gamma[k]), turned[k], applied[k]]);
+        definitions.short(g, "r", SHORT, whole)
+    });
+    let force = force.collect();
+    let mass = frame.inertia.iter().enumerate().map(|(k, &e)| Sparse::from([(k, e)])).collect();
+    Balance { mass, force }
 }
 
 /// States, outputs, invariants and guards.
@@ -191,7 +228,8 @@ fn hand_over(equations: &mut Equations, system: &System, quasi: QuasiVelocities,
         equations.states.push(StateVariable { symbol: c.position, role: Role::Position, rate, start });
     }
     for w in &quasi.free {
-        let role = if w.coordinate.is_some() { Role::Velocity } else { Role::QuasiVelocity };
+        let own = system.coordinates.iter().any(|c| c.velocity == w.symbol);
+        let role = if own { Role::Velocity } else { Role::QuasiVelocity };
         equations.states.push(StateVariable { symbol: w.symbol, role, rate: g.variable(w.rate), start: w.start });
     }
     equations.coordinates = g.variables(&system.positions());

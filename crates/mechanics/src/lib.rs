@@ -12,6 +12,7 @@ mod form;
 mod form_elimination;
 mod form_pivots;
 mod formulation;
+mod frame;
 mod instant;
 mod integrability;
 mod lanes;
@@ -37,6 +38,7 @@ pub use equations::{
 pub use error::RemovalError;
 pub use form::Form;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
+pub use frame::{Frame, FrameConstraint, FrameVelocity, Turning};
 pub use instant::EvaluationFailure;
 pub use integrability::{Integrability, integrability};
 pub use lanes::LaneEquations;
