@@ -23,13 +23,16 @@
 //! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and so are its columns, `γ` and the two sides of the equation: each
 //! quantity is a short expression in those before. For a chain of n bodies that is O(n) in all, where `S` put in would be O(n²) or more.
 //!
+//! Where the kinetic energy is seen to be a sum of squares with constant coefficients in a [`Frame`], and the equations are shorter so, `v` are the
+//! velocities of that frame: `SᵀMS` is then free of how the body is turned, often constant.
+//!
 //! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use mechanics::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Frame, Named, QuasiVelocities, Role,
-    StateVariable, Statement, System,
+    StateVariable, Statement, System, length,
 };
 use symbolic::{Expr, Symbol};
 
@@ -82,9 +85,16 @@ type Sparse = BTreeMap<usize, Expr>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    let system = system.clone();
+    let framed = system.clone();
+    let in_coordinates = in_velocities(system.clone(), None, derivation)?;
+    let Some(frame) = Frame::new(&framed, derivation.start) else { return Ok(in_coordinates) };
+    let in_frame = in_velocities(framed, Some(frame), derivation)?;
+    Ok(if length(&in_frame) < length(&in_coordinates) { in_frame } else { in_coordinates })
+}
+
+/// The equations in quasi-velocities of coordinates, or of a frame.
+fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) -> Result<Equations, DerivationError> {
     let g = &system.graph;
-    let frame = Frame::new(&system, derivation.start);
     let quasi = QuasiVelocities::new(&system, frame.as_ref(), derivation.start)
         .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
     let mut equations = Equations::new(REDUCED_FORM.name, &system);
@@ -103,7 +113,9 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
     let momenta = g.gradient(system.lagrangian, &system.velocities());
     let Balance { mass, force } = match &frame {
         None => balance(&system, &momenta, &gamma, &mut definitions),
-        Some(frame) => balance_in_frame(&system, frame, &momenta, &gamma, &mut definitions),
+        Some(frame) => {
+            balance_in_frame(&system, (frame, &quasi.multiples(&system)), &momenta, &gamma, &mut definitions)
+        }
     };
 
     // SᵀMS ẇ + Sᵀ force = 0
@@ -122,6 +134,7 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
         guess: Vec::new(),
         regular: "mass matrix regular on the admissible velocities",
     }];
+    equations.chosen.extend(frame.map(|frame| frame.words(g)));
     hand_over(&mut equations, &system, quasi, &momenta);
     equations.definitions = definitions.into_list();
     equations.graph = system.graph;
@@ -194,7 +207,7 @@ fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut 
 /// ```
 fn balance_in_frame(
     system: &System,
-    frame: &Frame,
+    (frame, multiples): (&Frame, &HashMap<Symbol, Expr>),
     momenta: &[Expr],
     gamma: &[Expr],
     definitions: &mut Definitions,
@@ -210,7 +223,8 @@ fn balance_in_frame(
     let applied: Vec<Expr> = (0..q.len()).map(|i| g.sub(inertia[i], g.add(gradient[i], system.forces[i]))).collect();
     let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
     let own: Vec<Expr> = frame.inertia.iter().zip(u).map(|(&c, u)| g.mul(c, u)).collect();
-    let (turned, applied) = (frame.turned(g, &own), frame.along(g, &applied));
+    let turned = g.substitute_all(&frame.turned(g, &own), multiples);
+    let applied = frame.along(g, &applied);
     let force = (0..q.len()).map(|k| {
         let whole = g.sum(&[g.mul(frame.inertia[k], gamma[k]), turned[k], applied[k]]);
         definitions.short(g, "r", SHORT, whole)

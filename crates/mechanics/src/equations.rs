@@ -152,6 +152,8 @@ pub struct Equations {
     pub statements: Vec<Statement>,
     /// What this system did not need.
     pub left_out: Vec<LeftOut>,
+    /// In which variables they are written, where there was a choice, and why.
+    pub chosen: Vec<String>,
     /// The removal behind the equations, whose parameters and memory variables have to be started.
     pub removal: Option<Removal>,
 }
@@ -176,6 +178,7 @@ impl Equations {
             guards: Vec::new(),
             statements: Vec::new(),
             left_out: Vec::new(),
+            chosen: Vec::new(),
             removal: None,
         }
     }

@@ -83,6 +83,8 @@ pub struct Frame {
     pub turning: Vec<Turning>,
     /// The constraints of the system.
     pub constraints: Vec<FrameConstraint>,
+    /// The `s_k` that are not constant: where one of them vanishes, so does a direction of `M`, and the frame ends.
+    pub ends: Vec<Expr>,
     /// The velocities of the coordinates, and of frames on the way to this one, each in `u` and earlier ones.
     pub recursion: Vec<(Symbol, Expr)>,
     /// `u, s, v` where `v = u/s` is the velocity of a coordinate.
@@ -95,6 +97,27 @@ const SMALL: usize = 8;
 impl Frame {
     /// The frame of `system`, if its kinetic energy is seen to be a sum of squares with constant coefficients in other velocities than those of its
     /// coordinates. What must not vanish does not at `start`; without a start, at a point of no significance.
+    ///
+    /// `None` for more than 8 coordinates, where `L` is not quadratic in the velocities or its mass matrix constant or moving with time, where a
+    /// constraint is not linear, and where the frame would end before the mass matrix of the admissible velocities does.
+    ///
+    /// ```
+    /// use mechanics::{Frame, System};
+    /// use symbolic::Graph;
+    /// // a point in polar coordinates: L = (r'^2 + r^2 phi'^2)/2, u = (r', r phi')
+    /// let mut system = System::new(Graph::new(), &[("r", "m"), ("phi", "rad")]);
+    /// let g = system.graph.clone();
+    /// let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
+    /// system.lagrangian = g.parse("(r'^2 + r^2*phi'^2)/2", &scope, &[])?;
+    /// system.graph = g;
+    /// let frame = Frame::new(&system, None).expect("a sum of squares");
+    /// let g = &system.graph;
+    /// assert_eq!(g.plain(frame.velocities[1].start), "r*phi'");
+    /// // d(r dphi) = dr ∧ dphi = 1/r on the two unit vectors
+    /// let [turning] = frame.turning[..] else { panic!("one form turns") };
+    /// assert_eq!((turning.form, turning.between, g.plain(turning.coefficient)), (1, (0, 1), "1/r".into()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(system: &System, start: Option<&State>) -> Option<Frame> {
         let g = &system.graph;
         let v = system.velocities();
@@ -136,16 +159,36 @@ impl Frame {
         best.map(|(_, building)| builder.finish(building))
     }
 
+    /// What the frame is, in words.
+    pub fn words(&self, g: &Graph) -> String {
+        let ends: Vec<String> = self.ends.iter().map(|&e| g.plain(e)).collect();
+        let ends = match ends.len() {
+            0 => "regular everywhere".into(),
+            _ => format!("singular with the mass matrix, where one of these vanishes: {}", ends.join(", ")),
+        };
+        format!(
+            "velocities of a frame in which the kinetic energy is a sum of squares with constant coefficients; {ends}"
+        )
+    }
+
     /// `Σ_c m_c dω^c(q̇, e_k)` for every k, for momenta `m`.
     pub fn turned(&self, g: &Graph, momenta: &[Expr]) -> Vec<Expr> {
         let u: Vec<Expr> = self.velocities.iter().map(|u| g.variable(u.symbol)).collect();
-        let mut terms = vec![Vec::new(); u.len()];
+        // dω^c(q̇, e_k) by k and c
+        let mut slopes: Vec<BTreeMap<usize, Vec<Expr>>> = vec![BTreeMap::new(); u.len()];
         for &Turning { form, between: (a, b), coefficient } in &self.turning {
-            let whole = |k: usize| self.by_quotients(g, g.product(&[momenta[form], u[k], coefficient]));
-            terms[b].push(whole(a));
-            terms[a].push(g.neg(whole(b)));
+            let term = |k: usize| self.by_quotients(g, g.mul(u[k], coefficient));
+            slopes[b].entry(form).or_default().push(term(a));
+            slopes[a].entry(form).or_default().push(g.neg(term(b)));
         }
-        terms.into_iter().map(|terms| g.sum(&terms)).collect()
+        let total = |slopes: BTreeMap<usize, Vec<Expr>>| {
+            let each = slopes.iter().flat_map(|(&c, terms)| terms.iter().map(move |&e| g.mul(momenta[c], e)));
+            let flat = g.factored(g.sum(&each.collect::<Vec<Expr>>()));
+            let whole: Vec<Expr> = slopes.iter().map(|(&c, terms)| g.mul(momenta[c], g.sum(terms))).collect();
+            let whole = g.factored(g.sum(&whole));
+            if g.size(&[flat]) < g.size(&[whole]) { flat } else { whole }
+        };
+        slopes.into_iter().map(total).collect()
     }
 
     /// `e_k · covector` for every k, with the entries of `covector` by coordinate.
@@ -158,7 +201,8 @@ impl Frame {
     fn by_quotients(&self, g: &Graph, term: Expr) -> Expr {
         self.quotients.iter().fold(term, |term, &[u, s, v]| {
             let rest = g.product(&[term, s, g.powi(u, -1)]);
-            if g.size(&[rest]) < g.size(&[term]) { g.mul(rest, v) } else { term }
+            let taken = g.denominators(&[term]).contains(&s) && !g.denominators(&[rest]).contains(&u);
+            if taken { g.mul(rest, v) } else { term }
         })
     }
 }

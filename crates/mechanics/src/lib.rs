@@ -29,7 +29,7 @@ mod start;
 mod straight;
 mod system;
 
-pub use cheapest::cheapest;
+pub use cheapest::{cheapest, length};
 pub use compiled::{Compiled, Cost, Outputs};
 pub use definitions::Definitions;
 pub use equations::{

@@ -10,7 +10,7 @@
 //! way of a quasi-velocity `w` with `v₁ = b w + …`, `v₂ = −a w + …` (the speed along a blade; regular everywhere); else a coefficient that is
 //! large at the start, which becomes a guard. Among equals the pivot that fills least (Markowitz), then the latest coordinate.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Symbol};
 
@@ -99,5 +99,18 @@ impl QuasiVelocities {
         let eliminated = std::mem::take(&mut elimination.eliminated);
         let free = elimination.free(&dependent.iter().map(|d| d.symbol).collect::<HashSet<Symbol>>());
         Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, homogeneous })
+    }
+
+    /// The dependent velocities that are a constant multiple of another one, as such.
+    pub fn multiples(&self, system: &System) -> HashMap<Symbol, Expr> {
+        let g = &system.graph;
+        let parameters: BTreeSet<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
+        let multiple = |d: &DependentVelocity| match d.terms[..] {
+            [(s, e)] if g.is_zero(d.offset) && g.symbols_of(e).is_subset(&parameters) => {
+                Some((d.symbol, g.mul(e, g.variable(s))))
+            }
+            _ => None,
+        };
+        self.dependent.iter().filter_map(multiple).collect()
     }
 }

@@ -22,13 +22,20 @@
 //! v_k = Σ S_kj v_j + s_k :      v̄_j += S_kj v̄_k ,      −ṗ += v̄_k (Σ ∂S_kj/∂q v_j + ∂s_k/∂q) .
 //! ```
 //!
+//! Where the kinetic energy is a sum of squares with constant coefficients in a [`Frame`], and the equations are shorter so, the states are `e_k · p`,
+//! the momenta along the vectors of that frame:
+//!
+//! ```text
+//! d/dt (e_k · p) = e_k · (R_q − (∂u/∂q)ᵀ (p − L_u)) − Σ_c (e_c · p) dω^c(q̇, e_k) ,      R = L − ½ vᵀMv.
+//! ```
+//!
 //! For a chain of n bodies that is O(n) in all. The multipliers follow by one more recursion ([`mechanics::EliminatedConstraint`]) where they are asked for.
 
 use std::collections::{BTreeMap, HashMap};
 
 use mechanics::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Frame, Named, QuasiVelocities, Role,
-    StateVariable, Statement, System, cheapest, fresh_symbol, refuse_forces,
+    StateVariable, Statement, System, cheapest, fresh_symbol, length, refuse_forces,
 };
 use symbolic::{Expr, Graph, Symbol};
 
@@ -54,8 +61,10 @@ const LONG: usize = 100;
 /// Coordinates of a system in which velocities are put in, if that is shorter; and nodes of `L` and of `v` over which it is not tried.
 const SMALL: usize = 8;
 const WHOLE: usize = 200;
+/// Where the equations in a frame are so many times shorter than those in coordinates, no others are tried.
+const SHORTER: usize = 2;
 
-/// Derives the vakonomic equations with states `(q, p)`, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
+/// Derives the vakonomic equations with states `(q, p)`, or `(q, e_k · p)` in a frame, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
 ///
 /// The equations for `w` are linear where `L` is quadratic in `v`; otherwise they are solved by Newton's method from the last accepted state.
 ///
@@ -87,20 +96,22 @@ const WHOLE: usize = 200;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    let system = system.clone();
-    refuse_forces(&system, REDUCED_FORM.name)?;
-    let frame = Frame::new(&system, derivation.start);
-    let quasi = QuasiVelocities::new(&system, frame.as_ref(), derivation.start)
-        .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
-    let problem = Problem::new(&system, frame, quasi);
-    let recursive = problem.equations(system.clone(), None, None);
-    if problem.frame.is_some() {
-        return Ok(recursive);
+    refuse_forces(system, REDUCED_FORM.name)?;
+    let (system, framed) = (system.clone(), system.clone());
+    let problem = Problem::new(&system, None, derivation)?;
+    let mut candidates = vec![problem.equations(system.clone(), None, None)];
+    if let Some(frame) = Frame::new(&framed, derivation.start) {
+        let in_frame = Problem::new(&framed, Some(frame), derivation)?.equations(framed, None, None);
+        if SHORTER * length(&in_frame) <= length(&candidates[0]) {
+            return Ok(in_frame);
+        }
+        candidates.push(in_frame);
     }
-    let Some(Whole { balance, rates }) = problem.put_in(&system) else { return Ok(recursive) };
-    let with = |balance, rates| problem.equations(system.clone(), balance, rates);
-    let mixed = [with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))];
-    Ok(cheapest([recursive].into_iter().chain(mixed).collect()))
+    if let Some(Whole { balance, rates }) = problem.put_in(&system) {
+        let with = |balance, rates| problem.equations(system.clone(), balance, rates);
+        candidates.extend([with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))]);
+    }
+    if candidates.len() == 1 { Ok(candidates.remove(0)) } else { Ok(cheapest(candidates)) }
 }
 
 /// Quasi-velocities put in: short for small systems, where terms meet that cancel.
@@ -124,8 +135,10 @@ struct Problem {
 }
 
 impl Problem {
-    fn new(system: &System, frame: Option<Frame>, quasi: QuasiVelocities) -> Self {
+    fn new(system: &System, frame: Option<Frame>, derivation: &Derivation) -> Result<Self, DerivationError> {
         let g = &system.graph;
+        let quasi = QuasiVelocities::new(system, frame.as_ref(), derivation.start)
+            .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
         let augmented = augment(system);
         let names: Vec<String> = match &frame {
             Some(frame) => frame.velocities.iter().map(|u| g.name(u.symbol).trim_end_matches('\'').into()).collect(),
@@ -133,7 +146,7 @@ impl Problem {
         };
         let costates: Vec<Symbol> = names.iter().map(|name| fresh_symbol(g, &format!("p_{name}"))).collect();
         let costate_rates = costates.iter().map(|&p| fresh_symbol(g, &format!("{}'", g.name(p)))).collect();
-        Problem { frame, quasi, augmented, p: g.variables(&costates), costates, costate_rates }
+        Ok(Problem { frame, quasi, augmented, p: g.variables(&costates), costates, costate_rates })
     }
 
     /// The velocities in which the problem is written, and `∂L/∂u`.
@@ -164,7 +177,7 @@ impl Problem {
         let gradient = g.gradient(g.sum(&rest), &q);
         let applied: Vec<Expr> = gradient.iter().zip(along).map(|(&r_q, &along)| g.sub(r_q, along)).collect();
         let (applied, turned) = (frame.along(g, &applied), frame.turned(g, &self.p));
-        applied.into_iter().zip(turned).map(|(applied, turned)| multiplied_out(g, g.sub(applied, turned))).collect()
+        applied.into_iter().zip(turned).map(|(applied, turned)| g.sub(applied, turned)).collect()
     }
 
     /// The equations by recursion, or by what is given for `∂K/∂w = 0` and `ṗ`.
@@ -223,6 +236,7 @@ impl Problem {
         }];
         multipliers(g, quasi, augmented, &adjoints, &mut definitions);
         hand_over(&mut equations, &system, augmented, &self.canonical(g));
+        equations.chosen.extend(frame.as_ref().map(|frame| frame.words(g)));
         equations.guards = quasi.guards.clone();
         equations.definitions = definitions.into_list();
         equations.graph = system.graph;

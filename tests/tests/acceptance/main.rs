@@ -4,6 +4,7 @@ mod closed_forms;
 mod control;
 mod derivations;
 mod formulations_agree;
+mod frames;
 mod invariants;
 mod leading_term;
 mod matching;

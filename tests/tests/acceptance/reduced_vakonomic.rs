@@ -64,11 +64,11 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, |m, d| if d.is_nan() { f64::INFINITY } else { m.max(d) })
 }
 
-/// The rates of `(q, p)` as those of `(q, e_k · p)` where the reduced form is in a frame: `d/dt (e_k · p) = ė_k · p + e_k · ṗ`.
-fn in_states_of_the_reduced_form(scene: &Scene, y: &[f64], rates: Vec<f64>) -> Vec<f64> {
+/// The rates of `(q, p)` as those of `(q, e_k · p)`: `d/dt (e_k · p) = ė_k · p + e_k · ṗ`.
+fn in_the_states_of_a_frame(scene: &Scene, y: &[f64], rates: &[f64]) -> Vec<f64> {
     let system = scene.system.clone();
     let (g, n) = (&system.graph, system.dimension());
-    let Some(frame) = Frame::new(&system, Some(&scene.start)) else { return rates };
+    let frame = Frame::new(&system, Some(&scene.start)).expect("the form is in it");
     let symbols = |stem: &str| (0..n).map(|i| g.symbol(&format!("{stem}{i}"))).collect::<Vec<_>>();
     let (p, p_rates) = (symbols("test_p"), symbols("test_rate"));
     let (q, v) = (system.positions(), system.velocities());
@@ -76,7 +76,7 @@ fn in_states_of_the_reduced_form(scene: &Scene, y: &[f64], rates: Vec<f64>) -> V
     let moved = g.total_derivatives(&frame.along(g, &g.variables(&p)), &flow);
     let tape = g.compile(&[&q[..], &p, &v, &p_rates].concat(), &moved, &system.parameter_values()).expect("compiles");
     let mut values = vec![0.0; n];
-    tape.evaluate(&[y, &rates].concat(), &mut tape.workspace(), &mut values);
+    tape.evaluate(&[y, rates].concat(), &mut tape.workspace(), &mut values);
     [&rates[..n], &values].concat()
 }
 
@@ -84,7 +84,10 @@ fn in_states_of_the_reduced_form(scene: &Scene, y: &[f64], rates: Vec<f64>) -> V
 pub fn differences(scene: &Scene, mu: &[f64]) -> [f64; 3] {
     let (costate, reduced) = (raw(scene, "vakonomic-costate"), raw(scene, "vakonomic-reduced"));
     let (rates, outputs) = instant(scene, &costate, Compiled::plain(&costate).expect("compiles"), mu);
-    let rates = in_states_of_the_reduced_form(scene, &start(scene, &costate, mu), rates);
+    let rates = match &reduced.chosen[..] {
+        [] => rates,
+        _ => in_the_states_of_a_frame(scene, &start(scene, &costate, mu), &rates),
+    };
     let mut largest = [0.0_f64; 3];
     for compiled in [Compiled::new(&reduced), Compiled::plain(&reduced)] {
         let (other, others) = instant(scene, &reduced, compiled.expect("compiles"), mu);

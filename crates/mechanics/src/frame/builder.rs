@@ -26,6 +26,7 @@ pub(super) struct Building {
     forms: Vec<Sparse>,
     vectors: Vec<Sparse>,
     constraints: Vec<Sparse>,
+    ends: Vec<Expr>,
     recursion: Vec<(Symbol, Expr)>,
     quotients: Vec<[Expr; 3]>,
 }
@@ -118,7 +119,8 @@ impl<'a> Builder<'a> {
             });
         }
         let inertia = squares.iter().map(|s| s.inertia).collect();
-        Building { velocities, inertia, forms, vectors, constraints: Vec::new(), recursion, quotients }
+        let ends = squares.iter().map(|s| s.scale).filter(|&e| !self.is_constant(e)).collect();
+        Building { velocities, inertia, forms, vectors, constraints: Vec::new(), ends, recursion, quotients }
     }
 
     /// A velocity with a name that is neither taken in the system nor in this frame.
@@ -221,14 +223,14 @@ impl<'a> Builder<'a> {
     pub(super) fn finish(&self, building: Building) -> Frame {
         let (system, g) = (self.system, self.g);
         let turning = self.turning(&building);
-        let Building { velocities, inertia, forms, vectors, constraints, recursion, quotients } = building;
+        let Building { velocities, inertia, forms, vectors, constraints, ends, recursion, quotients } = building;
         let at_rest: HashMap<Symbol, Expr> = system.velocities().into_iter().map(|v| (v, g.zero())).collect();
         let offsets = g.substitute_all(&system.constraints, &at_rest);
         let constraints = constraints.into_iter().zip(offsets);
         let constraints =
             constraints.map(|(row, offset)| FrameConstraint { terms: row.into_iter().collect(), offset }).collect();
         let recursion = in_order(g, recursion);
-        Frame { velocities, inertia, forms, vectors, turning, constraints, recursion, quotients }
+        Frame { velocities, inertia, forms, vectors, turning, constraints, ends, recursion, quotients }
     }
 
     /// `dω(e_a, e_b) = Σ ∂_i U_j (e_a^i e_b^j − e_b^i e_a^j)` for `ω = Σ U_j dq_j`.
