@@ -23,7 +23,7 @@
 //! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and so are its columns, `γ` and the two sides of the equation: each
 //! quantity is a short expression in those before. For a chain of n bodies that is O(n) in all, where `S` put in would be O(n²) or more.
 //!
-//! Where the kinetic energy is seen to be a sum of squares with constant coefficients in a [`Frame`], and the equations are shorter so, `v` are the
+//! Where the kinetic energy is seen to be a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, `v` are the
 //! velocities of that frame: `SᵀMS` is then free of how the body is turned, often constant.
 //!
 //! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
@@ -32,7 +32,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use mechanics::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Frame, Named, QuasiVelocities, Role,
-    StateVariable, Statement, System, length,
+    StateVariable, Statement, System, cheapest, matrix_moves,
 };
 use symbolic::{Expr, Symbol};
 
@@ -89,7 +89,10 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
     let in_coordinates = in_velocities(system.clone(), None, derivation)?;
     let Some(frame) = Frame::new(&framed, derivation.start) else { return Ok(in_coordinates) };
     let in_frame = in_velocities(framed, Some(frame), derivation)?;
-    Ok(if length(&in_frame) < length(&in_coordinates) { in_frame } else { in_coordinates })
+    if matrix_moves(&in_coordinates) && !matrix_moves(&in_frame) {
+        return Ok(in_frame);
+    }
+    Ok(cheapest(vec![in_coordinates, in_frame]))
 }
 
 /// The equations in quasi-velocities of coordinates, or of a frame.

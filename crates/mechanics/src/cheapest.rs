@@ -1,7 +1,6 @@
 //! The cheapest of several ways to write the same motion.
 
-use symbolic::Expr;
-
+use crate::definitions::symbols_behind;
 use crate::{Compiled, Equations};
 
 /// Of equations of one motion, those whose rates take the fewest operations in the plain form ([`Compiled::cost`]) once what
@@ -17,10 +16,10 @@ pub fn cheapest(candidates: Vec<Equations>) -> Equations {
     candidates.into_iter().min_by_key(price).expect("at least one candidate")
 }
 
-/// Nodes of definitions, rates and equations of the instant: how long equations are, known without compiling them.
-pub fn length(equations: &Equations) -> usize {
-    let rates = equations.states.iter().map(|y| y.rate);
-    let blocks = equations.blocks.iter().flat_map(|b| b.residuals.iter().copied());
-    let all: Vec<Expr> = equations.definitions.iter().map(|d| d.1).chain(rates).chain(blocks).collect();
-    equations.graph.size(&all)
+/// Whether the equations of the instant have a matrix that moves with time or state: one that has to be eliminated along the way.
+pub fn matrix_moves(equations: &Equations) -> bool {
+    let rows = equations.blocks.iter().flat_map(|b| equations.graph.sparse_jacobian(&b.residuals, &b.unknowns));
+    let behind = symbols_behind(&equations.graph, &equations.definitions, rows.flatten().map(|(_, e)| e));
+    let mut moving = equations.known_symbols().into_iter().chain(equations.unknowns());
+    moving.any(|s| behind.contains(&s))
 }

@@ -29,7 +29,7 @@ mod start;
 mod straight;
 mod system;
 
-pub use cheapest::{cheapest, length};
+pub use cheapest::{cheapest, matrix_moves};
 pub use compiled::{Compiled, Cost, Outputs};
 pub use definitions::Definitions;
 pub use equations::{

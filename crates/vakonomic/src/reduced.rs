@@ -22,7 +22,7 @@
 //! v_k = Σ S_kj v_j + s_k :      v̄_j += S_kj v̄_k ,      −ṗ += v̄_k (Σ ∂S_kj/∂q v_j + ∂s_k/∂q) .
 //! ```
 //!
-//! Where the kinetic energy is a sum of squares with constant coefficients in a [`Frame`], and the equations are shorter so, the states are `e_k · p`,
+//! Where the kinetic energy is a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, the states are `e_k · p`,
 //! the momenta along the vectors of that frame:
 //!
 //! ```text
@@ -35,7 +35,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use mechanics::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Frame, Named, QuasiVelocities, Role,
-    StateVariable, Statement, System, cheapest, fresh_symbol, length, refuse_forces,
+    StateVariable, Statement, System, cheapest, fresh_symbol, matrix_moves, refuse_forces,
 };
 use symbolic::{Expr, Graph, Symbol};
 
@@ -61,8 +61,6 @@ const LONG: usize = 100;
 /// Coordinates of a system in which velocities are put in, if that is shorter; and nodes of `L` and of `v` over which it is not tried.
 const SMALL: usize = 8;
 const WHOLE: usize = 200;
-/// Where the equations in a frame are so many times shorter than those in coordinates, no others are tried.
-const SHORTER: usize = 2;
 
 /// Derives the vakonomic equations with states `(q, p)`, or `(q, e_k · p)` in a frame, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
 ///
@@ -102,7 +100,7 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
     let mut candidates = vec![problem.equations(system.clone(), None, None)];
     if let Some(frame) = Frame::new(&framed, derivation.start) {
         let in_frame = Problem::new(&framed, Some(frame), derivation)?.equations(framed, None, None);
-        if SHORTER * length(&in_frame) <= length(&candidates[0]) {
+        if matrix_moves(&candidates[0]) && !matrix_moves(&in_frame) {
             return Ok(in_frame);
         }
         candidates.push(in_frame);
