@@ -131,8 +131,8 @@ impl Compiled {
         let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
-        let straight = (form.left.len() < blocks.len())
-            .then(|| Straight::new(equations, form, known.len(), &all, &rates, &outputs))
+        let straight = (form.left.len() < blocks.len() || form.collected.is_some())
+            .then(|| Straight::new(equations, form, known.len(), &all, &outputs))
             .transpose()?;
         Ok(Compiled {
             straight,

@@ -9,6 +9,7 @@ mod derivatives;
 mod equations;
 mod error;
 mod form;
+mod form_collection;
 mod form_elimination;
 mod form_pivots;
 mod formulation;
@@ -37,6 +38,7 @@ pub use equations::{
 };
 pub use error::RemovalError;
 pub use form::Form;
+pub use form_collection::Collected;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
 pub use frame::{Frame, FrameConstraint, FrameVelocity, Turning};
 pub use instant::EvaluationFailure;

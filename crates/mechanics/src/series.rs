@@ -51,8 +51,7 @@ impl Series {
                 residuals.push(block.residuals.clone());
             }
         }
-        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let definitions = form.all_definitions(equations);
+        let (rates, definitions) = (form.rates(equations), form.all_definitions(equations));
         equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)
     }
 

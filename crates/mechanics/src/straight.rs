@@ -24,7 +24,6 @@ impl Straight {
         form: &Form,
         known: usize,
         all: &[Symbol],
-        rates: &[Expr],
         outputs: &[Expr],
     ) -> Result<Self, CompileError> {
         let mut first = known;
@@ -42,7 +41,7 @@ impl Straight {
             Program::by_way_of(equations, &definitions, &inputs, &[wanted, condition].concat())
         };
         Ok(Straight {
-            rates: program(rates)?,
+            rates: program(&form.rates(equations))?,
             outputs: program(outputs)?,
             watched: form.condition.is_some(),
             inputs: vec![0.0; places.len()],

@@ -3,6 +3,8 @@
 use crate::arena::{Arena, Node};
 use crate::number::{Number, Rational};
 use crate::{Expr, Function, Graph, Symbol};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
 impl Graph {
     /// `e` with the factors that all terms of a sum have in common taken out of it, and 1 − cos²u written as sin²u (1 − sin²u as cos²u).
@@ -19,6 +21,19 @@ impl Graph {
     /// ```
     pub fn factored(&self, e: Expr) -> Expr {
         self.arena.borrow_mut().factored(e)
+    }
+
+    /// `es` with factors that several terms of a sum have in common drawn out of these terms, the most frequent factor first:
+    /// a x + b x + c = x (a + b) + c. Factors that contain no symbols but `constants` stay.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let [a, b, x] = ["a", "b", "x"].map(|n| g.variable(g.symbol(n)));
+    /// let sum = g.sum(&[g.mul(a, x), g.mul(b, x), g.one()]);
+    /// assert_eq!(g.collected(&[sum], &|_| false), [g.add(g.mul(x, g.add(a, b)), g.one())]);
+    /// ```
+    pub fn collected(&self, es: &[Expr], constants: &dyn Fn(Symbol) -> bool) -> Vec<Expr> {
+        self.arena.borrow_mut().collected(es, constants)
     }
 
     /// `(c, s)` with e = c s², where `c` contains no symbols but `constants`; `None` where that is not seen.
@@ -60,6 +75,53 @@ impl Arena {
             }
             _ => (Number::ONE, vec![(e, Rational::ONE)]),
         }
+    }
+
+    fn collected(&mut self, es: &[Expr], constants: &dyn Fn(Symbol) -> bool) -> Vec<Expr> {
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for n in self.reachable(es, |_| true) {
+            let new = self.rebuild(n, &image);
+            let new = self.collected_sum(new, constants);
+            if new != n {
+                image.insert(n, new);
+            }
+        }
+        es.iter().map(|e| image.get(e).copied().unwrap_or(*e)).collect()
+    }
+
+    /// One sum, whose terms are done.
+    fn collected_sum(&mut self, e: Expr, constants: &dyn Fn(Symbol) -> bool) -> Expr {
+        let Node::Sum(constant, terms) = self.node(e).clone() else { return e };
+        // positive powers of what moves, with the terms in which they stand, in a fixed order
+        let mut places: BTreeMap<Expr, Vec<usize>> = BTreeMap::new();
+        for (i, (term, _)) in terms.iter().enumerate() {
+            for (base, exponent) in self.monomial(*term).1 {
+                let moves = self.dependencies(base).iter().any(|&s| !constants(s));
+                if moves && exponent.as_integer().is_some_and(|n| n > 0) {
+                    places.entry(base).or_default().push(i);
+                }
+            }
+        }
+        // of equally frequent factors the first
+        let Some((base, inside)) = places.into_iter().rev().max_by_key(|(_, places)| places.len()) else { return e };
+        if inside.len() < 2 {
+            return e;
+        }
+        let inverse = (base, Rational::integer(-1));
+        let (mut cofactors, mut others) = (Vec::new(), Vec::new());
+        for (i, &(term, coefficient)) in terms.iter().enumerate() {
+            if inside.binary_search(&i).is_ok() {
+                cofactors.push((self.power_product(Number::ONE, vec![(term, Rational::ONE), inverse]), coefficient));
+            } else {
+                others.push((term, coefficient));
+            }
+        }
+        let cofactor = self.linear(Number::ZERO, cofactors);
+        let cofactor = self.collected_sum(cofactor, constants);
+        let product = self.power_product(Number::ONE, vec![(base, Rational::ONE), (cofactor, Rational::ONE)]);
+        let rest = self.linear(constant, others);
+        let rest = self.collected_sum(rest, constants);
+        self.linear(Number::ZERO, vec![(product, Number::ONE), (rest, Number::ONE)])
     }
 
     fn factored(&mut self, e: Expr) -> Expr {
