@@ -61,7 +61,7 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
         Err(error) => return Ok(format!("\nNot started: {error}\n")),
     };
     let mut text = "\nEvaluated:\n\n".to_string();
-    for words in &ready.form.why {
+    for words in ready.equations.chosen.iter().chain(&ready.form.why) {
         let _ = writeln!(text, "- {words}");
     }
     let [plain, chosen] = ready.compiled.cost();

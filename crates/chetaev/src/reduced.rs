@@ -23,13 +23,16 @@
 //! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and so are its columns, `γ` and the two sides of the equation: each
 //! quantity is a short expression in those before. For a chain of n bodies that is O(n) in all, where `S` put in would be O(n²) or more.
 //!
+//! Where the kinetic energy is seen to be a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, `v` are the
+//! velocities of that frame: `SᵀMS` is then free of how the body is turned, often constant.
+//!
 //! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use mechanics::{
-    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, QuasiVelocities, Role,
-    StateVariable, Statement, System,
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Frame, Named, QuasiVelocities, Role,
+    StateVariable, Statement, System, cheapest, matrix_moves,
 };
 use symbolic::{Expr, Symbol};
 
@@ -82,22 +85,41 @@ type Sparse = BTreeMap<usize, Expr>;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    let system = system.clone();
+    let framed = system.clone();
+    let in_coordinates = in_velocities(system.clone(), None, derivation)?;
+    let Some(frame) = Frame::new(&framed, derivation.start) else { return Ok(in_coordinates) };
+    let in_frame = in_velocities(framed, Some(frame), derivation)?;
+    if matrix_moves(&in_coordinates) && !matrix_moves(&in_frame) {
+        return Ok(in_frame);
+    }
+    Ok(cheapest(vec![in_coordinates, in_frame]))
+}
+
+/// The equations in quasi-velocities of coordinates, or of a frame.
+fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) -> Result<Equations, DerivationError> {
     let g = &system.graph;
-    let quasi = QuasiVelocities::new(&system, derivation.start)
+    let quasi = QuasiVelocities::new(&system, frame.as_ref(), derivation.start)
         .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
     let mut equations = Equations::new(REDUCED_FORM.name, &system);
     let mut definitions = quasi.coefficients.clone();
-    for d in &quasi.dependent {
+    let dependent = quasi.dependent.iter().map(|d| {
         let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
-        let velocity = g.sum(&terms);
-        definitions.define(d.symbol, velocity);
-        let left = g.variable(d.symbol);
+        (d.symbol, g.sum(&terms))
+    });
+    for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
+        definitions.define(symbol, velocity);
+        let left = g.variable(symbol);
         equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
     }
     let columns = quasi.columns(g, &mut definitions);
     let gamma = drift(&system, &quasi, &mut definitions);
-    let Balance { mass, force, momenta } = balance(&system, &gamma, &mut definitions);
+    let momenta = g.gradient(system.lagrangian, &system.velocities());
+    let Balance { mass, force } = match &frame {
+        None => balance(&system, &momenta, &gamma, &mut definitions),
+        Some(frame) => {
+            balance_in_frame(&system, (frame, &quasi.multiples(&system)), &momenta, &gamma, &mut definitions)
+        }
+    };
 
     // SᵀMS ẇ + Sᵀ force = 0
     let reduced = columns.reduced(g, &mass, &mut definitions);
@@ -115,6 +137,7 @@ pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equati
         guess: Vec::new(),
         regular: "mass matrix regular on the admissible velocities",
     }];
+    equations.chosen.extend(frame.map(|frame| frame.words(g)));
     hand_over(&mut equations, &system, quasi, &momenta);
     equations.definitions = definitions.into_list();
     equations.graph = system.graph;
@@ -159,28 +182,59 @@ struct Balance {
     mass: Vec<Sparse>,
     /// `d/dt L_v − L_q − Q` with `v̇ = γ`, by coordinate.
     force: Vec<Expr>,
-    /// `L_v`.
-    momenta: Vec<Expr>,
 }
 
-fn balance(system: &System, gamma: &[Expr], definitions: &mut Definitions) -> Balance {
+fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut Definitions) -> Balance {
     let g = &system.graph;
     let (q, v) = (system.positions(), system.velocities());
     let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
-    let momenta = g.gradient(system.lagrangian, &v);
     let gradient = g.gradient(system.lagrangian, &q);
     let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
     flow.extend(v.iter().copied().zip(gamma.iter().copied()));
     flow.push((system.time, g.one()));
-    let inertia = g.total_derivatives(&momenta, &flow);
+    let inertia = g.total_derivatives(momenta, &flow);
     let force = (0..q.len()).map(|i| {
         let rest = g.sub(inertia[i], g.add(gradient[i], system.forces[i]));
         definitions.short(g, "r", SHORT, rest)
     });
     let force = force.collect();
     let row = |row: Vec<(Symbol, Expr)>| row.into_iter().map(|(s, e)| (places[&s], e)).collect::<Sparse>();
-    let mass = g.sparse_jacobian(&momenta, &v).into_iter().map(row).collect();
-    Balance { mass, force, momenta }
+    let mass = g.sparse_jacobian(momenta, &v).into_iter().map(row).collect();
+    Balance { mass, force }
+}
+
+/// The balance in a frame: its mass matrix is diagonal and constant, and
+///
+/// ```text
+/// force_k = c_k γ_k + Σ_c c_c u_c dω^c(q̇, e_k) + e_k · (d/dt R_v − R_q − Q) ,      R = L − ½ vᵀMv.
+/// ```
+fn balance_in_frame(
+    system: &System,
+    (frame, multiples): (&Frame, &HashMap<Symbol, Expr>),
+    momenta: &[Expr],
+    gamma: &[Expr],
+    definitions: &mut Definitions,
+) -> Balance {
+    let g = &system.graph;
+    let (q, v) = (system.positions(), system.velocities());
+    let at_rest: HashMap<Symbol, Expr> = v.iter().map(|&v| (v, g.zero())).collect();
+    let linear = g.substitute_all(momenta, &at_rest);
+    let rest = g.add(g.substitute(system.lagrangian, &at_rest), g.dot(&linear, &g.variables(&v)));
+    let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
+    flow.push((system.time, g.one()));
+    let (inertia, gradient) = (g.total_derivatives(&linear, &flow), g.gradient(rest, &q));
+    let applied: Vec<Expr> = (0..q.len()).map(|i| g.sub(inertia[i], g.add(gradient[i], system.forces[i]))).collect();
+    let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
+    let own: Vec<Expr> = frame.inertia.iter().zip(u).map(|(&c, u)| g.mul(c, u)).collect();
+    let turned = g.substitute_all(&frame.turned(g, &own), multiples);
+    let applied = frame.along(g, &applied);
+    let force = (0..q.len()).map(|k| {
+        let whole = g.sum(&[g.mul(frame.inertia[k], gamma[k]), turned[k], applied[k]]);
+        definitions.short(g, "r", SHORT, whole)
+    });
+    let force = force.collect();
+    let mass = frame.inertia.iter().enumerate().map(|(k, &e)| Sparse::from([(k, e)])).collect();
+    Balance { mass, force }
 }
 
 /// States, outputs, invariants and guards.
@@ -191,7 +245,8 @@ fn hand_over(equations: &mut Equations, system: &System, quasi: QuasiVelocities,
         equations.states.push(StateVariable { symbol: c.position, role: Role::Position, rate, start });
     }
     for w in &quasi.free {
-        let role = if w.coordinate.is_some() { Role::Velocity } else { Role::QuasiVelocity };
+        let own = system.coordinates.iter().any(|c| c.velocity == w.symbol);
+        let role = if own { Role::Velocity } else { Role::QuasiVelocity };
         equations.states.push(StateVariable { symbol: w.symbol, role, rate: g.variable(w.rate), start: w.start });
     }
     equations.coordinates = g.variables(&system.positions());

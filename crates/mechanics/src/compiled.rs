@@ -131,8 +131,8 @@ impl Compiled {
         let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
-        let straight = (form.left.len() < blocks.len())
-            .then(|| Straight::new(equations, form, &all, &rates, &outputs))
+        let straight = (form.left.len() < blocks.len() || form.collected.is_some())
+            .then(|| Straight::new(equations, form, &all, &outputs))
             .transpose()?;
         Ok(Compiled {
             straight,
@@ -182,6 +182,11 @@ impl Compiled {
     /// Whether [`Compiled::with_jacobian`] was called.
     pub fn has_jacobian(&self) -> bool {
         self.derivatives.is_some()
+    }
+
+    /// Products of series, and linear terms, that an order of [`Compiled::taylor`] takes; `None` if [`Compiled::with_series`] was not called.
+    pub fn series_work(&self) -> Option<(usize, usize)> {
+        self.series.as_ref().map(Series::work)
     }
 
     /// Whether [`Compiled::with_series`] was called.

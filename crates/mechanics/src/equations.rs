@@ -127,8 +127,7 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
-    /// Intermediate quantities in `(t, y, z)` and earlier ones, by way of which everything else may be written; see [`crate::Definitions`]. Blocks and
-    /// guards may need those only that contain no `z`.
+    /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards may need those without `z` only.
     pub definitions: Vec<(Symbol, Expr)>,
     /// `y` with rates and start.
     pub states: Vec<StateVariable>,
@@ -154,6 +153,8 @@ pub struct Equations {
     pub left_out: Vec<LeftOut>,
     /// So many units in the last place are velocities and momenta known to, where constraints are nearly dependent; 1 without such.
     pub lost_digits: f64,
+    /// In which variables they are written, where there was a choice, and why.
+    pub chosen: Vec<String>,
     /// The removal behind the equations, whose parameters and memory variables have to be started.
     pub removal: Option<Removal>,
 }
@@ -179,6 +180,7 @@ impl Equations {
             statements: Vec::new(),
             left_out: Vec::new(),
             lost_digits: 1.0,
+            chosen: Vec::new(),
             removal: None,
         }
     }

@@ -13,6 +13,7 @@ use symbolic::{CompileError, Expr, Graph, Symbol};
 
 use crate::definitions::{apart, symbols_behind};
 use crate::equations::{Block, Equations};
+use crate::form_collection::{Collected, collected};
 use crate::form_elimination::{Definitions, Elimination, LinearBlock};
 use crate::form_pivots::{Entry, NEAR, Order, POINTS, Pattern, Strategy};
 
@@ -28,6 +29,8 @@ pub struct Form {
     pub left: Vec<usize>,
     /// What was chosen for each block and why, in words.
     pub why: Vec<String>,
+    /// All definitions and the rates as they are evaluated, where there is a shorter way to write them.
+    pub collected: Option<Collected>,
 }
 
 /// Expressions up to these sizes stay inside others: long ones let terms meet that cancel, short ones keep products apart that are used more than once.
@@ -50,6 +53,9 @@ impl Form {
 
     /// Those of the equations and those of the form, each after what it contains.
     pub(crate) fn all_definitions(&self, equations: &Equations) -> Vec<(Symbol, Expr)> {
+        if let Some(collected) = &self.collected {
+            return collected.definitions.clone();
+        }
         let (known, waiting) = apart(&equations.graph, &equations.definitions, &equations.unknowns());
         [known, self.definitions.clone(), waiting].concat()
     }
@@ -116,6 +122,9 @@ impl Form {
             }
         }
         form.condition = (!watched.is_empty()).then(|| equations.graph.sum(&watched));
+        form.collected = collected(equations, &form)?;
+        let words = || "common factors drawn out of definitions and rates".into();
+        form.why.extend(form.collected.as_ref().map(|_| words()));
         Ok(form)
     }
 }

@@ -9,9 +9,11 @@ mod derivatives;
 mod equations;
 mod error;
 mod form;
+mod form_collection;
 mod form_elimination;
 mod form_pivots;
 mod formulation;
+mod frame;
 mod instant;
 mod integrability;
 mod lanes;
@@ -28,7 +30,7 @@ mod start;
 mod straight;
 mod system;
 
-pub use cheapest::cheapest;
+pub use cheapest::{cheapest, matrix_moves};
 pub use compiled::{Compiled, Cost, Outputs};
 pub use definitions::Definitions;
 pub use equations::{
@@ -36,7 +38,9 @@ pub use equations::{
 };
 pub use error::RemovalError;
 pub use form::Form;
+pub use form_collection::Collected;
 pub use formulation::{Derivation, DerivationError, Formulation, fresh_symbol, refuse_forces};
+pub use frame::{Frame, FrameConstraint, FrameVelocity, Turning};
 pub use instant::EvaluationFailure;
 pub use integrability::{Integrability, integrability};
 pub use lanes::LaneEquations;

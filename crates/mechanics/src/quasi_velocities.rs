@@ -10,11 +10,11 @@
 //! way of a quasi-velocity `w` with `v₁ = b w + …`, `v₂ = −a w + …` (the speed along a blade; regular everywhere); else a coefficient that is
 //! large at the start, which becomes a guard. Among equals the pivot that fills least (Markowitz), then the latest coordinate.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Symbol};
 
-use crate::{Definitions, RemovalError, State, System};
+use crate::{Definitions, Frame, RemovalError, State, System};
 
 mod columns;
 mod elimination;
@@ -31,7 +31,7 @@ pub struct QuasiVelocity {
     pub rate: Symbol,
     /// `w` in `(q, v, t)`.
     pub start: Expr,
-    /// Index of the coordinate whose velocity it is, if it is one.
+    /// Index of the coordinate whose velocity it is, or of the velocity of the frame, if it is one.
     pub coordinate: Option<usize>,
 }
 
@@ -40,7 +40,7 @@ pub struct QuasiVelocity {
 pub struct DependentVelocity {
     /// Symbol of the velocity.
     pub symbol: Symbol,
-    /// Index of the coordinate whose velocity it is; none for a quasi-velocity that turned out to be dependent.
+    /// Index of the coordinate whose velocity it is, or of the velocity of the frame; none for a quasi-velocity that turned out to be dependent.
     pub coordinate: Option<usize>,
     /// Quasi-velocities and earlier dependent velocities, with their coefficients in `(q, t)`.
     pub terms: Vec<(Symbol, Expr)>,
@@ -83,13 +83,13 @@ pub struct QuasiVelocities {
 }
 
 impl QuasiVelocities {
-    /// Eliminates the constraints of `system`. Where a pivot has to be chosen by its size, that at `start` counts; without a start, that
-    /// at a point of no significance.
+    /// Eliminates the constraints of `system`, from the velocities of `frame` or, without one, of the coordinates. Where a pivot has to be chosen by
+    /// its size, that at `start` counts; without a start, that at a point of no significance.
     ///
     /// # Errors
     /// [`RemovalError::NotLinear`] where a constraint is not linear in `v`; [`RemovalError::Dependent`] where the rows of `A` are dependent.
-    pub fn new(system: &System, start: Option<&State>) -> Result<Self, RemovalError> {
-        let mut elimination = Elimination::new(system, start)?;
+    pub fn new(system: &System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
+        let mut elimination = Elimination::new(system, frame, start)?;
         let homogeneous = elimination.is_homogeneous();
         while elimination.step()? {}
         let steps = std::mem::take(&mut elimination.steps);
@@ -99,5 +99,18 @@ impl QuasiVelocities {
         let eliminated = std::mem::take(&mut elimination.eliminated);
         let free = elimination.free(&dependent.iter().map(|d| d.symbol).collect::<HashSet<Symbol>>());
         Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, homogeneous })
+    }
+
+    /// The dependent velocities that are a constant multiple of another one, as such.
+    pub fn multiples(&self, system: &System) -> HashMap<Symbol, Expr> {
+        let g = &system.graph;
+        let parameters: BTreeSet<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
+        let multiple = |d: &DependentVelocity| match d.terms[..] {
+            [(s, e)] if g.is_zero(d.offset) && g.symbols_of(e).is_subset(&parameters) => {
+                Some((d.symbol, g.mul(e, g.variable(s))))
+            }
+            _ => None,
+        };
+        self.dependent.iter().filter_map(multiple).collect()
     }
 }

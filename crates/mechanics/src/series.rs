@@ -26,6 +26,10 @@ impl Series {
         Ok(Series { tape, workspace, left: form.left.clone(), places, inputs })
     }
 
+    pub(crate) fn work(&self) -> (usize, usize) {
+        self.tape.work()
+    }
+
     /// Takes `t, y`, constants and the unknowns of blocks that are left.
     pub(crate) fn tape(equations: &Equations, form: &Form) -> Result<SeriesTape, CompileError> {
         let steady = |symbol: Symbol| (symbol, SeriesInput::Steady);
@@ -39,8 +43,7 @@ impl Series {
                 residuals.push(block.residuals.clone());
             }
         }
-        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
-        let definitions = form.all_definitions(equations);
+        let (rates, definitions) = (form.rates(equations), form.all_definitions(equations));
         equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)
     }
 

@@ -23,7 +23,6 @@ impl Straight {
         equations: &Equations,
         form: &Form,
         all: &[Symbol],
-        rates: &[Expr],
         outputs: &[Expr],
     ) -> Result<Self, CompileError> {
         let places = form.places(equations);
@@ -34,7 +33,7 @@ impl Straight {
             Program::by_way_of(equations, &definitions, &inputs, &[wanted, condition].concat())
         };
         Ok(Straight {
-            rates: program(rates)?,
+            rates: program(&form.rates(equations))?,
             outputs: program(outputs)?,
             watched: form.condition.is_some(),
             inputs: vec![0.0; places.len()],

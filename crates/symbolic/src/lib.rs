@@ -36,6 +36,7 @@ mod calculus;
 mod content;
 mod evaluate;
 mod expand;
+mod factor;
 mod function;
 mod graph;
 mod identity;

@@ -22,17 +22,28 @@
 //! v_k = Σ S_kj v_j + s_k :      v̄_j += S_kj v̄_k ,      −ṗ += v̄_k (Σ ∂S_kj/∂q v_j + ∂s_k/∂q) .
 //! ```
 //!
+//! Where the kinetic energy is a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, the states are `e_k · p`,
+//! the momenta along the vectors of that frame:
+//!
+//! ```text
+//! d/dt (e_k · p) = e_k · (R_q − (∂u/∂q)ᵀ (p − L_u)) − Σ_c (e_c · p) dω^c(q̇, e_k) ,      R = L − ½ vᵀMv.
+//! ```
+//!
 //! For a chain of n bodies that is O(n) in all. The multipliers follow by one more recursion ([`mechanics::EliminatedConstraint`]) where they are asked for.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 
 use mechanics::{
-    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, QuasiVelocities, Role,
-    StateVariable, Statement, System, cheapest, fresh_symbol, refuse_forces,
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Frame, Named, QuasiVelocities, Role,
+    StateVariable, Statement, System, cheapest, fresh_symbol, matrix_moves, refuse_forces,
 };
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::{Augmented, augment, free_constants};
+
+mod backwards;
+
+use backwards::{adjoints, by_positions, multipliers};
 
 /// The same motion in quasi-velocities; for constraints linear in the velocities.
 pub const REDUCED_FORM: Formulation = Formulation {
@@ -51,7 +62,7 @@ const LONG: usize = 100;
 const SMALL: usize = 8;
 const WHOLE: usize = 200;
 
-/// Derives the vakonomic equations with states `(q, p)`, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
+/// Derives the vakonomic equations with states `(q, p)`, or `(q, e_k · p)` in a frame, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
 ///
 /// The equations for `w` are linear where `L` is quadratic in `v`; otherwise they are solved by Newton's method from the last accepted state.
 ///
@@ -83,21 +94,22 @@ const WHOLE: usize = 200;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_reduced(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
-    let system = system.clone();
-    let g = &system.graph;
-    refuse_forces(&system, REDUCED_FORM.name)?;
-    let quasi = QuasiVelocities::new(&system, derivation.start)
-        .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
-    let augmented = augment(&system);
-    let fresh = |name: String| fresh_symbol(g, &name);
-    let costates: Vec<Symbol> = system.coordinates.iter().map(|c| fresh(format!("p_{}", c.name))).collect();
-    let costate_rates = costates.iter().map(|&p| fresh(format!("{}'", g.name(p)))).collect();
-    let problem = Problem { quasi, augmented, p: g.variables(&costates), costates, costate_rates };
-    let recursive = problem.equations(system.clone(), None, None);
-    let Some(Whole { balance, rates }) = problem.put_in(&system) else { return Ok(recursive) };
-    let with = |balance, rates| problem.equations(system.clone(), balance, rates);
-    let mixed = [with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))];
-    Ok(cheapest([recursive].into_iter().chain(mixed).collect()))
+    refuse_forces(system, REDUCED_FORM.name)?;
+    let (system, framed) = (system.clone(), system.clone());
+    let problem = Problem::new(&system, None, derivation)?;
+    let mut candidates = vec![problem.equations(system.clone(), None, None)];
+    if let Some(frame) = Frame::new(&framed, derivation.start) {
+        let in_frame = Problem::new(&framed, Some(frame), derivation)?.equations(framed, None, None);
+        if matrix_moves(&candidates[0]) && !matrix_moves(&in_frame) {
+            return Ok(in_frame);
+        }
+        candidates.push(in_frame);
+    }
+    if let Some(Whole { balance, rates }) = problem.put_in(&system) {
+        let with = |balance, rates| problem.equations(system.clone(), balance, rates);
+        candidates.extend([with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))]);
+    }
+    if candidates.len() == 1 { Ok(candidates.remove(0)) } else { Ok(cheapest(candidates)) }
 }
 
 /// Quasi-velocities put in: short for small systems, where terms meet that cancel.
@@ -109,8 +121,11 @@ struct Whole {
 }
 
 struct Problem {
+    /// In which velocities the quasi-velocities and the costates are; none for those of the coordinates.
+    frame: Option<Frame>,
     quasi: QuasiVelocities,
     augmented: Augmented,
+    /// Symbols of `p`, or of `e_k · p`.
     costates: Vec<Symbol>,
     /// Symbols of `ṗ`, for the reader.
     costate_rates: Vec<Symbol>,
@@ -118,23 +133,68 @@ struct Problem {
 }
 
 impl Problem {
+    fn new(system: &System, frame: Option<Frame>, derivation: &Derivation) -> Result<Self, DerivationError> {
+        let g = &system.graph;
+        let quasi = QuasiVelocities::new(system, frame.as_ref(), derivation.start)
+            .map_err(|error| DerivationError::Reduction { formulation: REDUCED_FORM.name, error })?;
+        let augmented = augment(system);
+        let names: Vec<String> = match &frame {
+            Some(frame) => frame.velocities.iter().map(|u| g.name(u.symbol).trim_end_matches('\'').into()).collect(),
+            None => system.coordinates.iter().map(|c| c.name.clone()).collect(),
+        };
+        let costates: Vec<Symbol> = names.iter().map(|name| fresh_symbol(g, &format!("p_{name}"))).collect();
+        let costate_rates = costates.iter().map(|&p| fresh_symbol(g, &format!("{}'", g.name(p)))).collect();
+        Ok(Problem { frame, quasi, augmented, p: g.variables(&costates), costates, costate_rates })
+    }
+
+    /// The velocities in which the problem is written, and `∂L/∂u`.
+    fn momenta(&self, system: &System) -> (Vec<Symbol>, Vec<Expr>) {
+        let g = &system.graph;
+        let v = system.velocities();
+        let momenta = g.gradient(system.lagrangian, &v);
+        let Some(frame) = &self.frame else { return (v, momenta) };
+        let linear = frame.along(g, &g.substitute_all(&momenta, &at_rest(system)));
+        let u: Vec<Symbol> = frame.velocities.iter().map(|u| u.symbol).collect();
+        let own = frame.inertia.iter().zip(&u).zip(linear);
+        let momenta = own.map(|((&c, &u), linear)| g.add(g.mul(c, g.variable(u)), linear)).collect();
+        (u, momenta)
+    }
+
+    /// `ṗ`, where `along` is `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`; in a frame `e_k · (R_q − along) − Σ_c p_c dω^c(q̇, e_k)`, with `R` what `L` is
+    /// without its squares.
+    fn rates(&self, system: &System, momenta: &[Expr], along: &[Expr]) -> Vec<Expr> {
+        let g = &system.graph;
+        let q = system.positions();
+        let Some(frame) = &self.frame else {
+            let gradient = g.gradient(system.lagrangian, &q);
+            return gradient.iter().zip(along).map(|(&l_q, &along)| multiplied_out(g, g.sub(l_q, along))).collect();
+        };
+        let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
+        let linear = momenta.iter().zip(&frame.inertia).zip(u).map(|((&l_u, &c), u)| g.mul(u, g.sub(l_u, g.mul(c, u))));
+        let rest: Vec<Expr> = linear.chain([g.substitute(system.lagrangian, &at_rest(system))]).collect();
+        let gradient = g.gradient(g.sum(&rest), &q);
+        let applied: Vec<Expr> = gradient.iter().zip(along).map(|(&r_q, &along)| g.sub(r_q, along)).collect();
+        let (applied, turned) = (frame.along(g, &applied), frame.turned(g, &self.p));
+        applied.into_iter().zip(turned).map(|(applied, turned)| g.sub(applied, turned)).collect()
+    }
+
     /// The equations by recursion, or by what is given for `∂K/∂w = 0` and `ṗ`.
     fn equations(&self, system: System, balance: Option<&[Expr]>, rates: Option<&[Expr]>) -> Equations {
-        let Problem { quasi, augmented, costates, costate_rates, p } = self;
+        let Problem { frame, quasi, augmented, costates, costate_rates, p } = self;
         let g = &system.graph;
         let mut equations = Equations::new(REDUCED_FORM.name, &system);
         let (q, v) = (system.positions(), system.velocities());
-        let momenta = g.gradient(system.lagrangian, &v);
+        let (own, momenta) = self.momenta(&system);
 
         let mut definitions = quasi.coefficients.clone();
         let residuals = match balance {
             Some(given) => given.to_vec(),
-            None => stationarity(&system, quasi, p, &momenta, &mut definitions),
+            None => stationarity(g, quasi, (&own, p), &momenta, &mut definitions),
         };
-        for d in &quasi.dependent {
-            let velocity = velocity(g, d);
-            definitions.define(d.symbol, velocity);
-            let left = g.variable(d.symbol);
+        let dependent = quasi.dependent.iter().map(|d| (d.symbol, velocity(g, d)));
+        for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
+            definitions.define(symbol, velocity);
+            let left = g.variable(symbol);
             equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
         }
         for (w, &residual) in quasi.free.iter().zip(&residuals) {
@@ -147,18 +207,21 @@ impl Problem {
             Some(given) => given.to_vec(),
             None => {
                 let along = by_positions(&system, quasi, &adjoints, &mut definitions);
-                let gradient = g.gradient(system.lagrangian, &q);
-                gradient.iter().zip(along).map(|(&l_q, along)| multiplied_out(g, g.sub(l_q, along))).collect()
+                self.rates(&system, &momenta, &along)
             }
         };
 
+        let p0 = match frame {
+            Some(frame) => frame.along(g, &augmented.momenta),
+            None => augmented.momenta.clone(),
+        };
         let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
         for i in 0..q.len() {
             let (rate, start) = (g.variable(v[i]), g.variable(q[i]));
             equations.states.push(StateVariable { symbol: q[i], role: Role::Position, rate, start });
         }
         for (i, (&symbol, &rate)) in costates.iter().zip(&rates).enumerate() {
-            let start = g.substitute(augmented.momenta[i], &at_start);
+            let start = g.substitute(p0[i], &at_start);
             equations.states.push(StateVariable { symbol, role: Role::Costate, rate, start });
             let left = g.variable(costate_rates[i]);
             equations.statements.push(Statement { meaning: "costate".into(), left, right: rate });
@@ -170,11 +233,22 @@ impl Problem {
             regular: "∂²L/∂v² regular on the admissible velocities",
         }];
         multipliers(g, quasi, augmented, &adjoints, &mut definitions);
-        hand_over(&mut equations, &system, augmented, p);
+        hand_over(&mut equations, &system, augmented, &self.canonical(g));
+        equations.chosen.extend(frame.as_ref().map(|frame| frame.words(g)));
         equations.guards = quasi.guards.clone();
         equations.definitions = definitions.into_list();
         equations.graph = system.graph;
         equations
+    }
+
+    /// `p` by coordinate.
+    fn canonical(&self, g: &Graph) -> Vec<Expr> {
+        let Some(frame) = &self.frame else { return self.p.clone() };
+        let mut terms = vec![Vec::new(); self.p.len()];
+        for (form, &p) in frame.forms.iter().zip(&self.p) {
+            form.iter().for_each(|(&i, &e)| terms[i].push(g.mul(e, p)));
+        }
+        terms.iter().map(|terms| g.sum(terms)).collect()
     }
 
     /// The derivatives of `K` with the velocities put in; none where that is long.
@@ -202,6 +276,11 @@ impl Problem {
     }
 }
 
+/// `v = 0`
+fn at_rest(system: &System) -> HashMap<Symbol, Expr> {
+    system.velocities().into_iter().map(|v| (v, system.graph.zero())).collect()
+}
+
 fn velocity(g: &Graph, d: &mechanics::DependentVelocity) -> Expr {
     let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
     g.sum(&terms)
@@ -209,16 +288,14 @@ fn velocity(g: &Graph, d: &mechanics::DependentVelocity) -> Expr {
 
 /// `Sᵀ (L_v − p)` in `(t, q, p, w)`, without what depends on `w` by way of definitions.
 fn stationarity(
-    system: &System,
+    g: &Graph,
     quasi: &QuasiVelocities,
-    p: &[Expr],
+    (v, p): (&[Symbol], &[Expr]),
     momenta: &[Expr],
     definitions: &mut Definitions,
 ) -> Vec<Expr> {
-    let g = &system.graph;
-    let v = system.velocities();
     let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
-    let mass = g.sparse_jacobian(momenta, &v);
+    let mass = g.sparse_jacobian(momenta, v);
     let quadratic = mass.iter().flatten().all(|(_, e)| g.symbols_of(*e).iter().all(|s| !places.contains_key(s)));
     let columns = quasi.columns(g, definitions);
     // v at w = 0 where L is quadratic, else v itself
@@ -244,73 +321,6 @@ fn stationarity(
     let rest = columns.projected(g, &rest, definitions);
     let w: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.symbol)).collect();
     reduced.iter().zip(rest).map(|(row, rest)| g.add(g.dot(row, &w), rest)).collect()
-}
-
-/// `v̄_k` of the dependent velocities, from `seeds = p − L_v` by coordinate.
-fn adjoints(
-    g: &Graph,
-    quasi: &QuasiVelocities,
-    seeds: &[Expr],
-    definitions: &mut Definitions,
-) -> HashMap<Symbol, Expr> {
-    let mut terms: HashMap<Symbol, Vec<Expr>> =
-        quasi.dependent.iter().map(|d| (d.symbol, d.coordinate.map(|i| seeds[i]).into_iter().collect())).collect();
-    let mut adjoints = HashMap::new();
-    for d in quasi.dependent.iter().rev() {
-        let adjoint = definitions.short(g, "r", SHORT, g.sum(&terms[&d.symbol]));
-        for &(s, coefficient) in &d.terms {
-            if let Some(terms) = terms.get_mut(&s) {
-                terms.push(g.mul(coefficient, adjoint));
-            }
-        }
-        adjoints.insert(d.symbol, adjoint);
-    }
-    adjoints
-}
-
-/// `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`, through the recursion of the velocities and that of their coefficients.
-fn by_positions(
-    system: &System,
-    quasi: &QuasiVelocities,
-    adjoints: &HashMap<Symbol, Expr>,
-    definitions: &mut Definitions,
-) -> Vec<Expr> {
-    let g = &system.graph;
-    let positions = system.positions();
-    let coefficients = quasi.coefficients.list();
-    let within: HashSet<Symbol> = positions.iter().copied().chain(coefficients.iter().map(|c| c.0)).collect();
-    let mut terms: HashMap<Symbol, Vec<Expr>> = HashMap::new();
-    let add = |terms: &mut HashMap<Symbol, Vec<Expr>>, e: Expr, adjoint: Expr| {
-        let symbols: Vec<Symbol> = g.symbols_of(e).into_iter().filter(|s| within.contains(s)).collect();
-        for (s, derivative) in g.sparse_gradient(e, &symbols) {
-            terms.entry(s).or_default().push(g.mul(derivative, adjoint));
-        }
-    };
-    for d in quasi.dependent.iter().rev() {
-        add(&mut terms, velocity(g, d), adjoints[&d.symbol]);
-    }
-    for &(symbol, e) in coefficients.iter().rev() {
-        let Some(own) = terms.remove(&symbol) else { continue };
-        let adjoint = definitions.short(g, "rc", SHORT, g.sum(&own));
-        add(&mut terms, e, adjoint);
-    }
-    positions.iter().map(|q| terms.get(q).map_or(g.zero(), |terms| g.sum(terms))).collect()
-}
-
-/// Defines `μ`, the constraint eliminated last first.
-fn multipliers(
-    g: &Graph,
-    quasi: &QuasiVelocities,
-    augmented: &Augmented,
-    adjoints: &HashMap<Symbol, Expr>,
-    definitions: &mut Definitions,
-) {
-    for eliminated in quasi.eliminated.iter().rev() {
-        let own = eliminated.slopes.iter().map(|(v, slope)| g.mul(*slope, adjoints[v]));
-        let later = eliminated.added.iter().map(|&(i, e)| g.mul(e, g.variable(augmented.multipliers[i])));
-        let terms: Vec<Expr> = own.chain(later).collect();
-        definitions.define(augmented.multipliers[eliminated.constraint], g.sum(&terms));
-    }
 }
 
 /// `e` multiplied out, if that makes it shorter and is soon done.

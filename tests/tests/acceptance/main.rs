@@ -5,6 +5,7 @@ mod control;
 mod derivations;
 mod ensembles;
 mod formulations_agree;
+mod frames;
 mod invariants;
 mod leading_term;
 mod matching;

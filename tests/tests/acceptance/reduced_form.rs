@@ -11,7 +11,7 @@ use crate::support::{
     linear_scenes, motion_of, must, scene, tight,
 };
 
-fn reduced(scene: &Scene) -> Equations {
+pub fn reduced(scene: &Scene) -> Equations {
     equations(&scene.system, "chetaev-reduced", None)
 }
 
@@ -43,7 +43,7 @@ fn states_and_rates(scene: &Scene, equations: &Equations, state: &State, a: &[f6
 }
 
 /// Largest difference of the rates from those by Maggi's accelerations, relative to the largest of these; and that of the velocities.
-fn differences(scene: &Scene, equations: &Equations, state: &State) -> (f64, f64) {
+pub fn differences(scene: &Scene, equations: &Equations, state: &State) -> (f64, f64) {
     let mut maggi = Maggi::new(&scene.system).expect("differentiates");
     let a = maggi.accelerations(state.t, &state.q, &state.v).expect("regular");
     let (y, expected) = states_and_rates(scene, equations, state, &a);

@@ -5,6 +5,7 @@ use integrate::{EvaluationError, Options, Problem, Start, integrate};
 use mechanics::{Compiled, Equations, Form};
 use nalgebra::DMatrix;
 use proptest::test_runner::TestCaseError;
+use symbolic::{Bounded, Scalar};
 use validation::random::{Case, Kind, Recipe, Which, recipes_of};
 
 use crate::support::for_all;
@@ -15,7 +16,8 @@ const INSTANTS: usize = 8;
 /// Round-off over the condition of the block, relative to the largest unknown.
 const ROUND_OFF: f64 = 2e-14;
 
-/// Largest condition number of the blocks at `inputs = (t, y, constants)`, rows and columns scaled.
+/// Largest condition number of the blocks at `inputs = (t, y, constants)`, rows and columns scaled, times what was added up to an entry: forms add up in
+/// different orders, and entries in which terms cancel differ by that much round-off.
 fn condition(equations: &Equations, inputs: &[f64]) -> f64 {
     let g = &equations.graph;
     let mut largest = 1.0_f64;
@@ -23,13 +25,21 @@ fn condition(equations: &Equations, inputs: &[f64]) -> f64 {
         let n = block.unknowns.len();
         let jacobian = g.jacobian(&block.residuals, &block.unknowns);
         let tape = g.compile(&equations.known_symbols(), jacobian.entries(), &equations.parameters).expect("linear");
-        let mut values = vec![0.0; n * n];
-        tape.evaluate(inputs, &mut tape.workspace(), &mut values);
-        let mut matrix = DMatrix::from_row_slice(n, n, &values);
-        matrix.column_iter_mut().for_each(|mut c| c /= c.amax());
-        matrix.row_iter_mut().for_each(|mut r| r /= r.amax());
+        let inputs: Vec<Bounded> = inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let mut values = vec![Bounded::from_f64(0.0); n * n];
+        tape.evaluate(&inputs, &mut tape.workspace(), &mut values);
+        let mut matrix = DMatrix::from_fn(n, n, |i, j| values[i * n + j].value);
+        let mut added_up = DMatrix::from_fn(n, n, |i, j| values[i * n + j].magnitude);
+        for (mut c, mut a) in matrix.column_iter_mut().zip(added_up.column_iter_mut()) {
+            a /= c.amax();
+            c /= c.amax();
+        }
+        for (mut r, mut a) in matrix.row_iter_mut().zip(added_up.row_iter_mut()) {
+            a /= r.amax();
+            r /= r.amax();
+        }
         let singular = matrix.singular_values();
-        largest = largest.max(singular[0] / singular[n - 1]);
+        largest = largest.max(added_up.amax().max(1.0) * singular[0] / singular[n - 1]);
     }
     largest
 }

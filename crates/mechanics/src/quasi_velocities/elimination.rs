@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use symbolic::{Expr, Graph, Symbol};
 
 use super::{DependentVelocity, EliminatedConstraint, QuasiVelocity};
-use crate::{Definitions, RemovalError, State, System, fresh_symbol};
+use crate::frame::point;
+use crate::{Coordinate, Definitions, Frame, RemovalError, State, System, fresh_symbol};
 
 /// A pivot may be this much smaller than the largest one if it fills less.
 const PIVOT_CHOICE: f64 = 0.2;
@@ -67,30 +68,23 @@ pub(super) struct Elimination<'a> {
 }
 
 impl<'a> Elimination<'a> {
-    pub(super) fn new(system: &'a System, start: Option<&State>) -> Result<Self, RemovalError> {
+    pub(super) fn new(system: &'a System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
         let g = &system.graph;
-        let n = system.dimension();
-        let mut values = system.parameter_values();
-        match start {
-            Some(state) => values.extend(system.values_at(state)),
+        let velocities = match frame {
+            Some(frame) => frame.velocities.iter().map(|u| (u.symbol, u.rate, u.start)).collect(),
             None => {
-                let q: Vec<f64> = (1..=n).map(|i| 0.3 + (i as f64 * 0.618_033_988_749_895).fract()).collect();
-                values.extend(system.values_at(&State { t: 0.3, q, v: vec![0.0; n] }));
+                let own = |c: &Coordinate| (c.velocity, c.acceleration, g.variable(c.velocity));
+                system.coordinates.iter().map(own).collect::<Vec<(Symbol, Symbol, Expr)>>()
             }
-        }
-        let columns = system.coordinates.iter().enumerate().map(|(i, c)| Column {
-            velocity: QuasiVelocity {
-                symbol: c.velocity,
-                rate: c.acceleration,
-                start: g.variable(c.velocity),
-                coordinate: Some(i),
-            },
+        };
+        let columns = velocities.iter().enumerate().map(|(i, &(symbol, rate, start))| Column {
+            velocity: QuasiVelocity { symbol, rate, start, coordinate: Some(i) },
             rows: BTreeSet::new(),
         });
         let mut elimination = Elimination {
             g,
             parameters: system.parameter_values(),
-            values,
+            values: point(system, start),
             columns: columns.collect(),
             rows: Vec::new(),
             active: (0..system.constraints.len()).collect(),
@@ -100,7 +94,10 @@ impl<'a> Elimination<'a> {
             guards: Vec::new(),
             eliminated: Vec::new(),
         };
-        elimination.read(system)?;
+        match frame {
+            Some(frame) => frame.constraints.iter().for_each(|f| elimination.add_row(f.terms.clone(), f.offset)),
+            None => elimination.read(system)?,
+        }
         (0..elimination.rows.len()).for_each(|row| elimination.enqueue(row));
         Ok(elimination)
     }
@@ -113,19 +110,23 @@ impl<'a> Elimination<'a> {
         let at_rest: HashMap<Symbol, Expr> = velocities.iter().map(|&v| (v, g.zero())).collect();
         let jacobian = g.sparse_jacobian(&system.constraints, &velocities);
         for (row, (&f, entries)) in system.constraints.iter().zip(jacobian).enumerate() {
-            let mut terms = Terms::new();
-            for (v, e) in entries {
-                if g.symbols_of(e).iter().any(|s| places.contains_key(s)) {
-                    return Err(RemovalError::NotLinear { constraint: row + 1, text: g.plain(f) });
-                }
-                terms.insert(places[&v], (e, self.number(e)));
-                self.columns[places[&v]].rows.insert(row);
+            if entries.iter().any(|(_, e)| g.symbols_of(*e).iter().any(|s| places.contains_key(s))) {
+                return Err(RemovalError::NotLinear { constraint: row + 1, text: g.plain(f) });
             }
-            let offset = g.substitute(f, &at_rest);
-            let scale = largest(&terms);
-            self.rows.push(Row { terms, offset, scale, searched: false, queued: Vec::new() });
+            let terms = entries.into_iter().map(|(v, e)| (places[&v], e)).collect();
+            self.add_row(terms, g.substitute(f, &at_rest));
         }
         Ok(())
+    }
+
+    fn add_row(&mut self, terms: Vec<(usize, Expr)>, offset: Expr) {
+        let row = self.rows.len();
+        terms.iter().for_each(|(column, _)| {
+            self.columns[*column].rows.insert(row);
+        });
+        let terms: Terms = terms.into_iter().map(|(column, e)| (column, (e, self.number(e)))).collect();
+        let scale = largest(&terms);
+        self.rows.push(Row { terms, offset, scale, searched: false, queued: Vec::new() });
     }
 
     pub(super) fn is_homogeneous(&self) -> bool {
