@@ -60,7 +60,7 @@ pub fn differences(scene: &Scene, mu: &[f64]) -> [f64; 3] {
     let (rates, outputs) = instant(scene, &costate, Compiled::plain(&costate).expect("compiles"), mu);
     let rates = match &reduced.chosen[..] {
         [] => rates,
-        _ => in_the_states_of_a_frame(scene, &start(scene, &costate, mu), &rates),
+        _ => in_the_states_of_a_frame(scene, &start(scene, &costate, mu).0, &rates),
     };
     let mut largest = [0.0_f64; 3];
     for compiled in [Compiled::new(&reduced), Compiled::plain(&reduced)] {
