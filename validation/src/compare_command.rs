@@ -5,7 +5,7 @@ use deltaq::Settings;
 
 use crate::catalogue;
 use crate::cli::CompareArguments;
-use crate::main_job::scene_files;
+use crate::main_job::{protocol, scene_files};
 use crate::report::write_all;
 use crate::solve_command::check_tolerance;
 
@@ -15,7 +15,7 @@ use crate::solve_command::check_tolerance;
 /// Bad input, with its place; then nothing is written.
 pub fn run(arguments: &CompareArguments) -> Result<String> {
     check_tolerance(arguments.tolerance)?;
-    let settings = Settings { tolerance: arguments.tolerance, ..Settings::default() };
+    let settings = Settings { tolerance: arguments.tolerance, ..protocol() };
     let mut all = Vec::new();
     for name in &arguments.scenes {
         let scene = catalogue::find(name, &arguments.overrides)?;

@@ -242,10 +242,17 @@ pub fn check(arguments: &ReportsArguments) -> Result<String> {
     Ok(format!("{} agrees with a fresh run\n", path.display()))
 }
 
+/// How motions that are compared are integrated.
+pub(crate) fn protocol() -> Settings {
+    // twice what any motion of the catalogue takes that does not run into a singularity
+    const MAX_STEPS: usize = 200_000;
+    Settings { max_steps: MAX_STEPS, ..Settings::default() }
+}
+
 /// All scenes, over all processors, in the order of `names`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let bar = parallel::progress(names.len(), quiet);
-    let settings = Settings::default();
+    let settings = protocol();
     let results = parallel::map(names, |name| {
         bar.set_message(name.to_string());
         let scene = catalogue::find(name, &[]).map_err(anyhow::Error::from);

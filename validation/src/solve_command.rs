@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail};
 use deltaq::{
     Choice, Ending, FORMS, FORMULATIONS, Motion, Settings, Steps, default_constants, error_estimate, formulation,
-    removals, setting, solve_by_steps, solve_choice,
+    removal, removal_names, removals, setting, solve_by_steps, solve_choice,
 };
 use discrete::Composition;
 use integrate::Projection;
@@ -50,10 +50,10 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
     let estimate = error_estimate(&mut motion, setting(&scene))?;
     let complaint = match &motion.ending {
         Ending::Stopped { t, cause } => {
-            let doubt = motion.doubt.as_ref().map_or(String::new(), |doubt| format!("; {doubt}"));
+            let doubt = motion.doubt.as_ref().map_or(String::new(), |doubt| format!("; {}", doubt.because));
             Some(format!("stopped at t = {t}: {cause}{doubt}"))
         }
-        Ending::Completed if motion.doubt.is_some() => motion.doubt.clone(),
+        Ending::Completed if motion.doubt.is_some() => motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
         Ending::Completed => {
             let smaller = if arguments.step.is_some() { "--step" } else { "--tolerance" };
             estimate.complaint().map(|words| format!("{words}; ask for a smaller {smaller}"))
@@ -117,20 +117,9 @@ pub(crate) fn choice(scene: &Scene, arguments: &MotionArguments) -> Result<Choic
 }
 
 fn pick_removal(scene: &Scene, name: Option<&str>) -> Result<Removal> {
-    let by_name = match name {
-        Some("coordinates") => Some(Removal::by_coordinates(&scene.system, &scene.start)?),
-        Some("quasi-velocities") => Some(Removal::by_quasi_velocities(&scene.system, &scene.start)?),
-        _ => None,
-    };
-    if let Some(removal) = by_name {
-        return Ok(removal);
-    }
-    let known = removals(scene)?;
-    let names: Vec<String> = known.iter().map(|r| r.name.clone()).collect();
-    let found = known.into_iter().find(|r| name.is_none_or(|n| r.name == n));
-    found.with_context(|| {
-        format!("unknown removal `{}`; known: {}, coordinates, quasi-velocities", name.unwrap_or(""), names.join(", "))
-    })
+    let Some(name) = name else { return Ok(removals(scene)?.swap_remove(0)) };
+    removal(scene, name)?
+        .with_context(|| format!("unknown removal `{name}`; known: {}", removal_names(scene).join(", ")))
 }
 
 fn constants_rule(text: &str) -> Result<ConstantsRule> {

@@ -49,7 +49,7 @@ fn json_of(cell: &Cell) -> Value {
         "case": cell.case,
         "point": cell.point,
         "formulation": cell.formulation,
-        "method": format!("{:?}", cell.method),
+        "method": cell.method.name(),
         "verdict": cell.verdict.word(),
         "steps": cell.steps,
     });
@@ -96,7 +96,7 @@ fn table(cells: &[Cell]) -> String {
             cell.case,
             cell.point,
             cell.formulation,
-            format!("{:?}", cell.method),
+            cell.method.name(),
             cell.verdict.word(),
             figures(&cell.verdict)
         );

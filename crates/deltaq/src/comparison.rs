@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use mechanics::{
-    ConstantsRule, Derivation, Equations, Formulation, Integrability, Recombination, Removal, RemovalError, Scene,
-    State, System, integrability,
+    ConstantsRule, Derivation, Equations, Formulation, Integrability, Recombination, Removal, Scene, State, System,
+    integrability,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -12,6 +12,7 @@ use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::growth::{Growth, LeadingTerm, growth, leading_term};
 use crate::metric::Metric;
+use crate::removals::removals;
 use crate::{FORMS, FORMULATIONS, Motion, Setting, Settings, SolveError, formulation, solve};
 
 /// One formulation of the scene, with all choices made.
@@ -91,37 +92,6 @@ impl Comparison {
     pub fn pair(&self, a: usize, b: usize) -> Option<&Pair> {
         self.pairs.iter().find(|p| (p.first, p.second) == (a, b) || (p.first, p.second) == (b, a))
     }
-}
-
-/// The removals of a scene: those written by hand, then the automatic ones that apply and are not the same again.
-///
-/// # Errors
-/// [`RemovalError`] where no removal was written by hand and none can be found automatically.
-pub fn removals(scene: &Scene) -> Result<Vec<Removal>, RemovalError> {
-    let mut removals = scene.removals.clone();
-    for automatic in [Removal::by_coordinates, Removal::by_quasi_velocities] {
-        match automatic(&scene.system, &scene.start) {
-            Ok(removal) => {
-                let known = removals.iter().any(|r| same_parameters(&scene.system, r, &removal));
-                if !known {
-                    removals.push(removal);
-                }
-            }
-            Err(error) if removals.is_empty() => return Err(error),
-            Err(_) => {}
-        }
-    }
-    Ok(removals)
-}
-
-/// Whether two removals use the same coordinates as parameters, and nothing else.
-fn same_parameters(system: &System, a: &Removal, b: &Removal) -> bool {
-    let coordinates = |r: &Removal| r.parameters.iter().map(|u| u.coordinate).collect::<Option<Vec<usize>>>();
-    let plain = |r: &Removal| {
-        let memory: usize = r.memory.iter().filter(|w| w.coordinate.is_some()).count();
-        memory + r.parameters.len() == system.dimension()
-    };
-    coordinates(a).is_some() && coordinates(a) == coordinates(b) && plain(a) && plain(b)
 }
 
 /// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need one get a choice

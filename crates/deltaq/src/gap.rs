@@ -69,7 +69,7 @@ pub struct GapPoint {
     pub t: f64,
     /// `sqrt(Δqᵀ M Δq)`.
     pub gap: f64,
-    /// What the gap has to pass to count: [`CERTAINTY`] times the sum of the error estimates up to `t`.
+    /// What the gap has to pass to count: [`CERTAINTY`] times the sum of the error estimates up to `t`, infinite where one of them is in doubt.
     pub limit: f64,
 }
 
@@ -130,7 +130,9 @@ pub fn compare_motions_by(
         }
         scale = scale.max(metric.distance(t, q, v, &origin.coordinates));
         largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
+        let doubted = [(&*first, t), (&*second, sampling.clock(t))].into_iter().any(|(motion, t)| motion.is_doubted(t));
         let limit = CERTAINTY * (estimates[0] + estimates[1] + ROUND_OFF * largest_length);
+        let limit = if doubted { f64::INFINITY } else { limit };
         points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit });
         differences.push(difference);
     }
@@ -161,10 +163,10 @@ pub fn compare_motions_by(
     let estimate = estimates[0].max(estimates[1]);
     let relative = if scale > 0.0 { estimate / scale } else { estimate };
     let doubt = first.doubt.as_ref().or(second.doubt.as_ref());
-    let verdict = if let Some(doubt) = doubt {
-        Verdict::Undecided { because: doubt.clone() }
-    } else if certain_from.is_some() {
+    let verdict = if certain_from.is_some() {
         Verdict::Different
+    } else if let Some(doubt) = doubt {
+        Verdict::Undecided { because: doubt.because.clone() }
     } else if !complete {
         let stop = [&first.ending, &second.ending].into_iter().find_map(|e| match e {
             Ending::Stopped { t, cause } => Some(format!("no difference up to t = {t:.6}, where one stops: {cause}")),

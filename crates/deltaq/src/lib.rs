@@ -12,6 +12,7 @@
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
 mod comparison;
+mod doubt;
 mod ensemble;
 mod equations_text;
 mod error;
@@ -24,14 +25,16 @@ mod metric;
 mod motion;
 mod nodes;
 mod ready;
+mod removals;
 mod run;
 mod steps;
 mod table;
 
 pub use comparison::{
     Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, forms,
-    removals, setting, solve_choice,
+    setting, solve_choice,
 };
+pub use doubt::Doubt;
 pub use ensemble::{
     Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, constants_of, over_threads,
 };
@@ -46,5 +49,6 @@ pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
 pub use motion::{Ending, FormReport, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
 pub use ready::{Ready, SingleRun, ready, ready_to_run};
+pub use removals::{removal, removal_names, removals};
 pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
 pub use table::{FORMS, FORMULATIONS, formulation};

@@ -6,6 +6,7 @@ use integrate::{DenseOutput, Interrupt, Method, Projection, ProjectionReport, So
 use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System};
 
 use crate::SolveError;
+use crate::doubt::Doubt;
 use crate::gap::subtract;
 use crate::horizon::natural_constants;
 use crate::run::{Origin, Prepared, Trajectory};
@@ -78,8 +79,8 @@ pub struct Motion {
     pub constants: Vec<f64>,
     /// How it ended.
     pub ending: Ending,
-    /// Why the difference of the two runs is no error estimate, where the tolerance did not decide how long the steps are.
-    pub doubt: Option<String>,
+    /// Where the tolerance did not decide how long the steps are: the difference of the two runs is no error estimate then.
+    pub doubt: Option<Doubt>,
     /// Work of the kept run.
     pub work: Work,
     /// What projection did in the kept run.
@@ -110,6 +111,11 @@ impl Motion {
     /// Whether the motion reached the time asked for.
     pub fn is_complete(&self) -> bool {
         self.ending == Ending::Completed
+    }
+
+    /// Whether at `t` the difference of the two runs is no error estimate.
+    pub fn is_doubted(&self, t: f64) -> bool {
+        self.doubt.as_ref().is_some_and(|doubt| (t - doubt.from) * (self.kept.ends()[1] - self.start()) >= 0.0)
     }
 
     /// End points of the steps of the kept run.
@@ -217,10 +223,8 @@ pub fn solve(
     let seconds = Seconds { derive: 0.0, compile, integrate };
     let mut motion = Motion { work, projection, ..Motion::of(prepared, constants, ending, runs, seconds) };
     motion.form.fallbacks = fallbacks;
-    let (start, end) = (motion.start(), motion.end);
-    // just before a singularity steps become short whatever the tolerance
-    let until = if motion.is_complete() { end } else { start + BEFORE_THE_END * (end - start) };
-    motion.doubt = doubt(&motion.kept.step_times(), &motion.looser.step_times(), until, settings.method);
+    let steps = [motion.kept.step_times(), motion.looser.step_times()];
+    motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), settings.method);
     Ok(motion)
 }
 
@@ -256,38 +260,6 @@ impl Motion {
 /// Where only the tighter run goes on, there is no error estimate, and so no motion.
 pub(crate) fn unconfirmed(cause: &str) -> String {
     format!("the run that estimates the error stops here: {cause}")
-}
-
-/// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
-const FEW_STEPS: usize = 200;
-
-/// Steps of a motion that stops are counted over this part of it.
-const BEFORE_THE_END: f64 = 0.9;
-
-/// A hundredth of the tolerance takes at least this power of what the order of the method asks for.
-const MORE_STEPS: f64 = 1.0 / 3.0;
-
-/// A hundredth of the tolerance takes at most so many times what the order of the method asks for, or it is round-off that is looked at.
-const TOO_MANY: f64 = 10.0;
-
-/// Two runs with the same steps have the same error, which their difference does not show; and a run whose steps follow its round-off is no better than
-/// the looser one.
-fn doubt(kept: &[f64], looser: &[f64], end: f64, method: Method) -> Option<String> {
-    let sign = (end - kept[0]).signum();
-    let count = |times: &[f64]| times.iter().filter(|&&t| (end - t) * sign >= 0.0).count();
-    let (tight, loose) = (count(kept), count(looser));
-    let expected = method.order_in_steps().map(|order| TIGHTER.recip().powf(1.0 / order));
-    let part = tight as f64 / loose.max(1) as f64;
-    let what = if expected.is_some_and(|expected| loose >= FEW_STEPS && part < expected.powf(MORE_STEPS)) {
-        "something else limits the steps"
-    } else if tight >= FEW_STEPS && part > TOO_MANY * expected.unwrap_or(1.0) {
-        "round-off limits the steps"
-    } else {
-        return None;
-    };
-    Some(format!(
-        "the error estimate is not to be trusted: {loose} steps at one tolerance, {tight} at a hundredth of it, so that {what}"
-    ))
 }
 
 /// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.

@@ -1,6 +1,6 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
-use deltaq::{Choice, FORMULATIONS, Settings, default_constants, formulation, removals};
+use deltaq::{Choice, FORMULATIONS, Settings, default_constants, formulation, removal_names, removals};
 use integrate::{Interrupt, Method, Projection};
 use mechanics::{ConstantsRule, Removal, Scene};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -56,20 +56,9 @@ pub(crate) fn choice(
 
 /// The removal of that name, by default the first.
 fn pick(scene: &Scene, name: Option<&str>) -> PyResult<Removal> {
-    const AUTOMATIC: [&str; 2] = ["coordinates", "quasi-velocities"];
-    let refused = |error: mechanics::RemovalError| errors::solve(error);
-    if let Some(removal) = scene.removals.iter().find(|r| name.is_some_and(|n| r.name == n)) {
-        return Ok(removal.clone());
-    }
-    match name {
-        Some("coordinates") => Removal::by_coordinates(&scene.system, &scene.start).map_err(refused),
-        Some("quasi-velocities") => Removal::by_quasi_velocities(&scene.system, &scene.start).map_err(refused),
-        Some(name) => {
-            let own = scene.removals.iter().map(|r| r.name.as_str());
-            Err(unknown("removal", name, own.chain(AUTOMATIC)))
-        }
-        None => Ok(removals(scene).map_err(refused)?.swap_remove(0)),
-    }
+    let Some(name) = name else { return Ok(removals(scene).map_err(errors::solve)?.swap_remove(0)) };
+    let found = deltaq::removal(scene, name).map_err(errors::solve)?;
+    found.ok_or_else(|| unknown("removal", name, removal_names(scene).into_iter()))
 }
 
 /// Free constants from the arguments `constants` and `mu0`.

@@ -196,7 +196,7 @@ impl Motion {
             relative_error_estimate: estimate.relative,
             status,
             cause,
-            doubt: motion.doubt.clone(),
+            doubt: motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
             start: motion.start(),
             end: motion.end(),
             constants: constants.unbind(),

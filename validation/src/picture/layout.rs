@@ -130,7 +130,7 @@ pub(super) struct Entry {
 impl Entry {
     /// The label, and what is not drawn.
     pub(super) fn text(&self) -> String {
-        let notes: Vec<String> = [(self.not_positive, "≤ 0"), (self.not_finite, "not finite")]
+        let notes: Vec<String> = [(self.not_positive, "≤ 0"), (self.not_finite, "without a finite value")]
             .iter()
             .filter(|(count, _)| *count > 0)
             .map(|(count, what)| format!("{count} {what}"))

@@ -154,7 +154,7 @@ fn what_cannot_be_drawn_is_counted() {
     };
     let svg = log.to_svg().unwrap();
     let texts = texts(&svg);
-    assert!(has(&texts, "Chetaev (left out: 2 ≤ 0, 2 not finite)"), "{texts:?}");
+    assert!(has(&texts, "Chetaev (left out: 2 ≤ 0, 2 without a finite value)"), "{texts:?}");
     assert!(has(&texts, "Vakonomic (no points)"), "{texts:?}");
     assert_eq!(svg.matches("<circle").count(), 1, "the point that stands alone");
     assert!(!svg.contains("NaN") && !svg.contains("inf"));

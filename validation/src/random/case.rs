@@ -304,11 +304,13 @@ fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, Sol
 /// The claim that two motions are the same.
 fn finding(theorem: u8, claim: &'static str, gap: &Gap, floor: f64) -> Finding {
     let limit = gap.points.iter().fold(floor, |a, p| a.max(p.limit));
+    let doubted = limit.is_infinite();
     let certain = gap.points.iter().any(|p| p.gap > p.limit.max(floor));
     let (word, note) = match &gap.verdict {
         Verdict::Different if certain => {
             (Word::Fails, format!("different from t = {:.4}", gap.certain_from.unwrap_or(f64::NAN)))
         }
+        Verdict::Different if doubted => (Word::Undecided, "the error estimate is in doubt".into()),
         Verdict::Same | Verdict::Different => (Word::Holds, String::new()),
         Verdict::Undecided { because } => (Word::Undecided, because.clone()),
     };

@@ -196,7 +196,7 @@ fn picture(bench: &Bench) -> Result<String, PictureError> {
         let m = entry.outcome.as_ref().ok()?;
         let curves: Vec<Curve> = m.series.iter().enumerate().map(|(i, series)| curve(i, series)).collect();
         let drawn = curves.iter().any(|curve| !curve.points.is_empty());
-        drawn.then(|| Panel { y: Axis::log(entry.label.replace("removed constraint", "removed")), curves })
+        drawn.then(|| Panel { y: Axis::log(shortened(&entry.label)), curves })
     };
     SmallMultiples {
         title: format!("{}: error over run time", bench.title),
@@ -213,6 +213,12 @@ fn picture(bench: &Bench) -> Result<String, PictureError> {
     })
 }
 
+/// What fits beside a panel.
+fn shortened(label: &str) -> String {
+    let words = [("removed constraint", "removed"), ("quasi-velocities", "quasi-vel."), ("costate form", "costate")];
+    words.into_iter().fold(label.into(), |label: String, (long, short)| label.replace(long, short))
+}
+
 fn curve(index: usize, series: &Series) -> Curve {
     let points = series.points.iter().filter_map(|p| {
         let m = p.outcome.as_ref().ok()?;
@@ -226,7 +232,7 @@ pub fn bench_json(benches: &[Bench]) -> Value {
     let point = |p: &crate::bench::Point| match &p.outcome {
         Ok(m) => json!({
             "tolerance": p.tolerance, "seconds": m.seconds, "error": m.error, "steps": m.work.steps,
-            "rejected": m.work.rejected, "evaluations": m.work.evaluations, "jacobians": m.work.jacobians,
+            "rejected": m.work.rejected, "evaluations": m.work.evaluations, "jacobians": m.work.jacobians, "orders": m.work.orders,
         }),
         Err(cause) => json!({ "tolerance": p.tolerance, "failed": cause }),
     };

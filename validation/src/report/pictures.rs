@@ -123,7 +123,13 @@ fn gap_curves(comparison: &Comparison) -> Vec<Curve> {
         let points = pair.gap.points.iter().filter(|p| p.gap > 0.0).map(|p| (p.t - start, p.gap));
         curves.push(Curve { label: run.choice.label.clone(), style: style(run), points: points.collect() });
         if limit.is_empty() {
-            limit = pair.gap.points.iter().filter(|p| p.limit > 0.0).map(|p| (p.t - start, p.limit)).collect();
+            limit = pair
+                .gap
+                .points
+                .iter()
+                .filter(|p| p.limit > 0.0 && p.limit.is_finite())
+                .map(|p| (p.t - start, p.limit))
+                .collect();
         }
     }
     curves.retain(|c| !c.points.is_empty());

@@ -57,7 +57,7 @@ impl StabilityReport {
         for cell in &self.cells {
             let line = format!("{} = {:e}, {}", variable(cell.case), cell.point, cell.formulation);
             let words = &mut cases.entry(cell.case).or_insert_with(|| json!({}))[line];
-            words[format!("{:?}", cell.method)] = cell.verdict.word().into();
+            words[cell.method.name()] = cell.verdict.word().into();
         }
         let mut runs = Map::new();
         for run in &self.runs {
@@ -81,7 +81,7 @@ impl StabilityReport {
 
     fn page(&self) -> String {
         let tolerances: Vec<String> =
-            Method::ALL.iter().map(|&method| format!("{method:?} {:.0e}", tolerance(method))).collect();
+            Method::ALL.iter().map(|&method| format!("{} {:.0e}", method.name(), tolerance(method))).collect();
         let mut page = format!("# Stiff and extreme cases\n\n**{}**\n\n", self.headline());
         let _ = writeln!(
             page,
@@ -145,7 +145,7 @@ impl StabilityReport {
         if DRAWN.iter().any(|(name, _)| *name == case.name) {
             let _ = writeln!(page, "![Error over {}]({})\n", case.variable, picture_name(case.name));
         }
-        let methods: Vec<String> = Method::ALL.iter().map(|method| format!("{method:?}")).collect();
+        let methods: Vec<String> = Method::ALL.iter().map(|method| method.name().into()).collect();
         let _ = writeln!(page, "| {} | formulation | {} |", case.variable, methods.join(" | "));
         let _ = writeln!(page, "|---:|---|{}", "---:|".repeat(methods.len()));
         for line in cells.chunks(methods.len()) {
@@ -174,7 +174,7 @@ impl StabilityReport {
                 }
                 Verdict::Refused { .. } => (cell.point, f64::NAN),
             });
-            Curve { label: format!("{method:?}"), style: STYLES[i % STYLES.len()], points: points.collect() }
+            Curve { label: method.name().into(), style: STYLES[i % STYLES.len()], points: points.collect() }
         };
         let picture = Picture {
             title: format!("{name}: true error of what is not refused"),

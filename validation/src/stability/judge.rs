@@ -72,6 +72,7 @@ struct Sample {
     error: f64,
     uncertainty: f64,
     difference: f64,
+    doubted: bool,
     distance: f64,
 }
 
@@ -87,7 +88,7 @@ pub struct Allowance {
 /// Judges a motion by what is known, which has to reach as far.
 ///
 /// # Errors
-/// [`SolveError`] where the motion cannot be read off before its end: as bad as being wrong, but another fault.
+/// [`SolveError`] where the motion cannot be read off before its end; `Question::judged` counts that as refused, since nothing wrong is handed out.
 pub fn judge(
     motion: &mut Motion,
     metric: &mut Metric,
@@ -110,10 +111,11 @@ pub fn judge(
             error: length(q, &truth),
             uncertainty: length(&truth, &second) + LAST_DIGITS * length(&truth, &vec![0.0; truth.len()]),
             difference: length(q, &looser.coordinates),
+            doubted: motion.is_doubted(t),
             distance: length(q, &start),
         });
     }
-    Ok(verdict(&samples, &motion.ending, motion.doubt.as_deref(), allowance.floor))
+    Ok(verdict(&samples, &motion.ending, motion.doubt.as_ref().map(|doubt| &doubt.because[..]), allowance.floor))
 }
 
 fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64) -> Verdict {
@@ -125,7 +127,7 @@ fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64)
         scale = worst(scale, sample.distance);
         let claimed = BETTER_THAN_IT_KNOWS * estimate;
         // an estimate as large as the motion itself claims nothing, nor does one that says so
-        let bounded = doubt.is_none() && (claimed < scale || scale == 0.0);
+        let bounded = !sample.doubted && (claimed < scale || scale == 0.0);
         let allowed = claimed.max(floor * scale) + sample.uncertainty;
         let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
         let off = sample.error > allowed || sample.error.is_nan() || allowed.is_nan();

@@ -38,10 +38,10 @@ impl Stepping {
         [Stepping::Leapfrog, Stepping::Adaptive(Method::Taylor), Stepping::Adaptive(Method::Dop853)];
 
     /// For the page.
-    pub fn name(self) -> String {
+    pub fn name(self) -> &'static str {
         match self {
-            Stepping::Leapfrog => "leapfrog".into(),
-            Stepping::Adaptive(method) => format!("{method:?}"),
+            Stepping::Leapfrog => "leapfrog",
+            Stepping::Adaptive(method) => method.name(),
         }
     }
 }

@@ -29,13 +29,13 @@ pub(crate) fn build(
     let inputs: Vec<SeriesInput> = inputs.iter().map(|i| if steady(i) { SeriesInput::Steady } else { *i }).collect();
     let mut builder = Builder::new(program, &inputs, outputs);
     builder.integrate_functions();
-    builder.decide(outputs);
+    builder.decide();
     for id in 0..builder.decisions.len() {
         if builder.decisions[id] == Decision::Row {
             builder.row(id as Id);
         }
     }
-    builder.finish(&inputs, outputs, own_outputs, blocks)
+    builder.finish(own_outputs, blocks)
 }
 
 /// What becomes of a value.

@@ -1,5 +1,7 @@
 //! The number types of power series, and where coefficients are kept.
 
+use std::marker::PhantomData;
+
 use crate::Scalar;
 
 /// Coefficients of a series are looked at in groups of so many.
@@ -179,24 +181,28 @@ impl<F: Task<f64>> pulp::NullaryFnOnce for Vectorized<'_, F> {
     #[inline(always)]
     fn call(self) {
         if self.places <= PLACES {
-            self.task.run(&mut Narrow(self.rows));
+            self.task.run(&mut Grouped::<[f64; WINDOW]>(self.rows, PhantomData));
         } else {
-            self.task.run(&mut Wide(self.rows));
+            self.task.run(&mut Grouped::<[f64]>(self.rows, PhantomData));
         }
     }
 }
 
-/// Coefficients that are looked at in groups, all of them at places of 16 bits.
-struct Narrow<'a>(&'a mut [f64]);
-
-/// The same at any places.
-struct Wide<'a>(&'a mut [f64]);
+/// Coefficients that are looked at in groups, through windows `W`: those of [`WINDOW`] places need no checks.
+struct Grouped<'a, W: ?Sized>(&'a mut [f64], PhantomData<W>);
 
 trait Groups: Window<f64> {
+    fn within(rows: &mut [f64]) -> &mut Self;
+
     fn group(&mut self, place: u32) -> &mut [f64; GROUP];
 }
 
 impl Groups for [f64] {
+    #[inline(always)]
+    fn within(rows: &mut [f64]) -> &mut [f64] {
+        rows
+    }
+
     #[inline(always)]
     fn group(&mut self, place: u32) -> &mut [f64; GROUP] {
         self[place as usize..].first_chunk_mut().expect("rows end with a group to spare")
@@ -217,77 +223,54 @@ impl Window<f64> for [f64; WINDOW] {
 
 impl Groups for [f64; WINDOW] {
     #[inline(always)]
+    fn within(rows: &mut [f64]) -> &mut [f64; WINDOW] {
+        rows.first_chunk_mut().expect("room for windows up to the highest order and a group")
+    }
+
+    #[inline(always)]
     fn group(&mut self, place: u32) -> &mut [f64; GROUP] {
         self[usize::from(place as u16)..].first_chunk_mut().expect("the window has a group to spare")
     }
 }
 
-#[inline(always)]
-fn add_products<S: Store<f64, Window: Groups>>(
-    rows: &mut S,
-    products: &[Product<f64>],
-    newest: usize,
-    first: usize,
-    weigh: impl Fn(f64, usize) -> f64,
-) {
-    for Product { scale, target, left, right } in products {
-        let window = rows.window(newest);
-        let (a, b) = (window.get(*left) * scale, window.get(*right) * scale);
-        let window = rows.window(first);
-        let (x, y) = (*window.group(*left), *window.group(*right));
-        let target = rows.window(newest + first).group(*target);
-        for l in 0..GROUP {
-            target[l] += weigh(a * y[l] + b * x[l], l);
+impl<W: Groups + ?Sized> Grouped<'_, W> {
+    /// Terms `first ≤ j < first + GROUP` of all products.
+    #[inline(always)]
+    fn add(&mut self, products: &[Product<f64>], newest: usize, first: usize, weigh: impl Fn(f64, usize) -> f64) {
+        for Product { scale, target, left, right } in products {
+            let window = self.window(newest);
+            let (a, b) = (window.get(*left) * scale, window.get(*right) * scale);
+            let window = self.window(first);
+            let (x, y) = (*window.group(*left), *window.group(*right));
+            let target = self.window(newest + first).group(*target);
+            for l in 0..GROUP {
+                target[l] += weigh(a * y[l] + b * x[l], l);
+            }
         }
     }
 }
 
-#[inline(always)]
-fn multiply_groups<S: Store<f64, Window: Groups>>(
-    rows: &mut S,
-    products: &[Product<f64>],
-    weights: Weights<f64>,
-    newest: usize,
-    last: usize,
-) {
-    let count = newest.min(last - newest);
-    let mut first = 1;
-    while first <= count {
-        let mut weight = [0.0; GROUP];
-        weight.copy_from_slice(&weights.of[first..first + GROUP]);
-        if weights.plain && first + GROUP <= newest {
-            add_products(rows, products, newest, first, |x, _| x);
-        } else {
-            add_products(rows, products, newest, first, |x, l| x * weight[l]);
+impl<W: Groups + ?Sized> Store<f64> for Grouped<'_, W> {
+    type Window = W;
+
+    #[inline(always)]
+    fn window(&mut self, first: usize) -> &mut W {
+        W::within(&mut self.0[first..])
+    }
+
+    #[inline(always)]
+    fn multiply(&mut self, products: &[Product<f64>], weights: Weights<f64>, newest: usize, last: usize) {
+        let count = newest.min(last - newest);
+        let mut first = 1;
+        while first <= count {
+            let mut weight = [0.0; GROUP];
+            weight.copy_from_slice(&weights.of[first..first + GROUP]);
+            if weights.plain && first + GROUP <= newest {
+                self.add(products, newest, first, |x, _| x);
+            } else {
+                self.add(products, newest, first, |x, l| x * weight[l]);
+            }
+            first += GROUP;
         }
-        first += GROUP;
-    }
-}
-
-impl Store<f64> for Narrow<'_> {
-    type Window = [f64; WINDOW];
-
-    #[inline(always)]
-    fn window(&mut self, first: usize) -> &mut [f64; WINDOW] {
-        self.0[first..].first_chunk_mut().expect("room for windows up to the highest order and a group")
-    }
-
-    #[inline(always)]
-    fn multiply(&mut self, products: &[Product<f64>], weights: Weights<f64>, newest: usize, last: usize) {
-        multiply_groups(self, products, weights, newest, last);
-    }
-}
-
-impl Store<f64> for Wide<'_> {
-    type Window = [f64];
-
-    #[inline(always)]
-    fn window(&mut self, first: usize) -> &mut [f64] {
-        &mut self.0[first..]
-    }
-
-    #[inline(always)]
-    fn multiply(&mut self, products: &[Product<f64>], weights: Weights<f64>, newest: usize, last: usize) {
-        multiply_groups(self, products, weights, newest, last);
     }
 }

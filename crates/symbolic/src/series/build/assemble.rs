@@ -8,13 +8,8 @@ use crate::tape::Tape;
 use rustc_hash::FxHashMap;
 
 impl Builder<'_> {
-    pub(super) fn finish(
-        mut self,
-        inputs: &[SeriesInput],
-        outputs: &[Id],
-        own_outputs: usize,
-        blocks: &[usize],
-    ) -> SeriesTape {
+    pub(super) fn finish(mut self, own_outputs: usize, blocks: &[usize]) -> SeriesTape {
+        let (inputs, outputs) = (self.inputs, self.outputs);
         let input_ids: Vec<Id> = (0..inputs.len()).map(|i| self.push(Value::Input(i as u32))).collect();
         let input_rows: Vec<Option<Row>> =
             input_ids.iter().map(|id| if self.varies(*id) { Some(self.row(*id)) } else { None }).collect();

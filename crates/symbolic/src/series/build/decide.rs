@@ -5,11 +5,11 @@ use crate::program::{Id, Value};
 
 impl Builder<'_> {
     /// Decides from the last value to the first, so that all users of a value come before it.
-    pub(super) fn decide(&mut self, outputs: &[Id]) {
+    pub(super) fn decide(&mut self) {
         let n = self.program.len();
         let (mut linear, mut factor) = (vec![0_usize; n], vec![0_usize; n]);
         self.decisions = vec![Decision::None; n];
-        for o in outputs {
+        for o in self.outputs {
             linear[*o as usize] += 2;
         }
         let mut integrated = vec![false; n];

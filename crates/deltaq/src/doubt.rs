@@ -1,0 +1,66 @@
+//! Whether the difference of two runs says how wrong they are.
+
+use integrate::Method;
+
+use crate::motion::TIGHTER;
+
+/// That the difference of the two runs is no error estimate from some time on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// From this time on.
+    pub from: f64,
+    /// Why, in words.
+    pub because: String,
+}
+
+/// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
+const FEW_STEPS: usize = 200;
+
+/// Steps of a motion that stops are counted over this part of it: just before a singularity they become short whatever the tolerance.
+const BEFORE_THE_END: f64 = 0.9;
+
+/// A hundredth of the tolerance takes at least this power of what the order of the method asks for.
+const MORE_STEPS: f64 = 1.0 / 3.0;
+
+/// A hundredth of the tolerance takes at most so many times what the order of the method asks for, or it is round-off that is looked at.
+const TOO_MANY: f64 = 10.0;
+
+/// So many steps of the looser run are looked at together to find where the doubt begins.
+const TOGETHER: usize = 20;
+
+impl Doubt {
+    /// From the times at which the steps of the kept and of the looser run begin and end, up to the `end` of the motion.
+    ///
+    /// Two runs with the same steps have the same error, which their difference does not show; and a run whose steps follow its round-off is no
+    /// better than the looser one. What the steps of the whole motion show is doubted from the first stretch on that shows it.
+    pub(crate) fn of([kept, looser]: &[Vec<f64>; 2], end: f64, complete: bool, method: Method) -> Option<Doubt> {
+        let start = kept[0];
+        let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };
+        let sign = (end - start).signum();
+        let until = |times: &[f64], end: f64| times.partition_point(|&t| (end - t) * sign >= 0.0);
+        let (tight, loose) = (until(kept, end), until(looser, end));
+        let expected = method.order_in_steps().map(|order| TIGHTER.recip().powf(1.0 / order));
+        let too_few = |loose: usize, tight: usize| {
+            expected.is_some_and(|expected| (tight as f64) < loose as f64 * expected.powf(MORE_STEPS))
+        };
+        let too_many =
+            |loose: usize, tight: usize| tight as f64 > TOO_MANY * loose.max(1) as f64 * expected.unwrap_or(1.0);
+        let (off, what): (&dyn Fn(usize, usize) -> bool, _) = if loose >= FEW_STEPS && too_few(loose, tight) {
+            (&too_few, "something else limits the steps")
+        } else if tight >= FEW_STEPS && too_many(loose, tight) {
+            (&too_many, "round-off limits the steps")
+        } else {
+            return None;
+        };
+        let marks: Vec<usize> = (0..loose).step_by(TOGETHER).chain([loose.saturating_sub(1)]).collect();
+        let stretch = marks.windows(2).find(|ends| {
+            let [from, to] = [ends[0], ends[1]].map(|i| until(kept, looser[i]));
+            off(ends[1] - ends[0], to - from)
+        });
+        let from = stretch.map_or(start, |ends| looser[ends[0]]);
+        let because = format!(
+            "the error estimate is not to be trusted from t = {from:.6} on: {loose} steps at one tolerance, {tight} at a hundredth of it, so that {what}"
+        );
+        Some(Doubt { from, because })
+    }
+}
