@@ -64,3 +64,44 @@ impl Doubt {
         Some(Doubt { from, because })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// So many equal steps from 0 to 1, and `more` times as many from 1 to 2.
+    fn steps(count: usize, more: usize) -> Vec<f64> {
+        let first = (0..count).map(|i| i as f64 / count as f64);
+        let second = (0..=count * more).map(|i| 1.0 + i as f64 / (count * more) as f64);
+        first.chain(second).collect()
+    }
+
+    fn doubt(kept: Vec<f64>, looser: Vec<f64>, direction: f64) -> Option<Doubt> {
+        let times = [kept, looser].map(|times| times.into_iter().map(|t| direction * t).collect());
+        Doubt::of(&times, direction * 2.0, true, Method::Dop853)
+    }
+
+    #[test]
+    fn what_the_order_explains_is_not_doubted() {
+        // order 8: a hundredth of the tolerance takes 1.8 times the steps
+        assert_eq!(doubt(steps(540, 1), steps(300, 1), 1.0), None);
+    }
+
+    #[test]
+    fn a_doubt_begins_where_round_off_takes_over() {
+        for direction in [1.0, -1.0] {
+            let doubt = doubt(steps(540, 60), steps(300, 1), direction).expect("too many steps");
+            assert!(doubt.because.contains("round-off limits"), "{doubt:?}");
+            let before = 1.0 - direction * doubt.from;
+            assert!((0.0..=TOGETHER as f64 / 300.0).contains(&before), "{doubt:?}");
+        }
+    }
+
+    #[test]
+    fn a_doubt_begins_where_steps_follow_something_else() {
+        let (kept, looser) = (steps(54, 50), steps(30, 90));
+        let doubt = doubt(kept, looser, 1.0).expect("2700 steps at both tolerances");
+        assert!(doubt.because.contains("something else limits"), "{doubt:?}");
+        assert!((doubt.from - 1.0).abs() < 0.2, "{doubt:?}");
+    }
+}

@@ -185,7 +185,15 @@ struct Trial<'a> {
     pattern: &'a Pattern,
     around: &'a [Vec<f64>],
     names: usize,
-    best: Option<(usize, Definitions, Strategy)>,
+    best: Option<Best>,
+}
+
+struct Best {
+    price: usize,
+    definitions: Definitions,
+    way: Strategy,
+    /// No pivot is small at any of the points.
+    clean: bool,
 }
 
 impl Trial<'_> {
@@ -203,9 +211,10 @@ impl Trial<'_> {
             tape.evaluate(point, &mut registers, &mut values);
             values.last().is_none_or(|&condition| condition.is_nan() || condition > BAD)
         });
-        let price = tape.len() * (AROUND + 4 * bad.count());
-        if self.best.as_ref().is_none_or(|(least, ..)| price < *least) {
-            self.best = Some((price, found, way));
+        let bad = bad.count();
+        let price = tape.len() * (AROUND + 4 * bad);
+        if self.best.as_ref().is_none_or(|best| price < best.price) {
+            self.best = Some(Best { price, definitions: found, way, clean: bad == 0 });
         }
         Ok(())
     }
@@ -251,14 +260,17 @@ fn eliminated(
     let mut trial = Trial { equations, known, wanted, linear: &linear, pattern: &pattern, around, names, best: None };
     for (way, order) in &orders {
         trial.make(*way, order, LONG_PARTS)?;
+        // more operations are no better; they are tried for the sake of pivots only
+        if trial.best.as_ref().is_some_and(|best| best.clean) {
+            break;
+        }
     }
-    if let Some((_, _, way)) = &trial.best
+    if let Some(Best { way, .. }) = &trial.best
         && let Some((way, order)) = orders.iter().find(|(w, _)| w == way)
     {
         trial.make(*way, order, SHORT_PARTS)?;
     }
-    let best = trial.best;
-    let Some((_, found, way)) = best else {
+    let Some(Best { definitions: found, way, .. }) = trial.best else {
         return Ok(Err(format!(
             "{size} unknowns without pivots that are safe at the start, or too many of them: LU factorization"
         )));

@@ -36,9 +36,6 @@ pub struct Series {
     pub points: Vec<Point>,
 }
 
-/// Runs of one setting, at least.
-const REPEATS: usize = 3;
-
 /// Tightest tolerance asked of a method.
 fn tightest(method: Method) -> i32 {
     match method {
@@ -82,7 +79,7 @@ fn measure(ready: &mut Ready, options: &Options, truth: &mut Truth, effort: &Eff
         seconds = elapsed.min(seconds);
         total += elapsed;
         repeats += 1;
-        let enough = total >= effort.seconds && repeats >= REPEATS;
+        let enough = total >= effort.seconds && repeats >= effort.repeats;
         if enough || total > effort.patience {
             let error = error(&mut run, ready, truth)?;
             return Ok(Measured { seconds, error, work: run.work });

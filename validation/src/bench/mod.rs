@@ -30,8 +30,10 @@ pub const TARGETS: [f64; 4] = [1e-6, 1e-9, 1e-10, 1e-11];
 /// How much is measured.
 #[derive(Clone, Debug)]
 pub struct Effort {
-    /// Runs of one setting are repeated until they took this many seconds together, three times at least.
+    /// Runs of one setting are repeated until they took this many seconds together.
     pub seconds: f64,
+    /// And so many times at least.
+    pub repeats: usize,
     /// A run that takes more steps than this counts as failed.
     pub max_steps: usize,
     /// A method's tolerances are not tightened further once a run took longer than this, in seconds.
@@ -41,13 +43,13 @@ pub struct Effort {
 impl Effort {
     /// For the main job, which has other things to do as well.
     pub fn brief() -> Effort {
-        Effort { seconds: 0.004, max_steps: 50_000, patience: 0.05 }
+        Effort { seconds: 0.003, repeats: 2, max_steps: 50_000, patience: 0.025 }
     }
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { seconds: 0.02, max_steps: 200_000, patience: 0.5 }
+        Effort { seconds: 0.02, repeats: 3, max_steps: 200_000, patience: 0.5 }
     }
 }
 

@@ -30,7 +30,7 @@ enum Source {
 const PART: f64 = 0.9;
 
 /// Error that is asked of the reference.
-const ACCURACY: f64 = 1e-16;
+const ACCURACY: f64 = 1e-15;
 
 impl Truth {
     /// `count` times of the motion that `ready` starts, up to the end of the scene or a little before the motion's own.
