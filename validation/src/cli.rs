@@ -88,7 +88,7 @@ pub enum Command {
 /// `deltaq show`.
 #[derive(Args, Debug)]
 pub struct ShowArguments {
-    /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
+    /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
     pub scene: String,
     /// Replace a parameter or a start value.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -101,7 +101,7 @@ pub struct ShowArguments {
 /// `deltaq solve`.
 #[derive(Args, Debug)]
 pub struct SolveArguments {
-    /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
+    /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
     pub scene: String,
     /// Which motion of it.
     #[command(flatten)]

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, ready, setting};
+use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, ready_to_run, setting};
 use mechanics::{ConstantsRule, Cost, Equations, Scene, integrability};
 
 use crate::catalogue;
@@ -56,7 +56,7 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
         ConstantsRule::Natural { .. } => &ConstantsRule::Zero,
         given => given,
     };
-    let ready = match ready(setting(scene), equations, constants, &Settings::default()) {
+    let ready = match ready_to_run(setting(scene), equations, constants, &Settings::default()) {
         Ok(ready) => ready,
         Err(error) => return Ok(format!("\nNot started: {error}\n")),
     };

@@ -32,7 +32,19 @@ pub enum Integrability {
     },
     /// A constraint is not linear in the velocities; Frobenius' test is about those that are.
     NonlinearInVelocity,
+    /// The next brackets are too long for this test.
+    Undecided {
+        /// Brackets that were nested.
+        depth: usize,
+        /// Integrable combinations that these leave at most.
+        at_most: usize,
+        /// Number of constraints.
+        constraints: usize,
+    },
 }
+
+/// Nodes of a bracket over which it is too long: they become several times longer with every bracket around them.
+const LONGEST: usize = 10_000;
 
 impl Integrability {
     /// Whether the verdict predicts that all formulations agree (T1).
@@ -53,6 +65,11 @@ impl std::fmt::Display for Integrability {
             Integrability::Nonintegrable { depth } => {
                 write!(f, "nonintegrable: brackets nested {depth} deep reach every direction")
             }
+            Integrability::Undecided { depth, at_most, constraints } => write!(
+                f,
+                "undecided: brackets nested {depth} deep leave at most {at_most} of {constraints} integrable combinations, \
+                 and the next are too long"
+            ),
             Integrability::NonlinearInVelocity => {
                 write!(f, "not linear in the velocities: Frobenius' test does not apply")
             }
@@ -121,13 +138,21 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
     let (mut depth, mut exact) = (0, true);
     while rank < space.len() {
         let mut added = Vec::new();
-        for x in &admissible {
-            for y in &newest {
+        for (i, x) in admissible.iter().enumerate() {
+            // [Y, X] = −[X, Y]
+            let first = if depth == 0 { i + 1 } else { 0 };
+            for y in newest.iter().skip(first) {
                 let z = bracket(x, y);
-                let verdicts: Vec<Vanishing> = z.iter().map(|&e| g.vanishes(e, &constants)).collect();
-                if verdicts.iter().all(|v| v.is_zero()) {
-                    exact &= verdicts.iter().all(|v| matches!(v, Vanishing::Exactly));
-                    continue;
+                if g.size(&z) > LONGEST {
+                    return Ok(Integrability::Undecided { depth, at_most: space.len() - rank, constraints: h });
+                }
+                // where there is a direction more, nobody asks how exactly another bracket vanishes
+                if rank == admissible.len() {
+                    let verdicts: Vec<Vanishing> = z.iter().map(|&e| g.vanishes(e, &constants)).collect();
+                    if verdicts.iter().all(|v| v.is_zero()) {
+                        exact &= verdicts.iter().all(|v| matches!(v, Vanishing::Exactly));
+                        continue;
+                    }
                 }
                 fields.push(z.clone());
                 if rank_of(&fields) > rank {

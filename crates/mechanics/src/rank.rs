@@ -11,17 +11,20 @@ pub(crate) const RANK_LIMIT: f64 = 1e-9;
 /// Points at which a generic rank is taken.
 const POINTS: u64 = 6;
 
-/// Numerical rank: the number of singular values over `RANK_LIMIT` times the largest, rows scaled to their largest entry.
-pub(crate) fn rank(mut matrix: DMatrix<f64>) -> usize {
-    for mut row in matrix.row_iter_mut() {
+/// Numerical rank that `matrix` has at least if each entry is off by as much as the one of `errors`: the number of singular values over [`RANK_LIMIT`]
+/// times the largest, rows scaled to their largest entry, and over the norm of all errors, by which these move a singular value at most.
+fn certain_rank(mut matrix: DMatrix<f64>, mut errors: DMatrix<f64>) -> usize {
+    for (mut row, mut errors) in matrix.row_iter_mut().zip(errors.row_iter_mut()) {
         let scale = row.amax();
         if scale > 0.0 {
             row /= scale;
+            errors /= scale;
         }
     }
     let singular = matrix.singular_values();
     let largest = singular.iter().fold(0.0_f64, |a, &b| a.max(b));
-    singular.iter().filter(|&&s| largest > 0.0 && s > RANK_LIMIT * largest).count()
+    let limit = errors.norm().max(RANK_LIMIT * largest);
+    singular.iter().filter(|&&s| largest > 0.0 && s > limit).count()
 }
 
 /// The rank that `matrix` has almost everywhere: the largest found at a few points with fixed pseudo-random coordinates,
@@ -38,10 +41,10 @@ pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, 
     let mut at = |point| {
         tape.evaluate(&random_values(&symbols, constants, point), &mut registers, &mut entries);
         let number = |e: &Bounded| if e.may_be_zero() { 0.0 } else { e.value };
-        entries
-            .iter()
-            .all(|e| e.is_finite())
-            .then(|| rank(DMatrix::from_row_iterator(matrix.rows(), matrix.columns(), entries.iter().map(number))))
+        let of = |part: &dyn Fn(&Bounded) -> f64| {
+            DMatrix::from_row_iterator(matrix.rows(), matrix.columns(), entries.iter().map(part))
+        };
+        entries.iter().all(|e| e.is_finite()).then(|| certain_rank(of(&number), of(&|e| e.round_off())))
     };
     (0..POINTS).filter_map(&mut at).max().unwrap_or(0)
 }

@@ -115,3 +115,33 @@ fn dependent_constraints_are_refused() {
     let error = integrability(&system, &state).unwrap_err();
     assert!(matches!(error, RemovalError::Dependent { pivot, limit } if pivot < limit), "{error}");
 }
+
+/// A car with `n` trailers, each body by its place and heading: hitches are 2n constraints that can be integrated, the n + 1 axles none.
+fn train(n: usize) -> Integrability {
+    let coordinates: Vec<String> = (0..=n).flat_map(|i| ["x", "y", "theta"].map(|name| format!("{name}{i}"))).collect();
+    let axles = (0..=n).map(|i| format!("y{i}'*cos(theta{i}) - x{i}'*sin(theta{i})"));
+    let hitches = (1..=n).flat_map(|i| {
+        let front = i - 1;
+        let hitch = [("x", "-", "sin"), ("y", "+", "cos")];
+        hitch.map(|(c, sign, f)| format!("{c}{i}' - {c}{front}' {sign} a*theta{i}'*{f}(theta{i})"))
+    });
+    let constraints: Vec<String> = axles.chain(hitches).collect();
+    verdict(
+        &coordinates.iter().map(|c| &c[..]).collect::<Vec<_>>(),
+        &constraints.iter().map(|f| &f[..]).collect::<Vec<_>>(),
+    )
+}
+
+#[test]
+fn long_brackets_in_which_much_cancels_do_not_raise_the_rank() {
+    for n in 1..=2 {
+        assert_eq!(train(n), Integrability::PartlyIntegrable { integrals: 2 * n, constraints: 3 * n + 1 });
+    }
+}
+
+#[test]
+fn brackets_that_are_too_long_leave_it_undecided() {
+    let Integrability::Undecided { depth, at_most, constraints } = train(3) else { panic!("decided") };
+    assert!(depth >= 3 && at_most >= 6 && constraints == 10, "{depth}, {at_most}, {constraints}");
+    assert!(!train(3).is_integrable());
+}

@@ -23,5 +23,5 @@ pub use page::{Provenance, page};
 pub use problem::{Case, Entrant, Problem, problems};
 pub use race::{Effort, Failure, Outcome, Rung, Task, race};
 pub use tools::Tools;
-pub use trailer::trailer;
+pub use trailer::{trailer, train_of_bodies};
 pub use worker::{Refusal, Worker};

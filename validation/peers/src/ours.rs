@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use validation::casadi_job::tags;
 
 use crate::Case;
+use crate::trailer::{place_among_bodies, train_of_bodies};
 
 /// The method that stands for [`deltaq::solve`]: two runs, the second at a hundredth of the tolerance, and the difference as an error estimate.
 const SOLVE: &str = "solve: two runs of Dop853";
@@ -58,8 +59,9 @@ fn answer(question: &Value, loaded: &mut Option<Loaded>) -> Result<Value> {
             let runs = compile(&scene, &choice, &Settings::default())?;
             let seconds = clock.elapsed().as_secs_f64();
             let runs = HashMap::from([(format!("{:?}", Method::Dop853), runs)]);
-            let forms = forms(&case.formulation);
-            let names = |form: &&str| Method::ALL.map(|method| format!("{method:?}{form}"));
+            let forms = forms(&case);
+            let names =
+                |form: &&str| methods_of(&case).iter().map(|method| format!("{method:?}{form}")).collect::<Vec<_>>();
             let mut methods: Vec<String> = forms.iter().flat_map(names).collect();
             methods.push(SOLVE.into());
             *loaded = Some(Loaded { case, scene, choice, runs });
@@ -108,12 +110,37 @@ fn compile(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Ready>
 }
 
 /// Forms of a formulation's equations, as they are added to the name of a method.
-fn forms(formulation: &str) -> &'static [&'static str] {
-    match formulation {
+fn forms(case: &Case) -> &'static [&'static str] {
+    match &case.formulation[..] {
+        "chetaev" if trailers(case).is_some() => &["", ", quasi-velocities", BODIES],
         "chetaev" => &["", ", quasi-velocities"],
         "vakonomic" => &["", ", costate form", ", quasi-velocities"],
         _ => &[""],
     }
+}
+
+/// The methods that are timed: on the car with trailers, which is not stiff and may be long, the explicit ones.
+fn methods_of(case: &Case) -> &'static [Method] {
+    match trailers(case) {
+        None => &Method::ALL,
+        Some(_) => &[Method::Taylor, Method::Dop853, Method::Tsit45],
+    }
+}
+
+/// The form in which the car with trailers has a place for every body.
+const BODIES: &str = ", quasi-velocities, a place for every body";
+
+fn trailers(case: &Case) -> Option<usize> {
+    case.name.strip_prefix("trailers-")?.parse().ok()
+}
+
+/// The scene in which a method takes the case: the given one, or the one with a place for every body.
+fn restated(case: &Case, name: &str) -> Case {
+    let mut case = case.clone();
+    if let (true, Some(n), [start, .., end]) = (name.ends_with(BODIES), trailers(&case), &case.times[..]) {
+        case.toml = train_of_bodies(n, end - start);
+    }
+    case
 }
 
 /// The method of that name, and what is added to the formulation's name where it is for another form.
@@ -123,7 +150,7 @@ fn method(name: &str) -> Result<(Method, Option<&'static str>)> {
     }
     let (method, form) = match name.split_once(", ") {
         None => (name, None),
-        Some((method, "quasi-velocities")) => (method, Some("reduced")),
+        Some((method, "quasi-velocities" | "quasi-velocities, a place for every body")) => (method, Some("reduced")),
         Some((method, "costate form")) => (method, Some("costate")),
         Some((_, form)) => bail!("no form {form}"),
     };
@@ -155,7 +182,13 @@ impl Loaded {
         if !self.runs.contains_key(name) {
             let (method, form) = method(name)?;
             let settings = Settings { method, ..Settings::default() };
-            self.runs.insert(name.into(), compile(&self.scene, &in_form(&self.choice, form), &settings)?);
+            let ready = if name.ends_with(BODIES) {
+                let (scene, choice) = read(&restated(&self.case, name))?;
+                compile(&scene, &in_form(&choice, form), &settings)?
+            } else {
+                compile(&self.scene, &in_form(&self.choice, form), &settings)?
+            };
+            self.runs.insert(name.into(), ready);
         }
         self.runs.get_mut(name).context("no runs")
     }
@@ -173,6 +206,9 @@ impl Loaded {
         let method = method(name)?.0;
         let options = Options { method, dense, max_steps: MAX_STEPS, ..Options::with_tolerance(tolerance) };
         let until = times[times.len() - 1];
+        let all = 0..self.scene.system.dimension();
+        let places: Vec<usize> =
+            if name.ends_with(BODIES) { all.map(place_among_bodies).collect() } else { all.collect() };
         let runs = self.prepare(name)?;
         let (mut best, mut total, mut repeats) = (f64::INFINITY, 0.0, 0);
         let mut states = vec![0.0; runs.start.len()];
@@ -192,8 +228,13 @@ impl Loaded {
         if let Status::Stopped { t, cause } = &run.status {
             bail!("stopped at {t}: {cause}");
         }
-        let coordinates: Vec<Vec<f64>> =
-            times.iter().map(|&t| Ok(run.at(runs, t)?.coordinates)).collect::<Result<_>>()?;
+        let coordinates: Vec<Vec<f64>> = times
+            .iter()
+            .map(|&t| {
+                let q = run.at(runs, t)?.coordinates;
+                Ok(places.iter().map(|&place| q[place]).collect())
+            })
+            .collect::<Result<_>>()?;
         let evaluations = run.work.evaluations;
         Ok(json!({ "seconds": best, "repeats": repeats, "coordinates": coordinates, "evaluations": evaluations }))
     }
@@ -225,7 +266,7 @@ impl Loaded {
         let (method, form) = method(name)?;
         let options = Options { method, max_steps: MAX_STEPS, ..Options::with_tolerance(tolerance) };
         let clock = Instant::now();
-        let (scene, choice) = read(&self.case)?;
+        let (scene, choice) = read(&restated(&self.case, name))?;
         let choice = in_form(&choice, form);
         let mut runs = compile(&scene, &choice, &Settings { method, ..Settings::default() })?;
         let mut run = runs.integrate(scene.start.t + scene.duration, &options)?;

@@ -294,7 +294,7 @@ pub fn page(outcomes: &[Outcome], provenance: &Provenance) -> String {
 const LICENCES: &str = "heyoka MPL-2.0; CasADi LGPL-3.0, with SUNDIALS BSD-3-Clause; NumPy, SciPy, SymPy and mpmath BSD-3-Clause; numba and llvmlite \
     BSD-2-Clause. They are run, and nothing of ours is linked with them.";
 
-const INTRODUCTION: &str = "Every tool gets the text of the scene (the car with trailers also equations reduced by hand), derives and compiles in its own way, in the \
+const INTRODUCTION: &str = "Every tool gets the text of the scene (of the car with trailers the others also equations reduced by hand, ours also a text with a place for every body), derives and compiles in its own way, in the \
     best form that we know for it, and must have our right-hand side at the start to 1e-12, or it is not timed. A trajectory is the coordinates at 21 \
     equidistant times. Its error is the largest of them in the kinetic metric $\\sqrt{\\Delta q^{\\mathsf T} M \\Delta q}$ against heyoka's \
     Taylor method in 113 bits at 1e-28, which our own integration confirms. A time is the least of repeated runs, tools taking turns; a tolerance is \

@@ -30,7 +30,7 @@ pub struct MotionArguments {
 /// `deltaq ensemble`.
 #[derive(Args, Debug)]
 pub struct EnsembleArguments {
-    /// Built-in name (`n-trailer-20` for a car with 20 trailers) or path of a scene file.
+    /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
     pub scene: String,
     /// File with one member a line: commas between numbers, the first line names what they replace (a parameter, a coordinate or a velocity at the start, mu1, …).
     #[arg(long, value_name = "FILE")]
