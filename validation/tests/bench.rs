@@ -5,7 +5,7 @@ use validation::bench::{Effort, ensemble_throughput, measure, prepare};
 use validation::report::{bench_files, bench_json};
 
 fn effort(max_steps: usize) -> Effort {
-    Effort { seconds: 1e-6, max_steps, patience: 0.05 }
+    Effort { seconds: 1e-6, repeats: 1, max_steps, patience: 0.05 }
 }
 
 #[test]
