@@ -34,6 +34,9 @@ pub fn overview(comparisons: &[Comparison], further: &[(String, &str)], provenan
     for (line, path) in further {
         let _ = writeln!(page, "- {line} [More]({path}).");
     }
+    page += "- The same problems in SciPy, numba, CasADi, heyoka and SymPy: `cargo xtask peers` writes [peers.md](peers.md).\n";
+    page +=
+        "- How cost grows along a train of trailers: `deltaq scaling --out reports` writes [scaling.md](scaling.md).\n";
     page += "- What a physics engine makes of rolling balls: `cargo xtask engine` writes [engine.md](engine.md).\n";
     let _ = writeln!(
         page,
