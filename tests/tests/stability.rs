@@ -145,7 +145,11 @@ fn motion(question: &Question, method: Method, tolerance: f64, max_steps: usize)
 fn steps_that_the_tolerance_does_not_decide_are_said() {
     // both runs take steps of 1e-5 and have the same error, which their difference does not show
     let stiff = motion(&question("viscous", 1e10, "Newton, with friction"), Method::Esdirk34, 1e-7, 4_000);
-    assert!(stiff.doubt.as_ref().is_some_and(|doubt| doubt.because.contains("something else limits")), "{:?}", stiff.doubt);
+    assert!(
+        stiff.doubt.as_ref().is_some_and(|doubt| doubt.because.contains("something else limits")),
+        "{:?}",
+        stiff.doubt
+    );
     let soft = motion(&question("viscous", 1e1, "Newton, with friction"), Method::Esdirk34, 1e-7, 4_000);
     assert_eq!(soft.doubt, None);
 }

@@ -50,13 +50,16 @@ fn tightest(method: Method) -> i32 {
 
 impl Series {
     pub(super) fn new(method: Method, ready: &mut Ready, truth: &mut Truth, effort: &Effort) -> Self {
+        // the two that go down to round-off are worth waiting for
+        let reaches = matches!(method, Method::Taylor | Method::Dop853);
+        let patience = if reaches { 4.0 * effort.patience } else { effort.patience };
         let mut points = Vec::new();
         for exponent in 3..=tightest(method) {
             let mut options = Options::with_tolerance(10.0_f64.powi(-exponent));
             options.method = method;
             options.max_steps = effort.max_steps;
             let outcome = measure(ready, &options, truth, effort);
-            let slow = outcome.as_ref().map_or(0.0, |m| m.seconds) > effort.patience;
+            let slow = outcome.as_ref().map_or(0.0, |m| m.seconds) > patience;
             points.push(Point { tolerance: options.relative_tolerance, outcome });
             if slow {
                 break;
