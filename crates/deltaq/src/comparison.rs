@@ -213,7 +213,7 @@ pub fn setting(scene: &Scene) -> Setting<'_> {
 /// Computes all formulations of a scene and compares them. `extra` are further runs, derived elsewhere.
 ///
 /// # Errors
-/// [`RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
+/// [`mechanics::RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
 ///
 /// ```
 /// # let scene = mechanics::Scene::parse("sledge", r#"
