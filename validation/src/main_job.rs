@@ -1,7 +1,9 @@
 //! The main job: every scene in every formulation, reports written; and the check that committed reports are still true.
 
 use std::fmt::Write;
+use std::panic::resume_unwind;
 use std::process::Command;
+use std::thread::ScopedJoinHandle;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
@@ -51,7 +53,7 @@ const RANDOM_SYSTEMS: u64 = 1_000;
 
 /// Tolerance of the ensembles of the main job, and repeats of every way to integrate them.
 const ENSEMBLE_TOLERANCE: f64 = 1e-10;
-const ENSEMBLE_REPEATS: usize = 3;
+const ENSEMBLE_REPEATS: usize = 2;
 
 /// What the main job computed.
 struct Results {
@@ -69,8 +71,30 @@ struct Results {
 
 impl Results {
     fn of(sections: &[Section], names: &[&str], quiet: bool) -> Result<Results> {
+        // the referee is another process for most of its time: it works beside what follows, up to where times are measured
+        std::thread::scope(|scope| {
+            let asked = sections.contains(&Section::Casadi);
+            let referee = asked.then(|| scope.spawn(|| casadi_job::section(names)));
+            Results::beside(referee, sections, names, quiet)
+        })
+    }
+
+    fn beside(
+        referee: Option<ScopedJoinHandle<'_, Result<Outcome>>>,
+        sections: &[Section],
+        names: &[&str],
+        quiet: bool,
+    ) -> Result<Results> {
         let mut scenes = if sections.contains(&Section::Scenes) { compare_all(names, quiet)? } else { Vec::new() };
-        let casadi = sections.contains(&Section::Casadi).then(|| casadi_job::section(names)).transpose()?;
+        let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
+        let random = sections.contains(&Section::Random);
+        let records = if random { batch.run(RANDOM_SYSTEMS, None, quiet)? } else { Vec::new() };
+        let realization =
+            sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
+        let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
+        let stability = sections.contains(&Section::Stability).then(|| StabilityReport::new(quiet)).transpose()?;
+        let finished = |referee: ScopedJoinHandle<'_, _>| referee.join().unwrap_or_else(|panic| resume_unwind(panic));
+        let casadi = referee.map(finished).transpose()?;
         let mut scene_files = Vec::new();
         for report in &mut scenes {
             let section = referees_section(&mut report.comparison, casadi.as_ref())?;
@@ -82,13 +106,6 @@ impl Results {
             }
             scene_files.extend(report.files.clone());
         }
-        let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
-        let random = sections.contains(&Section::Random);
-        let records = if random { batch.run(RANDOM_SYSTEMS, None, quiet)? } else { Vec::new() };
-        let realization =
-            sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
-        let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
-        let stability = sections.contains(&Section::Stability).then(|| StabilityReport::new(quiet)).transpose()?;
         // last, and one after the other: nothing else is to run beside what is timed
         let (mut benches, mut ensembles) = (Vec::new(), Vec::new());
         if sections.contains(&Section::ErrorVsTime) {

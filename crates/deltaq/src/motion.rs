@@ -25,6 +25,9 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
+    /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that [`mechanics::Form::choose`] finds cheapest. The motion is the same to
+    /// round-off.
+    pub plain: bool,
     /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
     pub interrupt: Option<Interrupt>,
 }
@@ -32,7 +35,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (Method::Dop853, Projection::EveryStep);
-        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000, interrupt: None }
+        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000, plain: false, interrupt: None }
     }
 }
 

@@ -181,7 +181,7 @@ impl Prepared {
         let mut point = vec![setting.start.t];
         point.extend(&start[..equations.states.len()]);
         point.extend(constants);
-        let form = Form::choose(&equations, Some(&point))?;
+        let form = if settings.plain { Form::plain(&equations) } else { Form::choose(&equations, Some(&point))? };
         let mut compiled = Compiled::with_form(&equations, &form)?;
         if settings.method.is_implicit() {
             compiled = compiled.with_jacobian(&equations)?;

@@ -26,6 +26,7 @@ pub(crate) fn settings(
         method,
         projection: if project { Projection::EveryStep } else { Projection::Off },
         max_steps,
+        plain: false,
         interrupt: Some(interrupt.clone()),
     };
     Ok((settings, interrupt))

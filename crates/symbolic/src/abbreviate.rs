@@ -31,9 +31,7 @@ impl Graph {
         let order = arena.reachable(es, |_| true);
         let mut uses: FxHashMap<Expr, usize> = FxHashMap::default();
         for n in &order {
-            for child in arena.node(*n).children() {
-                *uses.entry(child).or_default() += 1;
-            }
+            arena.node(*n).each_child(|child| *uses.entry(child).or_default() += 1);
         }
         for e in es {
             *uses.entry(*e).or_default() += 1;
@@ -131,7 +129,7 @@ impl Arena {
                     count += terms.iter().filter(|(_, c)| !c.abs().is_one()).count();
                     stack.extend(terms.iter().map(|(t, _)| *t));
                 }
-                node => stack.extend(node.children()),
+                node => node.each_child(|c| stack.push(c)),
             }
             if count > LONG_LEAVES {
                 break;

@@ -22,13 +22,13 @@ pub(crate) enum Node {
 }
 
 impl Node {
-    pub(crate) fn children(&self) -> Vec<Expr> {
+    pub(crate) fn each_child(&self, mut visit: impl FnMut(Expr)) {
         match self {
-            Node::Number(_) | Node::Symbol(_) => Vec::new(),
-            Node::Sum(_, terms) => terms.iter().map(|(t, _)| *t).collect(),
-            Node::Product(factors) => factors.iter().map(|(b, _)| *b).collect(),
-            Node::Power(a, b) | Node::Atan2(a, b) => vec![*a, *b],
-            Node::Call(_, a) => vec![*a],
+            Node::Number(_) | Node::Symbol(_) => {}
+            Node::Sum(_, terms) => terms.iter().for_each(|(t, _)| visit(*t)),
+            Node::Product(factors) => factors.iter().for_each(|(b, _)| visit(*b)),
+            Node::Power(a, b) | Node::Atan2(a, b) => [*a, *b].into_iter().for_each(visit),
+            Node::Call(_, a) => visit(*a),
         }
     }
 }
@@ -135,7 +135,13 @@ impl Arena {
         if let Node::Symbol(s) = node {
             return self.intern_set(vec![*s]);
         }
-        let mut sets: Vec<u32> = node.children().iter().map(|c| self.dependencies[c.0 as usize]).collect();
+        let mut sets: Vec<u32> = Vec::new();
+        node.each_child(|c| {
+            let set = self.dependencies[c.0 as usize];
+            if sets.last() != Some(&set) {
+                sets.push(set);
+            }
+        });
         sets.sort_unstable();
         sets.dedup();
         if let [only] = sets[..] {
@@ -164,8 +170,11 @@ impl Arena {
         let mut stack: Vec<Expr> = roots.iter().copied().filter(|e| enter(*e)).collect();
         while let Some(e) = stack.pop() {
             if seen.insert(e) {
-                let children = self.node(e).children();
-                stack.extend(children.into_iter().filter(|c| enter(*c) && !seen.contains(c)));
+                self.node(e).each_child(|c| {
+                    if enter(c) && !seen.contains(&c) {
+                        stack.push(c);
+                    }
+                });
             }
         }
         let mut order: Vec<Expr> = seen.into_iter().collect();

@@ -14,16 +14,17 @@ pub(crate) fn lower(
     definitions: &[(Symbol, Expr)],
     outputs: &[Expr],
 ) -> (Program, Vec<Id>) {
-    let mut lowering = Lowering { arena, program: Program::default(), values: FxHashMap::default() };
+    let (symbols, values) = (FxHashMap::default(), FxHashMap::default());
+    let mut lowering = Lowering { arena, program: Program::default(), symbols, values };
     for (i, s) in inputs.iter().enumerate() {
         let index = u32::try_from(i).expect("fewer than 2^32 inputs");
         let input = lowering.program.push(Value::Input(index));
-        lowering.values.entry(Leaf::Symbol(*s)).or_insert(Parts::of(input));
+        lowering.symbols.entry(*s).or_insert(Parts::of(input));
     }
     for (symbol, e) in definitions {
         lowering.nodes(&[*e]);
-        let parts = lowering.values[&Leaf::Node(*e)];
-        lowering.values.entry(Leaf::Symbol(*symbol)).or_insert(parts);
+        let parts = lowering.values[e];
+        lowering.symbols.entry(*symbol).or_insert(parts);
     }
     lowering.nodes(outputs);
     let outputs = outputs.iter().map(|e| lowering.whole(*e)).collect();
@@ -32,12 +33,6 @@ pub(crate) fn lower(
 
 /// A value and whether it is to be negated.
 type Signed = (bool, Id);
-
-#[derive(PartialEq, Eq, Hash)]
-enum Leaf {
-    Symbol(Symbol),
-    Node(Expr),
-}
 
 /// A value as constant · varying; either may be absent, for 1.
 #[derive(Clone, Copy)]
@@ -55,19 +50,20 @@ impl Parts {
 struct Lowering<'a> {
     arena: &'a Arena,
     program: Program,
-    values: FxHashMap<Leaf, Parts>,
+    symbols: FxHashMap<Symbol, Parts>,
+    values: FxHashMap<Expr, Parts>,
 }
 
 impl Lowering<'_> {
     fn nodes(&mut self, roots: &[Expr]) {
-        for e in self.arena.reachable(roots, |e| !self.values.contains_key(&Leaf::Node(e))) {
+        for e in self.arena.reachable(roots, |e| !self.values.contains_key(&e)) {
             let parts = self.node(e);
-            self.values.insert(Leaf::Node(e), parts);
+            self.values.insert(e, parts);
         }
     }
 
     fn whole(&mut self, e: Expr) -> Id {
-        match self.values[&Leaf::Node(e)] {
+        match self.values[&e] {
             Parts { constant: None, varying: None } => self.program.constant(Number::ONE),
             Parts { constant: Some(v), varying: None } | Parts { constant: None, varying: Some(v) } => v,
             Parts { constant: Some(a), varying: Some(b) } => self.program.push(Value::Mul(a, b)),
@@ -82,7 +78,7 @@ impl Lowering<'_> {
         let arena = self.arena;
         let v = match arena.node(e) {
             Node::Number(n) => self.program.constant(*n),
-            Node::Symbol(s) => return self.values[&Leaf::Symbol(*s)],
+            Node::Symbol(s) => return self.symbols[s],
             Node::Sum(constant, terms) => self.sum(*constant, terms),
             Node::Product(factors) => return self.product(factors),
             Node::Power(base, exponent) => {
@@ -104,20 +100,19 @@ impl Lowering<'_> {
     /// Σ c·t, terms with the same |c| added up before c is multiplied.
     fn sum(&mut self, constant: Number, terms: &[(Expr, Number)]) -> Id {
         let mut groups: Vec<(Option<Id>, Vec<Signed>)> = Vec::new();
-        let mut places: FxHashMap<Option<Id>, usize> = FxHashMap::default();
         let mut rest: Vec<Signed> = Vec::new();
         for (t, c) in terms {
-            let parts = self.values[&Leaf::Node(*t)];
+            let parts = self.values[t];
             let scale = self.scaled(c.abs(), parts.constant);
             let Some(varying) = parts.varying else {
                 rest.push((c.is_negative(), self.or_one(scale)));
                 continue;
             };
-            let place = *places.entry(scale).or_insert_with(|| {
-                groups.push((scale, Vec::new()));
-                groups.len() - 1
-            });
-            groups[place].1.push((c.is_negative(), varying));
+            let term = (c.is_negative(), varying);
+            match groups.iter_mut().find(|(known, _)| *known == scale) {
+                Some((_, members)) => members.push(term),
+                None => groups.push((scale, vec![term])),
+            }
         }
         if !constant.is_zero() {
             rest.push((constant.is_negative(), self.program.constant(constant.abs())));

@@ -199,7 +199,8 @@ impl Assembly<'_> {
                 home.entry(*id).or_insert(register(self.tape.inputs + slot));
             }
         }
-        let needed: FxHashMap<Value, Id> = order.iter().map(|id| (program.value(*id), *id)).collect();
+        let calls = order.iter().map(|id| (program.value(*id), *id)).filter(|(v, _)| matches!(v, Value::Call(..)));
+        let needed: FxHashMap<Value, Id> = calls.collect();
         let mut busy = vec![false; program.len()];
         for (step, id) in order.iter().copied().enumerate() {
             if self.place[id as usize].is_some() {

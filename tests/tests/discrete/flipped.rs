@@ -43,6 +43,7 @@ const SETTINGS: Settings = Settings {
     method: integrate::Method::Dop853,
     projection: integrate::Projection::EveryStep,
     max_steps: 40_000,
+    plain: false,
     interrupt: None,
 };
 

@@ -12,6 +12,7 @@ mod page;
 mod problem;
 mod race;
 mod reference;
+mod rounds;
 mod rows;
 mod tools;
 mod trailer;

@@ -25,6 +25,10 @@ struct Arguments {
     serve: bool,
 }
 
+// as in the command
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     if arguments.serve {

@@ -177,7 +177,7 @@ fn set_up(outcomes: &[&Outcome]) -> String {
         for outcome in outcomes {
             let rung = least(outcome, row, Task::Trajectory, TARGET, |r| r.seconds);
             let cell = rung.map_or("–".into(), |r| match row.starts_with(OURS) {
-                true => short(1e3 * r.setup),
+                true => short(1e3 * (r.total - r.seconds)),
                 false => format!("{} + {}", short(1e3 * r.setup), short(1e3 * r.prepare)),
             });
             let _ = write!(text, " {cell} |");

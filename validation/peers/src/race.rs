@@ -17,8 +17,6 @@ pub(crate) const TARGETS: [f64; 3] = [1e-9, 1e-10, 1e-11];
 const RIGHT: f64 = 1e-12;
 /// A method that is slower by this factor than another one of its row, at a larger error, climbs no further.
 const HOPELESS: f64 = 10.0;
-/// What is slower than the fastest by this factor at the first try is not timed again.
-const NOISE: f64 = 1.4;
 
 /// How much is done.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +50,7 @@ pub enum Task {
 }
 
 impl Task {
-    fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Task::Trajectory => "trajectory",
             Task::End => "end",
@@ -114,10 +112,10 @@ pub struct Outcome {
 }
 
 /// Everybody's process of this problem, and what it answers to.
-struct Race<'a> {
+pub(crate) struct Race<'a> {
     tools: &'a mut Tools,
-    effort: Effort,
-    outcome: Outcome,
+    pub(crate) effort: Effort,
+    pub(crate) outcome: Outcome,
     expected: Option<Vec<(Tag, f64)>>,
 }
 
@@ -201,11 +199,11 @@ fn start(problem: &mut Problem, scene: &Scene, tools: &mut Tools, limit: Duratio
 }
 
 impl Race<'_> {
-    fn fail(&mut self, row: String, what: String, words: String) {
+    pub(crate) fn fail(&mut self, row: String, what: String, words: String) {
         self.outcome.failures.push(Failure { row, what, words });
     }
 
-    fn ask(&mut self, entrant: &Entrant, question: &Value) -> Result<Value, Refusal> {
+    pub(crate) fn ask(&mut self, entrant: &Entrant, question: &Value) -> Result<Value, Refusal> {
         let name = format!("{}-{}", entrant.tool, entrant.form);
         let limit = Duration::from_secs(self.effort.limit);
         let mut case = self.outcome.problem.case.clone();
@@ -348,53 +346,5 @@ impl Race<'_> {
 
     fn rungs_of<'a>(&'a self, row: &'a str, method: &'a str) -> impl Iterator<Item = &'a Rung> {
         self.outcome.rungs.iter().filter(move |rung| rung.row == row && rung.method == method)
-    }
-
-    /// Times once more whatever may be the fastest of its row for some target.
-    fn turn(&mut self) {
-        for i in self.candidates() {
-            let rung = self.outcome.rungs[i].clone();
-            let question = json!({
-                "do": "run", "method": rung.method, "tolerance": rung.tolerance, "task": rung.task.name(), "repeat": self.effort.repeat
-            });
-            match self.ask(&rung.entrant, &question) {
-                Ok(answer) => {
-                    let seconds = answer["seconds"].as_f64().unwrap_or(f64::INFINITY);
-                    let rung = &mut self.outcome.rungs[i];
-                    rung.seconds = rung.seconds.min(seconds);
-                    rung.total = rung.total.min(rung.setup + rung.prepare + rung.seconds);
-                }
-                Err(refusal) => {
-                    let what = format!("{} at {:.0e}, again", rung.method, rung.tolerance);
-                    self.fail(rung.row, what, refusal.to_string());
-                }
-            }
-        }
-    }
-
-    fn candidates(&self) -> Vec<usize> {
-        let rungs = &self.outcome.rungs;
-        let fastest = |like: &Rung, target: f64| {
-            let same = rungs.iter().filter(|r| r.row == like.row && r.task == like.task && r.error <= target);
-            same.map(|r| r.seconds).fold(f64::INFINITY, f64::min)
-        };
-        let may = |rung: &Rung| {
-            TARGETS.iter().any(|&target| rung.error <= target && rung.seconds <= NOISE * fastest(rung, target))
-        };
-        (0..rungs.len()).filter(|&i| may(&rungs[i])).collect()
-    }
-
-    /// Ours from the text of the scene, measured as a whole.
-    fn totals(&mut self) {
-        for i in self.candidates() {
-            let rung = self.outcome.rungs[i].clone();
-            if rung.entrant.tool != "ours" || rung.method.starts_with("solve") {
-                continue;
-            }
-            let question = json!({ "do": "total", "method": rung.method, "tolerance": rung.tolerance });
-            let seconds =
-                (0..self.effort.rounds).filter_map(|_| self.ask(&rung.entrant, &question).ok()?["seconds"].as_f64());
-            self.outcome.rungs[i].total = seconds.fold(f64::INFINITY, f64::min);
-        }
     }
 }

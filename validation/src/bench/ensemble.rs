@@ -20,7 +20,7 @@ pub const ENSEMBLE_SCENE: &str = "sledge";
 /// Members of an ensemble whose throughput is measured, and in the main job, which has other things to do as well.
 pub const MEMBERS: usize = 4096;
 /// See [`MEMBERS`].
-pub const FEW_MEMBERS: usize = 512;
+pub const FEW_MEMBERS: usize = 256;
 
 /// What was measured of one formulation.
 #[derive(Clone, Debug)]

@@ -83,7 +83,7 @@ impl Case {
         let system = &scene.system;
         let floor = floor(system, &scene.start, &scene.multipliers)?;
         let run = |equations: Equations, constants: &[f64]| {
-            solve(system, &scene.start, scene.start.t + scene.duration, equations, constants, floor)
+            solve(system, &scene.start, scene.start.t + scene.duration, equations, constants, floor, Form::Chosen)
         };
         let chetaev = run(equations(system, "chetaev", None)?, &[])?;
         let vakonomic = run(equations(system, "vakonomic", None)?, &scene.multipliers)?;
@@ -133,7 +133,8 @@ impl Case {
         self.scene.start.t + self.scene.duration
     }
 
-    /// A motion of `equations`, which may be those of another system, from `start`.
+    /// A motion of `equations` of another system from `start`, with every block by LU factorization: what is said of the case's own motions is
+    /// said of the forms that were chosen for them, too.
     ///
     /// # Errors
     /// [`SolveError`].
@@ -145,7 +146,7 @@ impl Case {
         equations: Equations,
         constants: &[f64],
     ) -> Result<Motion, SolveError> {
-        solve(system, start, end, equations, constants, self.floor)
+        solve(system, start, end, equations, constants, self.floor, Form::Plain)
     }
 
     /// The motion of another formulation, or with other constants, from the start of the scene.
@@ -153,7 +154,7 @@ impl Case {
     /// # Errors
     /// [`SolveError`].
     pub fn run(&self, equations: Equations, constants: &[f64]) -> Result<Motion, SolveError> {
-        solve(&self.scene.system, &self.scene.start, self.end(), equations, constants, self.floor)
+        solve(&self.scene.system, &self.scene.start, self.end(), equations, constants, self.floor, Form::Chosen)
     }
 
     /// Notes whether two motions are the same.
@@ -248,6 +249,13 @@ fn some_costates(recipe: &Recipe, equations: &Equations, memory: usize) -> Vec<f
 /// The tighter run's tolerance is not under this part of [`Case::floor`].
 const FLOOR: f64 = 1e-6;
 
+/// How the equations of an instant are solved, see [`Settings::plain`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Chosen,
+    Plain,
+}
+
 /// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does not allow.
 fn solve(
     system: &System,
@@ -256,6 +264,7 @@ fn solve(
     equations: Equations,
     constants: &[f64],
     floor: f64,
+    form: Form,
 ) -> Result<Motion, SolveError> {
     let setting = Setting { system, start, end };
     let rule = ConstantsRule::Given(constants.to_vec());
@@ -263,7 +272,7 @@ fn solve(
     let allowed =
         |tolerance: &f64| tolerance * TIGHTER >= FLOOR * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
     for tolerance in TOLERANCES.into_iter().filter(allowed) {
-        let settings = Settings { tolerance, max_steps: MAX_STEPS, ..Settings::default() };
+        let settings = Settings { tolerance, max_steps: MAX_STEPS, plain: form == Form::Plain, ..Settings::default() };
         let motion = deltaq::solve(setting, equations.clone(), &rule, &settings)?;
         if motion.is_complete() {
             return Ok(motion);
