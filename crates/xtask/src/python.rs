@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
-use crate::checks::{Outcome, outside, succeed};
+use crate::checks::{Outcome, outside, succeed, target};
 
 /// The crate, from the root of the project.
 const CRATE: &str = "crates/python";
@@ -16,8 +16,7 @@ const OLDEST: (u32, u32) = (3, 11);
 const NAMES: [&str; 3] = ["python3.11", "python3", "python"];
 
 pub(crate) fn check() -> Result<Outcome> {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    let target = std::path::absolute(target).context("the folder of build results")?;
+    let target = target()?;
     let python = environment(&target)?;
     let wheels = target.join("python-wheels");
     if wheels.exists() {
