@@ -2,7 +2,7 @@
 
 use deltaq::{
     Choice, Ending, Gap, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict, compare_motions_by,
-    derive, formulation,
+    derive, formulation, setting,
 };
 use mechanics::{ConstantsRule, Equations, Removal, Scene, State, System};
 use nalgebra::DMatrix;
@@ -82,9 +82,7 @@ impl Case {
     fn with_duration(recipe: &Recipe, scene: &Scene) -> Result<Case, SolveError> {
         let system = &scene.system;
         let floor = floor(system, &scene.start, &scene.multipliers)?;
-        let run = |equations: Equations, constants: &[f64]| {
-            solve(system, &scene.start, scene.start.t + scene.duration, equations, constants, floor, Form::Chosen)
-        };
+        let run = |equations: Equations, constants: &[f64]| solve(setting(scene), equations, constants, floor, false);
         let chetaev = run(equations(system, "chetaev", None)?, &[])?;
         let vakonomic = run(equations(system, "vakonomic", None)?, &scene.multipliers)?;
         let mut removed = Vec::new();
@@ -146,7 +144,7 @@ impl Case {
         equations: Equations,
         constants: &[f64],
     ) -> Result<Motion, SolveError> {
-        solve(system, start, end, equations, constants, self.floor, Form::Plain)
+        solve(Setting { system, start, end }, equations, constants, self.floor, true)
     }
 
     /// The motion of another formulation, or with other constants, from the start of the scene.
@@ -154,7 +152,7 @@ impl Case {
     /// # Errors
     /// [`SolveError`].
     pub fn run(&self, equations: Equations, constants: &[f64]) -> Result<Motion, SolveError> {
-        solve(&self.scene.system, &self.scene.start, self.end(), equations, constants, self.floor, Form::Chosen)
+        solve(setting(&self.scene), equations, constants, self.floor, false)
     }
 
     /// Notes whether two motions are the same.
@@ -249,30 +247,21 @@ fn some_costates(recipe: &Recipe, equations: &Equations, memory: usize) -> Vec<f
 /// The tighter run's tolerance is not under this part of [`Case::floor`].
 const FLOOR: f64 = 1e-6;
 
-/// How the equations of an instant are solved, see [`Settings::plain`].
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Form {
-    Chosen,
-    Plain,
-}
-
-/// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does not allow.
+/// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does not allow. `plain`: see
+/// [`Settings::plain`].
 fn solve(
-    system: &System,
-    start: &State,
-    end: f64,
+    setting: Setting,
     equations: Equations,
     constants: &[f64],
     floor: f64,
-    form: Form,
+    plain: bool,
 ) -> Result<Motion, SolveError> {
-    let setting = Setting { system, start, end };
     let rule = ConstantsRule::Given(constants.to_vec());
     let mut best: Option<Motion> = None;
     let allowed =
         |tolerance: &f64| tolerance * TIGHTER >= FLOOR * floor || *tolerance == TOLERANCES[TOLERANCES.len() - 1];
     for tolerance in TOLERANCES.into_iter().filter(allowed) {
-        let settings = Settings { tolerance, max_steps: MAX_STEPS, plain: form == Form::Plain, ..Settings::default() };
+        let settings = Settings { tolerance, max_steps: MAX_STEPS, plain, ..Settings::default() };
         let motion = deltaq::solve(setting, equations.clone(), &rule, &settings)?;
         if motion.is_complete() {
             return Ok(motion);
