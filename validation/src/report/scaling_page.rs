@@ -21,7 +21,7 @@ pub fn scaling_files(lines: &[Line]) -> Result<Vec<File>> {
     let derivation = picture(lines, "Derivation", "derivation (s)", |p| Some(p.derivation))?;
     let side = picture(lines, "One right-hand side", "right-hand side (s)", |p| Some(p.right_hand_side))?;
     let solve = picture(lines, "Solve over 10 s", "solve (s)", |p| p.solve)?;
-    let mut page = String::from("# Cost over size: the car with n trailers\n\n");
+    let mut page = format!("# Cost over size: the car with n trailers\n\n{}", answer(lines));
     page += "Written by `deltaq scaling --out reports`. One knife edge a body: two degrees of freedom however long the train. In maximal \
              coordinates (x, y, heading of every body) every constraint touches neighbours only; that is what all rows use that do not say otherwise. \
              Times are the shortest of some repeats on one machine; *expressions* (made for derivation and compilation), *operations* (of one right-hand \
@@ -34,6 +34,23 @@ pub fn scaling_files(lines: &[Line]) -> Result<Vec<File>> {
         File { path: "scaling-right-hand-side.svg".into(), text: side },
         File { path: "scaling-solve.svg".into(), text: solve },
     ])
+}
+
+/// Whether the forms in quasi-velocities grow as is asked for.
+fn answer(lines: &[Line]) -> String {
+    let said = |line: &Line| {
+        let judged = |cost, limit| {
+            let exponent = line.exponent(cost)?;
+            let met = if exponent.value <= limit { "met" } else { "**missed**" };
+            Some(format!("{} (at most {limit}: {met})", fitted(exponent)))
+        };
+        let (side, derivation) = (judged(Cost::RightHandSide, RIGHT_HAND_SIDE)?, judged(Cost::Derivation, DERIVATION)?);
+        Some(format!(
+            "- **`{}`**: a right-hand side grows as nᵖ with p = {side}, the derivation with p = {derivation}.\n",
+            line.formulation
+        ))
+    };
+    lines.iter().filter(|line| line.formulation.ends_with("-reduced")).filter_map(said).collect::<String>() + "\n"
 }
 
 /// The tables.

@@ -10,12 +10,9 @@ mod fit;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Setting, Settings, default_constants, formulation, setting, solve};
-use mechanics::{
-    Compiled, ConstantsRule, Derivation, Equations, Removal, Scene, State, System, complete_removal_start,
-};
+use deltaq::{Ready, Setting, Settings, default_constants, formulation, ready_to_run, setting, solve};
+use mechanics::{Compiled, ConstantsRule, Derivation, Removal, Scene, System};
 use serde::Serialize;
-use symbolic::{Expr, Symbol};
 
 pub use fit::{Exponent, exponent};
 
@@ -172,7 +169,7 @@ pub fn line(name: &'static str, limits: &Limits, progress: &mut dyn FnMut(&str, 
 pub fn counts(name: &str, trailers: usize) -> Result<(usize, usize)> {
     let scene = train(name, trailers)?;
     let derived = derivation(name, &scene)?;
-    Ok((derived.equations.graph.nodes(), derived.compiled.cost()[1].operations()))
+    Ok((derived.ready.equations.graph.nodes(), derived.ready.compiled.cost()[1].operations()))
 }
 
 fn train(name: &str, trailers: usize) -> Result<Scene> {
@@ -183,12 +180,11 @@ fn train(name: &str, trailers: usize) -> Result<Scene> {
 /// What a derivation comes to. The removal's expressions live in the graph of `system`.
 struct Derived {
     system: System,
-    equations: Equations,
-    compiled: Compiled,
+    ready: Ready,
     constants: ConstantsRule,
 }
 
-/// From `System` to compiled tape.
+/// From `System` to compiled tape, in the form that a run from the start of the scene would take; free constants that are not given are zero.
 fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
     let name = name.split(' ').next().unwrap_or(name);
     let entry = formulation(name).with_context(|| format!("no formulation {name}"))?;
@@ -201,8 +197,12 @@ fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
     };
     let derived = (entry.derive)(&system, &Derivation { removal: removal.as_ref(), start: Some(&scene.start) })?;
     let equations = derived.leave_out_unneeded();
-    let compiled = Compiled::new(&equations)?;
-    Ok(Derived { system, equations, compiled, constants })
+    let known = match &constants {
+        ConstantsRule::Given(_) => &constants,
+        _ => &ConstantsRule::Zero,
+    };
+    let ready = ready_to_run(Setting { system: &system, ..setting(scene) }, equations, known, &Settings::default())?;
+    Ok(Derived { system, ready, constants })
 }
 
 /// `evaluations` is how many a shorter train took; none where its solve already was too long.
@@ -219,9 +219,9 @@ fn point(name: &str, trailers: usize, limits: &Limits, evaluations: Option<usize
             break;
         }
     }
-    let Derived { system, equations, mut compiled, constants } = derived.context("at least one repeat")?;
-    let y = start(&system, &scene.start, &equations, &constants)?;
-    let seconds = right_hand_side(&mut compiled, scene.start.t, &y, limits.repeats)?;
+    let Derived { system, ready, constants } = derived.context("at least one repeat")?;
+    let Ready { equations, mut compiled, start: y, t, .. } = ready;
+    let seconds = right_hand_side(&mut compiled, t, &y, limits.repeats)?;
     let mut point = Point {
         trailers,
         states: y.len(),
@@ -249,27 +249,6 @@ fn point(name: &str, trailers: usize, limits: &Limits, evaluations: Option<usize
         }
     }
     Ok(point)
-}
-
-/// `y(t₀)`.
-fn start(system: &System, state: &State, equations: &Equations, constants: &ConstantsRule) -> Result<Vec<f64>> {
-    let mut values = system.values_at(state);
-    if let Some(removal) = &equations.removal {
-        values.extend(complete_removal_start(system, removal, state)?.values());
-    }
-    let (mut symbols, mut inputs): (Vec<Symbol>, Vec<f64>) = values.into_iter().unzip();
-    symbols.extend(equations.constant_symbols());
-    let mut given = match constants {
-        ConstantsRule::Given(given) => given.clone(),
-        _ => Vec::new(),
-    };
-    given.resize(equations.free_constants.len(), 0.0);
-    inputs.extend(given);
-    let starts: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
-    let mut y = vec![0.0; starts.len()];
-    let tape = equations.tape(&symbols, &starts)?;
-    tape.evaluate(&inputs, &mut tape.workspace(), &mut y);
-    Ok(y)
 }
 
 /// Seconds of one right-hand side: the shortest of some batches.
