@@ -23,8 +23,9 @@ use anyhow::{Context, Result};
 use mechanics::Scene;
 use serde::Deserialize;
 
-use crate::random::{Batch, Kind};
-use crate::{catalogue, parallel};
+use crate::catalogue;
+use random::parallel;
+use random::{Batch, Kind};
 
 mod environment;
 mod questions;

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use deltaq::{Metric, Motion, Settings, Verdict, compare_motions};
 use mechanics::{Removal, Scene};
+use random::substitution;
 use symbolic::Symbol;
-use validation::substitution;
 
 use crate::support::{at, chetaev, complete, number, removal_values, scenes, state_at};
 

@@ -6,8 +6,8 @@ use deltaq::{Choice, Metric, Motion, Settings, derive, formulation, setting, sol
 use mechanics::{Compiled, ConstantsRule, Equations, Outputs, Removal, Scene, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
+use random::{Kind, recipes_of};
 use symbolic::{Expr, Graph, Matrix, Symbol};
-use validation::random::{Kind, recipes_of};
 
 /// The tolerance of the looser of the two runs of every motion; what is measured has a hundredth of it.
 pub const TIGHT: f64 = 1e-12;

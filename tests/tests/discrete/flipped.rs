@@ -14,11 +14,11 @@
 use deltaq::{Motion, Setting, Settings, TIGHTER, formulation, solve};
 use mechanics::{ConstantsRule, Derivation, Equations, Removal, Scene, State, System, complete_removal_start};
 use proptest::strategy::ValueTree;
+use random::{Kind, augmented, draw};
 use referees::discrete::Discrete;
 use referees::maggi::{Form, Maggi};
 use symbolic::Symbol;
 use validation::catalogue::find;
-use validation::random::{Kind, augmented, draw};
 
 use crate::flip::{Flip, corrupt};
 use crate::support::{HORIZON, measure, removed, short};

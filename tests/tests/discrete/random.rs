@@ -1,7 +1,7 @@
 //! Systems that nobody chose.
 
+use random::{Case, Kind, draw};
 use referees::discrete::Discrete;
-use validation::random::{Case, Kind, draw};
 
 use crate::support::{Tally, agrees, measure, removed, short};
 use proptest::strategy::ValueTree;

@@ -1,7 +1,7 @@
 //! One suite a theorem. What each claim says and assumes is at the check, in `validation::random`.
 
 use proptest::test_runner::TestCaseError;
-use validation::random::{Kind, NullTest, null_test};
+use random::{Kind, NullTest, null_test};
 
 use crate::support::{for_all, holds, part};
 

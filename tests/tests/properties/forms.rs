@@ -5,8 +5,8 @@ use integrate::{EvaluationError, Options, Problem, Start, integrate};
 use mechanics::{Compiled, Equations, Form};
 use nalgebra::DMatrix;
 use proptest::test_runner::TestCaseError;
+use random::{Case, Kind, Recipe, Which, recipes_of};
 use symbolic::{Bounded, Scalar};
-use validation::random::{Case, Kind, Recipe, Which, recipes_of};
 
 use crate::support::for_all;
 

@@ -6,7 +6,7 @@ use mechanics::{Scene, check_regularity};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestCaseError;
-use validation::random::{Batch, Case, Kind, MOST, Recipe, Record, draw, recipes_of, shrink};
+use random::{Batch, Case, Kind, MOST, Recipe, Record, draw, recipes_of, shrink};
 
 use crate::support::for_all;
 

@@ -2,8 +2,8 @@
 
 use deltaq::{CERTAINTY, Motion, Setting};
 use proptest::test_runner::TestCaseError;
-use validation::random::{Case, Kind, Recipe, Which, recipes_of};
-use validation::realization::{Realization, realize};
+use random::realization::{Realization, realize};
+use random::{Case, Kind, Recipe, Which, recipes_of};
 
 use crate::support::for_all;
 
@@ -99,7 +99,7 @@ fn nothing_is_called_constant_that_friction_eats() {
     });
     // and the friction is not nothing: energy would drift
     for index in 0..10 {
-        let case = Case::new(validation::random::draw_recipe(5, index, &[Kind::Affine]), "random").expect("a case");
+        let case = Case::new(random::draw_recipe(5, index, &[Kind::Affine]), "random").expect("a case");
         let setting = Setting { system: &case.scene.system, start: &case.scene.start, end: case.end() };
         let mut motion = realize(Realization::Friction, 10.0, setting, &[]).expect("a motion");
         let mut free = realize(Realization::Friction, 0.0, setting, &[]).expect("a motion");

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use proptest::strategy::Strategy;
 use proptest::test_runner::{Config, FileFailurePersistence, RngSeed, TestCaseError, TestError, TestRunner};
-use validation::random::{CHECKS, Case, Findings, Kind, Recipe, Word, make, recipes_of};
+use random::{CHECKS, Case, Findings, Kind, Recipe, Word, make, recipes_of};
 
 /// Where the seeds of failures are kept.
 const SEEDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/properties.seeds");

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use picture::{Aspect, Axis, Curve, Picture, PictureError, Style};
 use rapier3d_f64::VERSION;
-use validation::picture::{Aspect, Axis, Curve, Picture, PictureError, Style};
 use validation::report::File;
 
 use crate::study::{FAR, Level, NEAR, ORDER, SAMPLES, Study};

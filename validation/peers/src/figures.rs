@@ -1,6 +1,6 @@
 //! Error over time, one picture a problem.
 
-use validation::picture::{Aspect, Axis, Curve, Picture, PictureError, Style};
+use picture::{Aspect, Axis, Curve, Picture, PictureError, Style};
 use validation::report::File;
 
 use crate::{Outcome, Rung, Task};

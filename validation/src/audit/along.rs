@@ -8,7 +8,7 @@ use mechanics::ConstantsRule;
 
 use super::context::Context;
 use crate::catalogue;
-use crate::random::equations;
+use random::equations;
 
 /// Instants.
 const INSTANTS: usize = 20;

@@ -5,8 +5,8 @@ use deltaq::{Metric, Motion, Setting, Settings, best_fit, compare_motions, setti
 use mechanics::{ConstantsRule, Removal, Scene};
 
 use crate::catalogue;
-use crate::random::equations;
-use crate::realization::augmented_start;
+use random::equations;
+use random::realization::augmented_start;
 
 /// The horizon of the sledge measured against a vakonomic motion.
 #[derive(Clone, Debug)]

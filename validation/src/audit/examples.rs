@@ -14,7 +14,7 @@ use mechanics::{Equations, Removal, Scene, System};
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
 use crate::catalogue;
-use crate::random::equations;
+use random::equations;
 
 use super::constants::removal;
 

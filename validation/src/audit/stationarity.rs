@@ -14,7 +14,7 @@ use symbolic::{Expr, Symbol, Tape, Workspace};
 use super::action::{Action, BUMPS, Jet, bump};
 use super::context::Context;
 use super::paper::Paper;
-use crate::random::equations;
+use random::equations;
 
 /// Readings of (34), each as what has to be zero, with `P = C − ∫ L_λ dt`. (The fourth, second operator on `L` and first on `β`, divides by `P`, which is
 /// zero at `t₁`.)

@@ -6,9 +6,9 @@ use anyhow::Result;
 use serde_json::{Value, json};
 
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
-use crate::picture::{Axis, Curve, Panel, PictureError, SmallMultiples, Style};
 use crate::report::File;
 use crate::report::numbers::{enumerate, short};
+use picture::{Axis, Curve, Panel, PictureError, SmallMultiples, Style};
 
 /// The error at which formulations are compared in the headline.
 const HEADLINE_TARGET: f64 = 1e-10;

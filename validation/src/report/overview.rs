@@ -6,7 +6,7 @@ use deltaq::{Comparison, Fit, Verdict};
 
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
-use crate::substitution;
+use random::substitution;
 
 /// What produced the reports.
 #[derive(Clone, Debug)]

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use anyhow::Result;
 use deltaq::{Comparison, Run};
 
-use crate::picture::{Aspect, Axis, Curve, Panel, Picture, SmallMultiples, Style};
 use crate::report::File;
-use crate::substitution;
+use picture::{Aspect, Axis, Curve, Panel, Picture, SmallMultiples, Style};
+use random::substitution;
 
 /// Instants drawn of a motion.
 const INSTANTS: usize = 400;

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
-use crate::picture::{Aspect, Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
-use crate::random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 use crate::report::File;
 use crate::report::numbers::{enumerate, short};
+use picture::{Aspect, Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
+use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.
 const UNDECIDED: f64 = 0.02;

@@ -8,12 +8,12 @@ use mechanics::{ConstantsRule, Scene};
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
-use crate::parallel;
-use crate::picture::{Aspect, Axis, Curve, Picture, Style};
-use crate::random::{Case, Kind, draw_recipe, free_constants};
-use crate::realization::{Realization, distance, realize, realize_removal};
 use crate::report::File;
 use crate::report::numbers::short;
+use picture::{Aspect, Axis, Curve, Picture, Style};
+use random::parallel;
+use random::realization::{Realization, distance, realize, realize_removal};
+use random::{Case, Kind, draw_recipe, free_constants};
 
 /// `N`.
 const STRENGTHS: [f64; 4] = [1e2, 1e3, 1e4, 1e5];

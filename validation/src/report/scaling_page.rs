@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use anyhow::Result;
 
-use crate::picture::{Aspect, Axis, Curve, Picture, Style};
 use crate::report::File;
 use crate::report::numbers::short;
 use crate::scaling::{Cost, Exponent, FROM, Line, Point};
+use picture::{Aspect, Axis, Curve, Picture, Style};
 
 /// Largest exponents that are asked for: of one right-hand side, and of the derivation.
 const RIGHT_HAND_SIDE: f64 = 1.2;

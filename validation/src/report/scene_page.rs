@@ -7,7 +7,7 @@ use deltaq::{Comparison, EquationStyle, Pair, Verdict, equations_text, removals}
 
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables;
-use crate::substitution;
+use random::substitution;
 
 /// The answer in a few sentences: do the formulations agree; if not, from when, by how much, and why.
 pub fn answer(comparison: &Comparison) -> String {

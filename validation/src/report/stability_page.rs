@@ -7,10 +7,10 @@ use anyhow::Result;
 use integrate::Method;
 use serde_json::{Map, Value, json};
 
-use crate::picture::{Aspect, Axis, Curve, Picture, Style};
 use crate::report::File;
 use crate::report::numbers::short;
 use crate::stability::{CASES, Case, Cell, LongRun, MAX_STEPS, MILLION, Verdict, long_runs, run, tolerance};
+use picture::{Aspect, Axis, Curve, Picture, Style};
 
 /// Lines of the pictures, method by method.
 const STYLES: [Style; 4] = [Style::Chetaev, Style::Vakonomic, Style::RemovedConstraint, Style::Substituted];

@@ -12,7 +12,7 @@ use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::question::tolerance;
 use super::reference::Reference;
 use crate::catalogue;
-use crate::parallel;
+use random::parallel;
 
 /// Steps of equal length, and the limit on those of the adaptive methods.
 pub const MILLION: usize = 1_000_000;

@@ -7,7 +7,7 @@ use mechanics::{ConstantsRule, Equations, State, System};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::reference::{Known, Reference};
-use crate::parallel;
+use random::parallel;
 
 /// Limit on the steps of one run: what needs more is refused.
 pub const MAX_STEPS: usize = 8_000;

@@ -6,10 +6,10 @@ use referees::closed_forms::Particle;
 
 use super::{FORMULATIONS, powers};
 use crate::catalogue;
-use crate::random::equations;
-use crate::realization::{at_momentum, with_added_mass};
 use crate::stability::question::{Case, Question, Subject};
 use crate::stability::reference::Reference;
+use random::equations;
+use random::realization::{at_momentum, with_added_mass};
 
 pub(super) const ADDED: Case = Case {
     name: "added-mass",

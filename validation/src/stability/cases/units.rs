@@ -6,9 +6,9 @@ use mechanics::ConstantsRule;
 use super::sledge::Sledge;
 use super::{FORMULATIONS, choice, powers};
 use crate::catalogue;
-use crate::random::{Scaling, equations};
 use crate::stability::question::{Case, Question, Subject};
 use crate::stability::reference::Reference;
+use random::{Scaling, equations};
 
 const REFERENCE: &str = "that of the sledge in metres and seconds, its times and coordinates converted";
 

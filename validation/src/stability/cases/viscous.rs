@@ -4,10 +4,10 @@ use nalgebra::Complex;
 
 use super::powers;
 use crate::catalogue;
-use crate::random::equations;
-use crate::realization::with_friction;
 use crate::stability::question::{Case, Question, Subject};
 use crate::stability::reference::Reference;
+use random::equations;
+use random::realization::with_friction;
 
 pub(super) const CASE: Case = Case {
     name: "viscous",

@@ -2,11 +2,11 @@
 
 use anyhow::{Result, bail};
 
-use crate::bench::{Effort, MEMBERS, ensemble_table, ensemble_throughput};
-use crate::catalogue;
 use crate::cli::{BenchArguments, TextOrJson};
 use crate::main_job::bench_all;
-use crate::report::{bench_files, bench_json, bench_table, write_all};
+use validation::bench::{Effort, MEMBERS, ensemble_table, ensemble_throughput};
+use validation::catalogue;
+use validation::report::{bench_files, bench_json, bench_table, write_all};
 
 /// Repeats of each way to integrate an ensemble; the least time counts.
 const REPEATS: usize = 5;

@@ -2,11 +2,10 @@
 
 use std::fmt;
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 /// What a random system is, by construction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// No constraint.
@@ -64,10 +63,46 @@ impl Kind {
         Kind::NearRankLoss,
     ];
 
+    /// Its name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        self.words().0
+    }
+
+    /// What it is, for the help of the command line.
+    pub fn about(self) -> &'static str {
+        self.words().1
+    }
+
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Kind::Free => ("free", "no constraint"),
+            Kind::ChaplyginIntegrable => (
+                "chaplygin-integrable",
+                "`f = d/dt (q_d + ψ(q_i))`, and nothing contains `q_d`: integrable, in Chaplygin form",
+            ),
+            Kind::Integrable => ("integrable", "`f = d/dt (q_d + ψ(q, t))`"),
+            Kind::HiddenIntegrable => {
+                ("hidden-integrable", "the same behind a linear recombination of the constraints")
+            }
+            Kind::PartlyIntegrable => {
+                ("partly-integrable", "some constraints as in `integrable`, the others as in `linear`, recombined")
+            }
+            Kind::Linear => {
+                ("linear", "`f = d/dt (q_d + ψ(q)) − s(q₁) v₂`, linear in the velocities and nonintegrable")
+            }
+            Kind::Affine => ("affine", "`f = d/dt (q_d + ψ(q)) − s(q₁) (γ v₂ + β)`, affine and nonintegrable"),
+            Kind::TimeDependent => ("time-dependent", "as `affine`, and time enters"),
+            Kind::Nonlinear => ("nonlinear", "`f = v_d² − c(q)² |v_i|²`, homogeneous of degree 2"),
+            Kind::NearRankLoss => {
+                ("near-rank-loss", "as `linear`, recombined so that two constraints are nearly the same")
+            }
+        }
+    }
+
     /// The kinds of which that is so, simplest first.
     ///
     /// ```
-    /// use validation::random::Kind;
+    /// use random::Kind;
     /// assert_eq!(Kind::which(|kind| !kind.is_linear()), [Kind::Nonlinear, Kind::NearRankLoss]);
     /// ```
     pub fn which(is_so: impl Fn(Kind) -> bool) -> Vec<Kind> {
@@ -115,17 +150,6 @@ impl Kind {
 
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Kind::Free => "free",
-            Kind::ChaplyginIntegrable => "chaplygin-integrable",
-            Kind::Integrable => "integrable",
-            Kind::HiddenIntegrable => "hidden-integrable",
-            Kind::PartlyIntegrable => "partly-integrable",
-            Kind::Linear => "linear",
-            Kind::Affine => "affine",
-            Kind::TimeDependent => "time-dependent",
-            Kind::Nonlinear => "nonlinear",
-            Kind::NearRankLoss => "near-rank-loss",
-        })
+        f.write_str(self.name())
     }
 }

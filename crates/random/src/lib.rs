@@ -10,8 +10,11 @@ mod case;
 mod claims;
 mod finding;
 mod kind;
+pub mod parallel;
+pub mod realization;
 mod recipe;
 mod record;
+pub mod substitution;
 mod transform;
 
 pub use build::{DURATION, REMOVAL};

@@ -4,9 +4,8 @@ use deltaq::{Motion, SolveError, setting, solve};
 use mechanics::{ConstantsRule, Scene};
 use proptest::prelude::*;
 
-use crate::catalogue;
-use crate::random::case::equations;
-use crate::random::finding::Findings;
+use crate::case::equations;
+use crate::finding::Findings;
 
 /// Numbers for the three null tests.
 #[derive(Clone, Debug)]
@@ -58,9 +57,13 @@ pub fn null_test(numbers: &NullTest) -> Result<Findings, SolveError> {
     Ok(found)
 }
 
-fn scene(name: &str, overrides: &[(&str, f64)]) -> Scene {
+const APPELL_HAMEL: &str = include_str!("../../../../validation/scenes/appell-hamel.toml");
+const HEISENBERG: &str = include_str!("../../../../validation/scenes/heisenberg.toml");
+const DISC: &str = include_str!("../../../../validation/scenes/disc.toml");
+
+fn scene(text: &str, overrides: &[(&str, f64)]) -> Scene {
     let overrides: Vec<(String, f64)> = overrides.iter().map(|&(n, x)| (n.to_string(), x)).collect();
-    catalogue::find(name, &overrides).unwrap_or_else(|error| unreachable!("{name} is built in: {error}"))
+    Scene::parse_with("null test", text, &overrides).unwrap_or_else(|error| unreachable!("built in: {error}"))
 }
 
 fn motion(scene: &Scene, name: &str, constants: &[f64]) -> Result<Motion, SolveError> {
@@ -100,7 +103,7 @@ fn appell_hamel(found: &mut Findings, [m, g, a, heading, speed, mu]: [f64; 6]) -
         ("z'", a * speed),
         ("duration", 0.8 * speed / deceleration),
     ];
-    let scene = scene("appell-hamel", &overrides);
+    let scene = scene(APPELL_HAMEL, &overrides);
     let exact = |t: f64| {
         let s = speed * t - deceleration * t * t / 2.0;
         vec![s * heading.cos(), s * heading.sin(), a * s]
@@ -113,7 +116,7 @@ fn appell_hamel(found: &mut Findings, [m, g, a, heading, speed, mu]: [f64; 6]) -
 
 /// Chetaev straight lines, vakonomic circles of rate `μ`.
 fn heisenberg(found: &mut Findings, [vx, vy, mu]: [f64; 3]) -> Result<(), SolveError> {
-    let scene = scene("heisenberg", &[("x'", vx), ("y'", vy)]);
+    let scene = scene(HEISENBERG, &[("x'", vx), ("y'", vy)]);
     let (x0, y0) = (scene.start.q[0], scene.start.q[1]);
     let z = |x: f64, y: f64| (x0 * y - y0 * x) / 2.0;
     let line = |t: f64| vec![x0 + vx * t, y0 + vy * t, z(x0 + vx * t, y0 + vy * t)];
@@ -132,7 +135,7 @@ fn heisenberg(found: &mut Findings, [vx, vy, mu]: [f64; 3]) -> Result<(), SolveE
 
 /// `μ₀ = −m (ẋ₀, ẏ₀)` gives the Chetaev motion, with `φ` and `ψ` uniform.
 fn disc(found: &mut Findings, [heading, roll, turn]: [f64; 3]) -> Result<(), SolveError> {
-    let scene = scene("disc", &[("phi", heading), ("psi'", roll), ("phi'", turn), ("duration", 3.0)]);
+    let scene = scene(DISC, &[("phi", heading), ("psi'", roll), ("phi'", turn), ("duration", 3.0)]);
     let (radius, start) = (0.5, scene.start.clone());
     let exact = |t: f64| {
         let angle = heading + turn * t;

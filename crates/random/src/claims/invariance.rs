@@ -5,10 +5,10 @@ use nalgebra::DMatrix;
 use symbolic::{Expr, Function, Matrix, Symbol};
 
 use super::CheckError;
-use crate::random::Case;
-use crate::random::case::{Which, equations, free_constants};
-use crate::random::transform::{Rewritten, Scaling, recombined};
+use crate::Case;
+use crate::case::{Which, equations, free_constants};
 use crate::realization::numbers;
+use crate::transform::{Rewritten, Scaling, recombined};
 
 /// T4: constraints recombined with coefficients that depend on the configuration, `μ₀ → G⁻ᵀ μ₀`; other coordinates.
 pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {

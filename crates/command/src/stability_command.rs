@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::cli::{StabilityArguments, TextOrJson};
 use crate::solve_command::Answer;
-use crate::stability::{CASES, Case, Cell, LongRun, Verdict, long_runs, run as answer};
+use validation::stability::{CASES, Case, Cell, LongRun, Verdict, long_runs, run as answer};
 
 /// Name of the runs of a million steps.
 const LONG_RUNS: &str = "million-steps";

@@ -3,8 +3,8 @@
 use deltaq::{Sampling, Setting, Settings, best_fit, compare_motions_by};
 
 use super::CheckError;
-use crate::random::case::{Which, equations};
-use crate::random::{Case, Kind, Word};
+use crate::case::{Which, equations};
+use crate::{Case, Kind, Word};
 
 /// A planted motion is found from a guess that is this far off, and from zero.
 const OFF: f64 = 0.2;

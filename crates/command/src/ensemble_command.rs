@@ -11,13 +11,13 @@ use deltaq::{Choice, Ensemble, EnsembleOptions, EnsembleStart, Settings, constan
 use integrate::{Method, Projection};
 use mechanics::{Scene, SceneErrorKind};
 
-use crate::catalogue::{self, NotFound};
 use crate::cli::EnsembleArguments;
-use crate::parallel;
-use crate::report::{File, write_all};
 use crate::solve_command::{Answer, check_tolerance, choice, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
+use random::parallel;
+use validation::catalogue::{self, NotFound};
+use validation::report::{File, write_all};
 
 /// Members integrated before they are written down.
 const CHUNK: usize = 4096;

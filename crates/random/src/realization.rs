@@ -18,7 +18,7 @@ use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{CompileError, Expr, Graph, Symbol};
 
-use crate::random::{augmented, equations};
+use crate::{augmented, equations};
 
 /// Tolerances of the looser of the two runs: where strong added mass leaves round-off that the first cannot go under, the second.
 const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
@@ -125,7 +125,8 @@ fn run(setting: Setting, method: Method, coordinates: usize) -> Result<Motion, S
     if sharp.is_complete() { Ok(sharp) } else { at(TOLERANCES[1]) }
 }
 
-pub(crate) fn with_friction(system: &System, strength: f64) -> System {
+/// The system without its constraints and with the force `−N Aᵀ f` in their place.
+pub fn with_friction(system: &System, strength: f64) -> System {
     let mut other = system.clone();
     let g = &other.graph;
     let jacobian = g.jacobian(&system.constraints, &system.velocities());
@@ -135,7 +136,8 @@ pub(crate) fn with_friction(system: &System, strength: f64) -> System {
     other
 }
 
-pub(crate) fn with_added_mass(system: &System, strength: f64) -> System {
+/// The system without its constraints and with the Lagrangian `L + ½ N f·f`.
+pub fn with_added_mass(system: &System, strength: f64) -> System {
     let mut other = system.clone();
     let g = &other.graph;
     let square = g.dot(&system.constraints, &system.constraints);
@@ -145,7 +147,10 @@ pub(crate) fn with_added_mass(system: &System, strength: f64) -> System {
 }
 
 /// The velocities with which `massive` has the momenta `L_v + Aᵀ μ₀` of the constrained start: linear equations, as momenta are affine in `v`.
-pub(crate) fn at_momentum(setting: Setting, massive: &System, multipliers: &[f64]) -> Result<State, SolveError> {
+///
+/// # Errors
+/// [`SolveError`] where momenta or the mass matrix have no value.
+pub fn at_momentum(setting: Setting, massive: &System, multipliers: &[f64]) -> Result<State, SolveError> {
     let (g, v) = (&massive.graph, massive.velocities());
     let n = v.len();
     let own = g.gradient(massive.lagrangian, &v);

@@ -5,7 +5,7 @@ use mechanics::{Outputs, System};
 use symbolic::{Expr, Symbol};
 
 use super::CheckError;
-use crate::random::Case;
+use crate::Case;
 
 /// Instants at which a quantity is looked at.
 const INSTANTS: usize = 24;

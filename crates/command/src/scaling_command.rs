@@ -4,9 +4,9 @@ use anyhow::Result;
 use serde_json::json;
 
 use crate::cli::{ScalingArguments, TextOrJson};
-use crate::parallel;
-use crate::report::{scaling_files, scaling_text, write_all};
-use crate::scaling::{FORMULATIONS, Limits, TRAILERS, measure};
+use random::parallel;
+use validation::report::{scaling_files, scaling_text, write_all};
+use validation::scaling::{FORMULATIONS, Limits, TRAILERS, measure};
 
 /// Runs the command: the tables or one object, and with a folder the page with its pictures.
 ///

@@ -4,10 +4,11 @@ mod ensemble;
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::random::Kind;
 pub use ensemble::{EnsembleArguments, MOST_MEMBERS, MotionArguments, Range};
+use random::Kind;
 
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
 #[derive(Parser, Debug)]
@@ -159,7 +160,7 @@ pub struct RandomArguments {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Systems of one kind only; all kinds in turn if left out.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = kinds())]
     pub kind: Option<Kind>,
     /// One system only: what is claimed of it, claim by claim, and what was found.
     #[arg(long, conflicts_with = "count")]
@@ -304,6 +305,12 @@ pub enum Format {
     Csv,
     /// One object.
     Json,
+}
+
+/// Reads a kind of random systems by its name.
+fn kinds() -> impl TypedValueParser<Value = Kind> {
+    PossibleValuesParser::new(Kind::ALL.map(|kind| PossibleValue::new(kind.name()).help(kind.about())))
+        .try_map(|name| Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or("no such kind"))
 }
 
 fn assignment(text: &str) -> Result<(String, f64), String> {

@@ -8,9 +8,9 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::Symbol;
 
 use super::CheckError;
-use crate::random::case::{Which, equations, free_constants};
-use crate::random::{Case, Kind, Truth};
+use crate::case::{Which, equations, free_constants};
 use crate::realization::{augmented_start, constraint_jacobian, momenta, numbers};
+use crate::{Case, Kind, Truth};
 
 /// Residual of linear equations under which they have a solution, relative to their terms.
 const SOLVABLE: f64 = 1e-9;

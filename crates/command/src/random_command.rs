@@ -8,9 +8,9 @@ use anyhow::Result;
 use serde_json::json;
 
 use crate::cli::{RandomArguments, TextOrJson};
-use crate::random::{Batch, Count, Kind, Record, Summary, milliseconds, theorem_title};
-use crate::report::{File, write_all};
 use crate::solve_command::Answer;
+use random::{Batch, Count, Kind, Record, Summary, milliseconds, theorem_title};
+use validation::report::{File, write_all};
 
 /// Counterexamples that are shrunk and written; more failures than these have the same causes.
 const COUNTEREXAMPLES: usize = 5;

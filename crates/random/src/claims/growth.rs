@@ -3,8 +3,8 @@
 use deltaq::{growth, leading_term};
 
 use super::CheckError;
-use crate::random::Case;
-use crate::random::case::Which;
+use crate::Case;
+use crate::case::Which;
 
 /// Deviation of the measured exponent from the predicted one, beyond its own uncertainty.
 const EXPONENT: f64 = 1e-2;

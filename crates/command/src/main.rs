@@ -1,17 +1,25 @@
 //! The `deltaq` command. Exit code 2 for bad input; `solve` ends with 0 only where its trajectory can be trusted, and with 3 where the
 //! integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members.
 
+mod bench_command;
+mod cli;
+mod compare_command;
+mod ensemble_command;
+mod main_job;
+mod random_command;
+mod scaling_command;
+mod show_command;
+mod solve_command;
+mod stability_command;
+
 use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::Parser;
-use validation::cli::{Cli, Command};
-use validation::solve_command::Answer;
-use validation::{
-    bench_command, compare_command, ensemble_command, main_job, random_command, scaling_command, show_command,
-    solve_command, stability_command,
-};
+
+use cli::{Cli, Command};
+use solve_command::Answer;
 
 // derivations allocate much: an eighth of the time of a thousand random systems
 #[global_allocator]

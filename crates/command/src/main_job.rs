@@ -12,17 +12,17 @@ use deltaq::{Comparison, Settings, compare};
 use mechanics::Scene;
 use serde_json::Value;
 
-use crate::bench::{self, Bench, Effort, Throughput};
-use crate::casadi_job::{self, Outcome};
-use crate::catalogue;
 use crate::cli::{JobArguments, ReportsArguments, Section};
-use crate::random::{Batch, Kind, Record};
-use crate::report::{
+use random::{Batch, Kind, Record};
+use random::{parallel, substitution};
+use validation::bench::{self, Bench, Effort, Throughput};
+use validation::casadi_job::{self, Outcome};
+use validation::catalogue;
+use validation::report::{
     AuditReport, File, Provenance, RealizationReport, StabilityReport, answer, bench_files, bench_headline,
     difference_of_verdicts, overview, pictures, random_files, random_headline, random_verdicts, referees_section,
     scene_page, verdicts, write_all,
 };
-use crate::{parallel, substitution};
 
 /// A compared scene with its page and pictures.
 pub struct SceneReport {

@@ -3,8 +3,8 @@
 use deltaq::Setting;
 
 use super::CheckError;
-use crate::random::{Case, Kind};
 use crate::realization::{Realization, distance, realize};
+use crate::{Case, Kind};
 
 /// `N`, each ten times the one before.
 const STRENGTHS: [f64; 3] = [1e2, 1e3, 1e4];

@@ -3,8 +3,8 @@
 use deltaq::Verdict;
 
 use super::CheckError;
-use crate::random::case::Which;
-use crate::random::{Case, Kind};
+use crate::case::Which;
+use crate::{Case, Kind};
 use referees::maggi::Maggi;
 
 /// Fractions of the run at which the control's equations are put to the test.

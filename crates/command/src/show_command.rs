@@ -6,8 +6,8 @@ use anyhow::Result;
 use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, ready_to_run, setting};
 use mechanics::{ConstantsRule, Cost, Equations, Scene, integrability};
 
-use crate::catalogue;
 use crate::cli::ShowArguments;
+use validation::catalogue;
 
 /// The built-in scenes, a line each.
 pub fn list() -> String {

@@ -10,8 +10,8 @@ use integrate::Projection;
 use mechanics::{ConstantsRule, Removal, Scene};
 use serde_json::{Map, Value, json};
 
-use crate::catalogue;
 use crate::cli::{Format, MethodName, MotionArguments, SolveArguments};
+use validation::catalogue;
 
 /// Times at which invariants are sampled.
 const SAMPLES: usize = 200;

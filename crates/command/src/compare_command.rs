@@ -3,11 +3,11 @@
 use anyhow::Result;
 use deltaq::Settings;
 
-use crate::catalogue;
 use crate::cli::CompareArguments;
 use crate::main_job::{protocol, scene_files};
-use crate::report::write_all;
 use crate::solve_command::check_tolerance;
+use validation::catalogue;
+use validation::report::write_all;
 
 /// Runs the command: returns the pages, or writes pages and pictures to a folder and says so.
 ///

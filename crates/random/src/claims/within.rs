@@ -1,8 +1,8 @@
 //! What must hold within each formulation.
 
 use super::CheckError;
-use crate::random::Case;
-use crate::random::case::{Which, equations};
+use crate::Case;
+use crate::case::{Which, equations};
 use referees::maggi::{Form, Maggi};
 
 /// Instants at which the constraint is looked at.
