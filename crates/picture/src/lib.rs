@@ -103,7 +103,7 @@ pub enum Aspect {
 /// One plot.
 ///
 /// ```
-/// use validation::picture::{Aspect, Axis, Curve, Picture, Style};
+/// use picture::{Aspect, Axis, Curve, Picture, Style};
 ///
 /// let circle = (0..=200).map(|i| (f64::from(i) / 200.0 * std::f64::consts::TAU).sin_cos());
 /// let svg = Picture {
@@ -116,7 +116,7 @@ pub enum Aspect {
 /// .to_svg()?;
 /// assert!(svg.starts_with("<svg") && svg.contains("<title>Knife edge on a level plane</title>"));
 /// assert!(svg.len() < 10_000);
-/// # Ok::<(), validation::picture::PictureError>(())
+/// # Ok::<(), picture::PictureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
