@@ -1,8 +1,10 @@
 //! The arrows between the crates of the workspace.
 
 use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
 
-use cargo_metadata::MetadataCommand;
+use serde_json::Value;
 
 /// One dependency of a member of the workspace on another: `from` is built on `to`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,20 +60,26 @@ fn offences(arrows: &BTreeSet<Arrow>) -> Vec<String> {
 
 /// Every arrow between members, dependencies for tests and builds included.
 fn arrows() -> BTreeSet<Arrow> {
-    let metadata = MetadataCommand::new().no_deps().exec().expect("cargo metadata runs in the workspace");
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo).args(["metadata", "--no-deps", "--format-version", "1"]).output();
+    let metadata: Value = serde_json::from_slice(&output.expect("cargo runs").stdout).expect("cargo metadata is JSON");
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let packages = metadata["packages"].as_array().expect("packages");
     // A dependency on a member is one with a path: other crates may bear the same name.
-    let member = |path: &cargo_metadata::camino::Utf8Path| {
-        let package = metadata.packages.iter().find(|package| package.manifest_path.parent() == Some(path));
-        package.map(|package| package.name.to_string())
+    let member = |path: &str| {
+        let manifest = Path::new(path).join("Cargo.toml");
+        let package =
+            packages.iter().find(|package| package["manifest_path"].as_str().map(Path::new) == Some(&manifest));
+        package.map(|package| text(&package["name"]))
     };
-    metadata
-        .packages
-        .iter()
-        .flat_map(|package| {
-            let members = package.dependencies.iter().filter_map(|dependency| member(dependency.path.as_deref()?));
-            members.map(|to| Arrow { from: package.name.to_string(), to })
-        })
-        .collect()
+    let of = |package: &Value| {
+        let from = text(&package["name"]);
+        let dependencies = package["dependencies"].as_array().cloned().unwrap_or_default().into_iter();
+        let members = dependencies.filter_map(|dependency| member(dependency["path"].as_str()?));
+        // a package may ask for itself: with other features, for its tests
+        members.map(|to| Arrow { from: from.clone(), to }).filter(|arrow| arrow.from != arrow.to).collect::<Vec<_>>()
+    };
+    packages.iter().flat_map(of).collect()
 }
 
 fn arrow(from: &str, to: &str) -> Arrow {

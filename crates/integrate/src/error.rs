@@ -85,6 +85,14 @@ pub enum CallError {
     /// [`crate::Method::Taylor`] was asked for, and the problem has no Taylor series.
     #[error("the method needs Taylor series of the solution, which the problem does not have")]
     NoTaylor,
+    /// The method is one of a library that was not built in ([`crate::Method::feature`]).
+    #[error("the method {method} is not built in: it needs the feature `{feature}`")]
+    NotBuiltIn {
+        /// [`crate::Method::name`].
+        method: &'static str,
+        /// The feature that builds it in.
+        feature: &'static str,
+    },
     /// No step is allowed.
     #[error("at most {found} steps are allowed, at least {limit} is needed")]
     MaxSteps {

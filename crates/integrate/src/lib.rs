@@ -59,11 +59,13 @@
 //!
 //! # Sources
 //! E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993 (DOP853,
-//! dense output, starting step). The other methods are those of the library [`diffsol`](https://docs.rs/diffsol), the
+//! dense output, starting step). The other methods are those of the library [`diffsol`](https://docs.rs/diffsol), built in
+//! by the feature `diffsol`, which is off by default ([`Method::feature`]); the
 //! least-squares solver is that of [`levenberg-marquardt`](https://docs.rs/levenberg-marquardt).
 
 mod boundary;
 mod dense;
+#[cfg(feature = "diffsol")]
 mod diffsol_methods;
 mod dop853;
 #[cfg(test)]
@@ -121,9 +123,12 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
         Method::Radau5 => {
             time_loop::drive(&system, radau5::Radau5::new(&system, start, end, options), start, end, options)
         }
+        #[cfg(feature = "diffsol")]
         Method::Tsit45 | Method::Bdf | Method::TrBdf2 | Method::Esdirk34 => {
             diffsol_methods::run(&system, start, end, options)
         }
+        #[cfg(not(feature = "diffsol"))]
+        method => return Err(CallError::NotBuiltIn { method: method.name(), feature: "diffsol" }),
     })
 }
 

@@ -54,6 +54,19 @@ impl Method {
         }
     }
 
+    /// The feature of this crate that builds the method in; none for one that is always there.
+    pub fn feature(self) -> Option<&'static str> {
+        match self {
+            Method::Taylor | Method::Dop853 | Method::Radau5 => None,
+            Method::Tsit45 | Method::Bdf | Method::TrBdf2 | Method::Esdirk34 => Some("diffsol"),
+        }
+    }
+
+    /// Whether the method is built in; [`crate::integrate`] refuses any other one.
+    pub fn is_built_in(self) -> bool {
+        self.feature().is_none() || cfg!(feature = "diffsol")
+    }
+
     /// Whether the method asks for [`crate::Problem::jacobian`].
     pub fn is_implicit(self) -> bool {
         matches!(self, Method::Bdf | Method::TrBdf2 | Method::Esdirk34 | Method::Radau5)
@@ -159,5 +172,23 @@ impl Options {
             dense: Dense::Everywhere,
             interrupt: None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CallError;
+
+    #[test]
+    fn a_method_that_is_not_built_in_says_what_it_needs() {
+        let of_libraries = Method::ALL.into_iter().filter_map(|method| Some((method.name(), method.feature()?)));
+        let expected = ["tsit45", "bdf", "tr-bdf2", "esdirk34"].map(|name| (name, "diffsol"));
+        assert_eq!(of_libraries.collect::<Vec<_>>(), expected);
+        assert!(
+            Method::ALL.into_iter().all(|m| m.is_built_in() == (m.feature().is_none() || cfg!(feature = "diffsol")))
+        );
+        let error = CallError::NotBuiltIn { method: "bdf", feature: "diffsol" };
+        assert_eq!(error.to_string(), "the method bdf is not built in: it needs the feature `diffsol`");
     }
 }

@@ -1,9 +1,7 @@
 //! Shooting and fitting.
 
-mod problems;
-
+use crate::problems::*;
 use integrate::{BoundaryError, CallError, Options, ShootOptions, Start, StopCause, fit, integrate, shoot};
-use problems::*;
 
 /// y'' = 3y²/2, y(0) = 4, y(1) = 1: y = 4/(1 + t)², and a second solution (Stoer and Bulirsch, section 7.3.1).
 fn cubic() -> Case {

@@ -1,9 +1,7 @@
 //! The dense output of every method.
 
-mod problems;
-
+use crate::problems::*;
 use integrate::{DenseError, Method, Options, Projection, Start, Status, integrate};
-use problems::*;
 
 #[test]
 fn it_is_continuous_also_where_states_are_projected() {

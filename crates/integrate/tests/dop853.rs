@@ -1,9 +1,7 @@
 //! DOP853: orders, accuracy at the round-off plateau, counters.
 
-mod problems;
-
+use crate::problems::*;
 use integrate::{Dense, DenseError, Options, Solution, Start, Status, integrate};
-use problems::*;
 
 fn run(case: &mut Case, y: &[f64], end: f64, options: &Options) -> Solution {
     let solution = integrate(case, &Start { t: 0.0, y: y.to_vec() }, end, options).unwrap();

@@ -1,9 +1,7 @@
 //! Events and roots.
 
-mod problems;
-
+use crate::problems::*;
 use integrate::{EvaluationError, Method, Options, Start, Status, StopCause, find_root, integrate};
-use problems::*;
 
 /// θ'' = −sin θ.
 fn pendulum() -> Case {

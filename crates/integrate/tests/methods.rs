@@ -1,9 +1,7 @@
 //! The methods of diffsol: orders against cost, stiff problems, projection.
 
-mod problems;
-
+use crate::problems::*;
 use integrate::{Method, Options, Projection, Solution, Start, Status, integrate};
-use problems::*;
 
 fn run(case: &mut Case, y: &[f64], end: f64, options: &Options) -> Solution {
     let solution = integrate(case, &Start { t: 0.0, y: y.to_vec() }, end, options).unwrap();

@@ -1,9 +1,7 @@
 //! Stiff problems whose stiff direction turns.
 
-mod problems;
-
+use crate::problems::distance;
 use integrate::{EvaluationError, Method, Options, Problem, Start, Status, integrate};
-use problems::distance;
 
 /// A velocity `(v₁, v₂)` with strong friction across a direction that turns with the state's own angle `θ`:
 ///

@@ -1,9 +1,7 @@
 //! Every way in which a run ends before its end, every bad call, and the counters.
 
-mod problems;
-
+use crate::problems::*;
 use integrate::{CallError, EvaluationError, Interrupt, Method, Options, Problem, Start, Status, StopCause, integrate};
-use problems::*;
 
 fn options(method: Method) -> Options {
     Options { method, ..Options::with_tolerance(1e-7) }

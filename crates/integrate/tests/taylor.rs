@@ -1,9 +1,7 @@
 //! Taylor series: accuracy against the tolerance, step control where coefficients mislead, counters.
 
-mod problems;
-
+use crate::problems::*;
 use integrate::{Dense, DenseError, Method, Options, Solution, Start, Status, integrate};
-use problems::*;
 
 fn options(tolerance: f64) -> Options {
     Options { method: Method::Taylor, ..Options::with_tolerance(tolerance) }

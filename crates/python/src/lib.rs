@@ -43,7 +43,8 @@ mod _native {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let names = |list: Vec<&str>| PyTuple::new(module.py(), list);
         module.add("FORMULATIONS", names(deltaq::FORMULATIONS.iter().map(|f| f.name).collect())?)?;
-        module.add("METHODS", names(Method::ALL.map(Method::name).to_vec())?)?;
+        let methods = Method::ALL.into_iter().filter(|method| method.is_built_in());
+        module.add("METHODS", names(methods.map(Method::name).collect())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

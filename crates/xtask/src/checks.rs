@@ -205,7 +205,7 @@ fn reports() -> Result<Outcome> {
         return Ok(Outcome::Skipped("there is no reports/README.md"));
     }
     // as the tests build it: the features of one package, or of all without their tests, would build every dependency once more
-    succeed(cargo().args(["test", "--release", "--workspace", "--no-run", "--test", "commands"]))?;
+    succeed(cargo().args(["test", "--release", "--workspace", "--no-run", "--test", "command-tests"]))?;
     succeed(outside(target()?.join("release").join("deltaq")).args(["reports", "--check"]))
 }
 

@@ -1,5 +1,4 @@
 //! Problems with references, shared by the tests.
-#![allow(dead_code)]
 
 mod jet;
 

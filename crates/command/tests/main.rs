@@ -1,0 +1,6 @@
+//! The program as a person meets it, run as a process: one program, one module a subject.
+
+mod bad_scenes;
+mod commands;
+mod ensemble_command;
+mod random_command;

@@ -1,0 +1,4 @@
+//! The library as its user meets it: one program, one module a subject.
+
+mod errors;
+mod plain;

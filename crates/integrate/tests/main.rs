@@ -1,0 +1,11 @@
+//! Integration as a user of the crate meets it: one program, one module a subject.
+
+mod boundary;
+mod dense;
+mod dop853;
+mod events;
+mod methods;
+mod problems;
+mod stiff;
+mod stops;
+mod taylor;

@@ -1,0 +1,6 @@
+//! What the reports rest on: one program, one module a subject.
+
+mod audit;
+mod bench;
+mod casadi;
+mod scaling;
