@@ -1,8 +1,10 @@
 //! References with a known error: two methods agree, forms agree, and closed solutions and 42-digit states are met.
 
 use deltaq::{Choice, Settings, choices, derive, ready, setting};
-use mechanics::{Equations, Scene, StartError};
+use equations::Equations;
+use mechanics::StartError;
 use reference::{DoubleDouble, Question, Reference, ReferenceError, Wide, reference, reference_in};
+use scene::Scene;
 use symbolic::Scalar;
 use tests::references::{Motion, REFERENCES};
 

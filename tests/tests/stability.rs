@@ -3,8 +3,10 @@
 use deltaq::{
     Choice, Ending, Motion, Setting, Settings, default_constants, derive, derive_at, formulation, setting, solve,
 };
+use equations::Equations;
 use integrate::Method;
-use mechanics::{ConstantsRule, Equations, Recombination, Scene};
+use mechanics::{ConstantsRule, Recombination};
+use scene::Scene;
 use validation::stability::{CASES, Cell, LONG, Long, MILLION, Question, Reference, Stepping, Verdict, long_runs, run};
 
 fn questions(case: &str) -> Vec<Question> {

@@ -20,7 +20,7 @@
 //! The virtual environment is made in cargo's target folder when it is first needed.
 
 use anyhow::{Context, Result};
-use mechanics::Scene;
+use scene::Scene;
 use serde::Deserialize;
 
 use crate::catalogue;

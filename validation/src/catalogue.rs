@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mechanics::{Scene, SceneError};
+use scene::{Scene, SceneError};
 
 use crate::trailer;
 

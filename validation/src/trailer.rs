@@ -9,7 +9,8 @@
 //! Two degrees of freedom however long the train: the speed of the car along its heading, and its turning. With n = 3 and
 //! minimal coordinates it is the scene `trailer`.
 
-use mechanics::{Completion, Parameter, Scene, State, System};
+use mechanics::{Completion, Parameter, State, System};
+use scene::Scene;
 use symbolic::{Expr, ParseError};
 
 /// What the train is described by.

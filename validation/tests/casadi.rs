@@ -1,6 +1,6 @@
 //! The referee in Python: it has to be able to run, to agree where we are right, and to disagree where we are not.
 
-use mechanics::Scene;
+use scene::Scene;
 use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, random};
 use validation::catalogue;
 
@@ -38,7 +38,7 @@ fn a_wrong_sign_is_found() {
     let mut questions = Vec::new();
     for flip in [true, false] {
         let mut question = Question::new(&scene, text, FEW).expect("questions");
-        let change = |equations: &mut mechanics::Equations| {
+        let change = |equations: &mut equations::Equations| {
             let g = &equations.graph;
             for (residual, q) in equations.blocks[0].residuals.iter_mut().zip(scene.system.positions()) {
                 let gradient = g.derivative(scene.system.lagrangian, q);

@@ -40,14 +40,8 @@
 //!
 //! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
-mod reduced;
-
-pub use reduced::{REDUCED_FORM, derive_reduced};
-
-use mechanics::{
-    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement, System,
-    fresh_symbol,
-};
+use equations::{Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement};
+use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Symbol, Vanishing};
 
 /// Entry of the table of formulations.
@@ -60,7 +54,7 @@ pub const FORMULATION: Formulation =
 /// None: every system has Chetaev equations. Whether they are regular shows when they are solved.
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }
@@ -76,7 +70,7 @@ pub const FORMULATION: Formulation =
 /// # duration = 1
 /// # "#)?;
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = chetaev::derive(&scene.system, &mechanics::Derivation::default())?;
+/// let equations = chetaev::derive(&scene.system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "x'' + lambda_1*sin(phi) - 1");
 /// assert_eq!(line(1), "y'' - lambda_1*cos(phi)");

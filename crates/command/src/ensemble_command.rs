@@ -9,7 +9,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use deltaq::{Choice, Ensemble, EnsembleOptions, EnsembleStart, Settings, constants_of, formulation, setting};
 use integrate::{Method, Projection};
-use mechanics::{Scene, SceneErrorKind};
+use scene::{Scene, SceneErrorKind};
 
 use crate::cli::EnsembleArguments;
 use crate::solve_command::{Answer, check_tolerance, choice, times};

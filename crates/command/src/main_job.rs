@@ -9,7 +9,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use deltaq::{Comparison, Settings, compare};
-use mechanics::Scene;
+use scene::Scene;
 use serde_json::Value;
 
 use crate::cli::{JobArguments, ReportsArguments, Section};

@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, ready_to_run, setting};
-use mechanics::{ConstantsRule, Cost, Equations, Scene, integrability};
+use equations::{Cost, Equations};
+use mechanics::{ConstantsRule, integrability};
+use scene::Scene;
 
 use crate::cli::ShowArguments;
 use validation::catalogue;

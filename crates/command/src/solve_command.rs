@@ -7,7 +7,8 @@ use deltaq::{
 };
 use discrete::Composition;
 use integrate::Projection;
-use mechanics::{ConstantsRule, Removal, Scene};
+use mechanics::{ConstantsRule, Removal};
+use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::cli::{Format, MethodName, MotionArguments, SolveArguments};
@@ -194,7 +195,7 @@ fn json_text(
         rows.push(motion.at(t)?);
     }
     let names: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
-    let columns = |names: &[String], row: &dyn Fn(&mechanics::Outputs) -> Vec<f64>| -> Value {
+    let columns = |names: &[String], row: &dyn Fn(&equations::Outputs) -> Vec<f64>| -> Value {
         let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
         names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
     };

@@ -2,11 +2,10 @@
 
 use std::time::Instant;
 
-use mechanics::{
-    ConstantsRule, Derivation, Equations, Formulation, Integrability, Recombination, Removal, Scene, State, System,
-    integrability,
-};
+use equations::{Derivation, Equations, Formulation};
+use mechanics::{ConstantsRule, Integrability, Recombination, Removal, State, System, integrability};
 use nalgebra::{DMatrix, DVector};
+use scene::Scene;
 
 use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
@@ -160,7 +159,9 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
     }
     match combined? {
         None => derive_from(system, Some(start), choice),
-        Some(combined) => Ok(combined.restore(derive_from(&combined.system(system), Some(start), choice)?)),
+        Some(combined) => {
+            Ok(derive_from(&combined.system(system), Some(start), choice)?.with_multipliers_restored(&combined))
+        }
     }
 }
 
@@ -170,7 +171,7 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
 /// [`SolveError`] where there is no motion.
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }
@@ -216,7 +217,7 @@ pub fn setting(scene: &Scene) -> Setting<'_> {
 /// [`mechanics::RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }

@@ -9,11 +9,10 @@ mod threads;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use equations::{Compiled, Equations, FreeConstant, LaneEquations};
 use integrate::{Method, Start};
-use mechanics::{
-    Compiled, ConstantsRule, Equations, FreeConstant, LaneEquations, Removal, Scene, State, System,
-    complete_removal_start,
-};
+use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
+use scene::Scene;
 
 use crate::motion::resolve;
 use crate::run::Prepared;
@@ -48,7 +47,7 @@ pub use threads::over_threads;
 /// # duration = 1
 /// # "#;
 /// use deltaq::{Ensemble, EnsembleOptions, Settings, choices};
-/// let scene = |g: f64, phi: f64| mechanics::Scene::parse_with("sledge", text, &[("g".into(), g), ("phi".into(), phi)]);
+/// let scene = |g: f64, phi: f64| scene::Scene::parse_with("sledge", text, &[("g".into(), g), ("phi".into(), phi)]);
 /// let base = scene(9.81, 0.3)?;
 /// let mut ensemble = Ensemble::new(&base, &choices(&base)[0], &["g"], &Settings::default())?;
 /// let mut members = Vec::new();

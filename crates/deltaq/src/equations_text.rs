@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use mechanics::Equations;
+use equations::Equations;
 use symbolic::Expr;
 
 /// How formulas are printed.

@@ -1,8 +1,9 @@
 //! Why a motion could not be computed.
 
 use discrete::DiscreteError;
+use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError};
-use mechanics::{DerivationError, EvaluationFailure, RemovalError, StartError};
+use mechanics::{RemovalError, StartError};
 use symbolic::CompileError;
 
 /// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].

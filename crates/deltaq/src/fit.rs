@@ -2,8 +2,9 @@
 //!
 //! "Different" has to mean different for *every* choice of the free constants (T9), so a comparison also searches the best one.
 
+use equations::Equations;
 use integrate::{BoundaryError, ShootOptions, fit};
-use mechanics::{ConstantsRule, Equations};
+use mechanics::ConstantsRule;
 use nalgebra::DVector;
 
 use crate::metric::Metric;

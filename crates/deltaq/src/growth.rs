@@ -135,7 +135,7 @@ fn least_squares(
 /// [`CompileError`] where an expression contains an undefined symbol.
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }

@@ -13,7 +13,7 @@ const RESIDUAL: f64 = 1e3;
 /// and the search does not get past it.
 const LONGER: usize = 4;
 
-/// Finds the constants `C` for which every [`mechanics::FreeConstant::natural`] quantity vanishes at `horizon`.
+/// Finds the constants `C` for which every [`equations::FreeConstant::natural`] quantity vanishes at `horizon`.
 ///
 /// Single shooting from zero: the constants are the unknowns, the quantities at the horizon the residuals. All runs together may take as many steps as
 /// [`LONGER`] times the first one, for each run that the search may make.

@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use equations::{Compiled, Equations, Outputs};
 use integrate::{DenseOutput, Interrupt, Method, Projection, ProjectionReport, Solution, Status, StopCause, Work};
-use mechanics::{Compiled, ConstantsRule, Equations, Outputs, State, System};
+use mechanics::{ConstantsRule, State, System};
 
 use crate::SolveError;
 use crate::doubt::Doubt;
@@ -25,7 +26,7 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
-    /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that [`mechanics::Form::choose`] finds cheapest. The motion is the same to
+    /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that [`equations::Plan::choose`] finds cheapest. The motion is the same to
     /// round-off.
     pub plain: bool,
     /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
@@ -67,7 +68,7 @@ pub struct Seconds {
 /// In which form the equations of a motion were evaluated, and how well that went.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FormReport {
-    /// What was chosen and why ([`mechanics::Form::why`]).
+    /// What was chosen and why ([`equations::Plan::why`]).
     pub why: Vec<String>,
     /// Evaluations of the kept run in which a pivot of the form was small, so that the plain form was evaluated instead.
     pub fallbacks: usize,

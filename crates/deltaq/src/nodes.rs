@@ -1,7 +1,8 @@
 //! A discrete motion as states of the derived equations.
 
 use discrete::{DiscreteError, Trajectory};
-use mechanics::{Compiled, System};
+use equations::Compiled;
+use mechanics::System;
 use symbolic::{Symbol, Tape, Workspace};
 
 use crate::SolveError;

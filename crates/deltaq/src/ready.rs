@@ -1,7 +1,8 @@
 //! Equations made ready for single runs of the time loop, and for other integrators than ours.
 
+use equations::{Compiled, Equations, Outputs, Plan};
 use integrate::{Method, Options, ProjectionReport, Start, Status, Work};
-use mechanics::{Compiled, ConstantsRule, Equations, Form, Outputs};
+use mechanics::ConstantsRule;
 
 use crate::motion::resolve;
 use crate::run::{Prepared, Trajectory, integrate_once};
@@ -15,7 +16,7 @@ pub struct Ready {
     /// `ẏ = F(t, y)`, with its Jacobian after [`ready()`]; the constants and the guess are set.
     pub compiled: Compiled,
     /// The form in which it is evaluated.
-    pub form: Form,
+    pub form: Plan,
     /// Values of the free constants.
     pub constants: Vec<f64>,
     /// `t₀`.
@@ -116,7 +117,7 @@ pub fn ready_to_run(
 /// [`SolveError`] where there is no start.
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }

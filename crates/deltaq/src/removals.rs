@@ -1,6 +1,7 @@
 //! The removals of a scene.
 
-use mechanics::{Removal, RemovalError, Scene, System};
+use mechanics::{Removal, RemovalError, System};
+use scene::Scene;
 
 type Automatic = fn(&System, &mechanics::State) -> Result<Removal, RemovalError>;
 

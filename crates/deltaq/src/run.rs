@@ -1,7 +1,8 @@
 //! Runs of the time loop: equations compiled and started, states over time.
 
+use equations::{Compiled, Equations, EvaluationFailure, Outputs, Plan, Role};
 use integrate::{DenseOutput, Method, Options, Problem, Solution, Start};
-use mechanics::{Compiled, Equations, EvaluationFailure, Form, Outputs, Role, complete_removal_start};
+use mechanics::complete_removal_start;
 use symbolic::Symbol;
 
 use crate::nodes::Nodes;
@@ -144,7 +145,7 @@ pub(crate) struct Prepared {
     pub(crate) equations: Equations,
     pub(crate) compiled: Compiled,
     /// The form that was chosen.
-    pub(crate) form: Form,
+    pub(crate) form: Plan,
     /// `t, q, v`, what belongs to a removal, the free constants → the states, guesses for the unknowns of the instant.
     pub(crate) start_tape: symbolic::Tape,
     pub(crate) start_symbols: Vec<Symbol>,
@@ -181,8 +182,8 @@ impl Prepared {
         let mut point = vec![setting.start.t];
         point.extend(&start[..equations.states.len()]);
         point.extend(constants);
-        let form = if settings.plain { Form::plain(&equations) } else { Form::choose(&equations, Some(&point))? };
-        let mut compiled = Compiled::with_form(&equations, &form)?;
+        let form = if settings.plain { Plan::plain(&equations) } else { Plan::choose(&equations, Some(&point))? };
+        let mut compiled = Compiled::with_plan(&equations, &form)?;
         if settings.method.is_implicit() {
             compiled = compiled.with_jacobian(&equations)?;
         }

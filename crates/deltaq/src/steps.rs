@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use discrete::{Composition, Discrete, Ends, RemovedStart};
 use integrate::Work;
-use mechanics::Scene;
+use scene::Scene;
 
 use crate::motion::{resolve, unconfirmed};
 use crate::nodes::Nodes;
@@ -30,7 +30,7 @@ pub struct Steps {
 pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<Discrete, SolveError> {
     let (system, start) = (&scene.system, &scene.start);
     let end = start.t + scene.duration;
-    let named = |formulation: &mechanics::Formulation| formulation.name == choice.formulation;
+    let named = |formulation: &equations::Formulation| formulation.name == choice.formulation;
     match &choice.removal {
         None if named(&chetaev::FORMULATION) => Ok(Discrete::chetaev(system, start, end)?),
         None if named(&vakonomic::FORMULATION) || named(&vakonomic::COSTATE_FORM) => {
@@ -61,7 +61,7 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// [`SolveError::Step`], those of [`discrete_of`] and of [`crate::solve`].
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use deltaq::{Choice, Motion, Settings, SolveError, compare, derive, formulation, removals, setting, solve_choice};
+use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError};
-use mechanics::{
-    ConstantsRule, DerivationError, EvaluationFailure, Removal, RemovalError, Scene, SceneErrorKind, StartError,
-};
+use mechanics::{ConstantsRule, Removal, RemovalError, StartError};
+use scene::{Scene, SceneErrorKind};
 
 const SLEDGE: &str = r#"
 title = "Ice sledge on an incline"

@@ -1,7 +1,7 @@
 //! The same motion, its instants solved as derived and in the form that is chosen.
 
 use deltaq::{Settings, choices, solve_choice};
-use mechanics::Scene;
+use scene::Scene;
 
 #[test]
 fn a_plain_motion_is_the_chosen_one() {

@@ -91,7 +91,7 @@ pub const START_LIMIT: f64 = 1e-9;
 ///
 /// ```
 /// use discrete::Discrete;
-/// let scene = mechanics::Scene::parse("sledge", include_str!("../../../validation/scenes/sledge.toml"))?;
+/// let scene = scene::Scene::parse("sledge", include_str!("../../../validation/scenes/sledge.toml"))?;
 /// let mut discrete = Discrete::chetaev(&scene.system, &scene.start, 1.0)?;
 /// let q = discrete.positions(200)?;
 /// // φ = 0.3 + 1.1 t exactly, x by its integral to order h²

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use mechanics::{MemoryVariable, Removal, State, System, fresh_symbol};
+use mechanics::fresh_symbol;
+use mechanics::{MemoryVariable, Removal, State, System};
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::newton::{check_finite, largest};

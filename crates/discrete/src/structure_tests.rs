@@ -1,6 +1,6 @@
 //! What a step keeps: its mirror, the symplectic form, and what sums of increments would lose.
 
-use mechanics::Scene;
+use scene::Scene;
 
 use super::*;
 

@@ -1,6 +1,7 @@
 //! Every error, and what needs more than the order to be seen.
 
-use mechanics::{Scene, State, System};
+use mechanics::{State, System};
+use scene::Scene;
 use symbolic::Graph;
 
 use super::*;

@@ -1,7 +1,7 @@
 //! A million steps.
 
 use discrete::{Composition, Discrete, Drift, Ends, RemovedStart};
-use mechanics::Scene;
+use scene::Scene;
 
 const MILLION: usize = 1_000_000;
 

@@ -26,27 +26,16 @@ impl Removal {
     /// no full row rank.
     ///
     /// ```
-    /// # let scene = mechanics::Scene::parse("sledge", r#"
-    /// # title = "Ice sledge on an incline"
-    /// # [coordinates]
-    /// # x   = { start = 0 }
-    /// # y   = { start = 0 }
-    /// # phi = { start = 0.3 }
-    /// # [system]
-    /// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-    /// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-    /// # [start.velocities]
-    /// # "phi'" = 1
-    /// # "x'" = 0.5
-    /// # [run]
-    /// # duration = 1
-    /// # "#)?;
+    /// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+    /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+    /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
+    /// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
     /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
-    /// let removal = mechanics::Removal::by_coordinates(&scene.system, &scene.start)?;
-    /// let names: Vec<String> = removal.parameters.iter().map(|u| scene.system.graph.name(u.symbol)).collect();
+    /// let removal = mechanics::Removal::by_coordinates(&system, &start)?;
+    /// let names: Vec<String> = removal.parameters.iter().map(|u| system.graph.name(u.symbol)).collect();
     /// assert_eq!(names, ["x", "phi"]);
-    /// assert_eq!(scene.system.graph.plain(removal.memory[0].rate), "x'*sin(phi)/cos(phi)");
-    /// removal.verify(&scene.system)?;
+    /// assert_eq!(system.graph.plain(removal.memory[0].rate), "x'*sin(phi)/cos(phi)");
+    /// removal.verify(&system)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn by_coordinates(system: &System, state: &State) -> Result<Removal, RemovalError> {
@@ -75,26 +64,15 @@ impl Removal {
     /// As [`Removal::by_coordinates`].
     ///
     /// ```
-    /// # let scene = mechanics::Scene::parse("sledge", r#"
-    /// # title = "Ice sledge on an incline"
-    /// # [coordinates]
-    /// # x   = { start = 0 }
-    /// # y   = { start = 0 }
-    /// # phi = { start = 0.3 }
-    /// # [system]
-    /// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-    /// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-    /// # [start.velocities]
-    /// # "phi'" = 1
-    /// # "x'" = 0.5
-    /// # [run]
-    /// # duration = 1
-    /// # "#)?;
+    /// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+    /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+    /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
+    /// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
     /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
-    /// let removal = mechanics::Removal::by_quasi_velocities(&scene.system, &scene.start)?;
-    /// let rates: Vec<String> = removal.memory.iter().map(|w| scene.system.graph.plain(w.rate)).collect();
+    /// let removal = mechanics::Removal::by_quasi_velocities(&system, &start)?;
+    /// let rates: Vec<String> = removal.memory.iter().map(|w| system.graph.plain(w.rate)).collect();
     /// assert_eq!(rates, ["u_x'*cos(phi)", "u_x'*sin(phi)"]);
-    /// removal.verify(&scene.system)?;
+    /// removal.verify(&system)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn by_quasi_velocities(system: &System, state: &State) -> Result<Removal, RemovalError> {

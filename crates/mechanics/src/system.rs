@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use symbolic::{Expr, Graph, Matrix, Symbol};
+use symbolic::{Expr, Graph, Matrix, ParseError, Symbol};
 
 /// One generalized coordinate `q`, with the symbols of its velocity and acceleration.
 #[derive(Clone, Debug)]
@@ -88,6 +88,14 @@ impl System {
         }
     }
 
+    /// Reads an expression in names that [`System::graph`] knows: coordinates, their velocities, parameters, time.
+    ///
+    /// # Errors
+    /// [`ParseError`] with its place.
+    pub fn expression(&self, text: &str) -> Result<Expr, ParseError> {
+        self.graph.parse(text, &|name| self.graph.find_symbol(name).map(|s| self.graph.variable(s)), &[])
+    }
+
     /// Number of coordinates, `n`.
     pub fn dimension(&self) -> usize {
         self.coordinates.len()
@@ -162,4 +170,14 @@ impl System {
     pub fn has_forces(&self) -> bool {
         self.forces.iter().any(|&e| !self.graph.is_zero(e))
     }
+}
+
+/// A symbol that the graph does not contain yet: `name`, with underscores before its primes until it is free.
+pub fn fresh_symbol(graph: &Graph, name: &str) -> Symbol {
+    let mut stem = name.trim_end_matches('\'').to_string();
+    let primes = &name[stem.len()..];
+    while graph.find_symbol(&format!("{stem}{primes}")).is_some() {
+        stem.push('_');
+    }
+    graph.symbol(&format!("{stem}{primes}"))
 }

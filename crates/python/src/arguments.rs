@@ -2,10 +2,11 @@
 
 use deltaq::{Choice, FORMULATIONS, Settings, default_constants, formulation, removal_names, removals};
 use integrate::{Interrupt, Method, Projection};
-use mechanics::{ConstantsRule, Removal, Scene};
+use mechanics::{ConstantsRule, Removal};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use scene::Scene;
 
 use crate::arrays::FloatList;
 use crate::errors;

@@ -1,11 +1,11 @@
 //! All formulations of a system, pair by pair.
 
 use deltaq::{Gap, THRESHOLDS, Verdict};
-use mechanics::Scene;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use scene::Scene;
 
 use crate::arrays::array;
 use crate::motion::{Motion, Sampled};

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use deltaq::{
     Choice, EnsembleOptions, EnsembleStart, MemberMotion, Settings, SolveError, constants_of, over_threads, setting,
 };
+use equations::Outputs;
 use integrate::Interrupt;
-use mechanics::{Outputs, Scene, SceneError, SceneErrorKind};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use scene::{Scene, SceneError, SceneErrorKind};
 
 use crate::arrays::{FloatList, array, finite};
 use crate::errors;
@@ -126,7 +127,7 @@ impl Task<'_> {
         let ensemble = deltaq::Ensemble::new(&scene, &choice, &parameters, &settings).map_err(Refused::Solve)?;
         let motions = ensemble.answers(&starts, &times, &EnsembleOptions { threads, estimate: true });
         let equations = ensemble.equations();
-        let named = |list: &[mechanics::Named]| list.iter().map(|n| n.name.clone()).collect();
+        let named = |list: &[equations::Named]| list.iter().map(|n| n.name.clone()).collect();
         Ok(Integrated {
             coordinates: scene.system.dimension(),
             multipliers: named(&equations.multipliers),

@@ -3,10 +3,11 @@
 use std::sync::{Mutex, PoisonError};
 
 use deltaq::{EquationStyle, Ready, constant_names, equations_text, ready, setting};
-use mechanics::{Compiled, EvaluationFailure, Role, Scene};
+use equations::{Compiled, EvaluationFailure, Role};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use scene::Scene;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, times};
 use crate::motion::{Names, Outputs};

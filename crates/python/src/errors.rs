@@ -1,6 +1,6 @@
 //! Exceptions: one class for each error of the library that a caller can meet.
 
-use mechanics::EvaluationFailure;
+use equations::EvaluationFailure;
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ create_exception!(deltaq, EvaluationError, SolveError, "Equations that cannot be
 create_exception!(deltaq, BoundaryError, SolveError, "No free constants meet the condition at the horizon.");
 create_exception!(deltaq, CallError, SolveError, "The time integrator was called wrongly.");
 
-pub(crate) fn scene(py: Python<'_>, error: &mechanics::SceneError) -> PyErr {
+pub(crate) fn scene(py: Python<'_>, error: &scene::SceneError) -> PyErr {
     let raised = SceneError::new_err(error.to_string());
     let value = raised.value(py);
     let set = value

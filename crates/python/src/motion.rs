@@ -50,8 +50,8 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    pub(crate) fn of(equations: &mechanics::Equations) -> Names {
-        let names = |list: &[mechanics::Named]| list.iter().map(|n| n.name.clone()).collect();
+    pub(crate) fn of(equations: &equations::Equations) -> Names {
+        let names = |list: &[equations::Named]| list.iter().map(|n| n.name.clone()).collect();
         Names { multipliers: names(&equations.multipliers), invariants: names(&equations.invariants) }
     }
 }
@@ -60,12 +60,12 @@ impl Outputs {
     /// From `rows`, one an instant; `count` is `None` where there is one instant, given as a number.
     pub(crate) fn new(
         py: Python<'_>,
-        rows: &[mechanics::Outputs],
+        rows: &[equations::Outputs],
         dimension: usize,
         names: &Names,
         count: Option<usize>,
     ) -> PyResult<Outputs> {
-        let flat = |pick: fn(&mechanics::Outputs) -> &[f64]| rows.iter().flat_map(|r| pick(r).to_vec()).collect();
+        let flat = |pick: fn(&equations::Outputs) -> &[f64]| rows.iter().flat_map(|r| pick(r).to_vec()).collect();
         let matrix = |pick| array(py, flat(pick), count, &[dimension]).map(Bound::unbind);
         Ok(Outputs {
             coordinates: matrix(|r| &r.coordinates)?,
@@ -80,7 +80,7 @@ impl Outputs {
 pub(crate) struct Sampled {
     motion: deltaq::Motion,
     times: Vec<f64>,
-    rows: Vec<mechanics::Outputs>,
+    rows: Vec<equations::Outputs>,
     estimate: ErrorEstimate,
     dimension: usize,
 }

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use mechanics::{Scene, SceneError};
 use pyo3::prelude::*;
+use scene::{Scene, SceneError};
 
 use crate::errors;
 use crate::system::{Overrides, System};

@@ -4,11 +4,12 @@ use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{derive_at, ready, removals, setting, solve_choice};
-use mechanics::{Scene, integrability};
+use mechanics::integrability;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use scene::Scene;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, finite, times};
 use crate::comparison::{Comparison, check_tolerance, compare};

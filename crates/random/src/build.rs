@@ -14,7 +14,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable, Removal, Scene, State, System};
+use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable, Removal, State, System};
+use scene::Scene;
 use symbolic::{Expr, Function, Graph, Symbol};
 
 use super::recipe::{MassTerm, Recipe, Shape, Term};

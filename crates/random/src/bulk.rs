@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use anyhow::{Context, Result, bail};
-use mechanics::Scene;
 use proptest::strategy::ValueTree;
+use scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use super::claims::{CHECKS, make};

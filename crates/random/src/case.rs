@@ -4,8 +4,10 @@ use deltaq::{
     Choice, Ending, Gap, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict, compare_motions_by,
     derive, formulation, setting,
 };
-use mechanics::{ConstantsRule, Equations, Removal, Scene, State, System};
+use equations::Equations;
+use mechanics::{ConstantsRule, Removal, State, System};
 use nalgebra::DMatrix;
+use scene::Scene;
 use symbolic::Expr;
 
 use super::finding::{Finding, Findings, Word};

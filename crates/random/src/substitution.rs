@@ -10,7 +10,9 @@
 //! and wrong nearly everywhere else. A harness that does not notice is broken.
 
 use deltaq::{Choice, Run, Settings, removals, setting, solve};
-use mechanics::{Block, ConstantsRule, Equations, Removal, Role, Scene, StateVariable, Statement, System};
+use equations::{Block, Equations, Role, StateVariable, Statement};
+use mechanics::{ConstantsRule, Removal, System};
+use scene::Scene;
 
 /// Name of the control in tables and files.
 pub const NAME: &str = "substitution";

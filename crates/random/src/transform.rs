@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use mechanics::{Equations, Removal, State, System};
+use equations::Equations;
+use mechanics::{Removal, State, System};
 use symbolic::{Expr, Matrix, Symbol};
 
 /// Units: `q_i = a_i q̂_i`, `t = τ t̂`, `L̂ = κ L`, `f̂ = c f`. With `τ = −1` and all else 1, the motion run backwards.

@@ -1,6 +1,6 @@
 //! Equations of motion in any wide type: `ẏ = F(t, y, z)` with `R(z; t, y) = 0`.
 
-use mechanics::Equations;
+use equations::Equations;
 use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
 
 use crate::linear::Factors;

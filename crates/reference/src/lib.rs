@@ -1,6 +1,6 @@
 //! Reference trajectories with a known error.
 //!
-//! [`reference()`] computes a motion from [`mechanics::Equations`] in double-double arithmetic by two methods that step time differently, each at two
+//! [`reference()`] computes a motion from [`equations::Equations`] in double-double arithmetic by two methods that step time differently, each at two
 //! tolerances, and says how far they are apart.
 //!
 //! - *Extrapolation* (Gragg, Bulirsch & Stoer): values of `F(t, y)` only, each with a linear solve for the unknowns of the instant.

@@ -1,6 +1,7 @@
 //! A motion computed by two methods, each at two tolerances.
 
-use mechanics::{Equations, State, System};
+use equations::Equations;
+use mechanics::{State, System};
 
 use crate::instant::{Instant, Point};
 use crate::metric::Metric;
@@ -139,7 +140,7 @@ const TRIES: usize = 3;
 /// let (x, v) = (system.coordinates[0].position, system.coordinates[0].velocity);
 /// let square = |s| g.mul(g.ratio(1, 2), g.powi(g.variable(s), 2));
 /// system.lagrangian = g.sub(square(v), square(x));
-/// let mut equations = mechanics::Equations::new("by hand", &system);
+/// let mut equations = equations::Equations::new("by hand", &system);
 /// equations.add_positions_and_velocities(&system);
 /// equations.states[1].rate = g.neg(g.variable(x));
 /// equations.coordinates = vec![g.variable(x)];

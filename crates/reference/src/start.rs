@@ -5,7 +5,8 @@
 //! rounding. How a run in `f64` rounds its start, is part of its error. Everything else (`y₀`, a removal's parameters) is
 //! computed from that velocity in the wide type.
 
-use mechanics::{Equations, Removal, State, System, complete_removal_start};
+use equations::Equations;
+use mechanics::{Removal, State, System, complete_removal_start};
 use symbolic::{Expr, Symbol};
 
 use crate::instant::{Program, parameters};

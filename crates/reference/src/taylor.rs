@@ -5,7 +5,7 @@
 
 use symbolic::{CompileError, Expr};
 
-use mechanics::Equations;
+use equations::Equations;
 
 use crate::instant::Instant;
 use crate::series::{Part, Series};

@@ -1,6 +1,7 @@
 //! Costates of the memory variables: which move, and which are zero throughout.
 
-use mechanics::{Equations, FreeConstant, LeftOut, Named, Removal, Role, StateVariable, Statement, fresh_symbol};
+use equations::{Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement};
+use mechanics::{Removal, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
 
 pub(crate) struct Costates {

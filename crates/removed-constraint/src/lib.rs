@@ -49,10 +49,11 @@
 mod costates;
 
 use costates::Costates;
-use mechanics::{
-    Block, Derivation, DerivationError, DisplacementParameter, Equations, Formulation, FreeConstant, Named, Removal,
-    Role, StateVariable, Statement, System, fresh_symbol, generic_rank, refuse_forces,
+use equations::{
+    Block, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role, StateVariable, Statement,
+    refuse_forces,
 };
+use mechanics::{DisplacementParameter, Removal, System, fresh_symbol, generic_rank};
 use symbolic::{Expr, Graph, Symbol};
 
 /// Entry of the table of formulations.
@@ -72,7 +73,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// [`DerivationError::SingularHighestHessian`].
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }
@@ -91,7 +92,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// # duration = 1
 /// # "#)?;
 /// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u'*cos(phi), y' = u'*sin(phi)
-/// let derivation = mechanics::Derivation { removal: Some(&scene.removals[0]), start: None };
+/// let derivation = equations::Derivation { removal: Some(&scene.removals[0]), start: None };
 /// let equations = removed_constraint::derive(&scene.system, &derivation)?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "u'' - phi'*P_x*sin(phi) - cos(phi)");

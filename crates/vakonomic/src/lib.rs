@@ -37,9 +37,6 @@
 //! not only by its derivative. For `L` kinetic energy the motions are the normal sub-Riemannian geodesics. The two
 //! forms are derived differently and have to agree.
 //!
-//! **One instant, quasi-velocities** ([`derive_reduced`]). For constraints linear in the velocities `v = S w + s`, and the n − h equations
-//! `Sᵀ (p − L_v) = 0` determine `w` and with it `H`, without multipliers.
-//!
 //! **What the motion depends on.** On `(q₀, v₀)` *and on* `μ₀ ∈ Rʰ`: one start, a family of motions with `h` parameters.
 //!
 //! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of every coordinate that
@@ -50,15 +47,12 @@
 //! Sources: V. V. Kozlov 1983; V. I. Arnold, V. V. Kozlov, A. I. Neishtadt, *Mathematical Aspects of Classical and Celestial
 //! Mechanics*, chapter 1.
 
-use mechanics::{
+use equations::{
     Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,
-    StateVariable, Statement, System, fresh_symbol, refuse_forces,
+    StateVariable, Statement, refuse_forces,
 };
+use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
-
-mod reduced;
-
-pub use reduced::{REDUCED_FORM, derive_reduced};
 
 /// Entry of the table of formulations: the multiplier form.
 pub const FORMULATION: Formulation =
@@ -73,29 +67,38 @@ pub const COSTATE_FORM: Formulation = Formulation {
     derive: derive_costate_form,
 };
 
-/// What all forms start from.
-struct Augmented {
-    /// μ at an instant and μ₀ at the start
-    multipliers: Vec<Symbol>,
-    starts: Vec<Symbol>,
-    /// 𝓛 = L + μ·f
-    lagrangian: Expr,
-    /// ∂𝓛/∂v
-    momenta: Vec<Expr>,
-    /// ∂𝓛/∂q
-    gradient: Vec<Expr>,
+/// What all forms of the vakonomic equations start from: `𝓛 = L + μ·f` and its derivatives.
+pub struct Augmented {
+    /// Symbols of `μ` at an instant, one a constraint.
+    pub multipliers: Vec<Symbol>,
+    /// Symbols of `μ₀` at the start.
+    pub starts: Vec<Symbol>,
+    /// `𝓛`.
+    pub lagrangian: Expr,
+    /// `∂𝓛/∂v = L_v + Aᵀ μ`, length n.
+    pub momenta: Vec<Expr>,
+    /// `∂𝓛/∂q`, length n.
+    pub gradient: Vec<Expr>,
 }
 
-fn augment(system: &System) -> Augmented {
-    let graph = &system.graph;
-    let fresh = |stem: &str, i: usize| fresh_symbol(graph, &format!("{stem}_{i}"));
-    let multipliers: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh("mu", i)).collect();
-    let starts = (1..=system.constraints.len()).map(|i| fresh("mu0", i)).collect();
-    let coupling = graph.dot(&graph.variables(&multipliers), &system.constraints);
-    let lagrangian = graph.add(system.lagrangian, coupling);
-    let momenta = graph.gradient(lagrangian, &system.velocities());
-    let gradient = graph.gradient(lagrangian, &system.positions());
-    Augmented { multipliers, starts, lagrangian, momenta, gradient }
+impl Augmented {
+    /// With multipliers of its own, in the graph of the system.
+    pub fn new(system: &System) -> Self {
+        let graph = &system.graph;
+        let fresh = |stem: &str, i: usize| fresh_symbol(graph, &format!("{stem}_{i}"));
+        let multipliers: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh("mu", i)).collect();
+        let starts = (1..=system.constraints.len()).map(|i| fresh("mu0", i)).collect();
+        let coupling = graph.dot(&graph.variables(&multipliers), &system.constraints);
+        let lagrangian = graph.add(system.lagrangian, coupling);
+        let momenta = graph.gradient(lagrangian, &system.velocities());
+        let gradient = graph.gradient(lagrangian, &system.positions());
+        Augmented { multipliers, starts, lagrangian, momenta, gradient }
+    }
+
+    /// `μ₀`, which `(q₀, v₀)` does not determine.
+    pub fn free_constants(&self) -> Vec<FreeConstant> {
+        self.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None, memory: None }).collect()
+    }
 }
 
 /// Derives the multiplier form: states `(q, v, μ)`, unknowns `(a, μ̇)`, free constants `μ₀`.
@@ -104,7 +107,7 @@ fn augment(system: &System) -> Augmented {
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }
@@ -120,7 +123,7 @@ fn augment(system: &System) -> Augmented {
 /// # duration = 1
 /// # "#)?;
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = vakonomic::derive(&scene.system, &mechanics::Derivation::default())?;
+/// let equations = vakonomic::derive(&scene.system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "x'' - phi'*mu_1*cos(phi) - mu_1'*sin(phi) - 1");
 /// assert_eq!(line(2), "phi'' + mu_1*(x'*cos(phi) + y'*sin(phi))");
@@ -132,7 +135,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     let g = &system.graph;
     refuse_forces(&system, FORMULATION.name)?;
     let mut equations = Equations::new(FORMULATION.name, &system);
-    let augmented = augment(&system);
+    let augmented = Augmented::new(&system);
     let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
     let rates: Vec<Symbol> =
         augmented.multipliers.iter().map(|&mu| fresh_symbol(g, &format!("{}'", g.name(mu)))).collect();
@@ -176,7 +179,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 ///
 /// ```
-/// # let scene = mechanics::Scene::parse("sledge", r#"
+/// # let scene = scene::Scene::parse("sledge", r#"
 /// # title = "Ice sledge on an incline"
 /// # [coordinates]
 /// # x   = { start = 0 }
@@ -192,7 +195,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// # duration = 1
 /// # "#)?;
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = vakonomic::derive_costate_form(&scene.system, &mechanics::Derivation::default())?;
+/// let equations = vakonomic::derive_costate_form(&scene.system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "mu_1*sin(phi) - x' + p_x");
 /// // p_phi' = ∂𝓛/∂phi
@@ -205,7 +208,7 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     let g = &system.graph;
     refuse_forces(&system, COSTATE_FORM.name)?;
     let mut equations = Equations::new(COSTATE_FORM.name, &system);
-    let augmented = augment(&system);
+    let augmented = Augmented::new(&system);
     let (q, v) = (system.positions(), system.velocities());
     let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
     let costates: Vec<Symbol> = system.coordinates.iter().map(|c| fresh_symbol(g, &format!("p_{}", c.name))).collect();
@@ -249,18 +252,13 @@ fn statements(system: &System, balances: &[Expr]) -> Vec<Statement> {
         .collect()
 }
 
-/// `μ₀`.
-fn free_constants(augmented: &Augmented) -> Vec<FreeConstant> {
-    augmented.starts.iter().map(|&symbol| FreeConstant { symbol, natural: None, memory: None }).collect()
-}
-
 /// What both forms share: outputs, free constants and the quantities that stay constant.
 fn finish(equations: &mut Equations, system: System, augmented: Augmented) {
     let g = &system.graph;
     equations.coordinates = g.variables(&system.positions());
     equations.multipliers =
         augmented.multipliers.iter().map(|&mu| Named { name: g.name(mu), expression: g.variable(mu) }).collect();
-    equations.free_constants = free_constants(&augmented);
+    equations.free_constants = augmented.free_constants();
     if system.is_autonomous() {
         let action = g.dot(&g.variables(&system.velocities()), &augmented.momenta);
         equations.invariants.push(Named { name: "energy".into(), expression: g.sub(action, augmented.lagrangian) });

@@ -3,7 +3,7 @@
 use referees::closed_forms::{AppellHamel, Disc, Heisenberg, Particle, Pendulum, Sledge, Sleigh, TurntableBall};
 
 use crate::support::{at, chetaev, common_times, error, gap, index, must, must_exceed, parameter, scene, vakonomic};
-use mechanics::Scene;
+use scene::Scene;
 
 fn sledge(scene: &Scene) -> Sledge {
     let (q, v) = (&scene.start.q, &scene.start.v);

@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use deltaq::{Metric, Motion, Settings, Verdict, compare_motions};
-use mechanics::{Removal, Scene};
+use mechanics::Removal;
 use random::substitution;
+use scene::Scene;
 use symbolic::Symbol;
 
 use crate::support::{at, chetaev, complete, number, removal_values, scenes, state_at};

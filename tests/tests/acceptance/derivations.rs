@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 
 use deltaq::FORMULATIONS;
-use mechanics::{Derivation, Equations, Removal, Role, Scene};
+use equations::{Derivation, Equations, Role};
+use mechanics::Removal;
+use scene::Scene;
 
 use crate::support::{constrained_scenes, regular_removals, scenes};
 

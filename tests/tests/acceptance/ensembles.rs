@@ -4,8 +4,10 @@ use deltaq::{
     Choice, Ending, Ensemble, EnsembleOptions, EnsembleStart, Settings, choices, constants_of, error_estimate, forms,
     setting, solve_choice,
 };
+use equations::Equations;
 use integrate::Method;
-use mechanics::{ConstantsRule, Equations, Scene};
+use mechanics::ConstantsRule;
+use scene::Scene;
 use validation::catalogue::{SCENES, find};
 
 /// Not divisible by the number of lanes.

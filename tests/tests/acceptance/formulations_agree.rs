@@ -1,6 +1,7 @@
 //! Formulations that must agree: two forms of one, all of them on integrable constraints, and rewritten constraints (T1, T4).
 
-use mechanics::{Removal, Scene};
+use mechanics::Removal;
+use scene::Scene;
 use symbolic::Matrix;
 
 use crate::support::{

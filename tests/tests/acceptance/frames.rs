@@ -2,9 +2,11 @@
 
 use std::cell::Cell;
 
+use equations::Role;
 use integrate::Method;
-use mechanics::{Frame, Role, Scene};
 use proptest::prelude::*;
+use reduction::Frame;
+use scene::Scene;
 
 use crate::support::{equations, known_gap, motion_of, must, scene, some_multipliers, tight};
 use crate::{reduced_form, reduced_vakonomic};
@@ -78,7 +80,7 @@ fn rates_in_a_frame_are_those_by_maggi_and_those_of_the_costate_form() {
     let outcome = proptest::test_runner::TestRunner::new(config).run(&strategy, |(kind, x)| {
         let text = text(kind, &x);
         let scene = Scene::parse("frame", &text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
-        let derivation = mechanics::Derivation { removal: None, start: Some(&scene.start) };
+        let derivation = equations::Derivation { removal: None, start: Some(&scene.start) };
         let form = deltaq::formulation("chetaev-reduced").expect("in the table");
         let reduced = (form.derive)(&scene.system, &derivation).map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = reduced_form::differences(&scene, &reduced, &scene.start);

@@ -1,7 +1,7 @@
 //! Energies and momenta that must stay constant, and those that must not (T6, T7).
 
 use deltaq::{Metric, Motion};
-use mechanics::Scene;
+use scene::Scene;
 use symbolic::Expr;
 
 use crate::support::{

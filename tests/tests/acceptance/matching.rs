@@ -1,7 +1,8 @@
 //! Removed-constraint motions inside the vakonomic family, and outside of it (T2, T3).
 
 use deltaq::{Metric, best_fit, setting};
-use mechanics::{Removal, Scene};
+use mechanics::Removal;
+use scene::Scene;
 
 use crate::support::{
     at, common_times, equations, gap, known_gap, linear_scenes, matching_multipliers, matrix, must, must_exceed,

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use mechanics::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, Scene, State, System};
+use mechanics::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, State, System};
+use scene::Scene;
 use symbolic::{Expr, Graph};
 
 use crate::support::{at, complete, error, must, must_exceed, removed, scene};

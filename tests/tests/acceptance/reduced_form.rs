@@ -1,8 +1,10 @@
 //! Chetaev in quasi-velocities is Chetaev: against the saddle-point form, and against Maggi's equations, which share no derivation with either.
 
-use mechanics::{Compiled, Equations, Scene, State};
+use equations::{Compiled, Equations};
+use mechanics::State;
 use proptest::{prop_assert, test_runner::TestCaseError};
 use referees::maggi::Maggi;
+use scene::Scene;
 use symbolic::{Expr, Symbol};
 use validation::trailer::{self, Coordinates};
 
@@ -69,7 +71,7 @@ fn reduced_rates_are_those_by_maggi_on_every_scene() {
 fn reduced_rates_are_those_by_maggi_on_random_systems() {
     let worst = std::cell::Cell::new(0.0_f64);
     for_all_linear(1894, |scene| {
-        let derivation = mechanics::Derivation { removal: None, start: Some(&scene.start) };
+        let derivation = equations::Derivation { removal: None, start: Some(&scene.start) };
         let form = deltaq::formulation("chetaev-reduced").expect("in the table");
         let equations = (form.derive)(&scene.system, &derivation).map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = differences(scene, &equations.leave_out_unneeded(), &scene.start);
@@ -148,6 +150,6 @@ fn the_jacobian_goes_through_the_definitions() {
 fn constraints_that_are_not_linear_are_refused() {
     let scene = scene("appell-hamel", &[]);
     let form = deltaq::formulation("chetaev-reduced").expect("in the table");
-    let error = (form.derive)(&scene.system, &mechanics::Derivation::default()).err().expect("refused").to_string();
+    let error = (form.derive)(&scene.system, &equations::Derivation::default()).err().expect("refused").to_string();
     assert!(error.contains("not linear in the velocities"), "{error}");
 }

@@ -3,9 +3,11 @@
 use std::cell::Cell;
 
 use deltaq::{Settings, formulation};
+use equations::{Compiled, Derivation, Equations, Outputs, Plan};
 use integrate::Method;
-use mechanics::{Compiled, Derivation, Equations, Form, Frame, Outputs, Scene};
 use proptest::prop_assert;
+use reduction::Frame;
+use scene::Scene;
 use validation::trailer::{self, Coordinates};
 
 use crate::support::{
@@ -187,7 +189,7 @@ fn a_train_takes_two_unknowns_whatever_its_length() {
     let equations = raw(&scene, "vakonomic-reduced");
     assert_eq!(equations.unknowns().len(), 2);
     assert!(equations.guards.is_empty());
-    let form = Form::choose(&equations, None).expect("compiles");
+    let form = Plan::choose(&equations, None).expect("compiles");
     assert!(form.left.is_empty(), "{:?}", form.why);
     let [rates, velocities, multipliers] = differences(&scene, &some_multipliers(&scene));
     must("12 trailers: rates", rates, 1e-11);

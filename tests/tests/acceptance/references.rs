@@ -7,7 +7,7 @@ use tests::references::{Motion, REFERENCES, Reference};
 use crate::support::{at, equations, largest_difference, must, scene, tight};
 
 /// The constants of a removed-constraint reference, in the order of the removal's memory variables.
-fn costates(scene: &mechanics::Scene, named: &[(&str, f64)]) -> Vec<f64> {
+fn costates(scene: &scene::Scene, named: &[(&str, f64)]) -> Vec<f64> {
     let value = |w: &mechanics::MemoryVariable| {
         let name = scene.system.graph.name(w.symbol);
         named.iter().find(|(n, _)| *n == name).map_or(0.0, |(_, x)| *x)
@@ -16,7 +16,7 @@ fn costates(scene: &mechanics::Scene, named: &[(&str, f64)]) -> Vec<f64> {
 }
 
 /// The names of the formulation and of the constants, and the motion itself.
-fn motion(reference: &Reference, scene: &mechanics::Scene, natural: bool) -> Result<deltaq::Motion, SolveError> {
+fn motion(reference: &Reference, scene: &scene::Scene, natural: bool) -> Result<deltaq::Motion, SolveError> {
     let (name, removal, rule) = match reference.motion {
         Motion::Chetaev => ("chetaev", None, ConstantsRule::Zero),
         Motion::Vakonomic { multipliers } => ("vakonomic", None, ConstantsRule::Given(multipliers.to_vec())),
@@ -43,7 +43,7 @@ fn error(reference: &Reference, motion: &mut deltaq::Motion) -> f64 {
     (state / size).max(multipliers / largest)
 }
 
-fn is_quadrature(scene: &mechanics::Scene, reference: &Reference) -> bool {
+fn is_quadrature(scene: &scene::Scene, reference: &Reference) -> bool {
     // a constant for gamma, which neither L nor a rate contains
     let Motion::Removed { costates, .. } = reference.motion else { return false };
     scene.name == "ball-in-cone" && costates.iter().any(|(name, x)| *name == "gamma" && *x != 0.0)

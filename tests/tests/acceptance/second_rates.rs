@@ -10,7 +10,8 @@
 //! Newton's motion only where the free constant `p₀` is `ẋ₀`.
 
 use deltaq::Motion;
-use mechanics::{Derivation, DerivationError, Role, Scene};
+use equations::{Derivation, DerivationError, Role};
+use scene::Scene;
 
 use crate::support::{at, complete, equations, must, must_exceed, removed, scene};
 

@@ -3,10 +3,12 @@
 use std::collections::HashMap;
 
 use deltaq::{Choice, Metric, Motion, Settings, derive, formulation, setting, solve};
-use mechanics::{Compiled, ConstantsRule, Equations, Outputs, Removal, Scene, State, System, complete_removal_start};
+use equations::{Compiled, Equations, Outputs};
+use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use random::{Kind, recipes_of};
+use scene::Scene;
 use symbolic::{Expr, Graph, Matrix, Symbol};
 
 /// The tolerance of the looser of the two runs of every motion; what is measured has a hundredth of it.

@@ -1,8 +1,10 @@
 //! Taylor series of motions: their slope against the rates, and whole motions against DOP853.
 
 use deltaq::Settings;
+use equations::Equations;
 use integrate::{Method, Projection};
-use mechanics::{ConstantsRule, Equations, Scene};
+use mechanics::ConstantsRule;
+use scene::Scene;
 
 use crate::support::{equations, known_gap, motion_of, must, regular_removals, scenes, some_multipliers};
 

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use mechanics::{DisplacementParameter, Equations, Role, System};
+use equations::{Equations, Role};
+use mechanics::{DisplacementParameter, System};
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::flipped::Trial;

@@ -12,11 +12,13 @@
 //! The same referees must have nothing to say against the equations without the flip.
 
 use deltaq::{Motion, Setting, Settings, TIGHTER, formulation, solve};
-use mechanics::{ConstantsRule, Derivation, Equations, Removal, Scene, State, System, complete_removal_start};
+use equations::{Derivation, Equations};
+use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
 use proptest::strategy::ValueTree;
 use random::{Kind, augmented, draw};
 use referees::discrete::Discrete;
 use referees::maggi::{Form, Maggi};
+use scene::Scene;
 use symbolic::Symbol;
 use validation::catalogue::find;
 

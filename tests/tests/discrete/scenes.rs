@@ -1,8 +1,9 @@
 //! The built-in scenes.
 
 use deltaq::{Choice, Motion, Settings, choices, solve_choice};
-use mechanics::{ConstantsRule, Scene};
+use mechanics::ConstantsRule;
 use referees::discrete::{Discrete, Ends, RemovedStart};
+use scene::Scene;
 use validation::catalogue::{SCENES, find};
 
 use crate::support::{HORIZON, Tally, agrees, costates, measure, removed, short};

@@ -1,8 +1,8 @@
 //! The chosen form of the equations has the rates of the plain one.
 
 use deltaq::Motion;
+use equations::{Compiled, Equations, Plan};
 use integrate::{EvaluationError, Options, Problem, Start, integrate};
-use mechanics::{Compiled, Equations, Form};
 use nalgebra::DMatrix;
 use proptest::test_runner::TestCaseError;
 use random::{Case, Kind, Recipe, Which, recipes_of};
@@ -63,8 +63,8 @@ fn compare(motion: &mut Motion) -> Option<Found> {
     let inputs = |t: f64, y: &[f64]| [&[t], y, &constants].concat();
     let start = motion.start();
     let form =
-        Form::choose(&equations, Some(&inputs(start, &motion.states_at(start).expect("readable")))).expect("compiles");
-    let mut chosen = Compiled::with_form(&equations, &form).expect("compiles");
+        Plan::choose(&equations, Some(&inputs(start, &motion.states_at(start).expect("readable")))).expect("compiles");
+    let mut chosen = Compiled::with_plan(&equations, &form).expect("compiles");
     plain.set_constants(&constants);
     chosen.set_constants(&constants);
     let mut worst = 0.0_f64;
@@ -107,7 +107,7 @@ fn rates_of_the_chosen_form_are_those_of_the_plain_one_on_random_systems() {
 fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
     let mut count = 0;
     for (name, text) in validation::catalogue::SCENES {
-        let scene = mechanics::Scene::parse(name, text).expect("a scene");
+        let scene = scene::Scene::parse(name, text).expect("a scene");
         for choice in deltaq::choices(&scene) {
             let Ok(mut motion) = deltaq::solve_choice(&scene, &choice, &deltaq::Settings::default()) else { continue };
             let Some(found) = compare(&mut motion) else { continue };

@@ -2,11 +2,12 @@
 
 use std::collections::HashSet;
 
-use mechanics::{Scene, check_regularity};
+use mechanics::check_regularity;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestCaseError;
 use random::{Batch, Case, Kind, MOST, Recipe, Record, draw, recipes_of, shrink};
+use scene::Scene;
 
 use crate::support::for_all;
 

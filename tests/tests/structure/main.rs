@@ -2,7 +2,8 @@
 
 use deltaq::{Choice, Motion, Settings, Steps, choices, solve_by_steps, solve_choice};
 use discrete::Composition;
-use mechanics::{ConstantsRule, Scene};
+use mechanics::ConstantsRule;
+use scene::Scene;
 use validation::catalogue::find;
 
 /// An error under this times the size of the motion is round-off; what is over [`COARSE`] says nothing of the order yet.

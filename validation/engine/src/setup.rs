@@ -1,8 +1,8 @@
 //! From a scene to a ball, a surface and a start.
 
 use deltaq::Metric;
-use mechanics::Scene;
 use rapier3d_f64::math::Vector;
+use scene::Scene;
 
 use crate::{EngineError, EulerAngles, Pose};
 

@@ -1,7 +1,7 @@
 //! What the engine's motion tends to as its time step shrinks.
 
 use deltaq::{Ending, Settings, choices, solve_choice};
-use mechanics::Scene;
+use scene::Scene;
 use validation::scaling::exponent;
 
 use crate::{Ball, Contacts, EngineError, Mapping, Pose, Run, Setup, Trajectory};

@@ -58,10 +58,10 @@ fn a_wrong_sign_is_no_mapping() {
     assert!((slip - 2.0 * 0.7 * 0.65).abs() < 1e-12, "{slip}");
     // a ball that is not homogeneous has another kinetic energy
     let text = include_str!("../../scenes/turntable.toml").replace("2*m*a^2/5", "2*m*a^2/3");
-    let hollow = mechanics::Scene::parse("turntable", &text).unwrap();
+    let hollow = scene::Scene::parse("turntable", &text).unwrap();
     assert!(matches!(Mapping::new(&hollow), Err(EngineError::Mapping { .. })));
     let slipping = include_str!("../../scenes/turntable.toml").replace("- Omega*x", "+ Omega*x");
-    let slipping = mechanics::Scene::parse("turntable", &slipping).unwrap();
+    let slipping = scene::Scene::parse("turntable", &slipping).unwrap();
     assert!(matches!(Mapping::new(&slipping), Err(EngineError::Mapping { .. })));
 }
 
@@ -69,7 +69,7 @@ fn a_wrong_sign_is_no_mapping() {
 fn what_cannot_be_done_is_said() {
     assert!(matches!(Mapping::new(&find("sledge", &[]).unwrap()), Err(EngineError::NotMapped { .. })));
     let text = include_str!("../../scenes/turntable.toml").replace("Omega", "rate");
-    let renamed = mechanics::Scene::parse("turntable", &text).unwrap();
+    let renamed = scene::Scene::parse("turntable", &text).unwrap();
     assert!(matches!(Mapping::new(&renamed), Err(EngineError::Missing { name, .. }) if name == "Omega"));
     let setup = Mapping::new(&find("turntable", &[]).unwrap()).unwrap().setup;
     let run = Run { contacts: Contacts::HARD, duration: 1.0, steps: 150, samples: 100 };

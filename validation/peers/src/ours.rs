@@ -7,8 +7,10 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{Choice, Ready, Settings, derive, derive_at, formulation, ready_to_run, setting, solve};
+use equations::Derivation;
 use integrate::{Dense, Method, Options, Status};
-use mechanics::{ConstantsRule, Derivation, Scene};
+use mechanics::ConstantsRule;
+use scene::Scene;
 use serde_json::{Value, json};
 use validation::casadi_job::tags;
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use anyhow::{Context, Result};
-use mechanics::Scene;
+use scene::Scene;
 use serde_json::{Value, json};
 use validation::casadi_job::Tag;
 

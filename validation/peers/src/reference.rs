@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use deltaq::Metric;
-use mechanics::Scene;
+use scene::Scene;
 use serde_json::{Value, json};
 
 use crate::{Problem, Tools};

@@ -5,7 +5,7 @@ use std::fmt::Write;
 /// Text of the scene with `n` trailers, coordinates `x, y, theta0 … theta{n}`; headings fall evenly from 0.3 to 0 rad, as in `trailer.toml`.
 ///
 /// ```
-/// let scene = mechanics::Scene::parse("trailers", &peers::trailer(2, 10.0)).unwrap();
+/// let scene = scene::Scene::parse("trailers", &peers::trailer(2, 10.0)).unwrap();
 /// assert_eq!((scene.system.dimension(), scene.system.constraints.len()), (5, 3));
 /// assert_eq!(scene.start.v[2], 0.5);
 /// ```
@@ -44,9 +44,9 @@ pub fn trailer(n: usize, duration: f64) -> String {
 /// only, which is what a long train wants.
 ///
 /// ```
-/// let scene = mechanics::Scene::parse("bodies", &peers::train_of_bodies(2, 10.0)).unwrap();
+/// let scene = scene::Scene::parse("bodies", &peers::train_of_bodies(2, 10.0)).unwrap();
 /// assert_eq!((scene.system.dimension(), scene.system.constraints.len()), (9, 7));
-/// let same = mechanics::Scene::parse("trailers", &peers::trailer(2, 10.0)).unwrap();
+/// let same = scene::Scene::parse("trailers", &peers::trailer(2, 10.0)).unwrap();
 /// assert!((scene.start.v[8] - same.start.v[4]).abs() < 1e-14, "the last heading");
 /// ```
 pub fn train_of_bodies(n: usize, duration: f64) -> String {

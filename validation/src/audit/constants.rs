@@ -2,7 +2,8 @@
 
 use anyhow::{Context as _, Result};
 use deltaq::{Metric, Motion, Setting, Settings, best_fit, compare_motions, setting, solve};
-use mechanics::{ConstantsRule, Removal, Scene};
+use mechanics::{ConstantsRule, Removal};
+use scene::Scene;
 
 use crate::catalogue;
 use random::equations;
@@ -94,7 +95,7 @@ impl Constants {
         }
         let (mut one, mut two) = (with(0.0)?, with(pull * DURATION)?);
         let (start, other) = (one.at(0.0)?, two.at(0.0)?);
-        let together = |o: &mechanics::Outputs| [&o.coordinates[..], &o.velocities[..]].concat();
+        let together = |o: &equations::Outputs| [&o.coordinates[..], &o.velocities[..]].concat();
         let apart = difference(&together(&start), &together(&other));
         let two_gap = compare_motions(&mut one, &mut two, metric)?.largest;
         let mut natural_motions = Vec::new();

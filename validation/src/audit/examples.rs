@@ -10,7 +10,9 @@
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result};
-use mechanics::{Equations, Removal, Scene, System};
+use equations::Equations;
+use mechanics::{Removal, System};
+use scene::Scene;
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
 use crate::catalogue;

@@ -8,7 +8,8 @@ use std::collections::HashMap;
 use anyhow::{Context as _, Result, anyhow};
 use deltaq::{Setting, Settings, solve};
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
-use mechanics::{ConstantsRule, Scene, State};
+use mechanics::{ConstantsRule, State};
+use scene::Scene;
 use symbolic::{Expr, Symbol, Tape, Workspace};
 
 use super::action::{Action, BUMPS, Jet, bump};

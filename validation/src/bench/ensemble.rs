@@ -10,7 +10,8 @@ use deltaq::{
     Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Ready, Settings, choices, ready_to_run, setting,
 };
 use integrate::{Dense, Method, Options, Status};
-use mechanics::{ConstantsRule, Scene, State};
+use mechanics::{ConstantsRule, State};
+use scene::Scene;
 
 use crate::catalogue;
 

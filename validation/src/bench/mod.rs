@@ -17,7 +17,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use deltaq::{Choice, Ready, Settings, choices, derive_at, forms, ready_to_run, setting};
 use integrate::{Method, Work};
-use mechanics::Scene;
+use scene::Scene;
 
 use crate::catalogue;
 

@@ -3,8 +3,9 @@
 use anyhow::Result;
 use deltaq::{Metric, Ready};
 use integrate::{Options, Status};
-use mechanics::{Scene, State};
+use mechanics::State;
 use reference::{Question, Reference, reference};
+use scene::Scene;
 
 /// Where a motion truly is at some times.
 pub struct Truth {

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use anyhow::{Context, Result};
 use deltaq::{Choice, Motion, Settings, choices, formulation, setting, solve};
-use mechanics::{Compiled, ConstantsRule, Derivation, Equations, Role, Scene, complete_removal_start};
+use equations::{Compiled, Derivation, Equations, Role};
+use mechanics::{ConstantsRule, complete_removal_start};
+use scene::Scene;
 use serde::Serialize;
 
 /// How much is asked of a scene.

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use anyhow::{Context, Result};
 use deltaq::{Metric, Motion, Setting, SolveError, choices, setting, solve_choice};
-use mechanics::{ConstantsRule, Scene};
+use mechanics::ConstantsRule;
+use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use deltaq::{Comparison, Metric};
-use mechanics::Scene;
+use scene::Scene;
 
 use crate::casadi_job::{Outcome, Row, Word, referee_table};
 use referees::maggi::{Form, Maggi, MaggiError, Motion};

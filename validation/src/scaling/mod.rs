@@ -11,7 +11,9 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use deltaq::{Ready, Setting, Settings, default_constants, formulation, ready_to_run, setting, solve};
-use mechanics::{Compiled, ConstantsRule, Derivation, Removal, Scene, System};
+use equations::{Compiled, Derivation};
+use mechanics::{ConstantsRule, Removal, System};
+use scene::Scene;
 use serde::Serialize;
 
 pub use fit::{Exponent, exponent};

@@ -4,7 +4,8 @@ use anyhow::{Context, Result};
 use deltaq::{Choice, Metric, Motion, Setting, Settings, Steps, derive_at, solve, solve_by_steps};
 use discrete::Composition;
 use integrate::Method;
-use mechanics::{ConstantsRule, Scene};
+use mechanics::ConstantsRule;
+use scene::Scene;
 use symbolic::Tape;
 
 use super::cases::{choice, sledge_reference};

@@ -2,8 +2,9 @@
 
 use anyhow::{Context, Result};
 use deltaq::{Metric, Motion, Setting, Settings, TIGHTER, solve};
+use equations::Equations;
 use integrate::Method;
-use mechanics::{ConstantsRule, Equations, State, System};
+use mechanics::{ConstantsRule, State, System};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::reference::{Known, Reference};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use mechanics::Scene;
+use scene::Scene;
 
 use crate::cli::{EnsembleArguments, MOST_MEMBERS, Range};
 

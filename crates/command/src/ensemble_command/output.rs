@@ -1,7 +1,8 @@
 //! What became of the members, for machines.
 
 use deltaq::{Choice, MemberMotion};
-use mechanics::{Equations, Outputs, Scene};
+use equations::{Equations, Outputs};
+use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use super::members::Members;

@@ -1,6 +1,6 @@
 //! Members integrated and read off.
 
-use mechanics::{Compiled, Outputs};
+use equations::{Compiled, Outputs};
 
 use super::run::Outcome;
 use super::threads::shared;

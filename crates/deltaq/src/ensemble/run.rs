@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use equations::{Compiled, Equations, LaneEquations};
 use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Work};
-use mechanics::{Compiled, Equations, LaneEquations};
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};

@@ -1,6 +1,7 @@
 //! Members against single runs of scenes that are derived and compiled for themselves.
 
-use mechanics::{ConstantsRule, Scene};
+use mechanics::ConstantsRule;
+use scene::Scene;
 use symbolic::LANES;
 
 use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart};

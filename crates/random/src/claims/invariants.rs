@@ -1,7 +1,8 @@
 //! T6 and T7: energy and momenta, written out here and not taken from what is judged.
 
 use deltaq::{CERTAINTY, Motion, SolveError};
-use mechanics::{Outputs, System};
+use equations::Outputs;
+use mechanics::System;
 use symbolic::{Expr, Symbol};
 
 use super::CheckError;

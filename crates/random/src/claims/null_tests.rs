@@ -1,8 +1,9 @@
 //! T13: systems on which formulations are known to agree, or to differ in a known way, with random numbers in them.
 
 use deltaq::{Motion, SolveError, setting, solve};
-use mechanics::{ConstantsRule, Scene};
+use mechanics::ConstantsRule;
 use proptest::prelude::*;
+use scene::Scene;
 
 use crate::case::equations;
 use crate::finding::Findings;

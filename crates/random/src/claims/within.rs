@@ -68,7 +68,7 @@ fn keeps_constraint(case: &mut Case, which: Which) -> Result<(), CheckError> {
     let (mut residual, mut limit) = (0.0_f64, 0.0_f64);
     for t in motion.grid(INSTANTS) {
         let (kept, looser) = motion.at_in_both_runs(t)?;
-        let of = |metric: &mut deltaq::Metric, o: &mechanics::Outputs| {
+        let of = |metric: &mut deltaq::Metric, o: &equations::Outputs| {
             metric.constraint_residual(t, &o.coordinates, &o.velocities)
         };
         let size = kept.velocities.iter().fold(1.0_f64, |a, v| a.max(v.abs()));

@@ -1,6 +1,7 @@
 //! Closed forms and orders.
 
-use mechanics::{Removal, Scene, State, System};
+use mechanics::{Removal, State, System};
+use scene::Scene;
 use symbolic::Graph;
 
 use super::*;

@@ -1,6 +1,7 @@
 //! Checks of the referee itself: closed solutions, Gauss's principle, the balance of momenta by differences, errors.
 
-use mechanics::{Scene, State, System};
+use mechanics::{State, System};
+use scene::Scene;
 
 use super::{Ending, Form, Maggi, MaggiError, Residual, dot};
 

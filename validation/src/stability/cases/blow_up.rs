@@ -1,6 +1,6 @@
 //! Infinite speed within a finite time.
 
-use mechanics::Scene;
+use scene::Scene;
 
 use super::FORMULATIONS;
 use crate::stability::question::{Case, Question};
@@ -25,7 +25,7 @@ pub(super) const MOVING: Case = Case {
 
 const STARTS: [f64; 5] = [0.01, 0.1, 1.0, 10.0, 100.0];
 
-fn scene(y: f64, speed: f64) -> Result<Scene, mechanics::SceneError> {
+fn scene(y: f64, speed: f64) -> Result<Scene, scene::SceneError> {
     let text = format!(
         r#"
 title = "Particle that runs away"

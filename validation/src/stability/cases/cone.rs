@@ -1,7 +1,8 @@
 //! The ball near the apex of the cone, and near the ends of its chart.
 
-use mechanics::{Scene, SceneError, State};
+use mechanics::State;
 use nalgebra::Vector3;
+use scene::{Scene, SceneError};
 
 use super::powers;
 use crate::stability::question::{Case, Question};

@@ -1,6 +1,7 @@
 //! Three rough cylinders near the singularities of their constraints.
 
-use mechanics::{Scene, SceneError, State, System};
+use mechanics::{State, System};
+use scene::{Scene, SceneError};
 
 use super::powers;
 use crate::stability::question::{Case, Question};

@@ -1,6 +1,6 @@
 //! Two constraints that are nearly one.
 
-use mechanics::Scene;
+use scene::Scene;
 
 use super::FORMULATIONS;
 use crate::stability::question::{Case, Question};
@@ -29,7 +29,7 @@ fn questions() -> Vec<Question> {
 const START: [f64; 4] = [0.3, -0.5, 1.0, 0.5];
 
 /// The scene with `d`.
-pub(super) fn scene(d: f64) -> Result<Scene, mechanics::SceneError> {
+pub(super) fn scene(d: f64) -> Result<Scene, scene::SceneError> {
     let [x, y, dx, dy] = START;
     let text = format!(
         r#"

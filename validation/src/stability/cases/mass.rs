@@ -1,8 +1,9 @@
 //! Masses of very different size, put in (added mass) or given (mass ratios).
 
 use deltaq::Setting;
-use mechanics::{ConstantsRule, Scene, State};
+use mechanics::{ConstantsRule, State};
 use referees::closed_forms::Particle;
+use scene::Scene;
 
 use super::{FORMULATIONS, powers};
 use crate::catalogue;

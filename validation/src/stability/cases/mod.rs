@@ -10,7 +10,8 @@ mod units;
 mod viscous;
 
 use deltaq::{Choice, choices, derive_at, formulation};
-use mechanics::{ConstantsRule, Scene, SceneError};
+use mechanics::ConstantsRule;
+use scene::{Scene, SceneError};
 
 use super::question::{Case, Question, Subject};
 use super::reference::Reference;

@@ -1,7 +1,7 @@
 //! The sledge with a mass that hardly resists turning, or hardly turns; and for a long time.
 
-use mechanics::Scene;
 use referees::closed_forms;
+use scene::Scene;
 
 use super::{FORMULATIONS, powers};
 use crate::stability::question::{Case, Question};

@@ -1,0 +1,389 @@
+//! Equations of motion turned into numbers: tapes and small linear solves, ready for any time integrator.
+
+use symbolic::{CompileError, Expr};
+
+use crate::derivatives::Derivatives;
+use crate::equations::Equations;
+use crate::instant::{CompiledBlock, EvaluationFailure, Program};
+use crate::plan::Plan;
+use crate::projection::Projector;
+use crate::series::Series;
+use crate::straight::Straight;
+
+/// Compiled equations of motion `ẏ = F(t, y)`.
+///
+/// Evaluation needs `&mut self` because registers are reused; clone it for another thread.
+#[derive(Clone)]
+pub struct Compiled {
+    equations_of_instant: Vec<CompiledBlock>,
+    rates: Program,
+    outputs: Program,
+    /// The chosen plan, where there is another than the plain one, and how often it was not to be trusted.
+    straight: Option<Straight>,
+    left: Vec<usize>,
+    fallbacks: usize,
+    guards: Program,
+    projector: Option<Projector>,
+    derivatives: Option<Derivatives>,
+    /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
+    series: Option<Series>,
+    plain_series: Option<Series>,
+    sizes: Sizes,
+    /// `t, y, constants, z` in this order.
+    inputs: Vec<f64>,
+    /// `z` from which blocks that are not linear are solved.
+    anchor: Vec<f64>,
+}
+
+#[derive(Clone, Copy)]
+struct Sizes {
+    states: usize,
+    constants: usize,
+    coordinates: usize,
+    multipliers: usize,
+    invariants: usize,
+}
+
+impl Sizes {
+    fn known(&self) -> usize {
+        1 + self.states + self.constants
+    }
+
+    fn outputs(&self, values: &[f64]) -> Outputs {
+        let (q, rest) = values.split_at(self.coordinates);
+        let (v, rest) = rest.split_at(self.coordinates);
+        let (m, i) = rest.split_at(self.multipliers);
+        debug_assert_eq!(i.len(), self.invariants);
+        Outputs { coordinates: q.to_vec(), velocities: v.to_vec(), multipliers: m.to_vec(), invariants: i.to_vec() }
+    }
+}
+
+/// Which blocks are solved numerically.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Blocks {
+    All,
+    Left,
+}
+
+/// What one evaluation of the rates takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Instructions of tapes.
+    pub instructions: usize,
+    /// Multiplications of LU factorization and substitution.
+    pub factorization: usize,
+}
+
+impl Cost {
+    /// Both together.
+    pub fn operations(self) -> usize {
+        self.instructions + self.factorization
+    }
+}
+
+/// What is read off a motion at one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// `q`.
+    pub coordinates: Vec<f64>,
+    /// `q̇`.
+    pub velocities: Vec<f64>,
+    /// Multipliers or costates.
+    pub multipliers: Vec<f64>,
+    /// Quantities that should be constant.
+    pub invariants: Vec<f64>,
+}
+
+impl Compiled {
+    /// Compiles everything that a time integrator asks for, Jacobian left out, in a plan chosen from structure.
+    ///
+    /// # Errors
+    /// [`CompileError`] where an expression contains a symbol that is neither state, parameter, constant nor unknown: a fault of the derivation.
+    pub fn new(equations: &Equations) -> Result<Self, CompileError> {
+        Compiled::with_plan(equations, &Plan::choose(equations, None)?)
+    }
+
+    /// [`Compiled::new`] with every block solved by LU factorization.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn plain(equations: &Equations) -> Result<Self, CompileError> {
+        Compiled::with_plan(equations, &Plan::plain(equations))
+    }
+
+    /// [`Compiled::new`] in a plan chosen before.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn with_plan(equations: &Equations, plan: &Plan) -> Result<Self, CompileError> {
+        let known = equations.known_symbols();
+        let mut all = known.clone();
+        all.extend(equations.unknowns());
+
+        let mut first = 0;
+        let mut blocks = Vec::new();
+        for block in &equations.blocks {
+            blocks.push(CompiledBlock::new(equations, block, first, &known, &all)?);
+            first += block.unknowns.len();
+        }
+        let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
+        let named = |list: &[crate::Named]| list.iter().map(|n| n.expression).collect::<Vec<_>>();
+        let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
+        let outputs: Vec<Expr> =
+            [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
+        let straight = (plan.left.len() < blocks.len() || plan.collected.is_some())
+            .then(|| Straight::new(equations, plan, &all, &outputs))
+            .transpose()?;
+        Ok(Compiled {
+            straight,
+            left: plan.left.clone(),
+            fallbacks: 0,
+            equations_of_instant: blocks,
+            rates: Program::new(equations, &all, &rates)?,
+            outputs: Program::new(equations, &all, &outputs)?,
+            guards: Program::new(equations, &known, &equations.guards)?,
+            projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
+            derivatives: None,
+            series: None,
+            plain_series: None,
+            sizes: Sizes {
+                states: rates.len(),
+                constants: equations.free_constants.len(),
+                coordinates: equations.coordinates.len(),
+                multipliers: multipliers.len(),
+                invariants: invariants.len(),
+            },
+            anchor: vec![0.0; all.len() - known.len()],
+            inputs: vec![0.0; all.len()],
+        })
+    }
+
+    /// Adds the exact Jacobian `∂F/∂y`, which implicit methods need.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn with_jacobian(mut self, equations: &Equations) -> Result<Self, CompileError> {
+        self.derivatives = Some(Derivatives::new(equations)?);
+        Ok(self)
+    }
+
+    /// Adds the recurrences of Taylor coefficients, for [`Compiled::taylor`]; `plan` is the one that these equations were compiled in.
+    ///
+    /// # Errors
+    /// As [`Compiled::new`].
+    pub fn with_series(mut self, equations: &Equations, plan: &Plan) -> Result<Self, CompileError> {
+        self.series = Some(Series::new(equations, plan)?);
+        if plan.condition.is_some() {
+            self.plain_series = Some(Series::new(equations, &Plan::plain(equations))?);
+        }
+        Ok(self)
+    }
+
+    /// Whether [`Compiled::with_jacobian`] was called.
+    pub fn has_jacobian(&self) -> bool {
+        self.derivatives.is_some()
+    }
+
+    /// Products of series, and linear terms, that an order of [`Compiled::taylor`] takes; `None` if [`Compiled::with_series`] was not called.
+    pub fn series_work(&self) -> Option<(usize, usize)> {
+        self.series.as_ref().map(Series::work)
+    }
+
+    /// Whether [`Compiled::with_series`] was called.
+    pub fn has_series(&self) -> bool {
+        self.series.is_some()
+    }
+
+    /// Number of states.
+    pub fn dimension(&self) -> usize {
+        self.sizes.states
+    }
+
+    /// Sets the values of the free constants.
+    ///
+    /// # Panics
+    /// If the length is not that of [`Equations::free_constants`].
+    pub fn set_constants(&mut self, constants: &[f64]) {
+        let first = 1 + self.sizes.states;
+        self.inputs[first..first + self.sizes.constants].copy_from_slice(constants);
+    }
+
+    /// Whether a block is not linear in its unknowns, so that it matters from where it is solved.
+    pub fn needs_guess(&self) -> bool {
+        self.equations_of_instant.iter().any(|block| !block.linear)
+    }
+
+    /// Sets the point `z` from which blocks that are not linear are solved: one on the same branch, near by.
+    ///
+    /// # Panics
+    /// If the length is not that of [`Equations::unknowns`].
+    pub fn set_guess(&mut self, unknowns: &[f64]) {
+        self.anchor.copy_from_slice(unknowns);
+    }
+
+    /// Solves the equations of the instant at `(t, y)`; from its solution, which is returned, blocks that are not linear are solved from now on.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn settle(&mut self, t: f64, y: &[f64]) -> Result<&[f64], EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        let known = self.sizes.known();
+        self.anchor.copy_from_slice(&self.inputs[known..]);
+        Ok(&self.anchor)
+    }
+
+    /// `F(t, y)`.
+    ///
+    /// # Errors
+    /// [`EvaluationFailure`] where the equations of the instant cannot be solved.
+    pub fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationFailure> {
+        if self.straight.is_some() {
+            self.load(t, y);
+            self.solve_blocks(Blocks::Left)?;
+            if let Some(values) = self.straight.as_mut().and_then(|s| s.rates(&self.inputs)) {
+                rates.copy_from_slice(values);
+                return Ok(());
+            }
+            self.fallbacks += 1;
+        }
+        self.solve_instant(t, y)?;
+        rates.copy_from_slice(self.rates.run(&self.inputs));
+        Ok(())
+    }
+
+    /// How often rates were asked for where the chosen plan could not be trusted ([`Plan::LIMIT`]), so that the plain one was taken.
+    pub fn fallbacks(&self) -> usize {
+        self.fallbacks
+    }
+
+    /// What one evaluation of the rates costs, in the plain plan and in the chosen one.
+    pub fn cost(&self) -> [Cost; 2] {
+        let plain = self.cost_of(&|_| true, self.rates.len());
+        let chosen = self.straight.as_ref().map(|s| self.cost_of(&|k| self.left.contains(&k), s.len()));
+        [plain, chosen.unwrap_or(plain)]
+    }
+
+    fn cost_of(&self, solved: &dyn Fn(usize) -> bool, rates: usize) -> Cost {
+        let blocks = self.equations_of_instant.iter().enumerate().filter(|(k, _)| solved(*k)).map(|(_, b)| b);
+        blocks.fold(Cost { instructions: rates, factorization: 0 }, |cost, block| Cost {
+            instructions: cost.instructions + block.program.len(),
+            factorization: cost.factorization
+                + block.size * (block.size * block.size - 1) / 3
+                + block.size * block.size,
+        })
+    }
+
+    /// Coordinates, velocities, multipliers and invariants at `(t, y)`.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn outputs(&mut self, t: f64, y: &[f64]) -> Result<Outputs, EvaluationFailure> {
+        if self.straight.is_some() {
+            self.load(t, y);
+            self.solve_blocks(Blocks::Left)?;
+            if let Some(values) = self.straight.as_mut().and_then(|s| s.outputs(&self.inputs)) {
+                return Ok(self.sizes.outputs(values));
+            }
+        }
+        self.solve_instant(t, y)?;
+        Ok(self.sizes.outputs(self.outputs.run(&self.inputs)))
+    }
+
+    /// Number of guards.
+    pub fn guards(&self) -> usize {
+        self.guards.values.len()
+    }
+
+    /// Values of the guards, whose zeros are singularities.
+    pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
+        self.load(t, y);
+        values.copy_from_slice(self.guards.run(&self.inputs[..self.sizes.known()]));
+    }
+
+    /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.
+    ///
+    /// # Errors
+    /// [`EvaluationFailure`] where constraint Jacobian or metric are singular.
+    pub fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, EvaluationFailure> {
+        self.load(t, y);
+        let known = self.sizes.known();
+        match &mut self.projector {
+            None => Ok(0.0),
+            Some(projector) => projector.project(&mut self.inputs[..known], y),
+        }
+    }
+
+    /// `∂F/∂y`, row-major.
+    ///
+    /// For a block `R(z; t, y) = 0`: `∂z/∂y = −(∂R/∂z)⁻¹ ∂R/∂y`.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    ///
+    /// # Panics
+    /// If [`Compiled::with_jacobian`] was not called.
+    pub fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        let derivatives = self.derivatives.as_mut().expect("compiled with_jacobian");
+        derivatives.write(&self.inputs, &mut self.equations_of_instant, jacobian);
+        Ok(())
+    }
+
+    /// Taylor coefficients of the motion through `(t, y)`, component after component, as many orders as there is room for:
+    /// `y_i(t + τ) = Σ_k coefficients[i orders + k] (τ/unit)^k`.
+    ///
+    /// Unknowns of the instant are series, too: at order k a block is linear in `z_k`, with `∂R/∂z` of order 0 as its matrix.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    ///
+    /// # Panics
+    /// If [`Compiled::with_series`] was not called, or there is room for less than two orders.
+    pub fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        self.solve_blocks(Blocks::Left)?;
+        let trusted = self.straight.as_mut().is_none_or(|s| s.is_trusted(&self.inputs));
+        let series = if trusted {
+            &mut self.series
+        } else {
+            self.fallbacks += 1;
+            self.solve_instant(t, y)?;
+            &mut self.plain_series
+        };
+        let order = coefficients.len() / y.len() - 1;
+        let series = series.as_mut().expect("compiled with_series");
+        let blocks = &mut self.equations_of_instant;
+        series.expand(&self.inputs, unit, order, blocks);
+        series.write(y, coefficients);
+        Ok(())
+    }
+
+    fn load(&mut self, t: f64, y: &[f64]) {
+        self.inputs[0] = t;
+        self.inputs[1..1 + y.len()].copy_from_slice(y);
+    }
+
+    fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
+        self.load(t, y);
+        self.solve_blocks(Blocks::All)
+    }
+
+    fn solve_blocks(&mut self, which: Blocks) -> Result<(), EvaluationFailure> {
+        let known = self.sizes.known();
+        for (k, block) in self.equations_of_instant.iter_mut().enumerate() {
+            if which == Blocks::Left && !self.left.contains(&k) {
+                continue;
+            }
+            if block.linear {
+                block.step(&self.inputs[..known])?;
+                let (r, z) = (block.solution(), &mut self.inputs[known + block.first..]);
+                z[..r.len()].copy_from_slice(r);
+            } else {
+                let (first, end) = (block.first, block.first + block.size);
+                self.inputs[known + first..known + end].copy_from_slice(&self.anchor[first..end]);
+                block.newton(&mut self.inputs, known)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,249 @@
+//! The common form in which a formulation hands over its equations of motion.
+//!
+//! A state `y` moves by `ẏ = F(t, y, z)`, where `z` (accelerations, multipliers or their rates) solves one small block
+//! of equations `R(z; t, y) = 0` at every instant, nearly always linear in `z`. Nothing here says how time is stepped.
+
+use std::collections::{HashMap, HashSet};
+
+use symbolic::{CompileError, Expr, Graph, Matrix, Symbol, Tape};
+
+use crate::definitions::{needed, symbols_behind};
+use mechanics::{Removal, System};
+
+/// What a state variable is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// A coordinate `q`.
+    Position,
+    /// A velocity `v = q̇`.
+    Velocity,
+    /// A quasi-velocity `w`, of which the velocities are linear functions.
+    QuasiVelocity,
+    /// A displacement parameter `u`.
+    DisplacementParameter,
+    /// The rate `u̇` of a displacement parameter.
+    ParameterRate,
+    /// The second rate `ü`, a state only where `L` contains it.
+    ParameterSecondRate,
+    /// The momentum `G_u̇ − d/dt G_ü` that goes with `ü`.
+    ParameterMomentum,
+    /// A memory variable `w`.
+    Memory,
+    /// A memory costate `P`.
+    MemoryCostate,
+    /// A vakonomic multiplier `μ`.
+    Multiplier,
+    /// A costate `p = ∂𝓛/∂v`.
+    Costate,
+}
+
+/// One state variable with its rate and its value at the start.
+#[derive(Clone, Debug)]
+pub struct StateVariable {
+    /// Symbol.
+    pub symbol: Symbol,
+    /// What it is.
+    pub role: Role,
+    /// `ẏ`, an expression in `(t, y, z)` and the free constants.
+    pub rate: Expr,
+    /// `y(t₀)`, an expression in `(t₀, q₀, v₀)`, the free constants and, with a removal, `(u, u̇, ü, w)` at the start.
+    pub start: Expr,
+}
+
+/// Unknowns `z` of one instant and the equations `R(z; t, y) = 0` that determine them.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// `z`.
+    pub unknowns: Vec<Symbol>,
+    /// `R`, as many as unknowns.
+    pub residuals: Vec<Expr>,
+    /// A value of `z` near the solution at the start, in the symbols of the start; used where `R` is not linear in `z`.
+    pub guess: Vec<Expr>,
+    /// What has to be regular for the block to be solvable, in the field's words.
+    pub regular: &'static str,
+}
+
+/// A constant that `(q₀, v₀)` does not determine.
+#[derive(Clone, Debug)]
+pub struct FreeConstant {
+    /// Symbol of its value.
+    pub symbol: Symbol,
+    /// The quantity that vanishes at the horizon under the natural boundary condition, where there is one.
+    pub natural: Option<Expr>,
+    /// Index of the memory variable whose costate starts here, if it is one.
+    pub memory: Option<usize>,
+}
+
+/// A named expression in `(t, y, z)`.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Name, ASCII.
+    pub name: String,
+    /// The expression.
+    pub expression: Expr,
+}
+
+/// Something that the equations did not need.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// The variables concerned; empty where it is not about variables.
+    pub variables: Vec<Symbol>,
+    /// What about them, and why.
+    pub words: String,
+}
+
+/// An equation for the reader: `left = right`.
+#[derive(Clone, Debug)]
+pub struct Statement {
+    /// What the equation says.
+    pub meaning: String,
+    /// Left-hand side.
+    pub left: Expr,
+    /// Right-hand side.
+    pub right: Expr,
+}
+
+/// Return onto the constraint: `v ← v + δv` with the smallest `δvᵀ M δv` such that `f(q, v, t) = 0`.
+#[derive(Clone, Debug)]
+pub struct ConstraintProjection {
+    /// Velocity states that may be moved.
+    pub velocities: Vec<Symbol>,
+    /// `f`.
+    pub constraints: Vec<Expr>,
+    /// `A = ∂f/∂v`.
+    pub jacobian: Matrix,
+    /// `M`, the metric.
+    pub metric: Matrix,
+}
+
+/// Equations of motion as a formulation hands them over.
+#[derive(Clone)]
+pub struct Equations {
+    /// Name of the formulation.
+    pub formulation: &'static str,
+    /// Where all expressions live.
+    pub graph: Graph,
+    /// Symbol of time.
+    pub time: Symbol,
+    /// Values of the parameters.
+    pub parameters: HashMap<Symbol, f64>,
+    /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards may need those without `z` only.
+    pub definitions: Vec<(Symbol, Expr)>,
+    /// `y` with rates and start.
+    pub states: Vec<StateVariable>,
+    /// The equations of one instant.
+    pub blocks: Vec<Block>,
+    /// Constants that the start data leave free.
+    pub free_constants: Vec<FreeConstant>,
+    /// `q` in `(t, y)`.
+    pub coordinates: Vec<Expr>,
+    /// `q̇` in `(t, y, z)`.
+    pub velocities: Vec<Expr>,
+    /// Multipliers or costates, whatever the formulation has.
+    pub multipliers: Vec<Named>,
+    /// Quantities that stay constant along the motion.
+    pub invariants: Vec<Named>,
+    /// Projection onto the constraint, where the states can leave it.
+    pub projection: Option<ConstraintProjection>,
+    /// Expressions in `(t, y)` whose zero is a singularity of the equations.
+    pub guards: Vec<Expr>,
+    /// The derived equations, for the reader.
+    pub statements: Vec<Statement>,
+    /// What this system did not need.
+    pub left_out: Vec<LeftOut>,
+    /// So many units in the last place are velocities and momenta known to, where constraints are nearly dependent; 1 without such.
+    pub lost_digits: f64,
+    /// In which variables they are written, where there was a choice, and why.
+    pub chosen: Vec<String>,
+    /// The removal behind the equations, whose parameters and memory variables have to be started.
+    pub removal: Option<Removal>,
+}
+
+impl Equations {
+    /// Equations without content for `system`; a derivation fills the fields, the graph last.
+    pub fn new(formulation: &'static str, system: &System) -> Self {
+        Equations {
+            formulation,
+            graph: Graph::new(),
+            time: system.time,
+            parameters: system.parameter_values(),
+            definitions: Vec::new(),
+            states: Vec::new(),
+            blocks: Vec::new(),
+            free_constants: Vec::new(),
+            coordinates: Vec::new(),
+            velocities: Vec::new(),
+            multipliers: Vec::new(),
+            invariants: Vec::new(),
+            projection: None,
+            guards: Vec::new(),
+            statements: Vec::new(),
+            left_out: Vec::new(),
+            lost_digits: 1.0,
+            chosen: Vec::new(),
+            removal: None,
+        }
+    }
+
+    /// Adds the states `q` with rate `v` and `v` with rate `a`, started at `(q₀, v₀)`.
+    pub fn add_positions_and_velocities(&mut self, system: &System) {
+        let g = &system.graph;
+        let mut add = |symbol, role, rate| {
+            let (rate, start) = (g.variable(rate), g.variable(symbol));
+            self.states.push(StateVariable { symbol, role, rate, start });
+        };
+        for c in &system.coordinates {
+            add(c.position, Role::Position, c.velocity);
+        }
+        for c in &system.coordinates {
+            add(c.velocity, Role::Velocity, c.acceleration);
+        }
+    }
+
+    /// A tape for `outputs`, with parameters folded in, by way of those definitions that it needs.
+    ///
+    /// # Errors
+    /// [`CompileError`] where a symbol is neither input nor parameter nor definition.
+    pub fn tape(&self, inputs: &[Symbol], outputs: &[Expr]) -> Result<Tape, CompileError> {
+        self.tape_by(&self.definitions, inputs, outputs)
+    }
+
+    /// [`Equations::tape`] with other definitions.
+    pub(crate) fn tape_by(
+        &self,
+        definitions: &[(Symbol, Expr)],
+        inputs: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Tape, CompileError> {
+        let definitions = needed(&self.graph, definitions, inputs, outputs);
+        self.graph.compile_with(inputs, &definitions, outputs, &self.parameters)
+    }
+
+    /// Symbols of `y`.
+    pub fn state_symbols(&self) -> Vec<Symbol> {
+        self.states.iter().map(|s| s.symbol).collect()
+    }
+
+    /// Symbols of `z`, block after block.
+    pub fn unknowns(&self) -> Vec<Symbol> {
+        self.blocks.iter().flat_map(|b| b.unknowns.iter().copied()).collect()
+    }
+
+    /// Symbols of the free constants.
+    pub fn constant_symbols(&self) -> Vec<Symbol> {
+        self.free_constants.iter().map(|c| c.symbol).collect()
+    }
+
+    /// Symbols of `t`, `y` and the free constants: what is known when an instant is solved.
+    pub fn known_symbols(&self) -> Vec<Symbol> {
+        let mut known = vec![self.time];
+        known.extend(self.state_symbols());
+        known.extend(self.constant_symbols());
+        known
+    }
+
+    /// The symbols in `roots`, and in the definitions by way of which they are computed.
+    pub fn symbols_behind(&self, roots: impl IntoIterator<Item = Expr>) -> HashSet<Symbol> {
+        symbols_behind(&self.graph, &self.definitions, roots)
+    }
+}

@@ -1,0 +1,89 @@
+//! What a formulation is to the rest of the program: a name and a pass from a system to equations.
+
+use crate::Equations;
+use mechanics::{Removal, RemovalError, State, System};
+
+/// What a derivation may depend on besides the system.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Derivation<'a> {
+    /// The parametrization that removes the constraints, for formulations that need one.
+    pub removal: Option<&'a Removal>,
+    /// The start of the motion, for forms that choose pivots by their size there.
+    pub start: Option<&'a State>,
+}
+
+/// A system for which a formulation has no equations.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DerivationError {
+    /// Generalized forces in a variational principle.
+    #[error(
+        "{formulation}: a generalized force acts on `{coordinate}`, and a variational principle has no place for it; \
+         only the Chetaev formulation takes forces"
+    )]
+    ForceInVariationalPrinciple {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// First coordinate on which a force acts.
+        coordinate: String,
+    },
+    /// No parametrization was given.
+    #[error("{formulation}: a parametrization that removes the constraints is needed")]
+    RemovalMissing {
+        /// Name of the formulation.
+        formulation: &'static str,
+    },
+    /// The constraints cannot be solved for the velocities.
+    #[error("{formulation}: {error}")]
+    Reduction {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// Why not.
+        error: RemovalError,
+    },
+    /// `∂²G/∂ü²` is singular although `L` contains `ü`.
+    #[error(
+        "{formulation}, removal `{removal}`: L contains second rates {second_rates}, and the Hessian of G with respect to \
+         the highest rates has rank {rank} of {size}; choose parameters in which L is of first order"
+    )]
+    SingularHighestHessian {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// Name of the removal.
+        removal: String,
+        /// The second rates that `L` contains.
+        second_rates: String,
+        /// Rank found.
+        rank: usize,
+        /// Rank needed.
+        size: usize,
+    },
+}
+
+/// One entry of the table of formulations.
+#[derive(Clone, Copy)]
+pub struct Formulation {
+    /// Name on the command line and in files.
+    pub name: &'static str,
+    /// Name for the reader.
+    pub title: &'static str,
+    /// Whether [`Derivation::removal`] is needed.
+    pub needs_removal: bool,
+    /// Whether its free constants are multipliers `μ₀` at the start, one a constraint.
+    pub starts_multipliers: bool,
+    /// The derivation.
+    pub derive: fn(&System, &Derivation) -> Result<Equations, DerivationError>,
+}
+
+/// Refuses generalized forces on behalf of a variational formulation.
+///
+/// # Errors
+/// [`DerivationError::ForceInVariationalPrinciple`].
+pub fn refuse_forces(system: &System, formulation: &'static str) -> Result<(), DerivationError> {
+    match system.forces.iter().position(|&force| !system.graph.is_zero(force)) {
+        None => Ok(()),
+        Some(i) => Err(DerivationError::ForceInVariationalPrinciple {
+            formulation,
+            coordinate: system.coordinates[i].name.clone(),
+        }),
+    }
+}

@@ -1,0 +1,174 @@
+//! The equations of one instant: `R(z; t, y) = 0`, solved for `z`.
+
+use std::collections::{HashMap, HashSet};
+
+use symbolic::{CompileError, Expr, Scalar, Symbol, Tape, Workspace};
+
+use crate::equations::{Block, Equations};
+use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
+
+/// Equations that cannot be evaluated at a point.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EvaluationFailure {
+    /// The equations of the instant are singular.
+    #[error(
+        "equations of the instant are singular (relative pivot {reciprocal:.1e}, limit {limit:.0e}); needed: {regular}"
+    )]
+    Singular {
+        /// Smallest pivot of the scaled matrix.
+        reciprocal: f64,
+        /// Smallest pivot that is accepted.
+        limit: f64,
+        /// What would have to be regular.
+        regular: &'static str,
+    },
+    /// Newton's method for equations that are not linear in the unknowns did not converge.
+    #[error(
+        "equations of the instant not solved after {iterations} Newton steps (last step {step:.1e}, limit {limit:.0e})"
+    )]
+    NotConverged {
+        /// Steps taken.
+        iterations: usize,
+        /// Relative length of the last step.
+        step: f64,
+        /// Length at which the iteration ends.
+        limit: f64,
+    },
+}
+
+/// A tape with its registers and outputs.
+#[derive(Clone)]
+pub(crate) struct Program<S = f64> {
+    tape: Tape,
+    registers: Workspace<S>,
+    pub(crate) values: Vec<S>,
+}
+
+impl<S: Scalar> Program<S> {
+    pub(crate) fn new(equations: &Equations, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
+        Program::by_way_of(equations, &equations.definitions, inputs, outputs)
+    }
+
+    /// With definitions of its own.
+    pub(crate) fn by_way_of(
+        equations: &Equations,
+        definitions: &[(Symbol, Expr)],
+        inputs: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Self, CompileError> {
+        let tape = equations.tape_by(definitions, inputs, outputs)?;
+        Ok(Program { registers: tape.workspace(), values: vec![S::from_f64(0.0); outputs.len()], tape })
+    }
+
+    /// Number of instructions.
+    pub(crate) fn len(&self) -> usize {
+        self.tape.len()
+    }
+
+    pub(crate) fn run(&mut self, inputs: &[S]) -> &[S] {
+        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
+        &self.values
+    }
+}
+
+/// Where the numbers of one block are, and how it is solved.
+#[derive(Clone)]
+pub(crate) struct CompiledBlock {
+    /// Place of the first unknown in `z`, and their number.
+    pub(crate) first: usize,
+    pub(crate) size: usize,
+    /// Outputs: the matrix `∂R/∂z` row-major, then `R`; linear blocks at `z = 0`, others at the current `z`.
+    pub(crate) program: Program,
+    pub(crate) linear: bool,
+    pub(crate) factors: Factors,
+    regular: &'static str,
+}
+
+/// Newton steps allowed for one instant; relative step at which the iteration ends.
+const NEWTON_STEPS: usize = 50;
+const NEWTON_LIMIT: f64 = 1e-14;
+
+/// A second Newton step over this part of the first, while steps are over the other part of `z`, may lead to another root.
+const CONTRACTION: f64 = 0.5;
+const FAR: f64 = 1e-8;
+
+impl CompiledBlock {
+    /// Evaluates, factorizes, and leaves `−(∂R/∂z)⁻¹ R` in the place of `R`.
+    pub(crate) fn step(&mut self, inputs: &[f64]) -> Result<(), EvaluationFailure> {
+        self.program.run(inputs);
+        let (matrix, residual) = self.program.values.split_at_mut(self.size * self.size);
+        let regular = self.regular;
+        self.factors.factorize(matrix).map_err(|Singular { reciprocal }| EvaluationFailure::Singular {
+            reciprocal,
+            limit: PIVOT_LIMIT,
+            regular,
+        })?;
+        for x in residual.iter_mut() {
+            *x = -*x;
+        }
+        self.factors.solve(residual);
+        Ok(())
+    }
+
+    pub(crate) fn solution(&self) -> &[f64] {
+        &self.program.values[self.size * self.size..]
+    }
+
+    /// Newton's method from the current `z`; ends when the step no longer shrinks at round-off.
+    ///
+    /// The equations may have several roots. The one that belongs to the motion is near; so a start from which the iteration does not contract at
+    /// once is refused, and whoever steps time comes nearer.
+    pub(crate) fn newton(&mut self, inputs: &mut [f64], known: usize) -> Result<(), EvaluationFailure> {
+        let mut previous = f64::INFINITY;
+        for iteration in 0..NEWTON_STEPS {
+            self.step(inputs)?;
+            let (mut length, mut size) = (0.0_f64, 0.0_f64);
+            let first = known + self.first;
+            for (x, dx) in inputs[first..first + self.size].iter_mut().zip(self.solution()) {
+                *x += dx;
+                length = length.max(dx.abs());
+                size = size.max(x.abs());
+            }
+            let relative = length / size.max(f64::MIN_POSITIVE);
+            if relative <= NEWTON_LIMIT || (relative < 1e-10 && relative >= previous) {
+                return Ok(());
+            }
+            let astray = iteration == 1 && relative > FAR && relative > CONTRACTION * previous;
+            if !relative.is_finite() || astray {
+                return Err(EvaluationFailure::NotConverged {
+                    iterations: iteration + 1,
+                    step: relative,
+                    limit: NEWTON_LIMIT,
+                });
+            }
+            previous = relative;
+        }
+        Err(EvaluationFailure::NotConverged { iterations: NEWTON_STEPS, step: previous, limit: NEWTON_LIMIT })
+    }
+
+    /// Compiles a block whose first unknown has place `first` in `z`.
+    pub(crate) fn new(
+        equations: &Equations,
+        block: &Block,
+        first: usize,
+        known: &[Symbol],
+        all: &[Symbol],
+    ) -> Result<CompiledBlock, CompileError> {
+        let g = &equations.graph;
+        let matrix = g.jacobian(&block.residuals, &block.unknowns);
+        let unknowns: HashSet<Symbol> = block.unknowns.iter().copied().collect();
+        let linear = matrix.entries().iter().all(|&e| g.symbols_of(e).iter().all(|s| !unknowns.contains(s)));
+        let at_zero: HashMap<Symbol, Expr> = block.unknowns.iter().map(|&z| (z, g.zero())).collect();
+        let mut outputs = matrix.entries().to_vec();
+        outputs.extend(block.residuals.iter().map(|&r| if linear { g.substitute(r, &at_zero) } else { r }));
+        let size = block.unknowns.len();
+        Ok(CompiledBlock {
+            first,
+            size,
+            program: Program::new(equations, if linear { known } else { all }, &outputs)?,
+            linear,
+            factors: Factors::new(size),
+            regular: block.regular,
+        })
+    }
+}

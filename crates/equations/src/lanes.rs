@@ -1,0 +1,225 @@
+//! Equations of motion at several points at once, one a lane: for ensembles.
+
+use symbolic::{CompileError, LANES, Lanes, Scalar, SeriesTape, SeriesWorkspace, Symbol};
+
+use crate::equations::{Block, Equations};
+use crate::instant::Program;
+use crate::plan::Plan;
+use crate::projection::{LIMIT, STEPS};
+use crate::series::Series;
+use mechanics::fresh_symbol;
+
+/// Compiled equations of motion whose plan leaves no block to be solved numerically: [`crate::Compiled`], eight motions at a time.
+///
+/// The constants differ from lane to lane. Clone it for another thread.
+#[derive(Clone)]
+pub struct LaneEquations {
+    series: SeriesTape,
+    workspace: SeriesWorkspace<Lanes>,
+    condition: Option<Program<Lanes>>,
+    guards: Program<Lanes>,
+    projection: Option<Projection>,
+    states: usize,
+    /// `t, y, constants`.
+    inputs: Vec<Lanes>,
+}
+
+impl LaneEquations {
+    /// Compiles `equations` in `plan`; `point` is `(t, y, constants)` at the start of one of the motions. `Err` inside says why that is not possible.
+    ///
+    /// # Errors
+    /// As [`crate::Compiled::new`].
+    pub fn new(equations: &Equations, plan: &Plan, point: &[f64]) -> Result<Result<Self, String>, CompileError> {
+        if !plan.left.is_empty() {
+            let words: Vec<&str> = plan.left.iter().filter_map(|&k| plan.why.get(k)).map(String::as_str).collect();
+            return Ok(Err(format!("not in lanes: {}", words.join("; "))));
+        }
+        let projection = match Projection::new(equations, point)? {
+            Ok(projection) => projection,
+            Err(words) => return Ok(Err(words)),
+        };
+        let series = Series::tape(equations, plan)?;
+        let known = equations.known_symbols();
+        let condition = plan
+            .condition
+            .map(|condition| Program::by_way_of(equations, &plan.all_definitions(equations), &known, &[condition]));
+        Ok(Ok(LaneEquations {
+            workspace: series.workspace(1),
+            series,
+            condition: condition.transpose()?,
+            guards: Program::new(equations, &known, &equations.guards)?,
+            projection,
+            states: equations.states.len(),
+            inputs: vec![Lanes::from_f64(0.0); known.len()],
+        }))
+    }
+
+    /// Number of states.
+    pub fn dimension(&self) -> usize {
+        self.states
+    }
+
+    /// Number of guards.
+    pub fn guards(&self) -> usize {
+        self.guards.values.len()
+    }
+
+    /// Sets the free constants of one lane.
+    ///
+    /// # Panics
+    /// If the length is not that of [`Equations::free_constants`].
+    pub fn set_constants(&mut self, lane: usize, constants: &[f64]) {
+        let places = &mut self.inputs[1 + self.states..];
+        assert_eq!(places.len(), constants.len(), "free constants");
+        for (x, constant) in places.iter_mut().zip(constants) {
+            x.0[lane] = *constant;
+        }
+    }
+
+    /// [`crate::Compiled::taylor`] of every lane, and whether the condition of the plan is within [`Plan::LIMIT`] there. What is not finite shows
+    /// in the coefficients.
+    pub fn taylor(
+        &mut self,
+        t: &[f64; LANES],
+        y: &[[f64; LANES]],
+        unit: &[f64; LANES],
+        coefficients: &mut [[f64; LANES]],
+    ) -> [bool; LANES] {
+        self.load(t, y);
+        let orders = coefficients.len() / y.len();
+        if self.workspace.order() != orders - 1 {
+            self.workspace = self.series.workspace(orders - 1);
+        }
+        self.series.expand(&self.inputs, Lanes(*unit), &mut self.workspace, 1, &mut |_, _| {});
+        for ((i, y), row) in y.iter().enumerate().zip(coefficients.chunks_exact_mut(orders)) {
+            match self.series.input(1 + i, &self.workspace) {
+                Some(series) => row.iter_mut().zip(series).for_each(|(c, s)| *c = s.0),
+                None => {
+                    row.fill([0.0; LANES]);
+                    row[0] = *y;
+                }
+            }
+        }
+        match &mut self.condition {
+            None => [true; LANES],
+            Some(condition) => condition.run(&self.inputs)[0].0.map(|x| x <= Plan::LIMIT),
+        }
+    }
+
+    /// [`crate::Compiled::guard_values`] of every lane.
+    pub fn guard_values(&mut self, t: &[f64; LANES], y: &[[f64; LANES]], values: &mut [[f64; LANES]]) {
+        self.load(t, y);
+        for (value, guard) in values.iter_mut().zip(self.guards.run(&self.inputs)) {
+            *value = guard.0;
+        }
+    }
+
+    /// [`crate::Compiled::project`] of every lane; a length that is NaN is that of a lane which was not projected.
+    pub fn project(&mut self, t: &[f64; LANES], y: &mut [[f64; LANES]]) -> [f64; LANES] {
+        self.load(t, y);
+        let Some(projection) = &mut self.projection else { return [0.0; LANES] };
+        projection.project(&mut self.inputs, y)
+    }
+
+    fn load(&mut self, t: &[f64; LANES], y: &[[f64; LANES]]) {
+        self.inputs[0] = Lanes(*t);
+        for (x, y) in self.inputs[1..].iter_mut().zip(y) {
+            *x = Lanes(*y);
+        }
+    }
+}
+
+/// The Newton step of [`crate::ConstraintProjection`], its linear equations eliminated beforehand.
+#[derive(Clone)]
+struct Projection {
+    /// Outputs: `δv`, `f`, then the condition.
+    program: Program<Lanes>,
+    places: Vec<usize>,
+    constraints: usize,
+}
+
+impl Projection {
+    fn new(equations: &Equations, point: &[f64]) -> Result<Result<Option<Self>, String>, CompileError> {
+        let Some(projection) = &equations.projection else { return Ok(Ok(None)) };
+        let mut step = equations.clone();
+        let g = &step.graph;
+        let fresh = |name: &str, count: usize| -> Vec<Symbol> {
+            (0..count).map(|i| fresh_symbol(g, &format!("{name}_{i}"))).collect()
+        };
+        let (n, h) = (projection.velocities.len(), projection.constraints.len());
+        let (change, multipliers) = (fresh("change", n), fresh("multiplier", h));
+        let rows = (0..n).map(|i| {
+            let inertia = (0..n).map(|j| g.mul(projection.metric[(i, j)], g.variable(change[j])));
+            let reaction = (0..h).map(|k| g.mul(projection.jacobian[(k, i)], g.variable(multipliers[k])));
+            g.sum(&inertia.chain(reaction).collect::<Vec<_>>())
+        });
+        let constraints = (0..h).map(|k| {
+            let moved = (0..n).map(|j| g.mul(projection.jacobian[(k, j)], g.variable(change[j])));
+            g.sum(&moved.chain([projection.constraints[k]]).collect::<Vec<_>>())
+        });
+        let residuals = rows.chain(constraints).collect::<Vec<_>>();
+        let unknowns = [&change[..], &multipliers].concat();
+        let regular = "constraint Jacobian of full row rank, metric regular on its kernel";
+        step.blocks = vec![Block { unknowns, residuals, guess: Vec::new(), regular }];
+        let wanted = g.variables(&change);
+        let place = |v: &Symbol| equations.states.iter().position(|y| y.symbol == *v);
+        let places: Vec<usize> = projection.velocities.iter().filter_map(place).collect();
+        for state in &mut step.states {
+            state.rate = step.graph.zero();
+        }
+        for (&place, &change) in places.iter().zip(&wanted) {
+            step.states[place].rate = change;
+        }
+        let plan = Plan::choose(&step, Some(point))?;
+        if !plan.left.is_empty() {
+            return Ok(Err(format!("not in lanes: the projection has {}", plan.why.join("; "))));
+        }
+        let known = equations.known_symbols();
+        let outputs = [&wanted[..], &projection.constraints, plan.condition.as_slice()].concat();
+        let program = Program::by_way_of(&step, &plan.all_definitions(&step), &known, &outputs)?;
+        Ok(Ok(Some(Projection { program, places, constraints: h })))
+    }
+
+    /// `inputs` holds `t, y, constants`. Each lane ends its iteration as if it were alone.
+    fn project(&mut self, inputs: &mut [Lanes], y: &mut [[f64; LANES]]) -> [f64; LANES] {
+        let n = self.places.len();
+        let mut moved = vec![[0.0; LANES]; n];
+        let mut under_way = [true; LANES];
+        for _ in 0..STEPS {
+            let values = self.program.run(inputs);
+            let (change, rest) = values.split_at(n);
+            let (f, condition) = rest.split_at(self.constraints);
+            let (mut step, mut speed) = ([0.0_f64; LANES], [0.0_f64; LANES]);
+            for l in 0..LANES {
+                under_way[l] &= !f.iter().all(|f| f.0[l] == 0.0);
+                if under_way[l] && condition.iter().any(|c| c.0[l].is_nan() || c.0[l] > Plan::LIMIT) {
+                    moved[0][l] = f64::NAN;
+                    under_way[l] = false;
+                }
+            }
+            for (&place, (change, moved)) in self.places.iter().zip(change.iter().zip(&mut moved)) {
+                for l in 0..LANES {
+                    let change = if under_way[l] { change.0[l] } else { 0.0 };
+                    y[place][l] += change;
+                    moved[l] += change;
+                    step[l] = step[l].max(change.abs());
+                    speed[l] = speed[l].max(y[place][l].abs());
+                }
+                inputs[1 + place] = Lanes(y[place]);
+            }
+            for l in 0..LANES {
+                under_way[l] &= step[l] > LIMIT * speed[l];
+            }
+            if !under_way.contains(&true) {
+                break;
+            }
+        }
+        let mut squares = [0.0; LANES];
+        for row in &moved {
+            for l in 0..LANES {
+                squares[l] += row[l] * row[l];
+            }
+        }
+        squares.map(f64::sqrt)
+    }
+}

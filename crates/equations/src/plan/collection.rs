@@ -1,0 +1,57 @@
+//! Common factors drawn out of the definitions and rates of a plan: `a x + b x = (a + b) x`.
+//!
+//! Elimination leaves sums of products whose terms may meet and cancel; only when nothing more does are they written shorter. What is drawn out of
+//! one sum may have been shared with another, so that instructions are counted.
+
+use std::collections::HashSet;
+
+use symbolic::{CompileError, Expr, Symbol};
+
+use super::Plan;
+use crate::equations::Equations;
+
+/// One part in so many of the instructions has to be saved: under that it is as likely that Taylor series take more products.
+const WORTH_WHILE: usize = 10;
+
+/// Definitions and rates of a plan, written shorter.
+#[derive(Clone, Debug)]
+pub struct Collected {
+    /// All definitions, those of the equations and those of the plan, each after what it contains.
+    pub definitions: Vec<(Symbol, Expr)>,
+    /// `ẏ`.
+    pub rates: Vec<Expr>,
+}
+
+impl Plan {
+    /// The rates as they are evaluated.
+    pub(crate) fn rates(&self, equations: &Equations) -> Vec<Expr> {
+        match &self.collected {
+            Some(collected) => collected.rates.clone(),
+            None => equations.states.iter().map(|y| y.rate).collect(),
+        }
+    }
+}
+
+/// What is shorter than `plan` as it is, if anything is.
+pub(crate) fn collected(equations: &Equations, plan: &Plan) -> Result<Option<Collected>, CompileError> {
+    let g = &equations.graph;
+    let (definitions, rates) = (plan.all_definitions(equations), plan.rates(equations));
+    let all: Vec<Expr> = definitions.iter().map(|d| d.1).chain(rates.iter().copied()).collect();
+    let parameters: HashSet<Symbol> = equations.parameters.keys().copied().collect();
+    let mut shorter = g.collected(&all, &|s| parameters.contains(&s));
+    if shorter == all {
+        return Ok(None);
+    }
+    let after = Collected {
+        rates: shorter.split_off(definitions.len()),
+        definitions: definitions.iter().map(|d| d.0).zip(shorter).collect(),
+    };
+    let mut inputs = equations.known_symbols();
+    inputs.extend(plan.left.iter().flat_map(|&k| equations.blocks[k].unknowns.iter().copied()));
+    let length = |definitions: &[(Symbol, Expr)], rates: &[Expr]| {
+        let outputs = [rates, plan.condition.as_slice()].concat();
+        equations.tape_by(definitions, &inputs, &outputs).map(|tape| tape.len())
+    };
+    let (long, short) = (length(&definitions, &rates)?, length(&after.definitions, &after.rates)?);
+    Ok((short * WORTH_WHILE <= long * (WORTH_WHILE - 1)).then_some(after))
+}

@@ -1,0 +1,82 @@
+//! Taylor coefficients of a motion, from its equations.
+
+use symbolic::{CompileError, Expr, SeriesInput, SeriesTape, SeriesWorkspace, Symbol};
+
+use crate::equations::Equations;
+use crate::instant::CompiledBlock;
+use crate::plan::Plan;
+
+/// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan, blocks that are left in it included.
+#[derive(Clone)]
+pub(crate) struct Series {
+    tape: SeriesTape,
+    workspace: SeriesWorkspace<f64>,
+    /// Blocks that are solved numerically.
+    left: Vec<usize>,
+    /// Places in `(t, y, constants, z)` of what the tape takes.
+    places: Vec<usize>,
+    inputs: Vec<f64>,
+}
+
+impl Series {
+    pub(crate) fn new(equations: &Equations, plan: &Plan) -> Result<Self, CompileError> {
+        let places = plan.places(equations);
+        let tape = Series::tape(equations, plan)?;
+        let (workspace, inputs) = (tape.workspace(1), vec![0.0; places.len()]);
+        Ok(Series { tape, workspace, left: plan.left.clone(), places, inputs })
+    }
+
+    pub(crate) fn work(&self) -> (usize, usize) {
+        self.tape.work()
+    }
+
+    /// Takes `t, y`, constants and the unknowns of blocks that are left.
+    pub(crate) fn tape(equations: &Equations, plan: &Plan) -> Result<SeriesTape, CompileError> {
+        let steady = |symbol: Symbol| (symbol, SeriesInput::Steady);
+        let mut inputs = vec![(equations.time, SeriesInput::Time)];
+        inputs.extend(equations.states.iter().enumerate().map(|(i, y)| (y.symbol, SeriesInput::State(i))));
+        inputs.extend(equations.constant_symbols().into_iter().map(steady));
+        let mut residuals: Vec<Vec<Expr>> = Vec::new();
+        for (k, block) in equations.blocks.iter().enumerate() {
+            if plan.left.contains(&k) {
+                inputs.extend(block.unknowns.iter().map(|&z| (z, SeriesInput::Unknown(residuals.len()))));
+                residuals.push(block.residuals.clone());
+            }
+        }
+        let (rates, definitions) = (plan.rates(equations), plan.all_definitions(equations));
+        equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)
+    }
+
+    /// Expands to `order`, from `(t, y, constants, z)`, where `z` solves the blocks that are left and their factors are at hand.
+    pub(crate) fn expand(&mut self, values: &[f64], unit: f64, order: usize, blocks: &mut [CompiledBlock]) {
+        if self.workspace.order() != order {
+            self.workspace = self.tape.workspace(order);
+        }
+        for (x, &place) in self.inputs.iter_mut().zip(&self.places) {
+            *x = values[place];
+        }
+        let left = &self.left;
+        // The factors of a Newton iteration are those of the point before the last.
+        let sweeps = if left.iter().any(|&k| !blocks[k].linear) { 2 } else { 1 };
+        self.tape.expand(&self.inputs, unit, &mut self.workspace, sweeps, &mut |block, residual| {
+            for x in residual.iter_mut() {
+                *x = -*x;
+            }
+            blocks[left[block]].factors.solve(residual);
+        });
+    }
+
+    /// The coefficients of the states, component after component, from the last expansion.
+    pub(crate) fn write(&self, y: &[f64], coefficients: &mut [f64]) {
+        let orders = coefficients.len() / y.len();
+        for ((i, y), row) in y.iter().enumerate().zip(coefficients.chunks_exact_mut(orders)) {
+            match self.tape.input(1 + i, &self.workspace) {
+                Some(series) => row.copy_from_slice(series),
+                None => {
+                    row.fill(0.0);
+                    row[0] = *y;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Rates and outputs of a plan, as straight-line programs.
+
+use symbolic::{CompileError, Expr, Symbol};
+
+use crate::equations::Equations;
+use crate::instant::Program;
+use crate::plan::Plan;
+
+/// Compiled definitions: rates and outputs each by a tape of their own, so that neither computes what only the other needs.
+#[derive(Clone)]
+pub(crate) struct Straight {
+    rates: Program,
+    outputs: Program,
+    watched: bool,
+    /// Places in `(t, y, constants, z)` of what the tapes take.
+    places: Vec<usize>,
+    inputs: Vec<f64>,
+}
+
+impl Straight {
+    /// `all`: symbols of `t, y`, the constants and the unknowns.
+    pub(crate) fn new(
+        equations: &Equations,
+        plan: &Plan,
+        all: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Self, CompileError> {
+        let places = plan.places(equations);
+        let inputs: Vec<Symbol> = places.iter().map(|&i| all[i]).collect();
+        let definitions = plan.all_definitions(equations);
+        let program = |wanted: &[Expr]| {
+            let condition = plan.condition.as_slice();
+            Program::by_way_of(equations, &definitions, &inputs, &[wanted, condition].concat())
+        };
+        Ok(Straight {
+            rates: program(&plan.rates(equations))?,
+            outputs: program(outputs)?,
+            watched: plan.condition.is_some(),
+            inputs: vec![0.0; places.len()],
+            places,
+        })
+    }
+
+    /// Whether the definitions can be trusted at these values; where they always can, that costs nothing.
+    pub(crate) fn is_trusted(&mut self, values: &[f64]) -> bool {
+        !self.watched || self.rates(values).is_some()
+    }
+
+    /// Number of instructions of one evaluation of the rates.
+    pub(crate) fn len(&self) -> usize {
+        self.rates.len()
+    }
+
+    /// The rates; `None` where they cannot be trusted.
+    pub(crate) fn rates(&mut self, values: &[f64]) -> Option<&[f64]> {
+        let inputs = gather(&mut self.inputs, &self.places, values);
+        trusted(self.rates.run(inputs), self.watched)
+    }
+
+    /// As [`Straight::rates`].
+    pub(crate) fn outputs(&mut self, values: &[f64]) -> Option<&[f64]> {
+        let inputs = gather(&mut self.inputs, &self.places, values);
+        trusted(self.outputs.run(inputs), self.watched)
+    }
+}
+
+/// What the tapes take; nothing is copied where it stands together.
+fn gather<'a>(room: &'a mut [f64], places: &[usize], values: &'a [f64]) -> &'a [f64] {
+    let count = places.len();
+    if places.last().is_none_or(|&last| last < count) {
+        return &values[..count];
+    }
+    for (x, &place) in room.iter_mut().zip(places) {
+        *x = values[place];
+    }
+    room
+}
+
+fn trusted(values: &[f64], watched: bool) -> Option<&[f64]> {
+    let (wanted, condition) = values.split_at(values.len() - usize::from(watched));
+    let safe = condition.iter().all(|&x| x <= Plan::LIMIT) && wanted.iter().all(|x| x.is_finite());
+    safe.then_some(wanted)
+}

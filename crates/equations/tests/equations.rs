@@ -1,0 +1,317 @@
+//! Equations written by hand: what is left out, how an instant is solved, and its exact derivatives.
+
+use std::collections::HashMap;
+
+use equations::{Block, Compiled, Equations, EvaluationFailure, FreeConstant, Named, Plan, Role, StateVariable};
+use mechanics::System;
+use symbolic::{Expr, Graph};
+
+const REGULAR: &str = "whatever the test needs";
+
+fn parse(g: &Graph, text: &str) -> Expr {
+    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).unwrap_or_else(|e| panic!("{text}: {e}"))
+}
+
+/// States as (name, role, rate), blocks as (unknowns, residuals); coordinates and velocities as they are.
+fn equations(
+    parameters: &[(&str, f64)],
+    states: &[(&str, Role, &str)],
+    blocks: &[(&[&str], &[&str])],
+    coordinates: &[&str],
+    velocities: &[&str],
+) -> Equations {
+    let system = System::new(Graph::new(), &[]);
+    let mut equations = Equations::new("by hand", &system);
+    let g = system.graph;
+    equations.parameters = parameters.iter().map(|&(name, x)| (g.symbol(name), x)).collect::<HashMap<_, _>>();
+    for &(name, role, rate) in states {
+        let symbol = g.symbol(name);
+        equations.states.push(StateVariable { symbol, role, rate: parse(&g, rate), start: g.variable(symbol) });
+    }
+    for (unknowns, residuals) in blocks {
+        equations.blocks.push(Block {
+            unknowns: unknowns.iter().map(|z| g.symbol(z)).collect(),
+            residuals: residuals.iter().map(|r| parse(&g, r)).collect(),
+            guess: Vec::new(),
+            regular: REGULAR,
+        });
+    }
+    equations.coordinates = coordinates.iter().map(|e| parse(&g, e)).collect();
+    equations.velocities = velocities.iter().map(|e| parse(&g, e)).collect();
+    equations.graph = g;
+    equations
+}
+
+fn names(equations: &Equations, symbols: &[symbolic::Symbol]) -> Vec<String> {
+    symbols.iter().map(|&s| equations.graph.name(s)).collect()
+}
+
+/// Rates by the solve of the instant.
+fn rates(equations: &Equations, y: &[f64]) -> Vec<f64> {
+    let mut rates = vec![0.0; y.len()];
+    Compiled::new(equations).unwrap().rates(0.0, y, &mut rates).unwrap_or_else(|e| panic!("{e}"));
+    rates
+}
+
+const PLANE: [(&str, Role, &str); 6] = [
+    ("x", Role::Position, "vx"),
+    ("y", Role::Position, "vy"),
+    ("z", Role::Position, "vz"),
+    ("vx", Role::Velocity, "ax"),
+    ("vy", Role::Velocity, "ay"),
+    ("vz", Role::Velocity, "az"),
+];
+
+#[test]
+fn independent_parts_of_a_block_are_solved_apart() {
+    let residuals: [&str; 3] = ["(1 + x^2)*ax + x*az - y", "(2 + y^2)*ay + vx", "x*ax + (3 + x)*az + z"];
+    let whole = equations(&[], &PLANE, &[(&["ax", "ay", "az"], &residuals)], &["x", "y", "z"], &["vx", "vy", "vz"]);
+    let split = whole.clone().leave_out_unneeded();
+    let parts: Vec<Vec<String>> = split.blocks.iter().map(|b| names(&split, &b.unknowns)).collect();
+    assert_eq!(parts, [vec!["ax", "az"], vec!["ay"]]);
+    assert!(split.blocks.iter().all(|b| b.unknowns.len() == b.residuals.len() && b.regular == REGULAR));
+    let y = [0.3, -0.4, 0.9, 1.1, 0.2, -0.7];
+    for (one, two) in rates(&whole, &y).iter().zip(rates(&split, &y)) {
+        assert!((one - two).abs() < 1e-14, "{one} {two}");
+    }
+}
+
+#[test]
+fn a_block_that_cannot_be_split_evenly_is_kept_and_refused() {
+    let residuals: [&str; 2] = ["ax - y", "ax + y"];
+    let states = [("x", Role::Position, "vx"), ("vx", Role::Velocity, "ax + ay"), ("y", Role::Position, "1")];
+    let kept = equations(&[], &states, &[(&["ax", "ay"], &residuals)], &["x"], &["vx"]).leave_out_unneeded();
+    assert_eq!(kept.blocks.len(), 1);
+    let failure = Compiled::new(&kept).unwrap().rates(0.0, &[1.0; 3], &mut [0.0; 3]).unwrap_err();
+    assert!(matches!(failure, EvaluationFailure::Singular { regular: REGULAR, .. }), "{failure}");
+}
+
+#[test]
+fn a_single_unknown_with_a_constant_coefficient_is_solved_on_the_spot() {
+    let states = [("x", Role::Position, "vx"), ("vx", Role::Velocity, "ax")];
+    let parameters = [("m", 2.0), ("k", 3.0)];
+    let mut spring = equations(&parameters, &states, &[(&["ax"], &["m*ax + k*x"])], &["x"], &["vx"]);
+    let power = parse(&spring.graph, "vx*ax");
+    spring.multipliers.push(Named { name: "power".into(), expression: power });
+    let solved = spring.leave_out_unneeded();
+    assert!(solved.blocks.is_empty() && solved.unknowns().is_empty());
+    assert_eq!(rates(&solved, &[0.5, 7.0]), [7.0, -0.75]);
+    let outputs = Compiled::new(&solved).unwrap().outputs(0.0, &[0.5, 7.0]).unwrap();
+    assert_eq!(outputs.multipliers, [-5.25]);
+    // a coefficient that moves, or is zero, stays with the solve that can refuse it
+    for residual in ["m*x*ax + k", "(m - 2)*ax + k*x", "m*ax^3 + k*x"] {
+        let kept = equations(&parameters, &states, &[(&["ax"], &[residual])], &["x"], &["vx"]).leave_out_unneeded();
+        assert_eq!(kept.blocks.len(), 1, "{residual}");
+    }
+}
+
+#[test]
+fn quadratures_are_named_and_unneeded_states_dropped() {
+    let states = [
+        ("x", Role::Position, "vx"),
+        ("s", Role::Memory, "vx^2"),
+        ("vx", Role::Velocity, "ax"),
+        ("P", Role::MemoryCostate, "x"),
+    ];
+    let blocks: [(&[&str], &[&str]); 1] = [(&["ax"], &["(1 + vx^2)*ax + vx"])];
+    let mut with_invariant = equations(&[], &states, &blocks, &["x", "s"], &["vx", "vx^2"]);
+    let costate = parse(&with_invariant.graph, "P - x");
+    with_invariant.invariants.push(Named { name: "of the costate".into(), expression: costate });
+    let less = with_invariant.leave_out_unneeded();
+    assert_eq!(names(&less, &less.state_symbols()), ["x", "s", "vx"]);
+    assert!(less.invariants.is_empty(), "an invariant of a state that is gone");
+    let about = |word: &str| -> Vec<String> {
+        let found = less.left_out.iter().find(|l| l.words.contains(word));
+        names(&less, &found.unwrap_or_else(|| panic!("nothing about {word}: {:?}", less.left_out)).variables)
+    };
+    assert_eq!(about("quadrature"), ["x", "s"]);
+    assert_eq!(about("nothing that is asked for"), ["P"]);
+    // in an equation of motion: no quadrature
+    let blocks: [(&[&str], &[&str]); 1] = [(&["ax"], &["(1 + vx^2)*ax + x"])];
+    let kept = equations(&[], &states[..3], &blocks, &["x", "s"], &["vx", "vx^2"]).leave_out_unneeded();
+    let named: Vec<String> = kept.left_out.iter().flat_map(|l| names(&kept, &l.variables)).collect();
+    assert_eq!(named, ["s"]);
+}
+
+#[test]
+fn dependent_constraints_make_the_instant_singular() {
+    let residuals = |second: &'static str| ["ax - l1 - 2*l2 - 1", "ay - y*l1 - 2*y*l2", "ax + y*ay", second];
+    let states = &PLANE[..2].iter().chain(&PLANE[3..5]).copied().collect::<Vec<_>>();
+    let unknowns: [&str; 4] = ["ax", "ay", "l1", "l2"];
+    let twice = equations(&[], states, &[(&unknowns, &residuals("2*ax + 2*y*ay"))], &["x", "y"], &["vx", "vy"]);
+    let mut out = [0.0; 4];
+    let failure = Compiled::new(&twice).unwrap().rates(0.0, &[0.3, 0.4, 0.5, 0.6], &mut out).unwrap_err();
+    let EvaluationFailure::Singular { reciprocal, limit, regular } = failure.clone() else { panic!("{failure}") };
+    assert!(reciprocal < limit && regular == REGULAR, "{failure}");
+    assert!(failure.to_string().ends_with(&format!("needed: {REGULAR}")), "{failure}");
+}
+
+/// Appell and Hamel's system in costate form, on a slope `a + b x` that grows.
+fn appell_hamel() -> Equations {
+    let states = [
+        ("x", Role::Position, "vx"),
+        ("y", Role::Position, "vy"),
+        ("z", Role::Position, "vz"),
+        ("px", Role::Costate, "-2*mu*b*(a + b*x)*(vx^2 + vy^2)"),
+        ("py", Role::Costate, "0"),
+        ("pz", Role::Costate, "-m*g"),
+    ];
+    let residuals: [&str; 4] = [
+        "px - m*vx + 2*mu*(a + b*x)^2*vx",
+        "py - m*vy + 2*mu*(a + b*x)^2*vy",
+        "pz - m*vz - 2*mu*vz",
+        "vz^2 - (a + b*x)^2*(vx^2 + vy^2)",
+    ];
+    let parameters = [("m", 1.3), ("g", 9.81), ("a", 0.5), ("b", 0.3)];
+    let blocks: [(&[&str], &[&str]); 1] = [(&["vx", "vy", "vz", "mu"], &residuals)];
+    let mut equations = equations(&parameters, &states, &blocks, &["x", "y", "z"], &["vx", "vy", "vz"]);
+    let symbol = equations.graph.symbol("mu0");
+    equations.free_constants.push(FreeConstant { symbol, natural: None, memory: None });
+    equations
+}
+
+#[test]
+fn the_jacobian_of_a_nonlinear_block_is_that_of_central_differences() {
+    let equations = appell_hamel();
+    let mut compiled = Compiled::new(&equations).unwrap().with_jacobian(&equations).unwrap();
+    let (m, a, mu) = (1.3, 0.5 + 0.3 * 0.2, 0.11);
+    let v: [f64; 3] = [3.0, 4.0, 5.0 * a];
+    let momenta = [0, 1].map(|i: usize| m * v[i] - 2.0 * mu * a * a * v[i]);
+    let y = [0.2, -0.1, 0.4, momenta[0], momenta[1], (m + 2.0 * mu) * v[2]];
+    // from nearby the root is found, and it is this one
+    compiled.set_guess(&[2.9, 4.2, 2.6, 0.0]);
+    let velocities = compiled.outputs(0.0, &y).unwrap().velocities;
+    for (found, expected) in velocities.iter().zip(v) {
+        assert!((found - expected).abs() < 1e-12, "{velocities:?}");
+    }
+    let n = y.len();
+    let mut exact = vec![0.0; n * n];
+    compiled.jacobian(0.0, &y, &mut exact).unwrap();
+    let largest = exact.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+    let step = 1e-5;
+    let mut worst = 0.0_f64;
+    for column in 0..n {
+        let mut side = |h: f64| {
+            let mut moved = y;
+            moved[column] += h;
+            let mut rates = vec![0.0; n];
+            compiled.rates(0.0, &moved, &mut rates).unwrap();
+            rates
+        };
+        let (plus, minus) = (side(step), side(-step));
+        for row in 0..n {
+            let difference = (plus[row] - minus[row]) / (2.0 * step);
+            worst = worst.max((difference - exact[row * n + column]).abs() / largest);
+        }
+    }
+    assert!(worst < 1e-9, "{worst:.2e}");
+    // every state but y and z has a say
+    let counts = |column: usize| (0..n).any(|row| exact[row * n + column].abs() > 1e-3 * largest);
+    assert_eq!((0..n).map(counts).collect::<Vec<_>>(), [true, false, false, true, true, true]);
+}
+
+#[test]
+fn newton_that_finds_no_root_says_so() {
+    let states = [("x", Role::Position, "vx")];
+    let none = equations(&[], &states, &[(&["vx"], &["vx^2 + 1 + x^2"])], &["x"], &["vx"]);
+    let mut compiled = Compiled::new(&none).unwrap();
+    compiled.set_guess(&[0.7]);
+    let failure = compiled.rates(0.0, &[0.1], &mut [0.0]).unwrap_err();
+    assert!(matches!(failure, EvaluationFailure::NotConverged { step, limit, .. } if step > limit), "{failure}");
+}
+
+/// `v² = x`: two roots. From where it is solved decides which one; [`Compiled::settle`] moves that place along, [`Compiled::rates`] does not.
+#[test]
+fn a_block_with_two_roots_keeps_to_the_one_it_was_settled_on() {
+    let states = [("x", Role::Position, "vx")];
+    let square = equations(&[], &states, &[(&["vx"], &["vx^2 - x"])], &["x"], &["vx"]);
+    let mut compiled = Compiled::new(&square).unwrap();
+    assert!(compiled.needs_guess());
+    let mut rate = [0.0];
+    for (guess, sign) in [(0.9, 1.0), (-1.1, -1.0)] {
+        compiled.set_guess(&[guess]);
+        for x in [1.0, 1.3, 1.7, 2.2] {
+            let settled = compiled.settle(0.0, &[x]).unwrap()[0];
+            assert!((settled - sign * x.sqrt()).abs() < 1e-13);
+        }
+        // wherever the rates were asked for in between, the next ones start from 2.2
+        compiled.rates(0.0, &[1.4], &mut rate).unwrap();
+        compiled.rates(0.0, &[2.9], &mut rate).unwrap();
+        assert!((rate[0] - sign * 2.9_f64.sqrt()).abs() < 1e-13);
+    }
+    // too far to be sure of the root: refused, not guessed
+    compiled.set_guess(&[0.05]);
+    let failure = compiled.rates(0.0, &[-0.01], &mut rate).unwrap_err();
+    assert!(matches!(failure, EvaluationFailure::NotConverged { .. }), "{failure}");
+}
+
+/// `[x, e; e, −(3 + y²)] (vx, ay) = (y, 1)` with `e = 2 + x`, eliminated by way of the pivot `x`, which goes through zero where the matrix is regular.
+#[test]
+fn where_a_pivot_of_the_form_is_zero_the_plain_form_takes_over() {
+    let states = [("x", Role::Position, "vx"), ("y", Role::Position, "vy"), ("vy", Role::Velocity, "ay")];
+    let residuals: [&str; 2] = ["x*vx + (2 + x)*ay - y", "(2 + x)*vx - (3 + y^2)*ay - 1"];
+    let blocks: [(&[&str], &[&str]); 1] = [(&["vx", "ay"], &residuals)];
+    let equations = equations(&[], &states, &blocks, &["x", "y"], &["vx", "vy"]);
+    let g = &equations.graph;
+    let define = |name: &str, text: &str| (g.symbol(name), parse(g, text));
+    let plan = Plan {
+        definitions: vec![
+            define("l", "(2 + x)/x"),
+            define("ay", "(1 - l*y)/(-(3 + y^2) - l*(2 + x))"),
+            define("vx", "(y - (2 + x)*ay)/x"),
+        ],
+        condition: Some(parse(g, "l^2")),
+        ..Plan::default()
+    };
+    let mut chosen = Compiled::with_plan(&equations, &plan).unwrap();
+    let mut plain = Compiled::plain(&equations).unwrap();
+    let mut worst = 0.0_f64;
+    // evenly, and ever closer to zero from both sides
+    let near = (1..=300).flat_map(|k| [1.0, -1.0].map(|s| s * 10.0_f64.powi(-k)));
+    for x in (-50..=50).map(|i| 0.01 * f64::from(i)).chain(near) {
+        let y = [x, 0.7, -0.2];
+        let mut rates = [[0.0; 3]; 2];
+        chosen.rates(0.0, &y, &mut rates[0]).unwrap();
+        plain.rates(0.0, &y, &mut rates[1]).unwrap();
+        worst = rates[0].iter().zip(&rates[1]).fold(worst, |a, (one, two)| a.max((one - two).abs()));
+        assert_eq!(chosen.outputs(0.0, &y).unwrap().velocities.len(), 2);
+    }
+    assert!(worst < 1e-12, "{worst:.1e}");
+    // |l| > 1000 where |x| < 0.002
+    assert_eq!(chosen.fallbacks(), 1 + 2 * 298);
+    // without the condition the same plan is wrong
+    let mut careless = Compiled::with_plan(&equations, &Plan { condition: None, ..plan }).unwrap();
+    let mut rates = [[0.0; 3]; 2];
+    careless.rates(0.0, &[1e-13, 0.7, -0.2], &mut rates[0]).unwrap();
+    plain.rates(0.0, &[1e-13, 0.7, -0.2], &mut rates[1]).unwrap();
+    assert!((rates[0][0] - rates[1][0]).abs() > 1e-6);
+}
+
+/// Six coupled unknowns in a chain: the elimination is as long as the chain, whatever the chosen pivots.
+#[test]
+fn a_chain_is_eliminated_in_definitions_and_dependent_rows_are_left_to_be_refused() {
+    let states = [("x", Role::Position, "z1"), ("y", Role::Position, "z6")];
+    let unknowns: [&str; 6] = ["z1", "z2", "z3", "z4", "z5", "z6"];
+    let residuals = [
+        "(3 + x^2)*z1 + y*z2 - 1",
+        "y*z1 + (3 + y^2)*z2 + x*z3",
+        "x*z2 + 4*z3 - z4 - y",
+        "5*z4 - z3 + x*z5",
+        "x*z4 + (3 + x^2)*z5 - z6",
+        "7*z6 - z5 - x",
+    ];
+    let chain = equations(&[], &states, &[(&unknowns, &residuals)], &["x", "y"], &["z1", "z6"]);
+    let plan = Plan::choose(&chain, Some(&[0.0, 0.4, -0.3])).unwrap();
+    assert!(plan.left.is_empty() && plan.why[0].contains("eliminated beforehand"), "{:?}", plan.why);
+    let y = [0.9, 0.8];
+    let (mut one, mut two) = ([0.0; 2], [0.0; 2]);
+    Compiled::with_plan(&chain, &plan).unwrap().rates(0.0, &y, &mut one).unwrap();
+    Compiled::plain(&chain).unwrap().rates(0.0, &y, &mut two).unwrap();
+    assert!((one[0] - two[0]).abs() < 1e-15 && (one[1] - two[1]).abs() < 1e-15, "{one:?} {two:?}");
+    let twice =
+        equations(&[], &states, &[(&["z1", "z6"], &["x*z1 + y*z6 - 1", "2*x*z1 + 2*y*z6 - 2"])], &["x"], &["z1"]);
+    let plan = Plan::choose(&twice, Some(&[0.0, 0.4, -0.3])).unwrap();
+    assert_eq!(plan.left, [0]);
+    let failure = Compiled::with_plan(&twice, &plan).unwrap().rates(0.0, &y, &mut one).unwrap_err();
+    assert!(matches!(failure, EvaluationFailure::Singular { .. }), "{failure}");
+}

@@ -1,0 +1,124 @@
+//! The columns of `S`, and what they make of a mass matrix and of a force.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use symbolic::{Expr, Graph, Symbol};
+
+use super::QuasiVelocities;
+use equations::Definitions;
+
+/// Nodes of an expression that gets no name of its own.
+const SHORT: usize = 8;
+/// The same for the two sides of reduced equations.
+const SIDE: usize = 24;
+
+/// A sparse vector.
+type Sparse = BTreeMap<usize, Expr>;
+
+/// `S(q, t)`, n×(n − h), sparse: one column a quasi-velocity, in which the entries stand by coordinate.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    columns: Vec<Sparse>,
+}
+
+impl QuasiVelocities {
+    /// The columns of `S`, by way of `definitions`, which have [`QuasiVelocities::coefficients`] in them already.
+    pub fn columns(&self, g: &Graph, definitions: &mut Definitions) -> Columns {
+        let mut columns = vec![Sparse::new(); self.free.len()];
+        // row by row: which column has what entry
+        let mut rows: HashMap<Symbol, Sparse> = HashMap::new();
+        for (column, w) in self.free.iter().enumerate() {
+            rows.insert(w.symbol, Sparse::from([(column, g.one())]));
+            if let Some(i) = w.coordinate {
+                columns[column].insert(i, g.one());
+            }
+        }
+        for d in &self.dependent {
+            let mut entries: BTreeMap<usize, Vec<Expr>> = BTreeMap::new();
+            for (s, coefficient) in &d.terms {
+                for (&column, &e) in &rows[s] {
+                    entries.entry(column).or_default().push(g.mul(*coefficient, e));
+                }
+            }
+            let sum = |terms: Vec<Expr>| g.sum(&terms);
+            let entries =
+                entries.into_iter().map(|(column, terms)| (column, sum(terms))).filter(|(_, e)| !g.is_zero(*e));
+            let row: Sparse = entries.map(|(column, e)| (column, definitions.short(g, "S", SHORT, e))).collect();
+            if let Some(i) = d.coordinate {
+                for (&column, &e) in &row {
+                    columns[column].insert(i, e);
+                }
+            }
+            rows.insert(d.symbol, row);
+        }
+        Columns { columns }
+    }
+}
+
+impl Columns {
+    /// `SᵀMS` for a symmetric `M`, given by its rows.
+    pub fn reduced(&self, g: &Graph, mass: &[BTreeMap<usize, Expr>], definitions: &mut Definitions) -> Vec<Vec<Expr>> {
+        let products: Vec<Sparse> = self
+            .columns
+            .iter()
+            .map(|column| {
+                multiply(g, mass, column).into_iter().map(|(i, e)| (i, definitions.short(g, "m", SHORT, e))).collect()
+            })
+            .collect();
+        let count = self.columns.len();
+        let mut reduced = vec![vec![g.zero(); count]; count];
+        for (i, column) in self.columns.iter().enumerate() {
+            for (j, product) in products.iter().enumerate().take(i + 1) {
+                let entry = definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, column, product)));
+                (reduced[i][j], reduced[j][i]) = (entry, entry);
+            }
+        }
+        reduced
+    }
+
+    /// `Sᵀ force`, with an entry of `force` for each coordinate.
+    pub fn projected(&self, g: &Graph, force: &[Expr], definitions: &mut Definitions) -> Vec<Expr> {
+        let force: Sparse = force.iter().copied().enumerate().collect();
+        let columns = self.columns.iter();
+        columns.map(|column| definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, column, &force)))).collect()
+    }
+
+    /// The same without definitions for the results, for a force that contains unknowns.
+    pub fn projected_whole(&self, g: &Graph, force: &[Expr]) -> Vec<Expr> {
+        let force: Sparse = force.iter().copied().enumerate().collect();
+        self.columns.iter().map(|column| dot(g, column, &force)).collect()
+    }
+}
+
+/// `rows · column`
+fn multiply(g: &Graph, rows: &[Sparse], column: &Sparse) -> Sparse {
+    let mut product = Sparse::new();
+    for &i in &reach(rows, column) {
+        let e = dot(g, &rows[i], column);
+        if !g.is_zero(e) {
+            product.insert(i, e);
+        }
+    }
+    product
+}
+
+/// The rows of a symmetric matrix that meet an entry of `column`.
+fn reach(rows: &[Sparse], column: &Sparse) -> BTreeSet<usize> {
+    column.keys().flat_map(|&j| rows[j].keys().copied()).collect()
+}
+
+/// `Σ aᵢ bᵢ`
+fn dot(g: &Graph, a: &Sparse, b: &Sparse) -> Expr {
+    let terms: Vec<Expr> = a.iter().filter_map(|(i, &x)| Some(g.mul(x, *b.get(i)?))).collect();
+    g.sum(&terms)
+}
+
+/// `e` multiplied out, if that makes it shorter: what the columns of `S` have in common with a force cancels.
+fn multiplied_out(g: &Graph, e: Expr) -> Expr {
+    let size = g.size(&[e]);
+    if size > 4 * SIDE {
+        return e;
+    }
+    let expanded = g.expand(e);
+    if g.size(&[expanded]) < size { expanded } else { e }
+}

@@ -1,0 +1,268 @@
+//! # Chetaev's equations in quasi-velocities
+//!
+//! For constraints linear in the velocities, `A(q, t) v + b(q, t) = 0`, every admissible velocity is
+//!
+//! ```text
+//! v = S(q, t) w + s(q, t) ,      A S = 0 ,   A s + b = 0 ,
+//! ```
+//!
+//! with n − h quasi-velocities `w`. Virtual displacements are `δq = S ε` with `ε` free, so that the principle becomes
+//!
+//! ```text
+//! Sᵀ ( d/dt ∂L/∂v − ∂L/∂q − Q ) = 0 ,      q̇ = S w + s :
+//! ```
+//!
+//! n − h equations without multipliers. With `v̇ = S ẇ + γ`, `γ = Ṡ w + ṡ`, they are
+//!
+//! ```text
+//! SᵀMS ẇ = Sᵀ ( L_q + Q − L_vq v − L_vt − M γ ) .
+//! ```
+//!
+//! The constraint holds in every state `(q, w)`: there is nothing to drift from and nothing to project.
+//!
+//! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and so are its columns, `γ` and the two sides of the equation: each
+//! quantity is a short expression in those before. For a chain of n bodies that is O(n) in all, where `S` put in would be O(n²) or more.
+//!
+//! Where the kinetic energy is seen to be a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, `v` are the
+//! velocities of that frame: `SᵀMS` is then free of how the body is turned, often constant.
+//!
+//! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
+use equations::{
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
+};
+use mechanics::System;
+use symbolic::{Expr, Symbol};
+
+/// The same motion in quasi-velocities; for constraints linear in the velocities.
+pub const REDUCED_CHETAEV: Formulation = Formulation {
+    name: "chetaev-reduced",
+    title: "Chetaev, quasi-velocities",
+    needs_removal: false,
+    starts_multipliers: false,
+    derive: derive_chetaev,
+};
+
+/// Nodes of an expression that gets no name of its own.
+const SHORT: usize = 8;
+
+/// A sparse vector.
+type Sparse = BTreeMap<usize, Expr>;
+
+/// Derives the Chetaev equations with states `(q, w)` and unknowns `ẇ`. Multipliers are not computed: at a state of the motion
+/// they are an output of the equations with multipliers.
+///
+/// # Errors
+/// [`DerivationError::Reduction`] where a constraint is not linear in the velocities, or constraints are dependent.
+///
+/// ```
+/// # let scene = scene::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
+/// let equations = reduction::derive_chetaev(&scene.system, &equations::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].right);
+/// // the speed along the blade, and the turn; x' and y' follow
+/// assert_eq!(line(0), "w_x*cos(phi)");
+/// assert_eq!(line(1), "w_x*sin(phi)");
+/// let balance = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// assert_eq!(balance(2), "phi''");
+/// assert_eq!(balance(3), "w_x' - cos(phi)");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive_chetaev(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    let framed = system.clone();
+    let in_coordinates = in_velocities(system.clone(), None, derivation)?;
+    let Some(frame) = Frame::new(&framed, derivation.start) else { return Ok(in_coordinates) };
+    let in_frame = in_velocities(framed, Some(frame), derivation)?;
+    if matrix_moves(&in_coordinates) && !matrix_moves(&in_frame) {
+        return Ok(in_frame);
+    }
+    Ok(cheapest(vec![in_coordinates, in_frame]))
+}
+
+/// The equations in quasi-velocities of coordinates, or of a frame.
+fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    let g = &system.graph;
+    let quasi = QuasiVelocities::new(&system, frame.as_ref(), derivation.start)
+        .map_err(|error| DerivationError::Reduction { formulation: REDUCED_CHETAEV.name, error })?;
+    let mut equations = Equations::new(REDUCED_CHETAEV.name, &system);
+    let mut definitions = quasi.coefficients.clone();
+    let dependent = quasi.dependent.iter().map(|d| {
+        let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
+        (d.symbol, g.sum(&terms))
+    });
+    for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
+        definitions.define(symbol, velocity);
+        let left = g.variable(symbol);
+        equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
+    }
+    let columns = quasi.columns(g, &mut definitions);
+    let gamma = drift(&system, &quasi, &mut definitions);
+    let momenta = g.gradient(system.lagrangian, &system.velocities());
+    let Balance { mass, force } = match &frame {
+        None => balance(&system, &momenta, &gamma, &mut definitions),
+        Some(frame) => {
+            balance_in_frame(&system, (frame, &quasi.multiples(&system)), &momenta, &gamma, &mut definitions)
+        }
+    };
+
+    // SᵀMS ẇ + Sᵀ force = 0
+    let reduced = columns.reduced(g, &mass, &mut definitions);
+    let applied = columns.projected(g, &force, &mut definitions);
+    let rates: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.rate)).collect();
+    let residuals: Vec<Expr> =
+        reduced.iter().zip(applied).map(|(row, applied)| g.add(g.dot(row, &rates), applied)).collect();
+    for (w, &residual) in quasi.free.iter().zip(&residuals) {
+        let meaning = format!("balance for {}", g.name(w.symbol));
+        equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
+    }
+    equations.blocks = vec![Block {
+        unknowns: quasi.free.iter().map(|w| w.rate).collect(),
+        residuals,
+        guess: Vec::new(),
+        regular: "mass matrix regular on the admissible velocities",
+    }];
+    equations.chosen.extend(frame.map(|frame| frame.words(g)));
+    hand_over(&mut equations, &system, quasi, &momenta);
+    equations.definitions = definitions.into_list();
+    equations.graph = system.graph;
+    Ok(equations)
+}
+
+/// `γ`, the accelerations at `ẇ = 0`, by coordinate.
+fn drift(system: &System, quasi: &QuasiVelocities, definitions: &mut Definitions) -> Vec<Expr> {
+    let g = &system.graph;
+    let mut flow: Vec<(Symbol, Expr)> =
+        system.coordinates.iter().map(|c| (c.position, g.variable(c.velocity))).collect();
+    flow.push((system.time, g.one()));
+    let mut rates: HashMap<Symbol, Expr> = flow.into_iter().collect();
+    let along = |rates: &HashMap<Symbol, Expr>, e: Expr| {
+        let symbols = g.symbols_of(e).into_iter().filter_map(|s| Some((s, *rates.get(&s)?)));
+        g.total_derivative(e, &symbols.collect::<Vec<(Symbol, Expr)>>())
+    };
+    for &(symbol, e) in quasi.coefficients.list() {
+        let rate = definitions.short(g, "dc", SHORT, along(&rates, e));
+        rates.insert(symbol, rate);
+    }
+    let mut gamma = vec![g.zero(); system.dimension()];
+    let mut by_symbol: HashMap<Symbol, Expr> = HashMap::new();
+    for d in &quasi.dependent {
+        let mut terms = vec![along(&rates, d.offset)];
+        for &(s, coefficient) in &d.terms {
+            terms.push(g.mul(along(&rates, coefficient), g.variable(s)));
+            terms.extend(by_symbol.get(&s).map(|&rate| g.mul(coefficient, rate)));
+        }
+        let rate = definitions.short(g, "a", SHORT, g.sum(&terms));
+        by_symbol.insert(d.symbol, rate);
+        if let Some(i) = d.coordinate {
+            gamma[i] = rate;
+        }
+    }
+    gamma
+}
+
+/// The unreduced balance at `ẇ = 0`.
+struct Balance {
+    /// Rows of `M`.
+    mass: Vec<Sparse>,
+    /// `d/dt L_v − L_q − Q` with `v̇ = γ`, by coordinate.
+    force: Vec<Expr>,
+}
+
+fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut Definitions) -> Balance {
+    let g = &system.graph;
+    let (q, v) = (system.positions(), system.velocities());
+    let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
+    let gradient = g.gradient(system.lagrangian, &q);
+    let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
+    flow.extend(v.iter().copied().zip(gamma.iter().copied()));
+    flow.push((system.time, g.one()));
+    let inertia = g.total_derivatives(momenta, &flow);
+    let force = (0..q.len()).map(|i| {
+        let rest = g.sub(inertia[i], g.add(gradient[i], system.forces[i]));
+        definitions.short(g, "r", SHORT, rest)
+    });
+    let force = force.collect();
+    let row = |row: Vec<(Symbol, Expr)>| row.into_iter().map(|(s, e)| (places[&s], e)).collect::<Sparse>();
+    let mass = g.sparse_jacobian(momenta, &v).into_iter().map(row).collect();
+    Balance { mass, force }
+}
+
+/// The balance in a frame: its mass matrix is diagonal and constant, and
+///
+/// ```text
+/// force_k = c_k γ_k + Σ_c c_c u_c dω^c(q̇, e_k) + e_k · (d/dt R_v − R_q − Q) ,      R = L − ½ vᵀMv.
+/// ```
+fn balance_in_frame(
+    system: &System,
+    (frame, multiples): (&Frame, &HashMap<Symbol, Expr>),
+    momenta: &[Expr],
+    gamma: &[Expr],
+    definitions: &mut Definitions,
+) -> Balance {
+    let g = &system.graph;
+    let (q, v) = (system.positions(), system.velocities());
+    let at_rest: HashMap<Symbol, Expr> = v.iter().map(|&v| (v, g.zero())).collect();
+    let linear = g.substitute_all(momenta, &at_rest);
+    let rest = g.add(g.substitute(system.lagrangian, &at_rest), g.dot(&linear, &g.variables(&v)));
+    let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
+    flow.push((system.time, g.one()));
+    let (inertia, gradient) = (g.total_derivatives(&linear, &flow), g.gradient(rest, &q));
+    let applied: Vec<Expr> = (0..q.len()).map(|i| g.sub(inertia[i], g.add(gradient[i], system.forces[i]))).collect();
+    let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
+    let own: Vec<Expr> = frame.inertia.iter().zip(u).map(|(&c, u)| g.mul(c, u)).collect();
+    let turned = g.substitute_all(&frame.turned(g, &own), multiples);
+    let applied = frame.along(g, &applied);
+    let force = (0..q.len()).map(|k| {
+        let whole = g.sum(&[g.mul(frame.inertia[k], gamma[k]), turned[k], applied[k]]);
+        definitions.short(g, "r", SHORT, whole)
+    });
+    let force = force.collect();
+    let mass = frame.inertia.iter().enumerate().map(|(k, &e)| Sparse::from([(k, e)])).collect();
+    Balance { mass, force }
+}
+
+/// States, outputs, invariants and guards.
+fn hand_over(equations: &mut Equations, system: &System, quasi: QuasiVelocities, momenta: &[Expr]) {
+    let g = &system.graph;
+    for c in &system.coordinates {
+        let (rate, start) = (g.variable(c.velocity), g.variable(c.position));
+        equations.states.push(StateVariable { symbol: c.position, role: Role::Position, rate, start });
+    }
+    for w in &quasi.free {
+        let own = system.coordinates.iter().any(|c| c.velocity == w.symbol);
+        let role = if own { Role::Velocity } else { Role::QuasiVelocity };
+        equations.states.push(StateVariable { symbol: w.symbol, role, rate: g.variable(w.rate), start: w.start });
+    }
+    equations.coordinates = g.variables(&system.positions());
+    equations.velocities = g.variables(&system.velocities());
+    // the energy is constant where the motion itself is a virtual displacement, and momenta on which no reaction acts
+    if quasi.homogeneous && system.is_autonomous() && !system.has_forces() {
+        let power = g.dot(&g.variables(&system.velocities()), momenta);
+        equations.invariants.push(Named { name: "energy".into(), expression: g.sub(power, system.lagrangian) });
+    }
+    let bound: BTreeSet<Symbol> = system.constraints.iter().flat_map(|&f| g.symbols_of(f)).collect();
+    for (i, c) in system.coordinates.iter().enumerate() {
+        let free = !g.depends_on(system.lagrangian, c.position) && g.is_zero(system.forces[i]);
+        if free && !bound.contains(&c.velocity) {
+            equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: momenta[i] });
+        }
+    }
+    equations.guards = quasi.guards;
+}

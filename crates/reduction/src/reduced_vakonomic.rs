@@ -1,0 +1,356 @@
+//! # The vakonomic equations in quasi-velocities
+//!
+//! For constraints linear in the velocities, `A(q, t) v + b(q, t) = 0`, every admissible velocity is `v = S(q, t) w + s(q, t)` with n − h
+//! quasi-velocities `w`, and Hamilton's equations need no multiplier: with
+//!
+//! ```text
+//! K(q, p, w, t) = p·v − L(q, v, t) ,   v = S w + s ,        ∂K/∂w = Sᵀ (p − L_v) = 0   determines w;
+//!
+//! q̇ = v ,        ṗ = −∂K/∂q |_w = L_q − (∂v/∂q)ᵀ (p − L_v) .
+//! ```
+//!
+//! `H(q, p, t)` is the stationary value of `K` over `w`, so that `∂w/∂q` does not enter. These are the equations of the costate form:
+//! `Sᵀ (p − L_v) = 0` says that `p − L_v = Aᵀ μ`, and `A (S w + s) + b = 0`, differentiated at fixed `w`, that `A ∂v/∂q = −∂f/∂q`; hence
+//! `ṗ = L_q + f_qᵀ μ = ∂(L + μ·f)/∂q`.
+//!
+//! For `L` quadratic in the velocities, `w` solves n − h linear equations, `SᵀMS w = Sᵀ (p − L_v(q, s, t))`.
+//!
+//! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and `(∂v/∂q)ᵀ (p − L_v)` is had by going through it backwards: with
+//! `v̄_k` the derivative of `K` by `v_k` by way of all velocities that contain it,
+//!
+//! ```text
+//! v_k = Σ S_kj v_j + s_k :      v̄_j += S_kj v̄_k ,      −ṗ += v̄_k (Σ ∂S_kj/∂q v_j + ∂s_k/∂q) .
+//! ```
+//!
+//! Where the kinetic energy is a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, the states are `e_k · p`,
+//! the momenta along the vectors of that frame:
+//!
+//! ```text
+//! d/dt (e_k · p) = e_k · (R_q − (∂u/∂q)ᵀ (p − L_u)) − Σ_c (e_c · p) dω^c(q̇, e_k) ,      R = L − ½ vᵀMv.
+//! ```
+//!
+//! For a chain of n bodies that is O(n) in all. The multipliers follow by one more recursion ([`crate::EliminatedConstraint`]) where they are asked for.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::{DependentVelocity, Frame, QuasiVelocities, cheapest, matrix_moves};
+use equations::{
+    Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
+    refuse_forces,
+};
+use mechanics::{System, fresh_symbol};
+use symbolic::{Expr, Graph, Symbol};
+use vakonomic::Augmented;
+
+mod backwards;
+
+use backwards::{adjoints, by_positions, multipliers};
+
+/// The same motion in quasi-velocities; for constraints linear in the velocities.
+pub const REDUCED_VAKONOMIC: Formulation = Formulation {
+    name: "vakonomic-reduced",
+    title: "vakonomic, quasi-velocities",
+    needs_removal: false,
+    starts_multipliers: true,
+    derive: derive_vakonomic,
+};
+
+/// Nodes of an expression that gets no name of its own.
+const SHORT: usize = 8;
+/// Nodes of an expression that is not multiplied out.
+const LONG: usize = 100;
+/// Coordinates of a system in which velocities are put in, if that is shorter; and nodes of `L` and of `v` over which it is not tried.
+const SMALL: usize = 8;
+const WHOLE: usize = 200;
+
+/// Derives the vakonomic equations with states `(q, p)`, or `(q, e_k · p)` in a frame, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
+///
+/// The equations for `w` are linear where `L` is quadratic in `v`; otherwise they are solved by Newton's method from the last accepted state.
+///
+/// # Errors
+/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts; [`DerivationError::Reduction`] where a constraint is not
+/// linear in the velocities, or constraints are dependent.
+///
+/// ```
+/// # let scene = scene::Scene::parse("sledge", r#"
+/// # title = "Ice sledge on an incline"
+/// # [coordinates]
+/// # x   = { start = 0 }
+/// # y   = { start = 0 }
+/// # phi = { start = 0.3 }
+/// # [system]
+/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
+/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
+/// # [start.velocities]
+/// # "phi'" = 1
+/// # "x'" = 0.5
+/// # [run]
+/// # duration = 1
+/// # "#)?;
+/// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
+/// let equations = reduction::derive_vakonomic(&scene.system, &equations::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// // the speed along the blade is the momentum along it
+/// assert_eq!(line(3), "w_x - p_x*cos(phi) - p_y*sin(phi)");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    refuse_forces(system, REDUCED_VAKONOMIC.name)?;
+    let (system, framed) = (system.clone(), system.clone());
+    let problem = Problem::new(&system, None, derivation)?;
+    let mut candidates = vec![problem.equations(system.clone(), None, None)];
+    if let Some(frame) = Frame::new(&framed, derivation.start) {
+        let in_frame = Problem::new(&framed, Some(frame), derivation)?.equations(framed, None, None);
+        if matrix_moves(&candidates[0]) && !matrix_moves(&in_frame) {
+            return Ok(in_frame);
+        }
+        candidates.push(in_frame);
+    }
+    if let Some(Whole { balance, rates }) = problem.put_in(&system) {
+        let with = |balance, rates| problem.equations(system.clone(), balance, rates);
+        candidates.extend([with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))]);
+    }
+    if candidates.len() == 1 { Ok(candidates.remove(0)) } else { Ok(cheapest(candidates)) }
+}
+
+/// Quasi-velocities put in: short for small systems, where terms meet that cancel.
+struct Whole {
+    /// `−∂K/∂w`
+    balance: Vec<Expr>,
+    /// `−∂K/∂q`
+    rates: Vec<Expr>,
+}
+
+struct Problem {
+    /// In which velocities the quasi-velocities and the costates are; none for those of the coordinates.
+    frame: Option<Frame>,
+    quasi: QuasiVelocities,
+    augmented: Augmented,
+    /// Symbols of `p`, or of `e_k · p`.
+    costates: Vec<Symbol>,
+    /// Symbols of `ṗ`, for the reader.
+    costate_rates: Vec<Symbol>,
+    p: Vec<Expr>,
+}
+
+impl Problem {
+    fn new(system: &System, frame: Option<Frame>, derivation: &Derivation) -> Result<Self, DerivationError> {
+        let g = &system.graph;
+        let quasi = QuasiVelocities::new(system, frame.as_ref(), derivation.start)
+            .map_err(|error| DerivationError::Reduction { formulation: REDUCED_VAKONOMIC.name, error })?;
+        let augmented = Augmented::new(system);
+        let names: Vec<String> = match &frame {
+            Some(frame) => frame.velocities.iter().map(|u| g.name(u.symbol).trim_end_matches('\'').into()).collect(),
+            None => system.coordinates.iter().map(|c| c.name.clone()).collect(),
+        };
+        let costates: Vec<Symbol> = names.iter().map(|name| fresh_symbol(g, &format!("p_{name}"))).collect();
+        let costate_rates = costates.iter().map(|&p| fresh_symbol(g, &format!("{}'", g.name(p)))).collect();
+        Ok(Problem { frame, quasi, augmented, p: g.variables(&costates), costates, costate_rates })
+    }
+
+    /// The velocities in which the problem is written, and `∂L/∂u`.
+    fn momenta(&self, system: &System) -> (Vec<Symbol>, Vec<Expr>) {
+        let g = &system.graph;
+        let v = system.velocities();
+        let momenta = g.gradient(system.lagrangian, &v);
+        let Some(frame) = &self.frame else { return (v, momenta) };
+        let linear = frame.along(g, &g.substitute_all(&momenta, &at_rest(system)));
+        let u: Vec<Symbol> = frame.velocities.iter().map(|u| u.symbol).collect();
+        let own = frame.inertia.iter().zip(&u).zip(linear);
+        let momenta = own.map(|((&c, &u), linear)| g.add(g.mul(c, g.variable(u)), linear)).collect();
+        (u, momenta)
+    }
+
+    /// `ṗ`, where `along` is `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`; in a frame `e_k · (R_q − along) − Σ_c p_c dω^c(q̇, e_k)`, with `R` what `L` is
+    /// without its squares.
+    fn rates(&self, system: &System, momenta: &[Expr], along: &[Expr]) -> Vec<Expr> {
+        let g = &system.graph;
+        let q = system.positions();
+        let Some(frame) = &self.frame else {
+            let gradient = g.gradient(system.lagrangian, &q);
+            return gradient.iter().zip(along).map(|(&l_q, &along)| multiplied_out(g, g.sub(l_q, along))).collect();
+        };
+        let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
+        let linear = momenta.iter().zip(&frame.inertia).zip(u).map(|((&l_u, &c), u)| g.mul(u, g.sub(l_u, g.mul(c, u))));
+        let rest: Vec<Expr> = linear.chain([g.substitute(system.lagrangian, &at_rest(system))]).collect();
+        let gradient = g.gradient(g.sum(&rest), &q);
+        let applied: Vec<Expr> = gradient.iter().zip(along).map(|(&r_q, &along)| g.sub(r_q, along)).collect();
+        let (applied, turned) = (frame.along(g, &applied), frame.turned(g, &self.p));
+        applied.into_iter().zip(turned).map(|(applied, turned)| g.sub(applied, turned)).collect()
+    }
+
+    /// The equations by recursion, or by what is given for `∂K/∂w = 0` and `ṗ`.
+    fn equations(&self, system: System, balance: Option<&[Expr]>, rates: Option<&[Expr]>) -> Equations {
+        let Problem { frame, quasi, augmented, costates, costate_rates, p } = self;
+        let g = &system.graph;
+        let mut equations = Equations::new(REDUCED_VAKONOMIC.name, &system);
+        let (q, v) = (system.positions(), system.velocities());
+        let (own, momenta) = self.momenta(&system);
+
+        let mut definitions = quasi.coefficients.clone();
+        let residuals = match balance {
+            Some(given) => given.to_vec(),
+            None => stationarity(g, quasi, (&own, p), &momenta, &mut definitions),
+        };
+        let dependent = quasi.dependent.iter().map(|d| (d.symbol, velocity(g, d)));
+        for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
+            definitions.define(symbol, velocity);
+            let left = g.variable(symbol);
+            equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
+        }
+        for (w, &residual) in quasi.free.iter().zip(&residuals) {
+            let meaning = format!("stationary in {}", g.name(w.symbol));
+            equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
+        }
+        let seeds: Vec<Expr> = p.iter().zip(&momenta).map(|(&p, &l_v)| g.sub(p, l_v)).collect();
+        let adjoints = adjoints(g, quasi, &seeds, &mut definitions);
+        let rates = match rates {
+            Some(given) => given.to_vec(),
+            None => {
+                let along = by_positions(&system, quasi, &adjoints, &mut definitions);
+                self.rates(&system, &momenta, &along)
+            }
+        };
+
+        let p0 = match frame {
+            Some(frame) => frame.along(g, &augmented.momenta),
+            None => augmented.momenta.clone(),
+        };
+        let at_start = augmented.multipliers.iter().copied().zip(g.variables(&augmented.starts)).collect();
+        for i in 0..q.len() {
+            let (rate, start) = (g.variable(v[i]), g.variable(q[i]));
+            equations.states.push(StateVariable { symbol: q[i], role: Role::Position, rate, start });
+        }
+        for (i, (&symbol, &rate)) in costates.iter().zip(&rates).enumerate() {
+            let start = g.substitute(p0[i], &at_start);
+            equations.states.push(StateVariable { symbol, role: Role::Costate, rate, start });
+            let left = g.variable(costate_rates[i]);
+            equations.statements.push(Statement { meaning: "costate".into(), left, right: rate });
+        }
+        equations.blocks = vec![Block {
+            unknowns: quasi.free.iter().map(|w| w.symbol).collect(),
+            residuals,
+            guess: quasi.free.iter().map(|w| w.start).collect(),
+            regular: "∂²L/∂v² regular on the admissible velocities",
+        }];
+        multipliers(g, quasi, augmented, &adjoints, &mut definitions);
+        hand_over(&mut equations, &system, augmented, &self.canonical(g));
+        equations.chosen.extend(frame.as_ref().map(|frame| frame.words(g)));
+        equations.guards = quasi.guards.clone();
+        equations.definitions = definitions.into_list();
+        equations.graph = system.graph;
+        equations
+    }
+
+    /// `p` by coordinate.
+    fn canonical(&self, g: &Graph) -> Vec<Expr> {
+        let Some(frame) = &self.frame else { return self.p.clone() };
+        let mut terms = vec![Vec::new(); self.p.len()];
+        for (form, &p) in frame.forms.iter().zip(&self.p) {
+            form.iter().for_each(|(&i, &e)| terms[i].push(g.mul(e, p)));
+        }
+        terms.iter().map(|terms| g.sum(terms)).collect()
+    }
+
+    /// The derivatives of `K` with the velocities put in; none where that is long.
+    fn put_in(&self, system: &System) -> Option<Whole> {
+        if system.dimension() > SMALL {
+            return None;
+        }
+        let g = &system.graph;
+        let mut at: HashMap<Symbol, Expr> = HashMap::new();
+        for &(symbol, e) in self.quasi.coefficients.list() {
+            at.insert(symbol, g.substitute(e, &at));
+        }
+        for d in &self.quasi.dependent {
+            at.insert(d.symbol, g.substitute(velocity(g, d), &at));
+        }
+        let v = g.substitute_all(&g.variables(&system.velocities()), &at);
+        let lagrangian = g.substitute(system.lagrangian, &at);
+        if g.size(&[lagrangian]) > WHOLE || g.size(&v) > WHOLE {
+            return None;
+        }
+        let function = g.sub(g.dot(&self.p, &v), shorter(g, lagrangian));
+        let w: Vec<Symbol> = self.quasi.free.iter().map(|w| w.symbol).collect();
+        let minus = |by: &[Symbol]| g.gradient(function, by).into_iter().map(|e| shorter(g, g.neg(e))).collect();
+        Some(Whole { balance: minus(&w), rates: minus(&system.positions()) })
+    }
+}
+
+/// `v = 0`
+fn at_rest(system: &System) -> HashMap<Symbol, Expr> {
+    system.velocities().into_iter().map(|v| (v, system.graph.zero())).collect()
+}
+
+fn velocity(g: &Graph, d: &DependentVelocity) -> Expr {
+    let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
+    g.sum(&terms)
+}
+
+/// `Sᵀ (L_v − p)` in `(t, q, p, w)`, without what depends on `w` by way of definitions.
+fn stationarity(
+    g: &Graph,
+    quasi: &QuasiVelocities,
+    (v, p): (&[Symbol], &[Expr]),
+    momenta: &[Expr],
+    definitions: &mut Definitions,
+) -> Vec<Expr> {
+    let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
+    let mass = g.sparse_jacobian(momenta, v);
+    let quadratic = mass.iter().flatten().all(|(_, e)| g.symbols_of(*e).iter().all(|s| !places.contains_key(s)));
+    let columns = quasi.columns(g, definitions);
+    // v at w = 0 where L is quadratic, else v itself
+    let mut at: HashMap<Symbol, Expr> = HashMap::new();
+    if quadratic {
+        at.extend(quasi.free.iter().map(|w| (w.symbol, g.zero())));
+    }
+    for d in &quasi.dependent {
+        let mut value = g.substitute(velocity(g, d), &at);
+        if quadratic {
+            value = definitions.short(g, "s", SHORT, value);
+        }
+        at.insert(d.symbol, value);
+    }
+    let momenta = g.substitute_all(momenta, &at);
+    let rest: Vec<Expr> = momenta.iter().zip(p).map(|(&l_v, &p)| g.sub(l_v, p)).collect();
+    if !quadratic {
+        return columns.projected_whole(g, &rest);
+    }
+    let row = |row: &Vec<(Symbol, Expr)>| row.iter().map(|&(s, e)| (places[&s], e)).collect::<BTreeMap<usize, Expr>>();
+    let mass: Vec<BTreeMap<usize, Expr>> = mass.iter().map(row).collect();
+    let reduced = columns.reduced(g, &mass, definitions);
+    let rest = columns.projected(g, &rest, definitions);
+    let w: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.symbol)).collect();
+    reduced.iter().zip(rest).map(|(row, rest)| g.add(g.dot(row, &w), rest)).collect()
+}
+
+/// `e` multiplied out, if that makes it shorter and is soon done.
+fn multiplied_out(g: &Graph, e: Expr) -> Expr {
+    if g.size(&[e]) > LONG { e } else { shorter(g, e) }
+}
+
+/// `e` multiplied out, if that makes it shorter.
+fn shorter(g: &Graph, e: Expr) -> Expr {
+    let expanded = g.expand(e);
+    if g.size(&[expanded]) < g.size(&[e]) { expanded } else { e }
+}
+
+/// Outputs, free constants and invariants.
+fn hand_over(equations: &mut Equations, system: &System, augmented: &Augmented, p: &[Expr]) {
+    let g = &system.graph;
+    let v = g.variables(&system.velocities());
+    equations.coordinates = g.variables(&system.positions());
+    let named = |&mu: &Symbol| Named { name: g.name(mu), expression: g.variable(mu) };
+    equations.multipliers = augmented.multipliers.iter().map(named).collect();
+    equations.free_constants = augmented.free_constants();
+    if system.is_autonomous() {
+        let energy = g.sub(g.dot(&v, p), system.lagrangian);
+        equations.invariants.push(Named { name: "energy".into(), expression: energy });
+    }
+    for (i, c) in system.coordinates.iter().enumerate() {
+        if g.is_zero(augmented.gradient[i]) {
+            equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: p[i] });
+        }
+    }
+    equations.velocities = v;
+}

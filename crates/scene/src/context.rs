@@ -1,0 +1,68 @@
+//! What the parts of the loader share.
+
+use std::collections::HashMap;
+
+use mechanics::System;
+use symbolic::{Expr, Symbol};
+
+use super::names::{Names, check_symbols};
+use super::overrides::Overrides;
+use super::section::{Section, Source, Text, Value};
+use crate::{SceneError, SceneErrorKind, Unavailable};
+
+/// A scene half read: its names, and the system as far as it is known.
+pub(super) struct Context<'a> {
+    pub(super) source: Source<'a>,
+    pub(super) root: Section<'a>,
+    pub(super) overrides: Overrides,
+    pub(super) names: Names,
+    pub(super) system: System,
+    /// `q₀`.
+    pub(super) positions: Vec<f64>,
+    /// `t₀`.
+    pub(super) time: f64,
+}
+
+impl Context<'_> {
+    pub(super) fn parse(&self, text: &Text) -> Result<Expr, SceneError> {
+        self.names.parse(self.source, &self.system.graph, text)
+    }
+
+    /// The number that `value` is when symbols have `values`; those without one are blamed with the words `known`.
+    pub(super) fn evaluate(
+        &self,
+        value: &Value,
+        what: &str,
+        values: &HashMap<Symbol, f64>,
+        known: &'static str,
+    ) -> Result<f64, SceneError> {
+        let text = match value {
+            Value::Number(x) => return Ok(*x),
+            Value::Expression(text) => text,
+        };
+        let g = &self.system.graph;
+        let e = self.parse(text)?;
+        let unknown = |s: Symbol| (!values.contains_key(&s)).then_some(Unavailable::NotYetKnown { known });
+        check_symbols(self.source, g, text, e, unknown)?;
+        // Every symbol has a value, so all that is left to go wrong is that the result is not finite.
+        let value = g.evaluate(e, values).unwrap_or(f64::NAN);
+        if value.is_finite() {
+            return Ok(value);
+        }
+        Err(self.source.error(&text.span, SceneErrorKind::NotFinite { what: what.into(), value }))
+    }
+
+    /// Values of parameters and time.
+    pub(super) fn constants(&self) -> HashMap<Symbol, f64> {
+        let mut values = self.system.parameter_values();
+        values.insert(self.system.time, self.time);
+        values
+    }
+
+    /// Values of parameters, time and positions.
+    pub(super) fn values_at_rest(&self) -> HashMap<Symbol, f64> {
+        let mut values = self.constants();
+        values.extend(self.system.positions().into_iter().zip(self.positions.iter().copied()));
+        values
+    }
+}

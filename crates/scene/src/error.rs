@@ -1,0 +1,324 @@
+//! What can be wrong with a scene file, and where.
+
+use std::fmt;
+use std::ops::Range;
+
+use symbolic::ParseErrorKind;
+
+use mechanics::{RemovalError, StartError};
+
+/// A fault in a scene file: the place and what was expected there.
+///
+/// Displayed as `file:line:column: message`, the line, and carets under the place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneError {
+    /// File, or name of the scene.
+    pub file: String,
+    /// Line, from 1; 0 where the fault is not in the text (an override, a file that cannot be read).
+    pub line: usize,
+    /// Column in characters, from 1; 0 as for [`SceneError::line`].
+    pub column: usize,
+    /// The line in question.
+    pub source_line: String,
+    /// Length of the place in characters, at least 1.
+    pub length: usize,
+    /// What is wrong.
+    pub kind: Box<SceneErrorKind>,
+}
+
+/// What is wrong with a scene.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneErrorKind {
+    /// The file is larger than a scene can be.
+    #[error("the file has {size} bytes or more; a scene has at most {limit}")]
+    TooLarge {
+        /// Size in bytes, as far as it was looked at.
+        size: u64,
+        /// Limit in bytes.
+        limit: u64,
+    },
+    /// The file could not be read.
+    #[error("the file cannot be read: {reason}")]
+    Unreadable {
+        /// What the operating system said.
+        reason: std::io::ErrorKind,
+    },
+    /// The file is not UTF-8.
+    #[error("byte {byte:#04x} at offset {offset} is not UTF-8 text")]
+    NotUtf8 {
+        /// The first offending byte.
+        byte: u8,
+        /// Its place.
+        offset: usize,
+    },
+    /// Nothing in it.
+    #[error("the scene is empty; it needs title, [coordinates], [system], [start.velocities] and [run]")]
+    Empty,
+    /// Not TOML.
+    #[error("not valid TOML: {message}")]
+    Syntax {
+        /// What the TOML parser said.
+        message: String,
+    },
+    /// A key that means nothing here.
+    #[error("unknown key `{key}` in {section}{}; known here: {}", meant(.suggestion), .known.join(", "))]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// Where it stands.
+        section: String,
+        /// A similar key.
+        suggestion: Option<String>,
+        /// All keys of this section.
+        known: Vec<String>,
+    },
+    /// A name that stands for nothing here.
+    #[error("`{name}` is no {expected}{}", meant(.suggestion))]
+    UnknownName {
+        /// The name.
+        name: String,
+        /// What was expected.
+        expected: &'static str,
+        /// A similar name.
+        suggestion: Option<String>,
+    },
+    /// A key that is needed.
+    #[error("`{key}` is missing in {section}; expected {expected}")]
+    MissingKey {
+        /// The key.
+        key: &'static str,
+        /// Where it should stand.
+        section: String,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A section without content.
+    #[error("{section} is empty; expected {expected}")]
+    EmptySection {
+        /// The section.
+        section: String,
+        /// What should be in it.
+        expected: &'static str,
+    },
+    /// A value of the wrong type.
+    #[error("expected {expected}, found {found}")]
+    WrongType {
+        /// What was found.
+        found: &'static str,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A word that is not one of those that can stand here.
+    #[error("expected {expected}, found {found:?}")]
+    WrongWord {
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A list of the wrong length.
+    #[error("{found} {what} where {expected} are needed")]
+    WrongLength {
+        /// Entries of the list.
+        what: &'static str,
+        /// Number found.
+        found: usize,
+        /// Number needed.
+        expected: usize,
+    },
+    /// A number that is not finite.
+    #[error("{what} must be finite, found {value}")]
+    NotFinite {
+        /// What.
+        what: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A number out of its range.
+    #[error("{what} must be greater than {limit}, found {value}")]
+    OutOfRange {
+        /// What.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it has to exceed.
+        limit: f64,
+    },
+    /// A name that cannot be used.
+    #[error("`{name}` cannot be a name: {fault}")]
+    InvalidName {
+        /// The name.
+        name: String,
+        /// Why.
+        fault: NameFault,
+    },
+    /// A formula that cannot be read.
+    #[error(transparent)]
+    Expression(ParseErrorKind),
+    /// A name that is defined but cannot be used here.
+    #[error("`{name}` cannot be used here: {reason}")]
+    Unavailable {
+        /// The name.
+        name: String,
+        /// Why.
+        reason: Unavailable,
+    },
+    /// A constraint without a velocity.
+    #[error("constraint {number} contains no velocity{}", derivative_hint(.derivative))]
+    NoVelocity {
+        /// Number of the constraint, from 1.
+        number: usize,
+        /// Its time derivative, if it depends on the motion at all.
+        derivative: Option<String>,
+    },
+    /// As many constraints as coordinates.
+    #[error("{found} constraints for {dimension} coordinates leave nothing to move; at most {} are possible", .dimension.saturating_sub(1))]
+    TooManyConstraints {
+        /// Number of constraints, `h`.
+        found: usize,
+        /// Number of coordinates, `n`.
+        dimension: usize,
+    },
+    /// A coordinate that a removal does not know what to do with.
+    #[error("removal `{removal}`: coordinate `{coordinate}` is {}; it must be exactly one of: a parameter, in rates, in direct", joined(.roles))]
+    CoordinateRole {
+        /// Name of the removal.
+        removal: String,
+        /// Name of the coordinate.
+        coordinate: String,
+        /// What it is.
+        roles: Vec<&'static str>,
+    },
+    /// A wrong parametrization.
+    #[error(transparent)]
+    Removal(RemovalError),
+    /// Start data from which no motion starts.
+    #[error(transparent)]
+    Start(StartError),
+}
+
+/// Why something cannot be a name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NameFault {
+    /// Not a letter followed by letters, digits and underscores.
+    #[error("a name is a letter followed by letters, digits and underscores")]
+    NotIdentifier,
+    /// With primes.
+    #[error("primes are time derivatives and are not part of a name")]
+    Primed,
+    /// Time, a constant or a function.
+    #[error("it is {0}")]
+    Reserved(&'static str),
+    /// Used twice.
+    #[error("it is already {by}")]
+    Taken {
+        /// What uses it.
+        by: String,
+    },
+}
+
+/// Why a defined name cannot be used at some place.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unavailable {
+    /// A start value that is not known yet.
+    #[error("it has no value yet; known are {known}")]
+    NotYetKnown {
+        /// What can be used.
+        known: &'static str,
+    },
+    /// A derivative of something that is not a coordinate.
+    #[error("{0} has no derivative that can be written with primes")]
+    NoDerivative(&'static str),
+    /// A derivative of too high an order.
+    #[error(
+        "derivatives of this order do not enter: a system contains coordinates and velocities, a parametrization the first two rates of its parameters"
+    )]
+    Acceleration,
+    /// The velocity of a removed coordinate, in the parametrization that is to give it.
+    #[error(
+        "it is the velocity of a removed coordinate, which the parametrization is to give; use parameters and their rates"
+    )]
+    RemovedVelocity,
+    /// A coordinate that is given directly.
+    #[error("this coordinate is given directly by the parametrization; use parameters and memory variables")]
+    DirectCoordinate,
+    /// `ü` in a coordinate.
+    #[error("a coordinate given directly may contain parameters and their first rates only")]
+    SecondRate,
+}
+
+fn meant(suggestion: &Option<String>) -> String {
+    suggestion.as_ref().map_or_else(String::new, |s| format!(", did you mean `{s}`?"))
+}
+
+fn derivative_hint(derivative: &Option<String>) -> String {
+    match derivative {
+        Some(text) => format!("; a constraint on velocities is expected, enter its time derivative: {text}"),
+        None => " and no coordinate".into(),
+    }
+}
+
+fn joined(roles: &[&str]) -> String {
+    if roles.is_empty() { "none of them".into() } else { roles.join(" and ") }
+}
+
+/// Characters of a long line that are shown on each side of the place.
+const WINDOW: usize = 60;
+
+impl SceneError {
+    /// The fault `kind` at the bytes `span` of `text`.
+    pub(crate) fn at(file: &str, text: &str, span: Range<usize>, kind: SceneErrorKind) -> Self {
+        let start = text.floor_char_boundary(span.start);
+        let end = text.floor_char_boundary(span.end.max(start));
+        let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
+        SceneError {
+            file: file.into(),
+            line: text[..start].matches('\n').count() + 1,
+            column: text[line_start..start].chars().count() + 1,
+            source_line: text[line_start..line_end].trim_end_matches('\r').into(),
+            length: text[start..end.min(line_end)].chars().count().max(1),
+            kind: Box::new(kind),
+        }
+    }
+
+    /// A fault that is not in the text.
+    pub(crate) fn outside(file: &str, kind: SceneErrorKind) -> Self {
+        let (file, source_line) = (file.into(), String::new());
+        SceneError { file, line: 0, column: 0, source_line, length: 1, kind: Box::new(kind) }
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.line == 0 {
+            return write!(f, "{}: {}", self.file, self.kind);
+        }
+        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.kind)?;
+        let before = self.column.saturating_sub(1);
+        let first = before.saturating_sub(WINDOW);
+        let mut shown: String = if first > 0 { "…".into() } else { String::new() };
+        let margin = shown.chars().count() + before - first;
+        let printable = |c: char| if c.is_control() { ' ' } else { c };
+        shown.extend(self.source_line.chars().skip(first).take(before - first + WINDOW).map(printable));
+        if self.source_line.chars().count() > before + WINDOW {
+            shown.push('…');
+        }
+        let carets = self.length.min(WINDOW);
+        let number = self.line.to_string();
+        let gutter = " ".repeat(number.len());
+        write!(f, "\n{number} | {shown}\n{gutter} | {}{}", " ".repeat(margin), "^".repeat(carets))
+    }
+}
+
+impl std::error::Error for SceneError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &*self.kind {
+            SceneErrorKind::Removal(error) => Some(error),
+            SceneErrorKind::Start(error) => Some(error),
+            SceneErrorKind::Expression(error) => Some(error),
+            _ => None,
+        }
+    }
+}

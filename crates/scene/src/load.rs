@@ -1,0 +1,176 @@
+//! From the text of a scene to the scene.
+
+use std::io::Read;
+use std::path::Path;
+
+use toml::de::DeTable;
+
+use super::overrides::Overrides;
+use super::section::{Section, Source};
+use super::{constants, removal, start, system};
+use crate::{Scene, SceneError, SceneErrorKind};
+
+/// Size of the largest scene file that is read, in bytes.
+pub const SIZE_LIMIT: u64 = 1 << 20;
+
+impl Scene {
+    /// Reads a scene from text. `name` is its name and stands for the file in errors.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the place of the first fault and what was expected there. Nothing panics, whatever the text.
+    ///
+    /// ```
+    /// let text = r#"
+    /// title = "Particle on a twisted plane field"
+    /// [coordinates]
+    /// x = { start = 0 }
+    /// y = { start = -1 }
+    /// z = { start = 0 }
+    /// [system]
+    /// lagrangian = "(x'^2 + y'^2 + z'^2)/2"
+    /// constraints = ["z' - y*x'"]
+    /// [start.velocities]
+    /// "x'" = 1.0
+    /// "y'" = 0.5
+    /// [run]
+    /// duration = 6
+    /// "#;
+    /// let scene = scene::Scene::parse("particle", text)?;
+    /// assert_eq!(scene.start.v, [1.0, 0.5, -1.0]);
+    /// assert_eq!(scene.completion.supplied, ["z'"]);
+    ///
+    /// let error = scene::Scene::parse("particle", &text.replace("y*x'", "w*x'")).unwrap_err();
+    /// assert!(error.to_string().starts_with("particle:9:22: undefined name `w`"), "{error}");
+    /// # Ok::<(), scene::SceneError>(())
+    /// ```
+    pub fn parse(name: &str, text: &str) -> Result<Scene, SceneError> {
+        Scene::parse_with(name, text, &[])
+    }
+
+    /// Like [`Scene::parse`], with numbers that override those of the text before anything is evaluated: a parameter
+    /// (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or rate, `time`, `duration`, or a
+    /// multiplier (`mu1`, `mu2`, … in the order of the constraints). Parameters and coordinates of these names come first; the last
+    /// override of a name counts.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`]; a fault of an override has line 0.
+    pub fn parse_with(name: &str, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+        load(name, name, text, overrides)
+    }
+
+    /// Reads a scene file of at most [`SIZE_LIMIT`] bytes.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`]; also [`SceneErrorKind::Unreadable`], [`SceneErrorKind::TooLarge`] and [`SceneErrorKind::NotUtf8`].
+    pub fn load(path: &Path) -> Result<Scene, SceneError> {
+        Scene::load_with(path, &[])
+    }
+
+    /// [`Scene::load`] with overrides as in [`Scene::parse_with`].
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load_with(path: &Path, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+        Scene::parse_file(path, &Scene::read(path)?, overrides)
+    }
+
+    /// The text of a scene file.
+    ///
+    /// # Errors
+    /// [`SceneErrorKind::Unreadable`], [`SceneErrorKind::TooLarge`] and [`SceneErrorKind::NotUtf8`].
+    pub fn read(path: &Path) -> Result<String, SceneError> {
+        read(&path.display().to_string(), path)
+    }
+
+    /// [`Scene::load_with`] for who has read the file already.
+    ///
+    /// # Errors
+    /// As [`Scene::parse_with`].
+    pub fn parse_file(path: &Path, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+        let file = path.display().to_string();
+        let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
+        load(&name, &file, text, overrides)
+    }
+}
+
+fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+    let source = Source { file, text };
+    let size = text.len() as u64;
+    if size > SIZE_LIMIT {
+        return Err(SceneError::outside(file, SceneErrorKind::TooLarge { size, limit: SIZE_LIMIT }));
+    }
+    let table = DeTable::parse(text).map_err(|error| {
+        let kind = SceneErrorKind::Syntax { message: error.message().trim().replace('\n', "; ") };
+        source.error(&error.span().unwrap_or(0..0), kind)
+    })?;
+    if table.get_ref().is_empty() {
+        return Err(source.error(&(0..0), SceneErrorKind::Empty));
+    }
+    let root = Section::root(source, table.get_ref());
+    root.check_keys(&[
+        "title",
+        "source",
+        "notes",
+        "parameters",
+        "coordinates",
+        "definitions",
+        "system",
+        "start",
+        "removal",
+        "vakonomic",
+        "run",
+    ])?;
+    let title = root.require("title", "a string")?.text("a string")?.text;
+    let run = root.require("run", "a table with the duration")?.section()?;
+    run.check_keys(&["duration"])?;
+
+    let context = system::build(source, root, Overrides::new(source, overrides)?)?;
+    let removals = removal::read_all(&context)?;
+    let (state, completion) = start::complete(&context, &removals)?;
+    let multipliers = constants::multipliers(&context)?;
+    let duration = run.require("duration", "a positive number")?;
+    let out_of_range = |value| SceneErrorKind::OutOfRange { what: "the duration", value, limit: 0.0 };
+    let given = duration.number()?;
+    let value = match context.overrides.get("duration") {
+        Some(value) if value > 0.0 => value,
+        Some(value) => return Err(SceneError::outside(file, out_of_range(value))),
+        None if given > 0.0 => given,
+        None => return Err(duration.error(out_of_range(given))),
+    };
+    context.overrides.check_used(source)?;
+    Ok(Scene {
+        name: name.into(),
+        title,
+        source: context.root.text_or_empty("source")?,
+        notes: context.root.text_or_empty("notes")?,
+        system: context.system,
+        start: state,
+        completion,
+        removals,
+        multipliers,
+        duration: value,
+    })
+}
+
+/// The text of a file, its size checked before it is read.
+fn read(file: &str, path: &Path) -> Result<String, SceneError> {
+    let unreadable = |e: std::io::Error| SceneError::outside(file, SceneErrorKind::Unreadable { reason: e.kind() });
+    let too_large = |size| SceneError::outside(file, SceneErrorKind::TooLarge { size, limit: SIZE_LIMIT });
+    let handle = std::fs::File::open(path).map_err(unreadable)?;
+    let size = handle.metadata().map_err(unreadable)?.len();
+    if size > SIZE_LIMIT {
+        return Err(too_large(size));
+    }
+    // What is no regular file has no size beforehand.
+    let mut bytes = Vec::new();
+    handle.take(SIZE_LIMIT + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > SIZE_LIMIT {
+        return Err(too_large(bytes.len() as u64));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let offset = error.utf8_error().valid_up_to();
+        let byte = error.as_bytes()[offset];
+        let text = String::from_utf8_lossy(error.as_bytes());
+        SceneError::at(file, &text, offset..offset + 1, SceneErrorKind::NotUtf8 { byte, offset })
+    })
+}

@@ -1,0 +1,28 @@
+//! What a scene is.
+
+use mechanics::{Completion, Removal, State, System};
+
+/// A system together with a consistent start and everything else a scene file says.
+#[derive(Clone)]
+pub struct Scene {
+    /// Name by which the scene is called: that of the file, without its ending.
+    pub name: String,
+    /// One line.
+    pub title: String,
+    /// Where the example is from, empty if the file does not say.
+    pub source: String,
+    /// Remarks, empty if there are none.
+    pub notes: String,
+    /// `L`, `f`, `Q`, coordinates and parameters.
+    pub system: System,
+    /// `(t₀, q₀, v₀)` with `f(q₀, v₀, t₀) = 0`.
+    pub start: State,
+    /// How the start velocities came about.
+    pub completion: Completion,
+    /// Hand-written parametrizations, verified, in the order of the file.
+    pub removals: Vec<Removal>,
+    /// `μ₀`, length h; zero where the file does not say.
+    pub multipliers: Vec<f64>,
+    /// Length of the run, in units of `t`; positive.
+    pub duration: f64,
+}

@@ -1,0 +1,93 @@
+//! `[start]`: given velocities, and what the constraints make of them.
+
+use std::collections::HashMap;
+
+use symbolic::Symbol;
+
+use super::context::Context;
+use super::section::{Section, Value};
+use crate::{SceneError, SceneErrorKind};
+use mechanics::{Completion, Quantity, Removal, StartData, StartError, State, complete_start};
+
+/// The start state of the scene.
+pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State, Completion), SceneError> {
+    let start = context.root.section("start")?;
+    let mut project = false;
+    let mut given = Vec::new();
+    let mut guess = Vec::new();
+    let mut place = context.root.get("system").map_or(0..0, |e| e.key_span);
+    if let Some(start) = &start {
+        place = start.span.clone();
+        start.check_keys(&["time", "project", "velocities", "guess"])?;
+        project = start.get("project").map_or(Ok(false), |e| e.boolean())?;
+        if let Some(velocities) = start.section("velocities")? {
+            place = velocities.span.clone();
+            given = rates(context, &velocities, removals.first())?;
+        }
+        if let Some(section) = start.section("guess")? {
+            guess = rates(context, &section, removals.first())?;
+        }
+    }
+    for (name, symbol) in rate_names(context, removals.first()) {
+        if let Some(value) = context.overrides.get(&name) {
+            given.retain(|(s, _)| *s != symbol);
+            given.push((symbol, value));
+        }
+    }
+    let data = StartData {
+        time: context.time,
+        positions: context.positions.clone(),
+        given: given.into_iter().collect::<HashMap<_, _>>(),
+        guess: guess.into_iter().collect::<HashMap<_, _>>(),
+        project,
+        removal: removals.first(),
+    };
+    complete_start(&context.system, &data).map_err(|error| {
+        let place = blamed(context, &error).unwrap_or(place);
+        context.source.error(&place, SceneErrorKind::Start(error))
+    })
+}
+
+/// Velocities of the coordinates, and rates of the first removal's own parameters.
+fn rate_names(context: &Context, removal: Option<&Removal>) -> Vec<(String, Symbol)> {
+    let own = removal.iter().flat_map(|r| &r.parameters).filter(|u| u.coordinate.is_none()).map(|u| u.rate);
+    let symbols = context.system.velocities().into_iter().chain(own);
+    symbols.map(|s| (context.system.graph.name(s), s)).collect()
+}
+
+fn rates(context: &Context, section: &Section, removal: Option<&Removal>) -> Result<Vec<(Symbol, f64)>, SceneError> {
+    let names = rate_names(context, removal);
+    let values = context.values_at_rest();
+    let mut rates = Vec::new();
+    for entry in section.entries() {
+        let Some((_, symbol)) = names.iter().find(|(name, _)| name == entry.key) else {
+            let known: Vec<String> = names.into_iter().map(|n| n.0).collect();
+            let expected = "velocity of a coordinate, nor rate of a parameter of the first removal; as in \"x'\" = 1";
+            return Err(entry.unknown_name(expected, &known));
+        };
+        let value: Value = entry.value()?;
+        rates.push((*symbol, context.evaluate(&value, &entry.path, &values, "parameters, coordinates and t")?));
+    }
+    Ok(rates)
+}
+
+/// Where the fault is, if not among the velocities.
+fn blamed(context: &Context, error: &StartError) -> Option<std::ops::Range<usize>> {
+    let system = context.root.get("system")?.section().ok()?;
+    let key = |key: &str| system.get(key).map(|e| e.key_span);
+    let constraint = |number: usize| {
+        let elements = system.get("constraints")?.elements("").ok()?;
+        elements.get(number - 1).map(|e| e.span.clone())
+    };
+    match error {
+        StartError::DependentConstraints { .. } => key("constraints"),
+        StartError::SingularMassMatrix { .. } => key("lagrangian"),
+        StartError::NotFinite { quantity, .. } => match quantity {
+            Quantity::Lagrangian | Quantity::MassMatrix => key("lagrangian"),
+            Quantity::ConstraintJacobian => key("constraints"),
+            Quantity::Constraint(number) => constraint(*number),
+            Quantity::Force(name) => system.section("forces").ok()??.get(name).map(|e| e.span),
+        },
+        _ => None,
+    }
+}

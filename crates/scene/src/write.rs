@@ -1,0 +1,165 @@
+//! From a scene to its text.
+
+use std::fmt::{self, Write};
+
+use crate::Scene;
+use mechanics::{ConstantsRule, Removal, System};
+
+impl Scene {
+    /// The scene as a file, with every start value as a number: [`Scene::parse`] of it gives the same system, start and
+    /// removals.
+    pub fn to_toml(&self) -> String {
+        written(self)
+    }
+}
+
+impl fmt::Debug for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Scene").field("name", &self.name).field("text", &self.to_toml()).finish()
+    }
+}
+
+/// The scene as TOML.
+fn written(scene: &Scene) -> String {
+    let Scene { system, start, .. } = scene;
+    let g = &system.graph;
+    let mut text = Table::default();
+    text.line("title", &quoted(&scene.title));
+    for (key, value) in [("source", &scene.source), ("notes", &scene.notes)] {
+        if !value.is_empty() {
+            text.line(key, &quoted(value));
+        }
+    }
+    if !system.parameters.is_empty() {
+        text.header("parameters");
+        for p in &system.parameters {
+            text.line(&g.name(p.symbol), &number(p.value));
+        }
+    }
+    text.header("coordinates");
+    for (c, &q) in system.coordinates.iter().zip(&start.q) {
+        text.line(&c.name, &format!("{{ unit = {}, start = {} }}", quoted(&c.unit), number(q)));
+    }
+    write_system(&mut text, system);
+    text.header("start");
+    text.line("time", &number(start.t));
+    text.header("start.velocities");
+    for (c, &v) in system.coordinates.iter().zip(&start.v) {
+        text.line(&g.name(c.velocity), &number(v));
+    }
+    for r in &scene.removals {
+        removal(&mut text, system, r);
+    }
+    if !scene.multipliers.is_empty() {
+        text.header("vakonomic");
+        let numbers: Vec<String> = scene.multipliers.iter().map(|&x| number(x)).collect();
+        text.line("multipliers", &format!("[{}]", numbers.join(", ")));
+    }
+    text.header("run");
+    text.line("duration", &number(scene.duration));
+    text.0
+}
+
+fn write_system(text: &mut Table, system: &System) {
+    let g = &system.graph;
+    text.header("system");
+    text.line("lagrangian", &quoted(&g.plain(system.lagrangian)));
+    let constraints: Vec<String> =
+        system.constraints.iter().map(|&f| format!("  {},\n", quoted(&g.plain(f)))).collect();
+    if !constraints.is_empty() {
+        text.line("constraints", &format!("[\n{}]", constraints.concat()));
+    }
+    if system.has_forces() {
+        text.header("system.forces");
+        for (c, &force) in system.coordinates.iter().zip(&system.forces) {
+            if !g.is_zero(force) {
+                text.line(&c.name, &quoted(&g.plain(force)));
+            }
+        }
+    }
+}
+
+fn removal(text: &mut Table, system: &System, removal: &Removal) {
+    let g = &system.graph;
+    let path = format!("removal.{}", key(&removal.name));
+    text.header(&path);
+    let parameters: Vec<String> = removal.parameters.iter().map(|u| quoted(&g.name(u.symbol))).collect();
+    text.line("parameters", &format!("[{}]", parameters.join(", ")));
+    match &removal.constants {
+        ConstantsRule::Zero => text.line("constants", "\"zero\""),
+        ConstantsRule::Natural { horizon } => text.line("constants", &format!("{{ horizon = {} }}", number(*horizon))),
+        ConstantsRule::Given(values) => {
+            let entry =
+                |(w, x): (&mechanics::MemoryVariable, &f64)| format!("{} = {}", key(&g.name(w.symbol)), number(*x));
+            let entries: Vec<String> = removal.memory.iter().zip(values).map(entry).collect();
+            text.line("constants", &format!("{{ start = {{ {} }} }}", entries.join(", ")));
+        }
+    }
+    let mut tables: [(&str, Vec<(String, String)>); 4] =
+        [("rates", Vec::new()), ("direct", Vec::new()), ("memory", Vec::new()), ("start", Vec::new())];
+    for w in &removal.memory {
+        let place = if w.coordinate.is_some() { 0 } else { 2 };
+        tables[place].1.push((g.name(w.symbol), g.plain(w.rate)));
+    }
+    for (i, c) in system.coordinates.iter().enumerate() {
+        let is_memory = removal.memory.iter().any(|w| w.coordinate == Some(i));
+        let is_parameter = removal.parameters.iter().any(|u| u.coordinate == Some(i));
+        if !is_memory && !is_parameter {
+            tables[1].1.push((c.name.clone(), g.plain(removal.coordinates[i])));
+        }
+    }
+    tables[3].1 = removal.start.iter().map(|(&s, &e)| (g.name(s), g.plain(e))).collect();
+    tables[3].1.sort();
+    for (name, entries) in tables.iter().filter(|t| !t.1.is_empty()) {
+        text.header(&format!("{path}.{name}"));
+        for (key, expression) in entries {
+            text.line(key, &quoted(expression));
+        }
+    }
+}
+
+/// Text of a TOML file.
+#[derive(Default)]
+struct Table(String);
+
+impl Table {
+    fn header(&mut self, path: &str) {
+        self.0 += &format!("\n[{path}]\n");
+    }
+
+    fn line(&mut self, name: &str, value: &str) {
+        self.0 += &format!("{} = {value}\n", key(name));
+    }
+}
+
+/// A key, in quotes where it has to be.
+fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.into() } else { quoted(name) }
+}
+
+/// The shortest number that reads back as the same one.
+fn number(x: f64) -> String {
+    format!("{x:?}")
+}
+
+/// A basic string.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => {
+                out.push('\\');
+                out.push(c);
+            }
+            '\n' => out += "\\n",
+            '\t' => out += "\\t",
+            c if c.is_control() => {
+                // Writing to a string cannot fail.
+                let _ = write!(out, "\\u{:04X}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out + "\""
+}
