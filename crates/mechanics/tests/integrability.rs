@@ -2,7 +2,7 @@
 
 use mechanics::{Integrability, RemovalError, integrability};
 
-mod systems;
+use crate::systems;
 
 #[track_caller]
 fn verdict(coordinates: &[&str], constraints: &[&str]) -> Integrability {

@@ -3,7 +3,7 @@
 use mechanics::{ConstantsRule, Removal, RemovalError, System, complete_removal_start, project_velocity};
 use symbolic::Expr;
 
-mod systems;
+use crate::systems;
 
 const KNIFE_EDGE: &str = "y'*cos(phi) - x'*sin(phi)";
 

@@ -2,7 +2,7 @@
 
 use referees::closed_forms::{AppellHamel, Disc, Heisenberg, Particle, Pendulum, Sledge, Sleigh, TurntableBall};
 
-use crate::support::{at, chetaev, common_times, error, gap, index, must, must_exceed, parameter, scene, vakonomic};
+use super::support::{at, chetaev, common_times, error, gap, index, must, must_exceed, parameter, scene, vakonomic};
 use scene::Scene;
 
 fn sledge(scene: &Scene) -> Sledge {
@@ -25,7 +25,7 @@ fn sledge_chetaev_follows_its_closed_form_at_every_rate_of_turning() {
         let mut motion = chetaev(&scene);
         let at_end = exact.at(10.0);
         let end = at(&mut motion, 10.0);
-        let gap = crate::support::largest_difference(&end.coordinates, &[at_end.x, at_end.y, at_end.phi]);
+        let gap = super::support::largest_difference(&end.coordinates, &[at_end.x, at_end.y, at_end.phi]);
         println!("sledge, ω = {omega}: x = {}, y = {}", at_end.x, at_end.y);
         must(&format!("sledge, Chetaev, ω = {omega:e}: error at t = 10"), gap, 1e-10);
         let whole = error(&mut motion, &|t| {
@@ -92,7 +92,7 @@ fn ball_on_a_turntable_circles_at_two_sevenths() {
         let now = at(&mut motion, t);
         let expected = ball.at(t);
         let found = [now.coordinates[x], now.coordinates[y], now.velocities[x], now.velocities[y]];
-        error = error.max(crate::support::largest_difference(&found, &expected));
+        error = error.max(super::support::largest_difference(&found, &expected));
         let arm = [found[0] - centre[0], found[1] - centre[1]];
         let turning = (arm[0] * found[3] - arm[1] * found[2]) / (arm[0] * arm[0] + arm[1] * arm[1]);
         rate = rate.max((turning / table - 2.0 / 7.0).abs());

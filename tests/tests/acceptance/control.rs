@@ -8,7 +8,7 @@ use random::substitution;
 use scene::Scene;
 use symbolic::Symbol;
 
-use crate::support::{at, chetaev, complete, number, removal_values, scenes, state_at};
+use super::support::{at, chetaev, complete, number, removal_values, scenes, state_at};
 
 /// Times along the Chetaev motion at which the control's equations are put to the test.
 const TIMES: [f64; 4] = [0.0, 0.11, 0.23, 0.42];

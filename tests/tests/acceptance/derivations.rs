@@ -7,7 +7,7 @@ use equations::{Derivation, Equations, Role};
 use mechanics::Removal;
 use scene::Scene;
 
-use crate::support::{constrained_scenes, regular_removals, scenes};
+use super::support::{constrained_scenes, regular_removals, scenes};
 
 /// A formulation's equations as it derived them, nothing left out.
 fn derived(scene: &Scene, name: &str, removal: Option<&Removal>) -> Equations {

@@ -4,7 +4,7 @@ use mechanics::Removal;
 use scene::Scene;
 use symbolic::Matrix;
 
-use crate::support::{
+use super::support::{
     at, chetaev, complete, constrained_scenes, equations, gap, index, known_gap, largest_difference, linear_scenes,
     matrix, motion_of, must, must_exceed, removal, removed, scene, scenes, some_multipliers, tight, vakonomic, values,
 };
@@ -115,7 +115,7 @@ fn removed_constraint_depends_on_the_choice_of_parameter() {
 fn chetaev_motion_runs_back_the_way_it_came() {
     for scene in linear_scenes().into_iter().chain([scene("appell-hamel", &[])]) {
         let mut forth = chetaev(&scene);
-        let end = crate::support::state_at(&mut forth, scene.start.t + scene.duration);
+        let end = super::support::state_at(&mut forth, scene.start.t + scene.duration);
         let mut returning = scene.clone();
         returning.start.q = end.q;
         returning.start.v = end.v.iter().map(|v| -v).collect();
@@ -126,10 +126,10 @@ fn chetaev_motion_runs_back_the_way_it_came() {
             }
         }
         let mut back = chetaev(&returning);
-        let home = crate::support::state_at(&mut back, scene.start.t + scene.duration);
-        let position = crate::support::largest_difference(&home.q, &scene.start.q);
+        let home = super::support::state_at(&mut back, scene.start.t + scene.duration);
+        let position = super::support::largest_difference(&home.q, &scene.start.q);
         let velocities: Vec<f64> = home.v.iter().map(|v| -v).collect();
-        let velocity = crate::support::largest_difference(&velocities, &scene.start.v);
+        let velocity = super::support::largest_difference(&velocities, &scene.start.v);
         must(&format!("{}: there and back, {} s", scene.name, scene.duration), position.max(velocity), 1e-9);
     }
 }
@@ -141,7 +141,7 @@ fn units_do_not_matter() {
     let speed = 0.5 * metres.start.q[2].cos();
     let centimetres = scene("sledge", &[("g", 981.0), ("k", 70.0), ("x'", 100.0 * speed)]);
     let scaled = |mut motion: deltaq::Motion, factor: f64| {
-        let now = crate::support::at(&mut motion, 10.0);
+        let now = super::support::at(&mut motion, 10.0);
         let (x, phi) = (index(&metres, "x"), index(&metres, "phi"));
         [now.coordinates[x] / factor, now.coordinates[phi]]
     };
@@ -155,7 +155,7 @@ fn units_do_not_matter() {
         ),
     ];
     for (name, one, two) in runs {
-        let distance = crate::support::largest_difference(&scaled(one, 1.0), &scaled(two, 100.0));
+        let distance = super::support::largest_difference(&scaled(one, 1.0), &scaled(two, 100.0));
         must(&format!("sledge, {name}: metres against centimetres at t = 10"), distance, 1e-9);
     }
 }

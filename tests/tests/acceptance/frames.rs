@@ -8,8 +8,8 @@ use proptest::prelude::*;
 use reduction::Frame;
 use scene::Scene;
 
-use crate::support::{equations, known_gap, motion_of, must, scene, some_multipliers, tight};
-use crate::{reduced_form, reduced_vakonomic};
+use super::support::{equations, known_gap, motion_of, must, scene, some_multipliers, tight};
+use super::{reduced_form, reduced_vakonomic};
 
 /// A body of revolution in Euler angles, and a plane in polar coordinates; numbers `x` from −1 to 1.
 fn text(kind: usize, x: &[f64]) -> String {

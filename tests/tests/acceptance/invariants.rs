@@ -4,7 +4,7 @@ use deltaq::{Metric, Motion};
 use scene::Scene;
 use symbolic::Expr;
 
-use crate::support::{
+use super::support::{
     at, chetaev, common_times, equations, motion_of, must, must_exceed, number, numbers, regular_removals, removed,
     scene, scenes, some_multipliers, state_at, tight, values,
 };

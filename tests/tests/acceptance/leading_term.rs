@@ -2,7 +2,7 @@
 
 use deltaq::{Metric, compare_motions, growth, leading_term};
 
-use crate::support::{at, chetaev, must, scene, vakonomic};
+use super::support::{at, chetaev, must, scene, vakonomic};
 
 #[test]
 fn leading_term_is_the_predicted_one() {

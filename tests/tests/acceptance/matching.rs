@@ -4,7 +4,7 @@ use deltaq::{Metric, best_fit, setting};
 use mechanics::Removal;
 use scene::Scene;
 
-use crate::support::{
+use super::support::{
     at, common_times, equations, gap, known_gap, linear_scenes, matching_multipliers, matrix, must, must_exceed,
     number, parameter, removal, removed, scene, state_at, tight, vakonomic, values,
 };
@@ -120,7 +120,7 @@ fn coordinate_removal_is_vakonomic_on_every_scene() {
             let zero = if constants.iter().all(|&c| c == 0.0) { "P(t₀) = 0" } else { "P(t₀) ≠ 0" };
             must(&format!("{}, {zero}: residual of Aᵀμ₀ = p_q − L_v", scene.name), residual, 1e-12);
             let mut vakonomic =
-                crate::support::motion_of(&scene, equations(&scene.system, "vakonomic", None), &mu0, &tight());
+                super::support::motion_of(&scene, equations(&scene.system, "vakonomic", None), &mu0, &tight());
             let (distance, end) = known_gap(&mut motion, &mut vakonomic);
             assert!(motion.is_complete() || chart_ends(&scene, &mut motion), "{}: {:?}", scene.name, motion.ending);
             assert!(end > 0.05 * scene.duration, "{}: only up to {end}: {:?}", scene.name, motion.ending);

@@ -4,7 +4,7 @@ use deltaq::{Motion, Settings};
 use integrate::Method;
 use referees::closed_forms::Sledge;
 
-use crate::support::{
+use super::support::{
     at, equations, jacobian_error, linear_scenes, motion_of, must, parameter, regular_removals, scene, scenes,
     some_multipliers,
 };
@@ -37,7 +37,7 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
         let mut motion = motion_of(&scene, equations(&scene.system, "chetaev", None), &[], &settings);
         assert!(motion.is_complete(), "{method:?}: {:?}", motion.ending);
         let now = at(&mut motion, 10.0).coordinates;
-        let error = crate::support::largest_difference(&now, &[end.x, end.y, end.phi]) / size;
+        let error = super::support::largest_difference(&now, &[end.x, end.y, end.phi]) / size;
         let kept = tolerance * deltaq::TIGHTER;
         println!("{method:?}: {} steps, {} evaluations", motion.work.steps, motion.work.evaluations);
         must(&format!("sledge, {method:?} at tolerance {kept:.0e}: relative error at t = 10"), error, factor * kept);
@@ -78,7 +78,7 @@ fn implicit_methods_use_those_jacobians() {
         let mut motion = run(method);
         assert!(motion.work.jacobians > 0, "{method:?} asked for no Jacobian");
         let error =
-            crate::support::largest_difference(&at(&mut motion, 1.0).coordinates, &at(&mut reference, 1.0).coordinates);
+            super::support::largest_difference(&at(&mut motion, 1.0).coordinates, &at(&mut reference, 1.0).coordinates);
         must(&format!("ball-in-cone, {method:?} at 1e-9 against Dop853"), error, 1e-6);
     }
 }

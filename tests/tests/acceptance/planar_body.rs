@@ -6,7 +6,7 @@ use mechanics::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, S
 use scene::Scene;
 use symbolic::{Expr, Graph};
 
-use crate::support::{at, complete, error, must, must_exceed, removed, scene};
+use super::support::{at, complete, error, must, must_exceed, removed, scene};
 
 const START: [f64; 6] = [1.0, -0.4, 0.2, 0.3, 0.9, 0.8];
 
@@ -78,7 +78,7 @@ fn removal_of_nothing_is_newtons_motion_only_for_the_right_constants() {
 
     must(
         "planar body, Chetaev without constraint: Newton",
-        error(&mut crate::support::chetaev(&scene), &newton),
+        error(&mut super::support::chetaev(&scene), &newton),
         1e-11,
     );
     let mut right = complete(&scene, removed(&scene, &frame, &[-vx, -vy]));

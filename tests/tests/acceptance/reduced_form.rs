@@ -8,7 +8,7 @@ use scene::Scene;
 use symbolic::{Expr, Symbol};
 use validation::trailer::{self, Coordinates};
 
-use crate::support::{
+use super::support::{
     at, chetaev, common_times, constraint_residual, equations, for_all_linear, jacobian_error, known_gap,
     linear_scenes, motion_of, must, scene, tight,
 };
@@ -127,7 +127,7 @@ fn the_train_with_three_trailers_is_the_scene() {
     let apart = built_in.start.q.iter().zip(&generated.start.q).chain(built_in.start.v.iter().zip(&generated.start.v));
     must("start", apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max), 1e-14);
     let mut two = motion_of(&generated, reduced(&generated), &[], &tight());
-    let gap = crate::support::gap(&mut chetaev(&built_in), &mut two).0;
+    let gap = super::support::gap(&mut chetaev(&built_in), &mut two).0;
     must("scene against generated train", gap, 1e-9);
     // the loader, which solves the constraints for the velocities, comes to the same start
     for (name, coordinates) in [("n-trailer-3", Coordinates::Maximal), ("n-trailer-minimal-3", Coordinates::Minimal)] {

@@ -10,7 +10,7 @@ use reduction::Frame;
 use scene::Scene;
 use validation::trailer::{self, Coordinates};
 
-use crate::support::{
+use super::support::{
     TIGHT, at, constraint_residual, equations, for_all_linear, jacobian_error, known_gap, linear_scenes, motion_of,
     must, scene, some_multipliers, start, tight, vakonomic,
 };

@@ -4,7 +4,7 @@ use deltaq::{SolveError, setting, solve};
 use mechanics::ConstantsRule;
 use tests::references::{Motion, REFERENCES, Reference};
 
-use crate::support::{at, equations, largest_difference, must, scene, tight};
+use super::support::{at, equations, largest_difference, must, scene, tight};
 
 /// The constants of a removed-constraint reference, in the order of the removal's memory variables.
 fn costates(scene: &scene::Scene, named: &[(&str, f64)]) -> Vec<f64> {

@@ -13,7 +13,7 @@ use deltaq::Motion;
 use equations::{Derivation, DerivationError, Role};
 use scene::Scene;
 
-use crate::support::{at, complete, equations, must, must_exceed, removed, scene};
+use super::support::{at, complete, equations, must, must_exceed, removed, scene};
 
 const OSCILLATOR: &str = r#"
 title = "Oscillator in a parameter of second order"
@@ -124,7 +124,7 @@ fn energy_of_second_order_is_constant() {
 #[test]
 fn a_singular_highest_hessian_is_refused_with_its_rank() {
     let scene = scene("three-cylinders", &[]);
-    let paper = crate::support::removal(&scene, "paper");
+    let paper = super::support::removal(&scene, "paper");
     let derivation = Derivation { removal: Some(paper), start: None };
     let entry = deltaq::formulation("removed-constraint").expect("in the table");
     match (entry.derive)(&scene.system, &derivation) {

@@ -6,7 +6,7 @@ use integrate::{Method, Projection};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::support::{equations, known_gap, motion_of, must, regular_removals, scenes, some_multipliers};
+use super::support::{equations, known_gap, motion_of, must, regular_removals, scenes, some_multipliers};
 
 const ORDER: usize = 24;
 

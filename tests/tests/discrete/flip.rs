@@ -6,7 +6,7 @@ use equations::{Equations, Role};
 use mechanics::{DisplacementParameter, System};
 use symbolic::{Expr, Graph, Symbol};
 
-use crate::flipped::Trial;
+use super::flipped::Trial;
 
 /// A sign to flip.
 #[derive(Clone, Copy, Debug)]

@@ -22,8 +22,8 @@ use scene::Scene;
 use symbolic::Symbol;
 use validation::catalogue::find;
 
-use crate::flip::{Flip, corrupt};
-use crate::support::{HORIZON, measure, removed, short};
+use super::flip::{Flip, corrupt};
+use super::support::{HORIZON, measure, removed, short};
 
 /// A referee objects where its difference is over this many times the errors that it knows of.
 const FAR: f64 = 1e6;

@@ -3,7 +3,7 @@
 use random::{Case, Kind, draw};
 use referees::discrete::Discrete;
 
-use crate::support::{Tally, agrees, measure, removed, short};
+use super::support::{Tally, agrees, measure, removed, short};
 use proptest::strategy::ValueTree;
 
 /// The seed of the systems; none of the other suites has it.

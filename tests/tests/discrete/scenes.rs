@@ -6,7 +6,7 @@ use referees::discrete::{Discrete, Ends, RemovedStart};
 use scene::Scene;
 use validation::catalogue::{SCENES, find};
 
-use crate::support::{HORIZON, Tally, agrees, costates, measure, removed, short};
+use super::support::{HORIZON, Tally, agrees, costates, measure, removed, short};
 
 /// What the extrapolated motion may differ by.
 const LIMIT: f64 = 1e-12;

@@ -3,7 +3,7 @@
 use proptest::test_runner::TestCaseError;
 use random::{Kind, NullTest, null_test};
 
-use crate::support::{for_all, holds, part};
+use super::support::{for_all, holds, part};
 
 /// Kinds with constraints that are linear (or affine) in the velocities and well conditioned.
 fn linear() -> Vec<Kind> {

@@ -8,7 +8,7 @@ use proptest::test_runner::TestCaseError;
 use random::{Case, Kind, Recipe, Which, recipes_of};
 use symbolic::{Bounded, Scalar};
 
-use crate::support::for_all;
+use super::support::for_all;
 
 /// Instants of a motion at which rates are compared.
 const INSTANTS: usize = 8;

@@ -9,7 +9,7 @@ use proptest::test_runner::TestCaseError;
 use random::{Batch, Case, Kind, MOST, Recipe, Record, draw, recipes_of, shrink};
 use scene::Scene;
 
-use crate::support::for_all;
+use super::support::for_all;
 
 /// `|f|` at the start.
 const ON_THE_CONSTRAINT: f64 = 1e-12;

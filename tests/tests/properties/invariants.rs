@@ -5,7 +5,7 @@ use proptest::test_runner::TestCaseError;
 use random::realization::{Realization, realize};
 use random::{Case, Kind, Recipe, Which, recipes_of};
 
-use crate::support::for_all;
+use super::support::for_all;
 
 /// Instants at which invariants are looked at.
 const INSTANTS: usize = 12;

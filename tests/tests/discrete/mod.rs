@@ -2,6 +2,7 @@
 
 mod flip;
 mod flipped;
+mod orders;
 mod random;
 mod scenes;
 mod support;

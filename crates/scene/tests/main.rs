@@ -1,0 +1,6 @@
+//! Scene files as a user writes them: one program, one module a subject.
+
+mod bytes;
+mod catalogue;
+mod errors;
+mod start;

@@ -1,0 +1,8 @@
+//! What must hold between the crates: one program, one module a subject.
+
+mod acceptance;
+mod architecture;
+mod discrete;
+mod properties;
+mod reference_motions;
+mod stability;
