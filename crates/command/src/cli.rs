@@ -28,6 +28,9 @@ pub struct JobArguments {
     /// Folder that the reports are written to.
     #[arg(long, default_value = "reports")]
     pub out: PathBuf,
+    /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is the committed one.
+    #[arg(long, default_value = "target/measured")]
+    pub measured: PathBuf,
     /// Sections to run, all if left out. The overview is written only when all of them run.
     #[arg(long, value_enum, value_name = "NAME,…", value_delimiter = ',')]
     pub sections: Vec<Section>,

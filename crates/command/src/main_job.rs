@@ -19,9 +19,9 @@ use validation::bench::{self, Bench, Effort, Throughput};
 use validation::casadi_job::{self, Outcome};
 use validation::catalogue;
 use validation::report::{
-    AuditReport, File, Provenance, RealizationReport, StabilityReport, answer, bench_files, bench_headline,
-    difference_of_verdicts, overview, pictures, random_files, random_headline, random_verdicts, referees_section,
-    scene_page, verdicts, write_all,
+    AuditReport, File, RealizationReport, StabilityReport, answer, bench_files, bench_headline, difference_of_verdicts,
+    overview, pictures, random_files, random_headline, random_verdicts, referees_section, scene_page, verdicts,
+    write_all,
 };
 
 /// A compared scene with its page and pictures.
@@ -101,7 +101,7 @@ impl Results {
             if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
                 page.text += &section;
                 if sections.contains(&Section::ErrorVsTime) {
-                    page.text += "\nWhich method reaches which error in which time: [error against run time](../error-vs-time.md).\n";
+                    page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
                 }
             }
             scene_files.extend(report.files.clone());
@@ -158,8 +158,7 @@ impl Results {
         let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
         let audit = self.audit.as_ref().map(|report| (report.headline(), "paper-audit.md"));
         let stability = self.stability.as_ref().map(|report| (report.headline(), "stability.md"));
-        let benches = (!self.benches.is_empty()).then(|| (bench_headline(&self.benches), "error-vs-time.md"));
-        casadi.into_iter().chain(random).chain(realization).chain(audit).chain(stability).chain(benches).collect()
+        casadi.into_iter().chain(random).chain(realization).chain(audit).chain(stability).collect()
     }
 
     /// Pages and pictures of every section that ran.
@@ -175,8 +174,17 @@ impl Results {
         if let Some(stability) = &self.stability {
             files.extend(stability.files()?);
         }
-        if !self.benches.is_empty() {
-            files.extend(bench_files(&self.benches, &self.ensembles)?);
+        Ok(files)
+    }
+
+    /// Pages and pictures of times, which no two machines share, with what says whose they are.
+    fn measured(&self, provenance: &str) -> Result<Vec<File>> {
+        if self.benches.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut files = bench_files(&self.benches, &self.ensembles)?;
+        for page in files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md")) {
+            page.text += provenance;
         }
         Ok(files)
     }
@@ -206,13 +214,14 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
     let results = Results::of(sections, &names, arguments.quiet)?;
     let mut files = results.files()?;
     if complete {
-        let provenance = provenance(clock.elapsed().as_secs_f64());
-        let text = overview(&results.comparisons, &results.further(), &provenance);
+        let text = overview(&results.comparisons, &results.further());
         files.push(File { path: "README.md".into(), text });
         let text = serde_json::to_string_pretty(&results.verdicts())? + "\n";
         files.push(File { path: "verdicts.json".into(), text });
     }
     write_all(&arguments.out, &files)?;
+    let measured = results.measured(&provenance(clock.elapsed().as_secs_f64()))?;
+    write_all(&arguments.measured, &measured)?;
     let mut told = String::new();
     for comparison in &results.comparisons {
         let answer = answer(comparison);
@@ -221,6 +230,10 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
     }
     for (line, page) in results.further() {
         let _ = writeln!(told, "{page:<24} {line}");
+    }
+    if !measured.is_empty() {
+        let page = arguments.measured.join("error-vs-time.md");
+        let _ = writeln!(told, "{:<24} {}", page.display(), bench_headline(&results.benches));
     }
     let seconds = clock.elapsed().as_secs_f64();
     let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), arguments.out.display());
@@ -303,7 +316,8 @@ pub fn bench_all(names: &[&str], overrides: &[(String, f64)], effort: &Effort, q
     benches
 }
 
-fn provenance(seconds: f64) -> Provenance {
+/// Version and commit of the program, the machine, and how long the job took until then.
+fn provenance(seconds: f64) -> String {
     let commit = Command::new("git")
         .args(["describe", "--always", "--dirty"])
         .output()
@@ -312,9 +326,9 @@ fn provenance(seconds: f64) -> Provenance {
         .map(|output| String::from_utf8_lossy(&output.stdout).trim().to_string());
     let commit = commit.map_or(String::new(), |c| format!(" at commit {c}"));
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
-    Provenance {
-        program: format!("deltaq {}{commit}", env!("CARGO_PKG_VERSION")),
-        machine: format!("{} on {}, {processors} processors", std::env::consts::OS, std::env::consts::ARCH),
-        seconds,
-    }
+    let (system, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
+    format!(
+        "\ndeltaq {}{commit}, {system} on {architecture}, {processors} processors, {seconds:.0} s for everything.\n",
+        env!("CARGO_PKG_VERSION")
+    )
 }

@@ -18,7 +18,7 @@ mod verdicts;
 pub use audit_page::AuditReport;
 pub use bench_page::{bench_files, bench_headline, bench_json, bench_table};
 pub use files::{File, write_all};
-pub use overview::{Provenance, overview};
+pub use overview::overview;
 pub use pictures::pictures;
 pub use random_page::{random_files, random_headline, random_verdicts};
 pub use realization_page::RealizationReport;

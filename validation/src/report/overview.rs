@@ -8,19 +8,8 @@ use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
 use random::substitution;
 
-/// What produced the reports.
-#[derive(Clone, Debug)]
-pub struct Provenance {
-    /// Version of the program and commit of its source, where known.
-    pub program: String,
-    /// Operating system, processor architecture, number of processors.
-    pub machine: String,
-    /// Seconds of the whole job.
-    pub seconds: f64,
-}
-
 /// One page: the verdict matrix, the findings, what further pages say (`further`: a line and a path), how to regenerate.
-pub fn overview(comparisons: &[Comparison], further: &[(String, &str)], provenance: &Provenance) -> String {
+pub fn overview(comparisons: &[Comparison], further: &[(String, &str)]) -> String {
     let mut page = format!("# Do the formulations give the same motion?\n\n**{}**\n\n", headline(comparisons));
     page += &matrix(comparisons);
     page += "\nTimes are those at which the gap in the kinetic metric passes 1e-6. *After best fit*: what the free constants $\\mu_0$ that suit the \
@@ -35,16 +24,17 @@ pub fn overview(comparisons: &[Comparison], further: &[(String, &str)], provenan
         let _ = writeln!(page, "- {line} [More]({path}).");
     }
     page += "- The same problems in SciPy, numba, CasADi, heyoka and SymPy: `cargo xtask peers` writes [peers.md](peers.md).\n";
-    page +=
-        "- How cost grows along a train of trailers: `deltaq scaling --out reports` writes [scaling.md](scaling.md).\n";
+    page += "- Which method reaches which error in which time, on one machine: `cargo run --release -- --measured reports/measured` writes \
+             [error-vs-time.md](measured/error-vs-time.md).\n";
+    page += "- How cost grows along a train of trailers: `deltaq scaling --out reports/measured` writes \
+             [scaling.md](measured/scaling.md).\n";
     page += "- What a physics engine makes of rolling balls: `cargo xtask engine` writes [engine.md](engine.md).\n";
     let _ = writeln!(
         page,
-        "\n## How this was made\n\n`cargo run --release` writes this folder; `deltaq compare SCENE` makes one page for a scene of your own; \
+        "\n## How this was made\n\n`cargo run --release` writes this folder, but for the pages of times in [measured](measured/error-vs-time.md), which differ from machine to machine; `deltaq compare SCENE` makes one page for a scene of your own; \
          [`verdicts.json`](verdicts.json) holds the verdicts for machines.\n\n\
          Every motion is integrated twice, at tolerances a factor 100 apart; two motions are called different only where their gap is over \
-         ten times the sum of both error estimates.\n\n{}, {}, {:.0} s for everything.",
-        provenance.program, provenance.machine, provenance.seconds
+         ten times the sum of both error estimates.",
     );
     page
 }
