@@ -6,8 +6,7 @@ use mechanics::{State, System};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{CompileError, Symbol};
 
-use crate::gap::subtract;
-use crate::metric::{Metric, numbers};
+use crate::metric::{Metric, numbers, subtract};
 use crate::{Motion, SolveError};
 
 /// Growth of a gap near the start: `gap ≈ coefficient · (t − t₀)^exponent`.

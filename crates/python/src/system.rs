@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{derive_at, ready, removals, setting, solve_choice};
+use deltaq::{derive_at, prepare, removals, setting, solve_choice};
+use integrate::Method;
 use mechanics::integrability;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -269,7 +270,8 @@ impl System {
         }
         let work = move || {
             let equations = derive_at(&scene.system, &scene.start, &choice)?;
-            let made = ready(setting(&scene), equations, &choice.constants, &settings)?;
+            let mut made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
+            made.complete(Method::Radau5)?; // with a Jacobian
             Ok((made, scene))
         };
         let made = background::run(py, &interrupt, work)?;
