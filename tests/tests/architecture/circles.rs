@@ -22,7 +22,11 @@ const EXCEPTIONS: [(&str, &[&str], &str); 6] = [
     ("picture", &["axis", "draw", "frame", "layout", "lib"], "pictures are defined in the root: not untied yet"),
     ("validation", &["audit/context", "audit/geometry"], "not untied yet"),
     ("random", &["case", "claims/null_tests", "recipe", "realization"], "not untied yet"),
-    ("xtask", &["checks", "dependencies", "lint", "python", "sources"], "the list of chores and the chores: not untied yet"),
+    (
+        "xtask",
+        &["checks", "dependencies", "lint", "python", "sources"],
+        "the list of chores and the chores: not untied yet",
+    ),
 ];
 
 /// Arrows without those from a child to the file of its own folder, where that is not the root.
