@@ -107,21 +107,7 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
 /// [`SolveError`] where there is no motion.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
 /// use deltaq::{Settings, choices, solve_choice};
 /// // the ice sledge turns at a constant rate: phi = 0.3 + t
 /// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").unwrap();

@@ -83,21 +83,7 @@ impl Comparison {
 /// [`mechanics::RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
 /// use deltaq::{Settings, Verdict, compare};
 /// // the ice sledge, with multipliers that are zero at the start
 /// let comparison = compare(scene, Vec::new(), &Settings::default())?;

@@ -13,21 +13,7 @@ use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 /// [`SolveError`] where there is no start.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
 /// use deltaq::{Settings, choices, derive, prepare, setting};
 /// // the ice sledge turns at a constant rate, y = (x, y, phi, x', y', phi')
 /// let chetaev = choices(&scene).remove(0);

@@ -61,21 +61,7 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// [`SolveError::Step`], those of [`discrete_of`] and of [`crate::solve`].
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
 /// use deltaq::{Settings, Steps, choices, solve_by_steps};
 /// use discrete::Composition;
 /// let chetaev = choices(&scene).remove(0);
