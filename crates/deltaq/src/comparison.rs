@@ -7,9 +7,7 @@ use scene::Scene;
 use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::growth::{Growth, LeadingTerm, growth, leading_term};
-use crate::{
-    Choice, Metric, Motion, Settings, SolveError, choices, constant_names, formulation, setting, solve_choice,
-};
+use crate::{Choice, Metric, Motion, Settings, SolveError, constant_names, formulation, setting, solve_choice};
 
 /// A choice and what became of it.
 pub struct Run {
@@ -77,29 +75,33 @@ impl Comparison {
     }
 }
 
-/// Computes all formulations of a scene and compares them. `extra` are further runs, derived elsewhere.
+/// Computes these choices of a scene, those of [`crate::choices`] for all formulations, and compares them. `extra` are further runs, derived elsewhere.
 ///
 /// # Errors
 /// [`mechanics::RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
 ///
 /// ```
 /// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
-/// use deltaq::{Settings, Verdict, compare};
+/// use deltaq::{Settings, Verdict, choices, compare};
 /// // the ice sledge, with multipliers that are zero at the start
-/// let comparison = compare(scene, Vec::new(), &Settings::default())?;
+/// let choices = choices(&scene);
+/// let comparison = compare(scene, choices, Vec::new(), &Settings::default())?;
 /// let runs = (comparison.run("chetaev").unwrap(), comparison.run("vakonomic").unwrap());
 /// let pair = comparison.pair(runs.0, runs.1).unwrap();
 /// assert_eq!(pair.gap.verdict, Verdict::Different);
 /// assert_eq!(pair.predicted.as_ref().unwrap().exponent, 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Comparison, SolveError> {
+pub fn compare(
+    scene: Scene,
+    choices: Vec<Choice>,
+    extra: Vec<Run>,
+    settings: &Settings,
+) -> Result<Comparison, SolveError> {
     let integrability = integrability(&scene.system, &scene.start)?;
     let mut metric = Metric::new(&scene.system)?;
-    let mut runs: Vec<Run> = choices(&scene)
-        .into_iter()
-        .map(|choice| Run { outcome: solve_choice(&scene, &choice, settings), choice })
-        .collect();
+    let mut runs: Vec<Run> =
+        choices.into_iter().map(|choice| Run { outcome: solve_choice(&scene, &choice, settings), choice }).collect();
     runs.extend(extra);
 
     let mut pairs = Vec::new();
