@@ -57,10 +57,10 @@ impl Ensemble {
     pub fn run(&self, members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions) -> Vec<Outcome> {
         let tolerance = self.settings.tolerance;
         if !options.estimate {
-            return self.run_once(members, times, tolerance, false, options.threads);
+            return self.run_once(members, times, tolerance, Origin::Start, options.threads);
         }
-        let looser = self.run_once(members, times, tolerance, true, options.threads);
-        let kept = self.run_once(members, times, tolerance * TIGHTER, false, options.threads);
+        let looser = self.run_once(members, times, tolerance, Origin::LastDigit, options.threads);
+        let kept = self.run_once(members, times, tolerance * TIGHTER, Origin::Start, options.threads);
         let runs = kept.into_iter().zip(looser).zip(members);
         runs.map(|((kept, looser), member)| Ok(confirmed(kept?, looser?, member))).collect()
     }
@@ -70,14 +70,14 @@ impl Ensemble {
         members: &[EnsembleMember],
         times: &[f64],
         tolerance: f64,
-        moved: bool,
+        origin: Origin,
         threads: usize,
     ) -> Vec<Outcome> {
         let options = self.settings.options(tolerance);
         let task = Task {
             members,
             times,
-            moved,
+            origin,
             options: &options,
             compiled: &self.prepared.compiled,
             lanes: self.lanes.as_ref(),
@@ -118,12 +118,20 @@ impl MemberRun {
     }
 }
 
+/// Where members start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Origin {
+    /// From their start.
+    Start,
+    /// From the start with its last digits changed, as [`crate::Prepared::second_run`] does.
+    LastDigit,
+}
+
 /// Members to be integrated once, by whichever thread has a free lane.
 struct Task<'a> {
     members: &'a [EnsembleMember],
     times: &'a [f64],
-    /// Whether starts have their last digits changed.
-    moved: bool,
+    origin: Origin,
     options: &'a Options,
     compiled: &'a Compiled,
     lanes: Result<&'a LaneEquations, &'a String>,
@@ -188,7 +196,7 @@ impl Task<'_> {
 
     fn states(&self, index: usize) -> Vec<f64> {
         let mut y = self.members[index].y.clone();
-        if self.moved {
+        if self.origin == Origin::LastDigit {
             move_digits(&mut y, |_| UNITS);
         }
         y
