@@ -1,6 +1,6 @@
 //! References with a known error: two methods agree, forms agree, and closed solutions and 42-digit states are met.
 
-use deltaq::{Choice, Settings, choices, derive, ready, setting};
+use deltaq::{Choice, Settings, choices, derive, prepare, setting};
 use equations::Equations;
 use mechanics::StartError;
 use reference::{DoubleDouble, Question, Reference, ReferenceError, Wide, reference, reference_in};
@@ -21,7 +21,7 @@ fn choice(scene: &Scene, label: &str) -> Choice {
 fn asked(scene: &Scene, label: &str) -> (Equations, Vec<f64>) {
     let choice = choice(scene, label);
     let equations = derive(&scene.system, &choice).unwrap();
-    let ready = ready(setting(scene), equations, &choice.constants, &Settings::default()).unwrap();
+    let ready = prepare(setting(scene), equations, &choice.constants, &Settings::default()).unwrap();
     (ready.equations, ready.constants)
 }
 

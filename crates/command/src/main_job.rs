@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
-use deltaq::{Comparison, Settings, compare};
+use deltaq::{Comparison, Settings, choices, compare};
 use scene::Scene;
 use serde_json::Value;
 
@@ -38,8 +38,9 @@ pub struct SceneReport {
 /// Where the scene cannot be compared.
 pub fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
     let name = scene.name.clone();
-    let control = substitution::run(&scene, settings).into_iter().collect();
-    let mut comparison = compare(scene, control, settings).with_context(|| format!("scene `{name}`"))?;
+    let choices = choices(&scene);
+    let control = substitution::run(&scene, &choices, settings).into_iter().collect();
+    let mut comparison = compare(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))?;
     let mut files = pictures(&mut comparison).with_context(|| format!("pictures of scene `{name}`"))?;
     let links: Vec<String> =
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, ready_to_run, setting};
+use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, prepare, setting};
 use equations::{Cost, Equations};
 use mechanics::{ConstantsRule, integrability};
 use scene::Scene;
@@ -58,7 +58,7 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
         ConstantsRule::Natural { .. } => &ConstantsRule::Zero,
         given => given,
     };
-    let ready = match ready_to_run(setting(scene), equations, constants, &Settings::default()) {
+    let ready = match prepare(setting(scene), equations, constants, &Settings::default()) {
         Ok(ready) => ready,
         Err(error) => return Ok(format!("\nNot started: {error}\n")),
     };

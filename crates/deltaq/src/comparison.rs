@@ -1,31 +1,13 @@
 //! One scene in every formulation, pair by pair.
 
-use std::time::Instant;
-
-use equations::{Derivation, Equations, Formulation};
-use mechanics::{ConstantsRule, Integrability, Recombination, Removal, State, System, integrability};
+use mechanics::{Integrability, State, System, integrability};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 
 use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::growth::{Growth, LeadingTerm, growth, leading_term};
-use crate::metric::Metric;
-use crate::removals::removals;
-use crate::{FORMS, FORMULATIONS, Motion, Setting, Settings, SolveError, formulation, solve};
-
-/// One formulation of the scene, with all choices made.
-#[derive(Clone)]
-pub struct Choice {
-    /// What the reader sees: the formulation, and the removal where there are several.
-    pub label: String,
-    /// Name of the formulation.
-    pub formulation: &'static str,
-    /// The removal, where the formulation needs one.
-    pub removal: Option<Removal>,
-    /// Free constants.
-    pub constants: ConstantsRule,
-}
+use crate::{Choice, Metric, Motion, Settings, SolveError, constant_names, formulation, setting, solve_choice};
 
 /// A choice and what became of it.
 pub struct Run {
@@ -93,161 +75,33 @@ impl Comparison {
     }
 }
 
-/// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need one get a choice
-/// without, which [`solve_choice`] refuses with the reason.
-pub fn choices(scene: &Scene) -> Vec<Choice> {
-    let mut choices = Vec::new();
-    for formulation in FORMULATIONS {
-        let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
-        if removals.is_empty() {
-            choices.push(without_removal(formulation, scene));
-        }
-        for removal in removals {
-            choices.push(Choice {
-                label: format!("{} ({})", formulation.title, removal.name),
-                formulation: formulation.name,
-                constants: removal.constants.clone(),
-                removal: Some(removal),
-            });
-        }
-    }
-    choices
-}
-
-/// A choice of each of [`FORMS`], of which [`derive_at`] refuses those that `scene` does not have.
-pub fn forms(scene: &Scene) -> Vec<Choice> {
-    FORMS.iter().map(|form| without_removal(form, scene)).collect()
-}
-
-fn without_removal(formulation: &Formulation, scene: &Scene) -> Choice {
-    let constants = default_constants(formulation, scene);
-    Choice { label: formulation.title.into(), formulation: formulation.name, removal: None, constants }
-}
-
-/// The free constants of a formulation without a removal: the scene's multipliers where it starts from multipliers, else zero.
-pub fn default_constants(formulation: &Formulation, scene: &Scene) -> ConstantsRule {
-    if formulation.starts_multipliers { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero }
-}
-
-/// Derives the equations of a choice, without what they do not need.
-///
-/// # Errors
-/// [`SolveError::Derivation`], [`SolveError::Removal`].
-pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
-    derive_from(system, None, choice)
-}
-
-/// [`derive()`] for a motion that starts at `start`, where pivots may have to be chosen.
-fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Result<Equations, SolveError> {
-    let formulation: &Formulation = formulation(choice.formulation).unwrap_or(&FORMULATIONS[0]);
-    let removal = choice.removal.as_ref();
-    let equations = (formulation.derive)(system, &Derivation { removal, start })?;
-    Ok(equations.leave_out_unneeded())
-}
-
-/// [`derive()`], from constraints that are independent at `start` where those of the system nearly are not ([`Recombination`]).
-///
-/// # Errors
-/// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
-pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
-    let combined = Recombination::at(system, start);
-    if choice.removal.is_some() {
-        // the constraints stand no more in the equations, but they gave the start
-        let mut equations = derive(system, choice)?;
-        equations.lost_digits = combined.ok().flatten().map_or(1.0, |combined| combined.ratio.recip());
-        return Ok(equations);
-    }
-    match combined? {
-        None => derive_from(system, Some(start), choice),
-        Some(combined) => {
-            Ok(derive_from(&combined.system(system), Some(start), choice)?.with_multipliers_restored(&combined))
-        }
-    }
-}
-
-/// Derives and integrates a choice from the start of the scene.
-///
-/// # Errors
-/// [`SolveError`] where there is no motion.
-///
-/// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
-/// use deltaq::{Settings, choices, solve_choice};
-/// // the ice sledge turns at a constant rate: phi = 0.3 + t
-/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").unwrap();
-/// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
-/// assert!(motion.is_complete());
-/// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
-    if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
-        removals(scene)?;
-    }
-    let clock = Instant::now();
-    let equations = derive_at(&scene.system, &scene.start, choice)?;
-    let derive = clock.elapsed().as_secs_f64();
-    let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
-    motion.seconds.derive = derive;
-    Ok(motion)
-}
-
-/// What every motion of a scene starts from.
-pub fn setting(scene: &Scene) -> Setting<'_> {
-    Setting { system: &scene.system, start: &scene.start, end: scene.start.t + scene.duration }
-}
-
-/// Computes all formulations of a scene and compares them. `extra` are further runs, derived elsewhere.
+/// Computes these choices of a scene, those of [`crate::choices`] for all formulations, and compares them. `extra` are further runs, derived elsewhere.
 ///
 /// # Errors
 /// [`mechanics::RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
-/// use deltaq::{Settings, Verdict, compare};
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// use deltaq::{Settings, Verdict, choices, compare};
 /// // the ice sledge, with multipliers that are zero at the start
-/// let comparison = compare(scene, Vec::new(), &Settings::default())?;
+/// let choices = choices(&scene);
+/// let comparison = compare(scene, choices, Vec::new(), &Settings::default())?;
 /// let runs = (comparison.run("chetaev").unwrap(), comparison.run("vakonomic").unwrap());
 /// let pair = comparison.pair(runs.0, runs.1).unwrap();
 /// assert_eq!(pair.gap.verdict, Verdict::Different);
 /// assert_eq!(pair.predicted.as_ref().unwrap().exponent, 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn compare(scene: Scene, extra: Vec<Run>, settings: &Settings) -> Result<Comparison, SolveError> {
+pub fn compare(
+    scene: Scene,
+    choices: Vec<Choice>,
+    extra: Vec<Run>,
+    settings: &Settings,
+) -> Result<Comparison, SolveError> {
     let integrability = integrability(&scene.system, &scene.start)?;
     let mut metric = Metric::new(&scene.system)?;
-    let mut runs: Vec<Run> = choices(&scene)
-        .into_iter()
-        .map(|choice| Run { outcome: solve_choice(&scene, &choice, settings), choice })
-        .collect();
+    let mut runs: Vec<Run> =
+        choices.into_iter().map(|choice| Run { outcome: solve_choice(&scene, &choice, settings), choice }).collect();
     runs.extend(extra);
 
     let mut pairs = Vec::new();
@@ -347,7 +201,7 @@ fn fit_run(
         return Ok(Some(None));
     };
     let gap = compare_motions(goal, &mut motion, metric)?;
-    let names = crate::constant_names(&motion.equations);
+    let names = constant_names(&motion.equations);
     Ok(Some(Some(FittedMotion { constants: names.into_iter().zip(motion.constants.clone()).collect(), gap })))
 }
 

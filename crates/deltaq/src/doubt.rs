@@ -2,7 +2,7 @@
 
 use integrate::Method;
 
-use crate::motion::TIGHTER;
+use crate::TIGHTER;
 
 /// That the difference of the two runs is no error estimate from some time on.
 #[derive(Clone, Debug, PartialEq)]

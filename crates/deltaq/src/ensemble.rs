@@ -11,12 +11,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use equations::{Compiled, Equations, FreeConstant, LaneEquations};
 use integrate::{Method, Start};
-use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
+use mechanics::{ConstantsRule, State, System, complete_removal_start};
 use scene::Scene;
 
-use crate::motion::resolve;
-use crate::run::Prepared;
-use crate::{Choice, Metric, Settings, SolveError, default_constants, derive_at, formulation, setting};
+use crate::constants::free_constants;
+use crate::{Choice, Metric, Prepared, Settings, SolveError, constants_of, derive_at, setting};
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::over_threads;
@@ -98,14 +97,6 @@ impl EnsembleStart {
     }
 }
 
-/// The free constants of `choice` for a motion of `scene`: its multipliers where the formulation starts from them.
-pub fn constants_of(choice: &Choice, scene: &Scene) -> ConstantsRule {
-    match formulation(choice.formulation) {
-        Some(formulation) if formulation.starts_multipliers => default_constants(formulation, scene),
-        _ => choice.constants.clone(),
-    }
-}
-
 /// A member, ready to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnsembleMember {
@@ -152,13 +143,10 @@ impl Ensemble {
             varied.push(place);
         }
         let settings = Settings { method: Method::Taylor, ..settings.clone() };
-        let mut prepared = Prepared::around(setting(scene), equations, &constants, &settings)?;
-        let mut point = vec![scene.start.t];
-        let y = prepared.start(&constants);
-        point.extend(&y);
-        let options = run::options(&settings, settings.tolerance);
-        integrate::check_start(&Start { t: scene.start.t, y }, setting(scene).end, &options)?;
-        point.extend(&constants);
+        let prepared = Prepared::around(setting(scene), equations, constants, &settings)?;
+        let start = Start { t: scene.start.t, y: prepared.start.clone() };
+        integrate::check_start(&start, setting(scene).end, &settings.options(settings.tolerance))?;
+        let point = [&[start.t], &start.y[..], &prepared.constants].concat();
         let lanes = LaneEquations::new(&prepared.equations, &prepared.form, &point)?;
         let symbols: Vec<_> = varied.iter().map(|&place| system.parameters[place].symbol).collect();
         let metric = Metric::varying(&system, &symbols)?;
@@ -218,23 +206,20 @@ impl Ensemble {
         }
         let mut values = self.system.values_at(state);
         if let Some(removal) = &self.prepared.equations.removal {
-            values.extend(self.removal_start(removal, state)?);
+            values.extend(complete_removal_start(&self.system, removal, state)?.values());
         }
         let prepared = &mut self.prepared;
-        for (symbol, x) in prepared.start_symbols.iter().zip(&mut prepared.start_inputs) {
-            if let Some(value) = values.get(symbol) {
-                *x = *value;
-            }
-        }
+        prepared.values.set(&values);
         prepared.t = state.t;
         let free = &mut prepared.equations.free_constants;
         let of_parameters = free.split_off(free.len() - parameters.len());
-        let resolved = resolve(prepared, constants, &self.settings);
+        let resolved = free_constants(prepared, constants, &self.settings);
         prepared.equations.free_constants.extend(of_parameters);
         let mut constants = resolved?;
         constants.extend(parameters);
-        let y = prepared.start(&constants);
-        Ok(EnsembleMember { t: state.t, end, y, constants, guess: prepared.guess.clone() })
+        prepared.set_constants(constants.clone());
+        let (y, guess) = (prepared.start.clone(), prepared.guess.clone());
+        Ok(EnsembleMember { t: state.t, end, y, constants, guess })
     }
 
     /// [`Ensemble::member_at`] of all of them, over threads as [`EnsembleOptions::threads`] says: constants that are natural at a horizon take longer to find than a
@@ -249,10 +234,6 @@ impl Ensemble {
             std::iter::from_fn(take).map(|index| (index, copy.member_at(&starts[index]))).collect()
         });
         members.into_iter().flatten().collect()
-    }
-
-    fn removal_start(&self, removal: &Removal, state: &State) -> Result<Vec<(symbolic::Symbol, f64)>, SolveError> {
-        Ok(complete_removal_start(&self.system, removal, state)?.values().into_iter().collect())
     }
 }
 

@@ -7,9 +7,7 @@ use integrate::{BoundaryError, ShootOptions, fit};
 use mechanics::ConstantsRule;
 use nalgebra::DVector;
 
-use crate::metric::Metric;
-use crate::run::{Origin, Prepared};
-use crate::{Motion, Setting, Settings, SolveError, TIGHTER, solve};
+use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the fit compares.
 const INSTANTS: usize = 40;
@@ -58,13 +56,11 @@ pub fn best_fit(
     let mut search = |tolerance: f64, limits: &Settings, guess: &[f64]| {
         let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
             let broken = |reason: String| BoundaryError::Residual { reason };
-            let run =
-                prepared.run(constants, end, tolerance, Origin::Start, limits).map_err(|e| broken(e.to_string()))?;
+            prepared.set_constants(constants.to_vec());
+            let run = prepared.integrate(end, &limits.options(tolerance)).map_err(|e| broken(e.to_string()))?;
             run.solution.completed()?;
-            let mut run = run.trajectory();
-            let mut y = vec![0.0; prepared.equations.states.len()];
             for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
-                let outputs = run.outputs(&mut prepared.compiled, *t, &mut y).map_err(|e| broken(e.to_string()))?;
+                let outputs = run.at(&mut prepared.compiled, *t).map_err(|e| broken(e.to_string()))?;
                 let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
                 residual.copy_from_slice(difference.as_slice());
             }

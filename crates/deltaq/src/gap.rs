@@ -2,8 +2,8 @@
 
 use integrate::find_root;
 
-use crate::metric::Metric;
-use crate::{Ending, Motion, SolveError};
+use crate::metric::{Metric, subtract};
+use crate::{Ending, ErrorEstimate, Motion, SolveError};
 
 /// A gap has to be this many times the sum of the two error estimates to count as a difference.
 pub const CERTAINTY: f64 = 10.0;
@@ -161,7 +161,7 @@ pub fn compare_motions_by(
     let certain_from = points.iter().find(|p| p.gap > p.limit).map(|p| p.t);
     let complete = first.is_complete() && second.is_complete();
     let estimate = estimates[0].max(estimates[1]);
-    let relative = if scale > 0.0 { estimate / scale } else { estimate };
+    let relative = ErrorEstimate::over(scale, estimate).relative;
     let doubt = first.doubt.as_ref().or(second.doubt.as_ref());
     let verdict = if certain_from.is_some() {
         Verdict::Different
@@ -183,10 +183,6 @@ pub fn compare_motions_by(
         }
     };
     Ok(Gap { verdict, end, certain_from, passes, largest, largest_by_coordinate, estimates, scale, points })
-}
-
-pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(x, y)| x - y).collect()
 }
 
 impl Gap {

@@ -6,8 +6,7 @@ use mechanics::{State, System};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{CompileError, Symbol};
 
-use crate::gap::subtract;
-use crate::metric::{Metric, numbers};
+use crate::metric::{Metric, numbers, subtract};
 use crate::{Motion, SolveError};
 
 /// Growth of a gap near the start: `gap ≈ coefficient · (t − t₀)^exponent`.
@@ -135,21 +134,7 @@ fn least_squares(
 /// [`CompileError`] where an expression contains an undefined symbol.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
 /// // the ice sledge: where mu0 is not zero, it turns differently from the start
 /// let term = deltaq::leading_term(&scene.system, &scene.start, &[2.0], &[0.0])?.unwrap();
 /// assert_eq!(term.exponent, 2);

@@ -7,48 +7,54 @@
 //! - [`FORMULATIONS`]: the table.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate.
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
-//! - [`ready()`]: the equations compiled, for single runs and for other integrators.
+//! - [`prepare`]: the equations compiled and started, for single runs and for other integrators.
 //! - [`Ensemble`]: many starts and parameters of one system at once.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 
+mod choice;
 mod comparison;
+mod constants;
+mod discrete_run;
 mod doubt;
+mod ending;
 mod ensemble;
 mod equations_text;
 mod error;
-mod estimate;
+mod error_estimate;
 mod fit;
 mod gap;
 mod growth;
-mod horizon;
 mod metric;
 mod motion;
-mod nodes;
-mod ready;
-mod removals;
-mod run;
+mod prepared;
+mod settings;
+mod single_run;
+mod start_values;
 mod steps;
 mod table;
+mod trajectory;
 
-pub use comparison::{
-    Choice, Comparison, Fit, FittedMotion, Pair, Run, choices, compare, default_constants, derive, derive_at, forms,
-    setting, solve_choice,
+pub use choice::{
+    Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
+    solve_choice,
 };
+pub use comparison::{Comparison, Fit, FittedMotion, Pair, Run, compare};
+pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
-pub use ensemble::{
-    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, constants_of, over_threads,
-};
+pub use ending::Ending;
+pub use ensemble::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, over_threads};
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
-pub use estimate::{ErrorEstimate, TRUSTED, error_estimate};
+pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate};
 pub use fit::best_fit;
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };
 pub use growth::{Growth, LeadingTerm, growth, leading_term};
 pub use metric::Metric;
-pub use motion::{Ending, FormReport, Motion, Seconds, Setting, Settings, TIGHTER, constant_names, solve};
-pub use ready::{Ready, SingleRun, ready, ready_to_run};
-pub use removals::{removal, removal_names, removals};
+pub use motion::{FormReport, Motion, Seconds, solve};
+pub use prepared::Prepared;
+pub use settings::{Setting, Settings, TIGHTER, setting};
+pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
 pub use table::{FORMS, FORMULATIONS, formulation};

@@ -6,8 +6,6 @@ use mechanics::System;
 use nalgebra::DMatrix;
 use symbolic::{CompileError, Graph, Matrix, Symbol, Tape, Workspace};
 
-use crate::gap::subtract;
-
 /// The length `sqrt(Δqᵀ M Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
 #[derive(Clone)]
 pub struct Metric {
@@ -107,4 +105,8 @@ pub(crate) fn numbers(
 ) -> Result<DMatrix<f64>, CompileError> {
     let entries: Result<Vec<f64>, CompileError> = matrix.entries().iter().map(|&e| graph.evaluate(e, values)).collect();
     Ok(DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries?))
+}
+
+pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(x, y)| x - y).collect()
 }

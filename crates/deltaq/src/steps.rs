@@ -6,10 +6,10 @@ use discrete::{Composition, Discrete, Ends, RemovedStart};
 use integrate::Work;
 use scene::Scene;
 
-use crate::motion::{resolve, unconfirmed};
-use crate::nodes::Nodes;
-use crate::run::{Prepared, Trajectory};
-use crate::{Choice, Ending, Motion, Seconds, Settings, SolveError, derive, setting};
+use crate::constants::resolve;
+use crate::discrete_run::DiscreteRun;
+use crate::trajectory::Trajectory;
+use crate::{Choice, Ending, Motion, Prepared, Seconds, Settings, SolveError, derive, setting};
 
 /// Largest number of steps of a motion that is kept.
 pub const STEP_LIMIT: usize = 10_000_000;
@@ -61,21 +61,7 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// [`SolveError::Step`], those of [`discrete_of`] and of [`crate::solve`].
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
 /// use deltaq::{Settings, Steps, choices, solve_by_steps};
 /// use discrete::Composition;
 /// let chetaev = choices(&scene).remove(0);
@@ -100,22 +86,25 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
     let mut prepared = Prepared::new(setting(scene), equations, settings)?;
     let compile = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let constants = resolve(&mut prepared, &choice.constants, settings)?;
-    prepared.start(&constants);
-    let discrete = discrete_of(scene, choice, &constants)?.composed(steps.composition);
+    resolve(&mut prepared, &choice.constants, settings)?;
+    let discrete = discrete_of(scene, choice, &prepared.constants)?.composed(steps.composition);
     let kept = discrete.trajectory(count)?;
     let looser = discrete.trajectory(count.div_ceil(2))?;
     let integrate = clock.elapsed().as_secs_f64();
     // a motion ends where the first of its runs ends, for that run's reason
     let before = (kept.end() - looser.end()) * scene.duration.signum() > 0.0;
     let ending = match (&kept.stop, &looser.stop) {
-        (_, Some(error)) if before => Ending::Stopped { t: looser.end(), cause: unconfirmed(&error.to_string()) },
+        (_, Some(error)) if before => Ending::unconfirmed(looser.end(), &error.to_string()),
         (Some(error), _) | (None, Some(error)) => Ending::Stopped { t: kept.end(), cause: error.to_string() },
         (None, None) => Ending::Completed,
     };
     let work = Work { steps: kept.times().len() - 1, ..Work::default() };
-    let runs = [kept, looser].map(|run| Trajectory::of_nodes(Nodes::new(run, &prepared, &scene.system)));
-    let mut motion = Motion::of(prepared, constants, ending, runs, Seconds { derive, compile, integrate });
+    let runs = [kept, looser].map(|run| {
+        let values = prepared.values.clone();
+        Trajectory::Discrete(Box::new(DiscreteRun::new(run, values, &prepared.equations, &scene.system)))
+    });
+    let seconds = Seconds { derive, compile, integrate };
+    let mut motion = Motion::of(prepared, ending, runs, seconds);
     motion.work = work;
     Ok(motion)
 }

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{Choice, Motion, Settings, SolveError, compare, derive, formulation, removals, setting, solve_choice};
+use deltaq::{
+    Choice, Motion, Settings, SolveError, choices, compare, derive, formulation, removals, setting, solve_choice,
+};
 use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError};
 use mechanics::{ConstantsRule, Removal, RemovalError, StartError};
@@ -166,7 +168,8 @@ fn constraints_that_nothing_removes() {
     let scene = Scene::parse("cone", text).unwrap_or_else(|e| panic!("{e}"));
     assert!(matches!(removals(&scene), Err(RemovalError::NotLinear { constraint: 1, .. })));
     // the others are compared all the same, and the refusal is part of the result
-    let comparison = compare(scene, Vec::new(), &Settings::default()).unwrap_or_else(|e| panic!("{e}"));
+    let comparison =
+        compare(scene.clone(), choices(&scene), Vec::new(), &Settings::default()).unwrap_or_else(|e| panic!("{e}"));
     let removed = comparison.run("removed-constraint").expect("a run that says why not");
     let error = comparison.runs[removed].outcome.as_ref().err().expect("refused");
     assert!(matches!(error, SolveError::Removal(RemovalError::NotLinear { constraint: 1, .. })), "{error}");
@@ -202,7 +205,7 @@ fn dependent_constraints_at_the_start() {
         let error = refused(deltaq::solve(setting(&scene), equations, &ConstantsRule::Zero, &Settings::default()));
         assert!(matches!(error, SolveError::AtStart(EvaluationFailure::Singular { .. })), "{error}");
     }
-    let error = compare(scene, Vec::new(), &Settings::default()).err().expect("not refused");
+    let error = compare(scene.clone(), choices(&scene), Vec::new(), &Settings::default()).err().expect("not refused");
     assert!(matches!(error, SolveError::Removal(RemovalError::Dependent { .. })), "{error}");
     // a scene refuses them before
     let edge = "\"y'*cos(phi) - x'*sin(phi)\"";

@@ -77,15 +77,13 @@ pub use error::DiscreteError;
 use natural::Natural;
 use newton::check_finite;
 pub use removed_start::{Ends, RemovedStart};
+pub use start::START_LIMIT;
 use start::{
     check_length, check_start, fresh_symbols, numbers, refuse_forces, substituted_lagrangian, values, with_zeros,
 };
 use step::{Interval, Node, Principle, Step};
 use sum::Compensated;
 pub use trajectory::{Sample, Trajectory};
-
-/// Largest `|f_i| / (|A_i| (1 + |v|))` of a start.
-pub const START_LIMIT: f64 = 1e-9;
 
 /// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), for any number of steps. Clone it for another thread.
 ///
@@ -291,9 +289,12 @@ impl Discrete {
         if steps == 0 {
             return Err(DiscreteError::TooFew { what: "the number of steps", found: 0, limit: 1 });
         }
+        let start = self.start.clone();
         match (&self.costates, self.ends) {
-            (Some(natural), Ends::Natural) => natural.clone().shoot(self, steps),
-            _ => self.nodes_from(self.start.clone(), steps),
+            (Some(natural), Ends::Natural) => {
+                natural.clone().shoot(&start, self.end, |node| self.nodes_from(node, steps))
+            }
+            _ => self.nodes_from(start, steps),
         }
     }
 

@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::DiscreteError;
 use crate::newton::largest;
 use crate::step::Node;
 use crate::sum::Compensated;
-use crate::{Discrete, DiscreteError};
 
 /// `|P_N|` relative to `1 + |P₀|` under which the end counts as natural.
 const NATURAL: f64 = 1e-14;
@@ -29,13 +29,18 @@ pub(super) struct Natural {
 }
 
 impl Natural {
-    /// The nodes of the march with `P_N = 0`, by Newton's method on `P₀` with differences for the Jacobian.
+    /// The nodes of the `march` from `start` to the time `end` with `P_N = 0`, by Newton's method on `P₀` with differences for the Jacobian.
     ///
     /// `P_N` is the momentum of the free `w_N`: `D₂S(N−1,N) = −P_N`.
-    pub(super) fn shoot(&self, discrete: &mut Discrete, steps: usize) -> Result<Vec<Node>, DiscreteError> {
+    pub(super) fn shoot(
+        &self,
+        start: &Node,
+        end_time: f64,
+        mut march: impl FnMut(Node) -> Result<Vec<Node>, DiscreteError>,
+    ) -> Result<Vec<Node>, DiscreteError> {
         let (count, mut costates, mut before) = (self.first.len(), self.first.clone(), f64::INFINITY);
         for _ in 0..ATTEMPTS {
-            let nodes = discrete.nodes_from(self.node(&discrete.start, &costates), steps)?;
+            let nodes = march(self.node(start, &costates))?;
             let end = self.end(&nodes);
             let scale = 1.0 + largest(&costates);
             let found = largest(end.as_slice()) / scale;
@@ -47,13 +52,13 @@ impl Natural {
             for i in 0..count {
                 let mut moved = costates.clone();
                 moved[i] += DIFFERENCE * scale;
-                let other = self.end(&discrete.nodes_from(self.node(&discrete.start, &moved), steps)?);
+                let other = self.end(&march(self.node(start, &moved))?);
                 jacobian.set_column(i, &((other - &end) / (DIFFERENCE * scale)));
             }
-            let correction = jacobian.full_piv_lu().solve(&end).ok_or(DiscreteError::Singular { t: discrete.end })?;
+            let correction = jacobian.full_piv_lu().solve(&end).ok_or(DiscreteError::Singular { t: end_time })?;
             costates.iter_mut().zip(correction.iter()).for_each(|(p, dp)| *p -= dp);
         }
-        Err(DiscreteError::NoNaturalEnd { t: discrete.end, attempts: ATTEMPTS, found: before, limit: NATURAL })
+        Err(DiscreteError::NoNaturalEnd { t: end_time, attempts: ATTEMPTS, found: before, limit: NATURAL })
     }
 
     /// The start with other costates.

@@ -6,8 +6,11 @@ use mechanics::fresh_symbol;
 use mechanics::{MemoryVariable, Removal, State, System};
 use symbolic::{Expr, Graph, Symbol};
 
+use crate::DiscreteError;
 use crate::newton::{check_finite, largest};
-use crate::{DiscreteError, START_LIMIT};
+
+/// Largest `|f_i| / (|A_i| (1 + |v|))` of a start.
+pub const START_LIMIT: f64 = 1e-9;
 
 /// `L` in `(u̇, u, w, t)`; no rate may be too high.
 pub(crate) fn substituted_lagrangian(system: &System, removal: &Removal) -> Result<Expr, DiscreteError> {

@@ -57,8 +57,10 @@ struct Inner<'p> {
     problem: &'p mut dyn Problem,
     work: Work,
     /// The first failure inside a callback that cannot return one; those after it may follow from its NaN.
+    #[cfg(feature = "diffsol")]
     failure: Option<Failure>,
     /// Why there is no Jacobian, as long as there is none.
+    #[cfg(feature = "diffsol")]
     no_jacobian: Option<Failure>,
     /// The point at which `jacobian` was evaluated; empty `y`: nowhere yet.
     jacobian_t: f64,
@@ -74,7 +76,9 @@ impl<'p> System<'p> {
             inner: RefCell::new(Inner {
                 problem,
                 work: Work::default(),
+                #[cfg(feature = "diffsol")]
                 failure: None,
+                #[cfg(feature = "diffsol")]
                 no_jacobian: None,
                 jacobian_t: f64::NAN,
                 jacobian_y: Vec::new(),
@@ -131,6 +135,7 @@ impl<'p> System<'p> {
     }
 
     /// F(t, y) for callers that take no errors: the failure is kept for [`System::take_failure`] and NaN is written.
+    #[cfg(feature = "diffsol")]
     pub(crate) fn rates_or_nan(&self, t: f64, y: &[f64], rates: &mut [f64]) {
         if let Err(failure) = check_finite(y).and_then(|()| self.rates(t, y, rates)) {
             self.inner.borrow_mut().failure.get_or_insert(failure);
@@ -150,6 +155,7 @@ impl<'p> System<'p> {
     }
 
     /// `product = ∂F/∂y(t, y) · v`. The matrix is evaluated once a point, however many products are asked for.
+    #[cfg(feature = "diffsol")]
     pub(crate) fn jacobian_product_or_nan(&self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) {
         let inner = &mut *self.inner.borrow_mut();
         if let Err(failure) = inner.evaluate_jacobian(t, y) {
@@ -164,6 +170,7 @@ impl<'p> System<'p> {
         }
     }
 
+    #[cfg(feature = "diffsol")]
     pub(crate) fn take_failure(&self) -> Option<Failure> {
         let inner = &mut *self.inner.borrow_mut();
         let failure = inner.failure.take();

@@ -265,7 +265,9 @@ pub(crate) struct Compared {
 
 /// Compares all formulations of `scene`.
 pub(crate) fn compare(scene: Scene, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
-    let deltaq::Comparison { scene, integrability, runs, pairs, fits } = deltaq::compare(scene, Vec::new(), settings)?;
+    let choices = deltaq::choices(&scene);
+    let compared = deltaq::compare(scene, choices, Vec::new(), settings)?;
+    let deltaq::Comparison { scene, integrability, runs, pairs, fits } = compared;
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
     Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, scene })

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::{EquationStyle, Ready, constant_names, equations_text, ready, setting};
+use deltaq::{EquationStyle, Prepared, constant_names, equations_text, prepare, setting};
 use equations::{Compiled, EvaluationFailure, Role};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -21,7 +21,7 @@ type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 /// (m,), or k of them at once, y of shape (k, m) with t a number or of shape (k,).
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Equations {
-    ready: Mutex<Ready>,
+    ready: Mutex<Prepared>,
     scene: Mutex<Scene>,
     dimension: usize,
     /// Name of the formulation.
@@ -54,7 +54,7 @@ fn each(t: &Rows, y: &Rows, mut body: impl FnMut(f64, &[f64]) -> Result<(), Eval
 }
 
 impl Equations {
-    pub(crate) fn new(ready: Ready, scene: Scene) -> Equations {
+    pub(crate) fn new(ready: Prepared, scene: Scene) -> Equations {
         let equations = &ready.equations;
         let g = &equations.graph;
         let lines: Vec<String> =
@@ -85,7 +85,7 @@ impl Equations {
             return Err(PyValueError::new_err("t has several entries, y has a single row"));
         }
         let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
-        let Ready { compiled, guess, .. } = &mut *ready;
+        let Prepared { compiled, guess, .. } = &mut *ready;
         if !guess.is_empty() {
             compiled.set_guess(guess);
         }
@@ -132,13 +132,13 @@ impl Equations {
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
-        let Ready { equations, start, .. } = self.ready.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let Prepared { equations, start, .. } = self.ready.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let start = match rule {
             None => start,
             Some(rule) => {
                 let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000)?;
                 let scene = self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone();
-                let work = move || ready(setting(&scene), equations, &rule, &settings);
+                let work = move || prepare(setting(&scene), equations, &rule, &settings);
                 background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
             }
         };
@@ -218,7 +218,7 @@ impl Equations {
         let (y, places) = self.state(&q, &v, &mu)?;
         let mut rates = vec![0.0; y.len()];
         let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
-        let Ready { compiled, guess, .. } = &mut *ready;
+        let Prepared { compiled, guess, .. } = &mut *ready;
         if !guess.is_empty() {
             compiled.set_guess(guess);
         }

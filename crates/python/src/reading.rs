@@ -33,11 +33,5 @@ pub(crate) fn parse(
     overrides: Option<HashMap<String, f64>>,
     name: &str,
 ) -> PyResult<System> {
-    parsed(py, name, text, overrides.into_iter().flatten().collect())
-}
-
-/// A system from the text of a scene.
-pub(crate) fn parsed(py: Python<'_>, name: &str, text: String, overrides: Overrides) -> PyResult<System> {
-    let scene = py.detach(|| Scene::parse_with(name, &text, &overrides));
-    Ok(System::of(scene.map_err(|error| errors::scene(py, &error))?, text, overrides))
+    System::parse(py, name, text, overrides.into_iter().flatten().collect())
 }

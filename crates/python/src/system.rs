@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{derive_at, ready, removals, setting, solve_choice};
+use deltaq::{derive_at, prepare, removals, setting, solve_choice};
+use integrate::Method;
 use mechanics::integrability;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -17,7 +18,7 @@ use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
 use crate::motion::{Motion, Sampled, State};
 use crate::scene_text::{Arguments, write};
-use crate::{arguments, background, errors, reading};
+use crate::{arguments, background, errors};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
@@ -49,6 +50,12 @@ impl System {
     /// The system of a scene that was read from `text`.
     pub(crate) fn of(scene: Scene, text: String, overrides: Overrides) -> System {
         System { scene: Mutex::new(scene), text, overrides }
+    }
+
+    /// A system from the text of a scene.
+    pub(crate) fn parse(py: Python<'_>, name: &str, text: String, overrides: Overrides) -> PyResult<System> {
+        let scene = py.detach(|| Scene::parse_with(name, &text, &overrides));
+        Ok(System::of(scene.map_err(|error| errors::scene(py, &error))?, text, overrides))
     }
 
     /// The scene. No lock of Python is waited for while it is held.
@@ -106,7 +113,7 @@ impl System {
             multipliers,
             duration,
         })?;
-        reading::parsed(py, name, text, Overrides::new())
+        System::parse(py, name, text, Overrides::new())
     }
 
     /// Name: that of the file without its ending.
@@ -269,7 +276,8 @@ impl System {
         }
         let work = move || {
             let equations = derive_at(&scene.system, &scene.start, &choice)?;
-            let made = ready(setting(&scene), equations, &choice.constants, &settings)?;
+            let mut made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
+            made.complete(Method::Radau5)?; // with a Jacobian
             Ok((made, scene))
         };
         let made = background::run(py, &interrupt, work)?;

@@ -9,7 +9,7 @@
 //! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form (`w` in neither `L` nor `B`),
 //! and wrong nearly everywhere else. A harness that does not notice is broken.
 
-use deltaq::{Choice, Run, Settings, removals, setting, solve};
+use deltaq::{Choice, Run, Settings, setting, solve};
 use equations::{Block, Equations, Role, StateVariable, Statement};
 use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
@@ -57,12 +57,12 @@ pub fn derive(system: &System, removal: &Removal) -> Equations {
     equations.leave_out_unneeded()
 }
 
-/// The control on the first removal of a scene; nothing where the scene has none, or where forces act.
-pub fn run(scene: &Scene, settings: &Settings) -> Option<Run> {
+/// The control on the first removal among the `choices` of a scene; nothing where there is none, or where forces act.
+pub fn run(scene: &Scene, choices: &[Choice], settings: &Settings) -> Option<Run> {
     if scene.system.has_forces() {
         return None;
     }
-    let removal = removals(scene).ok()?.into_iter().next()?;
+    let removal = choices.iter().find_map(|choice| choice.removal.clone())?;
     let equations = derive(&scene.system, &removal);
     let choice = Choice {
         label: "substitution (wrong on purpose)".into(),

@@ -25,5 +25,6 @@ mod wide;
 pub use double_double::DoubleDouble;
 pub use error::ReferenceError;
 pub use instant::Point;
-pub use reference::{Agreement, Distance, Question, Reference, reference, reference_in};
+pub use metric::Distance;
+pub use reference::{Agreement, Question, Reference, reference, reference_in};
 pub use wide::Wide;

@@ -5,7 +5,27 @@ use symbolic::{CompileError, Symbol};
 
 use crate::Wide;
 use crate::instant::{Point, Program};
-use crate::reference::Distance;
+
+/// How far two runs are apart at one time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Distance {
+    /// `√|Δqᵀ M Δq|`, the kinetic metric.
+    pub positions: f64,
+    /// `√|Δq̇ᵀ M Δq̇|`.
+    pub velocities: f64,
+    /// Largest difference of a multiplier or costate.
+    pub multipliers: f64,
+}
+
+impl Distance {
+    pub(crate) fn max(self, other: Distance) -> Distance {
+        Distance {
+            positions: self.positions.max(other.positions),
+            velocities: self.velocities.max(other.velocities),
+            multipliers: self.multipliers.max(other.multipliers),
+        }
+    }
+}
 
 /// `M = ∂²L/∂v²` and `f` at one point of a motion.
 pub(crate) struct Metric<T> {

@@ -4,7 +4,7 @@ use equations::Equations;
 use mechanics::{State, System};
 
 use crate::instant::{Instant, Point};
-use crate::metric::Metric;
+use crate::metric::{Distance, Metric};
 use crate::start::{Start, start};
 use crate::taylor::Taylor;
 use crate::{DoubleDouble, ReferenceError, Wide, extrapolation};
@@ -20,27 +20,6 @@ pub struct Question<'a> {
     pub equations: &'a Equations,
     /// Values of the free constants, taken as exact.
     pub constants: &'a [f64],
-}
-
-/// How far two runs are apart at one time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Distance {
-    /// `√|Δqᵀ M Δq|`, the kinetic metric.
-    pub positions: f64,
-    /// `√|Δq̇ᵀ M Δq̇|`.
-    pub velocities: f64,
-    /// Largest difference of a multiplier or costate.
-    pub multipliers: f64,
-}
-
-impl Distance {
-    fn max(self, other: Distance) -> Distance {
-        Distance {
-            positions: self.positions.max(other.positions),
-            velocities: self.velocities.max(other.velocities),
-            multipliers: self.multipliers.max(other.multipliers),
-        }
-    }
 }
 
 /// Largest distances between the runs behind a reference.

@@ -73,24 +73,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// [`DerivationError::SingularHighestHessian`].
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [removal.arc-length]
-/// # parameters = ["u", "phi"]
-/// # rates = { x = "u'*cos(phi)", y = "u'*sin(phi)" }
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
 /// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u'*cos(phi), y' = u'*sin(phi)
 /// let derivation = equations::Derivation { removal: Some(&scene.removals[0]), start: None };
 /// let equations = removed_constraint::derive(&scene.system, &derivation)?;

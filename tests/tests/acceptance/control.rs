@@ -71,7 +71,7 @@ fn accelerations(removal: &Removal, motion: &mut Motion, t: f64) -> HashMap<Symb
 fn control_is_flagged_wherever_it_is_wrong() {
     let mut right = Vec::new();
     for scene in scenes() {
-        let run = substitution::run(&scene, &Settings::default());
+        let run = substitution::run(&scene, &deltaq::choices(&scene), &Settings::default());
         let run = run.unwrap_or_else(|| panic!("{}: the control did not run", scene.name));
         let mut reference = chetaev(&scene);
         let removal = run.choice.removal.expect("the control has a removal");

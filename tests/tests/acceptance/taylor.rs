@@ -16,7 +16,7 @@ fn defect(scene: &Scene, equations: Equations, constants: &[f64]) -> f64 {
     let settings = Settings { method: Method::Taylor, ..Settings::default() };
     let rule = ConstantsRule::Given(constants.to_vec());
     let name = equations.formulation;
-    let ready = deltaq::ready(deltaq::setting(scene), equations, &rule, &settings);
+    let ready = deltaq::prepare(deltaq::setting(scene), equations, &rule, &settings);
     let mut ready = ready.unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name));
     let (t, n) = (scene.start.t, ready.start.len());
     let mut c = vec![0.0; (ORDER + 1) * n];

@@ -6,7 +6,7 @@ use std::io::{BufRead, Write};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use deltaq::{Choice, Ready, Settings, derive, derive_at, formulation, ready_to_run, setting, solve};
+use deltaq::{Choice, Prepared, Settings, derive, derive_at, formulation, prepare, setting, solve};
 use equations::Derivation;
 use integrate::{Dense, Method, Options, Status};
 use mechanics::ConstantsRule;
@@ -28,7 +28,7 @@ struct Loaded {
     case: Case,
     scene: Scene,
     choice: Choice,
-    runs: HashMap<String, Ready>,
+    runs: HashMap<String, Prepared>,
 }
 
 /// Answers on standard output what is asked on standard input, until that ends.
@@ -76,7 +76,7 @@ fn answer(question: &Value, loaded: &mut Option<Loaded>) -> Result<Value> {
         "rates" => loaded.rates(),
         "prepare" => {
             let clock = Instant::now();
-            loaded.prepare(text("method")?)?;
+            loaded.prepared(text("method")?)?;
             Ok(json!({ "seconds": clock.elapsed().as_secs_f64() }))
         }
         "run" => loaded.run(text("method")?, number("tolerance")?, text("task")? == "end", number("repeat")?),
@@ -106,9 +106,9 @@ fn read(case: &Case) -> Result<(Scene, Choice)> {
     Ok((scene, choice))
 }
 
-fn compile(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Ready> {
+fn compile(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Prepared> {
     let equations = derive_at(&scene.system, &scene.start, choice)?;
-    Ok(ready_to_run(setting(scene), equations, &choice.constants, settings)?)
+    Ok(prepare(setting(scene), equations, &choice.constants, settings)?)
 }
 
 /// Forms of a formulation's equations, as they are added to the name of a method.
@@ -174,13 +174,13 @@ impl Loaded {
         let removal = self.choice.removal.as_ref();
         let equations = (entry.derive)(&self.scene.system, &Derivation { removal, start: Some(&self.scene.start) })?;
         let tags = tags(&equations);
-        let mut ready = ready_to_run(setting(&self.scene), equations, &self.choice.constants, &Settings::default())?;
+        let mut ready = prepare(setting(&self.scene), equations, &self.choice.constants, &Settings::default())?;
         let mut rates = vec![0.0; ready.start.len()];
         ready.compiled.rates(ready.t, &ready.start, &mut rates).map_err(deltaq::SolveError::AtStart)?;
         Ok(json!({ "tags": tags, "start": ready.start, "rates": rates }))
     }
 
-    fn prepare(&mut self, name: &str) -> Result<&mut Ready> {
+    fn prepared(&mut self, name: &str) -> Result<&mut Prepared> {
         if !self.runs.contains_key(name) {
             let (method, form) = method(name)?;
             let settings = Settings { method, ..Settings::default() };
@@ -211,14 +211,14 @@ impl Loaded {
         let all = 0..self.scene.system.dimension();
         let places: Vec<usize> =
             if name.ends_with(BODIES) { all.map(place_among_bodies).collect() } else { all.collect() };
-        let runs = self.prepare(name)?;
+        let runs = self.prepared(name)?;
         let (mut best, mut total, mut repeats) = (f64::INFINITY, 0.0, 0);
         let mut states = vec![0.0; runs.start.len()];
-        let mut run = loop {
+        let run = loop {
             let clock = Instant::now();
-            let mut run = runs.integrate(until, &options)?;
+            let run = runs.integrate(until, &options)?;
             for &t in &times {
-                run.states_at(runs, t, &mut states)?;
+                run.states_at(&mut runs.compiled, t, &mut states);
                 black_box(&states);
             }
             let seconds = clock.elapsed().as_secs_f64();
@@ -227,24 +227,24 @@ impl Loaded {
                 break run;
             }
         };
-        if let Status::Stopped { t, cause } = &run.status {
+        if let Status::Stopped { t, cause } = &run.solution.status {
             bail!("stopped at {t}: {cause}");
         }
         let coordinates: Vec<Vec<f64>> = times
             .iter()
             .map(|&t| {
-                let q = run.at(runs, t)?.coordinates;
+                let q = run.at(&mut runs.compiled, t)?.coordinates;
                 Ok(places.iter().map(|&place| q[place]).collect())
             })
             .collect::<Result<_>>()?;
-        let evaluations = run.work.evaluations;
+        let evaluations = run.solution.work.evaluations;
         Ok(json!({ "seconds": best, "repeats": repeats, "coordinates": coordinates, "evaluations": evaluations }))
     }
 
     /// [`deltaq::solve`] on compiled equations, as it says itself; for a trajectory and for its end alike.
     fn solve(&mut self, tolerance: f64, repeat: f64) -> Result<Value> {
         let equations = derive(&self.scene.system, &self.choice)?;
-        let constants = ConstantsRule::Given(self.prepare(&format!("{:?}", Method::Dop853))?.constants.clone());
+        let constants = ConstantsRule::Given(self.prepared(&format!("{:?}", Method::Dop853))?.constants.clone());
         let settings = Settings { tolerance, ..Settings::default() };
         let (mut best, mut total, mut repeats) = (f64::INFINITY, 0.0, 0);
         let mut motion = loop {
@@ -282,10 +282,10 @@ impl Loaded {
         let (scene, choice) = read(&restated(&self.case, name))?;
         let choice = in_form(&choice, form);
         let mut runs = compile(&scene, &choice, &Settings { method, ..Settings::default() })?;
-        let mut run = runs.integrate(scene.start.t + scene.duration, &options)?;
+        let run = runs.integrate(scene.start.t + scene.duration, &options)?;
         let mut states = vec![0.0; runs.start.len()];
         for &t in &self.case.times {
-            run.states_at(&mut runs, t, &mut states)?;
+            run.states_at(&mut runs.compiled, t, &mut states);
             black_box(&states);
         }
         Ok(json!({ "seconds": clock.elapsed().as_secs_f64() }))

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Result, bail, ensure};
 use deltaq::{
-    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Ready, Settings, choices, ready_to_run, setting,
+    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Prepared, Settings, choices, prepare, setting,
 };
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, State};
@@ -149,7 +149,7 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
     let end = setting(scene).end;
     // Natural constants belong to the horizon and the parameters, not to the start: those of the scene serve for all.
     let equations = deltaq::derive_at(&scene.system, &scene.start, &choice)?;
-    let mut ready = ready_to_run(setting(scene), equations, &choice.constants, &settings)?;
+    let mut ready = prepare(setting(scene), equations, &choice.constants, &settings)?;
     let choice = Choice { constants: ConstantsRule::Given(ready.constants.clone()), ..choice };
     let mut ensemble = Ensemble::new(scene, &choice, &[], &settings)?;
     let clock = Instant::now();
@@ -209,7 +209,7 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
 
 /// States at the end, and accepted steps.
 fn one_by_one(
-    ready: &mut Ready,
+    ready: &mut Prepared,
     members: &[EnsembleMember],
     end: f64,
     options: &Options,
@@ -217,13 +217,13 @@ fn one_by_one(
     let (mut states, mut steps) = (Vec::with_capacity(members.len()), 0);
     for member in members {
         ready.start.copy_from_slice(member.start());
-        let mut run = ready.integrate(end, options)?;
-        if let Status::Stopped { t, cause } = &run.status {
+        let run = ready.integrate(end, options)?;
+        if let Status::Stopped { t, cause } = &run.solution.status {
             bail!("a member stops at t = {t:.3}: {cause}");
         }
         let mut y = vec![0.0; member.start().len()];
-        run.states_at(ready, end, &mut y)?;
-        steps += run.work.steps;
+        run.states_at(&mut ready.compiled, end, &mut y);
+        steps += run.solution.work.steps;
         states.push(y);
     }
     Ok((states, steps))

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use deltaq::{Ready, SingleRun};
+use deltaq::{Prepared, SingleRun};
 use integrate::{Method, Options, Status, Work};
 
 use super::{Effort, Truth};
@@ -49,7 +49,7 @@ fn tightest(method: Method) -> i32 {
 }
 
 impl Series {
-    pub(super) fn new(method: Method, ready: &mut Ready, truth: &mut Truth, effort: &Effort) -> Self {
+    pub(super) fn new(method: Method, ready: &mut Prepared, truth: &mut Truth, effort: &Effort) -> Self {
         // the two that go down to round-off are worth waiting for
         let reaches = matches!(method, Method::Taylor | Method::Dop853);
         let patience = if reaches { 4.0 * effort.patience } else { effort.patience };
@@ -69,14 +69,14 @@ impl Series {
     }
 }
 
-fn measure(ready: &mut Ready, options: &Options, truth: &mut Truth, effort: &Effort) -> Result<Measured, String> {
+fn measure(ready: &mut Prepared, options: &Options, truth: &mut Truth, effort: &Effort) -> Result<Measured, String> {
     let (mut seconds, mut total) = (f64::INFINITY, 0.0);
     let mut repeats = 0;
     loop {
         let clock = Instant::now();
-        let mut run = ready.integrate(truth.end(), options).map_err(|error| error.to_string())?;
+        let run = ready.integrate(truth.end(), options).map_err(|error| error.to_string())?;
         let elapsed = clock.elapsed().as_secs_f64();
-        if let Status::Stopped { t, cause } = &run.status {
+        if let Status::Stopped { t, cause } = &run.solution.status {
             return Err(format!("stopped at t = {t:.3}: {cause}"));
         }
         seconds = elapsed.min(seconds);
@@ -84,16 +84,16 @@ fn measure(ready: &mut Ready, options: &Options, truth: &mut Truth, effort: &Eff
         repeats += 1;
         let enough = total >= effort.seconds && repeats >= effort.repeats;
         if enough || total > effort.patience {
-            let error = error(&mut run, ready, truth)?;
-            return Ok(Measured { seconds, error, work: run.work });
+            let error = error(&run, ready, truth)?;
+            return Ok(Measured { seconds, error, work: run.solution.work });
         }
     }
 }
 
-fn error(run: &mut SingleRun, ready: &mut Ready, truth: &mut Truth) -> Result<f64, String> {
+fn error(run: &SingleRun, ready: &mut Prepared, truth: &mut Truth) -> Result<f64, String> {
     let mut largest = 0.0_f64;
     for (i, t) in truth.times.clone().into_iter().enumerate() {
-        let here = run.at(ready, t).map_err(|error| error.to_string())?.coordinates;
+        let here = run.at(&mut ready.compiled, t).map_err(|error| error.to_string())?.coordinates;
         largest = largest.max(truth.distance(i, &here));
     }
     Ok(largest)

@@ -15,7 +15,7 @@ pub use truth::Truth;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Ready, Settings, choices, derive_at, forms, ready_to_run, setting};
+use deltaq::{Choice, Settings, choices, derive_at, forms, setting};
 use integrate::{Method, Work};
 use scene::Scene;
 
@@ -164,7 +164,7 @@ pub fn prepare(name: &str, overrides: &[(String, f64)]) -> Result<Prepared> {
     let scene = catalogue::find(name, overrides)?;
     let truth = |choice: &Choice| -> Result<Truth> {
         let equations = derive_at(&scene.system, &scene.start, choice)?;
-        let ready = ready_to_run(setting(&scene), equations, &choice.constants, &Settings::default())?;
+        let ready = deltaq::prepare(setting(&scene), equations, &choice.constants, &Settings::default())?;
         Truth::new(&scene, &ready, SAMPLES).context("no reference")
     };
     let mut truths: Vec<(String, Result<Truth, String>)> = Vec::new();
@@ -205,7 +205,7 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
     let derive = clock.elapsed().as_secs_f64();
     let settings = Settings { method: Method::Taylor, ..Settings::default() };
     let clock = Instant::now();
-    let mut ready: Ready = ready_to_run(setting(scene), equations, &choice.constants, &settings)?;
+    let mut ready = deltaq::prepare(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();
     let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, truth, effort)).collect();
     Ok(Measurements {

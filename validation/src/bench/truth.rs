@@ -1,7 +1,7 @@
 //! The reference that errors are taken against.
 
 use anyhow::Result;
-use deltaq::{Metric, Ready};
+use deltaq::{Metric, Prepared};
 use integrate::{Options, Status};
 use mechanics::State;
 use reference::{Question, Reference, reference};
@@ -38,13 +38,13 @@ impl Truth {
     ///
     /// # Errors
     /// Where the motion cannot be had.
-    pub fn new(scene: &Scene, ready: &Ready, count: usize) -> Result<Truth> {
+    pub fn new(scene: &Scene, ready: &Prepared, count: usize) -> Result<Truth> {
         let mut ready = ready.clone();
         let end = scene.start.t + scene.duration;
         let [looser, tighter] =
             [1e-13, 2e-15].map(|tolerance| ready.integrate(end, &Options::with_tolerance(tolerance)));
-        let (mut looser, mut tighter) = (looser?, tighter?);
-        let shortened = [&looser, &tighter].iter().any(|run| run.status != Status::Completed);
+        let (looser, tighter) = (looser?, tighter?);
+        let shortened = [&looser, &tighter].iter().any(|run| run.solution.status != Status::Completed);
         let reached = tighter.end().min(looser.end());
         let end = if shortened { ready.t + PART * (reached - ready.t) } else { end };
         let at = |i: usize| if i == count { end } else { ready.t + (end - ready.t) * i as f64 / count as f64 };
@@ -70,7 +70,7 @@ impl Truth {
         let mut error = 0.0_f64;
         let mut places = Vec::new();
         for &t in &times {
-            let (here, there) = (tighter.at(&mut ready, t)?, looser.at(&mut ready, t)?);
+            let (here, there) = (tighter.at(&mut ready.compiled, t)?, looser.at(&mut ready.compiled, t)?);
             error = error.max(metric.distance(t, &here.coordinates, &here.velocities, &there.coordinates));
             places.push((here.coordinates, here.velocities));
         }

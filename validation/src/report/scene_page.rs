@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Comparison, EquationStyle, Pair, Verdict, equations_text, removals};
+use deltaq::{Comparison, EquationStyle, Pair, Verdict, equations_text};
 
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables;
@@ -173,12 +173,12 @@ fn system(comparison: &Comparison) -> String {
     if !parameters.is_empty() {
         let _ = writeln!(text, "Parameters: {}.", parameters.join(", "));
     }
-    if let Ok(removals) = removals(&comparison.scene) {
-        for removal in removals {
-            let parameters: Vec<String> =
-                removal.parameters.iter().map(|u| format!("${}$", g.latex_symbol(u.symbol))).collect();
-            let _ = writeln!(text, "\nRemoval `{}`: parameters {}.", removal.name, parameters.join(", "));
-        }
+    let choices =
+        comparison.runs.iter().map(|run| &run.choice).filter(|choice| choice.formulation != substitution::NAME);
+    for removal in choices.filter_map(|choice| choice.removal.as_ref()) {
+        let parameters: Vec<String> =
+            removal.parameters.iter().map(|u| format!("${}$", g.latex_symbol(u.symbol))).collect();
+        let _ = writeln!(text, "\nRemoval `{}`: parameters {}.", removal.name, parameters.join(", "));
     }
     text
 }

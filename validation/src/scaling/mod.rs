@@ -10,7 +10,7 @@ mod fit;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Ready, Setting, Settings, default_constants, formulation, ready_to_run, setting, solve};
+use deltaq::{Prepared, Setting, Settings, default_constants, formulation, prepare, setting, solve};
 use equations::{Compiled, Derivation};
 use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
@@ -182,7 +182,7 @@ fn train(name: &str, trailers: usize) -> Result<Scene> {
 /// What a derivation comes to. The removal's expressions live in the graph of `system`.
 struct Derived {
     system: System,
-    ready: Ready,
+    ready: Prepared,
     constants: ConstantsRule,
 }
 
@@ -203,7 +203,7 @@ fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
         ConstantsRule::Given(_) => &constants,
         _ => &ConstantsRule::Zero,
     };
-    let ready = ready_to_run(Setting { system: &system, ..setting(scene) }, equations, known, &Settings::default())?;
+    let ready = prepare(Setting { system: &system, ..setting(scene) }, equations, known, &Settings::default())?;
     Ok(Derived { system, ready, constants })
 }
 
@@ -222,7 +222,7 @@ fn point(name: &str, trailers: usize, limits: &Limits, evaluations: Option<usize
         }
     }
     let Derived { system, ready, constants } = derived.context("at least one repeat")?;
-    let Ready { equations, mut compiled, start: y, t, .. } = ready;
+    let Prepared { equations, mut compiled, start: y, t, .. } = ready;
     let seconds = right_hand_side(&mut compiled, t, &y, limits.repeats)?;
     let mut point = Point {
         trailers,

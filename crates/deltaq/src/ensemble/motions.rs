@@ -5,7 +5,8 @@ use equations::{Compiled, Outputs};
 use super::run::Outcome;
 use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
-use crate::gap::subtract;
+use crate::metric::subtract;
+use crate::single_run::outputs;
 use crate::{Ending, ErrorEstimate, Metric, SolveError};
 
 /// What became of a member, read off.
@@ -97,10 +98,6 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn at(&mut self, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
-        self.compiled.outputs(t, y).map_err(|failure| SolveError::Reading { t, failure })
-    }
-
     fn read(
         &mut self,
         member: &EnsembleMember,
@@ -109,23 +106,22 @@ impl Reader<'_> {
     ) -> Result<(Vec<Outputs>, Option<ErrorEstimate>), SolveError> {
         member.set(&mut self.compiled);
         self.metric.set_parameters(&member.constants[member.constants.len() - self.metric.parameters()..]);
-        let start = self.at(member.t, &member.y)?.coordinates;
+        let start = outputs(&mut self.compiled, member.t, &member.y)?.coordinates;
         let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
-        let mut outputs = Vec::with_capacity(run.states.len());
+        let mut read = Vec::with_capacity(run.states.len());
         for (i, (&t, y)) in self.times.iter().zip(&run.states).enumerate() {
             if let Some(unknowns) = run.unknowns.get(i) {
                 self.compiled.set_guess(unknowns);
             }
-            let now = self.at(t, y)?;
+            let now = outputs(&mut self.compiled, t, y)?;
             if let Some(difference) = run.differences.get(i) {
-                let other = self.at(t, &subtract(y, difference))?.coordinates;
+                let other = outputs(&mut self.compiled, t, &subtract(y, difference))?.coordinates;
                 let mut length = |d: Vec<f64>| self.metric.length(t, &now.coordinates, &now.velocities, &d);
                 absolute = absolute.max(length(subtract(&now.coordinates, &other)));
                 scale = scale.max(length(subtract(&now.coordinates, &start)));
             }
-            outputs.push(now);
+            read.push(now);
         }
-        let relative = if scale > 0.0 { absolute / scale } else { absolute };
-        Ok((outputs, options.estimate.then_some(ErrorEstimate { absolute, relative })))
+        Ok((read, options.estimate.then_some(ErrorEstimate::over(scale, absolute))))
     }
 }

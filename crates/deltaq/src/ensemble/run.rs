@@ -7,9 +7,9 @@ use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, Project
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
-use crate::motion::{ending, joint_ending};
-use crate::run::{Origin, integrate_once, move_last_digits, sizes};
-use crate::{Ending, Settings, SolveError, TIGHTER};
+use crate::metric::subtract;
+use crate::single_run::{SingleRun, UNITS, move_digits, sizes};
+use crate::{Ending, SolveError, TIGHTER};
 
 /// How an ensemble is run.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +73,7 @@ impl Ensemble {
         origin: Origin,
         threads: usize,
     ) -> Vec<Outcome> {
-        let options = options(&self.settings, tolerance);
+        let options = self.settings.options(tolerance);
         let task = Task {
             members,
             times,
@@ -94,23 +94,13 @@ impl Ensemble {
     }
 }
 
-/// Of a run at `tolerance`.
-pub(super) fn options(settings: &Settings, tolerance: f64) -> Options {
-    let mut options = Options::with_tolerance(tolerance);
-    options.method = settings.method;
-    options.projection = settings.projection;
-    options.max_steps = settings.max_steps;
-    options.interrupt = settings.interrupt.clone();
-    options
-}
-
 /// The tighter run with what the looser one says of it.
 fn confirmed(mut kept: MemberRun, looser: MemberRun, member: &EnsembleMember) -> MemberRun {
     kept.states.truncate(looser.states.len());
     kept.unknowns.truncate(looser.states.len());
     let pairs = kept.states.iter().zip(&looser.states);
-    kept.differences = pairs.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect()).collect();
-    kept.ending = joint_ending(kept.ending, looser.ending, [member.t, member.end]);
+    kept.differences = pairs.map(|(a, b)| subtract(a, b)).collect();
+    kept.ending = Ending::joint(kept.ending, looser.ending, [member.t, member.end]);
     kept
 }
 
@@ -126,6 +116,15 @@ impl MemberRun {
             unknowns: Vec::new(),
         }
     }
+}
+
+/// Where members start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Origin {
+    /// From their start.
+    Start,
+    /// From the start with its last digits changed, as [`crate::Prepared::second_run`] does.
+    LastDigit,
 }
 
 /// Members to be integrated once, by whichever thread has a free lane.
@@ -198,7 +197,7 @@ impl Task<'_> {
     fn states(&self, index: usize) -> Vec<f64> {
         let mut y = self.members[index].y.clone();
         if self.origin == Origin::LastDigit {
-            move_last_digits(&mut y);
+            move_digits(&mut y, |_| UNITS);
         }
         y
     }
@@ -218,9 +217,9 @@ impl Task<'_> {
         let member = &self.members[index];
         member.set(compiled);
         let start = Start { t: member.t, y: self.states(index) };
-        let run = integrate_once(compiled, start, member.end, self.options)?;
+        let run = SingleRun::new(compiled, &start, member.end, self.options)?;
         let solution = &run.solution;
-        let (reached, direction) = (solution.dense.end(), member.end - member.t);
+        let (reached, direction) = (run.end(), member.end - member.t);
         let passed = self.times.iter().take_while(|&&t| (t - reached) * direction <= 0.0);
         let states = passed.clone().map(|&t| {
             let mut y = vec![0.0; member.y.len()];
@@ -231,7 +230,7 @@ impl Task<'_> {
         Ok(MemberRun {
             states: states.collect(),
             unknowns: passed.filter_map(|&t| run.unknowns_near(t).map(<[f64]>::to_vec)).collect(),
-            ending: ending(&words, compiled, solution),
+            ending: Ending::of(&words, compiled, solution),
             work: solution.work,
             projection: solution.projection,
             alone: Some(why),

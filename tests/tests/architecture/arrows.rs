@@ -102,13 +102,18 @@ fn offences(arrows: &BTreeSet<Arrow>) -> Vec<String> {
         .collect()
 }
 
-/// Every arrow between members, dependencies for tests and builds included.
-fn arrows() -> BTreeSet<Arrow> {
+/// The members of the workspace, as `cargo metadata` describes them.
+pub fn packages() -> Vec<Value> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo).args(["metadata", "--no-deps", "--format-version", "1"]).output();
     let metadata: Value = serde_json::from_slice(&output.expect("cargo runs").stdout).expect("cargo metadata is JSON");
+    metadata["packages"].as_array().expect("packages").clone()
+}
+
+/// Every arrow between members, dependencies for tests and builds included.
+fn arrows() -> BTreeSet<Arrow> {
+    let packages = packages();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let packages = metadata["packages"].as_array().expect("packages");
     // A dependency on a member is one with a path: other crates may bear the same name.
     let member = |path: &str| {
         let manifest = Path::new(path).join("Cargo.toml");

@@ -18,6 +18,11 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
+    /// This difference in a motion that goes so far from its start.
+    pub(crate) fn over(scale: f64, absolute: f64) -> Self {
+        ErrorEstimate { absolute, relative: if scale > 0.0 { absolute / scale } else { absolute } }
+    }
+
     /// Why a motion with this estimate is not to be trusted: it is over [`TRUSTED`], or no number.
     pub fn complaint(&self) -> Option<String> {
         let trusted = self.relative <= TRUSTED;
@@ -39,5 +44,5 @@ pub fn error_estimate(motion: &mut Motion, setting: Setting) -> Result<ErrorEsti
         absolute = absolute.max(metric.length(t, q, v, &difference));
         scale = scale.max(metric.distance(t, q, v, &setting.start.q));
     }
-    Ok(ErrorEstimate { absolute, relative: if scale > 0.0 { absolute / scale } else { absolute } })
+    Ok(ErrorEstimate::over(scale, absolute))
 }

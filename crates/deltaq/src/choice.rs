@@ -1,0 +1,183 @@
+//! What is chosen before a motion is computed: formulation, removal, free constants; and the equations that follow.
+
+use std::time::Instant;
+
+use equations::{Derivation, Equations, Formulation};
+use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System};
+use scene::Scene;
+
+use crate::{FORMS, FORMULATIONS, Motion, Settings, SolveError, formulation, setting, solve};
+
+/// One formulation of the scene, with all choices made.
+#[derive(Clone)]
+pub struct Choice {
+    /// What the reader sees: the formulation, and the removal where there are several.
+    pub label: String,
+    /// Name of the formulation.
+    pub formulation: &'static str,
+    /// The removal, where the formulation needs one.
+    pub removal: Option<Removal>,
+    /// Free constants.
+    pub constants: ConstantsRule,
+}
+
+/// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need one get a choice
+/// without, which [`solve_choice`] refuses with the reason.
+pub fn choices(scene: &Scene) -> Vec<Choice> {
+    let mut choices = Vec::new();
+    for formulation in FORMULATIONS {
+        let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
+        if removals.is_empty() {
+            choices.push(without_removal(formulation, scene));
+        }
+        for removal in removals {
+            choices.push(Choice {
+                label: format!("{} ({})", formulation.title, removal.name),
+                formulation: formulation.name,
+                constants: removal.constants.clone(),
+                removal: Some(removal),
+            });
+        }
+    }
+    choices
+}
+
+/// A choice of each of [`FORMS`], of which [`derive_at`] refuses those that `scene` does not have.
+pub fn forms(scene: &Scene) -> Vec<Choice> {
+    FORMS.iter().map(|form| without_removal(form, scene)).collect()
+}
+
+fn without_removal(formulation: &Formulation, scene: &Scene) -> Choice {
+    let constants = default_constants(formulation, scene);
+    Choice { label: formulation.title.into(), formulation: formulation.name, removal: None, constants }
+}
+
+/// The free constants of a formulation without a removal: the scene's multipliers where it starts from multipliers, else zero.
+pub fn default_constants(formulation: &Formulation, scene: &Scene) -> ConstantsRule {
+    if formulation.starts_multipliers { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero }
+}
+
+/// The free constants of `choice` for a motion of `scene`: its multipliers where the formulation starts from them.
+pub fn constants_of(choice: &Choice, scene: &Scene) -> ConstantsRule {
+    match formulation(choice.formulation) {
+        Some(formulation) if formulation.starts_multipliers => default_constants(formulation, scene),
+        _ => choice.constants.clone(),
+    }
+}
+
+/// Derives the equations of a choice, without what they do not need.
+///
+/// # Errors
+/// [`SolveError::Derivation`], [`SolveError::Removal`].
+pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
+    derive_from(system, None, choice)
+}
+
+/// [`derive()`] for a motion that starts at `start`, where pivots may have to be chosen.
+fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Result<Equations, SolveError> {
+    let formulation: &Formulation = formulation(choice.formulation).unwrap_or(&FORMULATIONS[0]);
+    let removal = choice.removal.as_ref();
+    let equations = (formulation.derive)(system, &Derivation { removal, start })?;
+    Ok(equations.leave_out_unneeded())
+}
+
+/// [`derive()`], from constraints that are independent at `start` where those of the system nearly are not ([`Recombination`]).
+///
+/// # Errors
+/// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
+pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
+    let combined = Recombination::at(system, start);
+    if choice.removal.is_some() {
+        // the constraints stand no more in the equations, but they gave the start
+        let mut equations = derive(system, choice)?;
+        equations.lost_digits = combined.ok().flatten().map_or(1.0, |combined| combined.ratio.recip());
+        return Ok(equations);
+    }
+    match combined? {
+        None => derive_from(system, Some(start), choice),
+        Some(combined) => {
+            Ok(derive_from(&combined.system(system), Some(start), choice)?.with_multipliers_restored(&combined))
+        }
+    }
+}
+
+/// Derives and integrates a choice from the start of the scene.
+///
+/// # Errors
+/// [`SolveError`] where there is no motion.
+///
+/// ```
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// use deltaq::{Settings, choices, solve_choice};
+/// // the ice sledge turns at a constant rate: phi = 0.3 + t
+/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").unwrap();
+/// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
+/// assert!(motion.is_complete());
+/// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
+    if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
+        removals(scene)?;
+    }
+    let clock = Instant::now();
+    let equations = derive_at(&scene.system, &scene.start, choice)?;
+    let derive = clock.elapsed().as_secs_f64();
+    let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
+    motion.seconds.derive = derive;
+    Ok(motion)
+}
+
+type Automatic = fn(&System, &mechanics::State) -> Result<Removal, RemovalError>;
+
+/// The removals that need no hand, by name.
+const AUTOMATIC: [(&str, Automatic); 2] =
+    [("coordinates", Removal::by_coordinates), ("quasi-velocities", Removal::by_quasi_velocities)];
+
+/// The removals of a scene: those written by hand, then the automatic ones that apply and are not the same again.
+///
+/// # Errors
+/// [`RemovalError`] where no removal was written by hand and none can be found automatically.
+pub fn removals(scene: &Scene) -> Result<Vec<Removal>, RemovalError> {
+    let mut removals = scene.removals.clone();
+    for (_, automatic) in AUTOMATIC {
+        match automatic(&scene.system, &scene.start) {
+            Ok(removal) => {
+                let known = removals.iter().any(|r| same_parameters(&scene.system, r, &removal));
+                if !known {
+                    removals.push(removal);
+                }
+            }
+            Err(error) if removals.is_empty() => return Err(error),
+            Err(_) => {}
+        }
+    }
+    Ok(removals)
+}
+
+/// Whether two removals use the same coordinates as parameters, and nothing else.
+fn same_parameters(system: &System, a: &Removal, b: &Removal) -> bool {
+    let coordinates = |r: &Removal| r.parameters.iter().map(|u| u.coordinate).collect::<Option<Vec<usize>>>();
+    let plain = |r: &Removal| {
+        let memory: usize = r.memory.iter().filter(|w| w.coordinate.is_some()).count();
+        memory + r.parameters.len() == system.dimension()
+    };
+    coordinates(a).is_some() && coordinates(a) == coordinates(b) && plain(a) && plain(b)
+}
+
+/// The removal of this name, written by hand or automatic; `None` where there is none of this name ([`removal_names`]).
+///
+/// # Errors
+/// [`RemovalError`] where the automatic removal asked for does not apply.
+pub fn removal(scene: &Scene, name: &str) -> Result<Option<Removal>, RemovalError> {
+    if let Some(removal) = scene.removals.iter().find(|removal| removal.name == name) {
+        return Ok(Some(removal.clone()));
+    }
+    let automatic = AUTOMATIC.iter().find(|(known, _)| *known == name);
+    automatic.map(|(_, automatic)| automatic(&scene.system, &scene.start)).transpose()
+}
+
+/// What [`removal`] can be asked for.
+pub fn removal_names(scene: &Scene) -> Vec<&str> {
+    scene.removals.iter().map(|removal| &removal.name[..]).chain(AUTOMATIC.map(|(name, _)| name)).collect()
+}

@@ -1,0 +1,155 @@
+//! Free constants: zero, given, or natural at a horizon.
+
+use equations::Equations;
+use integrate::{BoundaryError, Options, ShootOptions, shoot};
+use mechanics::ConstantsRule;
+
+use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
+
+/// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are natural at a horizon; that is
+/// done as `settings` say.
+///
+/// # Errors
+/// [`SolveError`] where there is no start.
+///
+/// ```
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// use deltaq::{Settings, choices, derive, prepare, setting};
+/// // the ice sledge turns at a constant rate, y = (x, y, phi, x', y', phi')
+/// let chetaev = choices(&scene).remove(0);
+/// let equations = derive(&scene.system, &chetaev)?;
+/// let mut prepared = prepare(setting(&scene), equations, &chetaev.constants, &Settings::default())?;
+/// let mut rates = [0.0; 6];
+/// prepared.compiled.rates(0.0, &prepared.start, &mut rates)?;
+/// assert_eq!((rates[2], rates[5]), (1.0, 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn prepare(
+    setting: Setting,
+    equations: Equations,
+    constants: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Prepared, SolveError> {
+    let mut prepared = Prepared::new(setting, equations, settings)?;
+    resolve(&mut prepared, constants, settings)?;
+    Ok(prepared)
+}
+
+/// Sets the free constants as `rule` says.
+pub(crate) fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -> Result<(), SolveError> {
+    let constants = free_constants(prepared, rule, settings)?;
+    prepared.set_constants(constants);
+    Ok(())
+}
+
+/// The free constants of `rule`.
+pub(crate) fn free_constants(
+    prepared: &mut Prepared,
+    rule: &ConstantsRule,
+    settings: &Settings,
+) -> Result<Vec<f64>, SolveError> {
+    match rule {
+        ConstantsRule::Zero => Ok(vec![0.0; prepared.equations.free_constants.len()]),
+        ConstantsRule::Given(values) => given_constants(&prepared.equations, values),
+        ConstantsRule::Natural { horizon } => natural_constants(prepared, *horizon, settings),
+    }
+}
+
+/// Values given one a free constant, or one a memory variable (then those without a costate have to be zero).
+fn given_constants(equations: &Equations, values: &[f64]) -> Result<Vec<f64>, SolveError> {
+    let constants = &equations.free_constants;
+    if let Some(&value) = values.iter().find(|x| !x.is_finite()) {
+        return Err(SolveError::ConstantNotFinite { formulation: equations.formulation.into(), value });
+    }
+    if values.len() == constants.len() {
+        return Ok(values.to_vec());
+    }
+    let memory = equations.removal.as_ref().map(|r| r.memory.len());
+    let used: Vec<Option<usize>> = constants.iter().map(|c| c.memory).collect();
+    let unused_are_zero = values.iter().enumerate().all(|(i, &x)| x == 0.0 || used.contains(&Some(i)));
+    if Some(values.len()) == memory && unused_are_zero {
+        return Ok(used.into_iter().map(|i| i.map_or(0.0, |i| values[i])).collect());
+    }
+    Err(SolveError::ConstantCount {
+        formulation: equations.formulation.into(),
+        expected: constants.len(),
+        names: constant_names(equations).join(", "),
+        found: values.len(),
+    })
+}
+
+/// Names of the free constants.
+pub fn constant_names(equations: &Equations) -> Vec<String> {
+    equations.free_constants.iter().map(|c| equations.graph.name(c.symbol)).collect()
+}
+
+/// Residual at the horizon that is accepted, over the tolerance of the integration.
+const RESIDUAL: f64 = 1e3;
+
+/// Steps that a run of the search may take on average, over those of the run from the guess: beside a singularity a run may take a thousand times more,
+/// and the search does not get past it.
+const LONGER: usize = 4;
+
+/// Finds the constants `C` for which every [`equations::FreeConstant::natural`] quantity vanishes at `horizon`.
+///
+/// Single shooting from zero: the constants are the unknowns, the quantities at the horizon the residuals. All runs together may take as many steps as
+/// [`LONGER`] times the first one, for each run that the search may make.
+fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings) -> Result<Vec<f64>, SolveError> {
+    let equations = &prepared.equations;
+    let constants = &equations.free_constants;
+    if constants.is_empty() {
+        return Ok(Vec::new());
+    }
+    let start = prepared.t;
+    if horizon.is_nan() || horizon <= start {
+        return Err(SolveError::Horizon { horizon, start });
+    }
+    let formulation = || equations.formulation.to_string();
+    // the quantities are states: costates of memory variables
+    let places: Option<Vec<usize>> = constants
+        .iter()
+        .map(|c| {
+            let symbol = equations.graph.as_symbol(c.natural?)?;
+            equations.states.iter().position(|y| y.symbol == symbol)
+        })
+        .collect();
+    let Some(places) = places else { return Err(SolveError::NoNaturalCondition { formulation: formulation() }) };
+    let guess = vec![0.0; constants.len()];
+    let tolerance = settings.tolerance * TIGHTER;
+    let options = ShootOptions::with_tolerance(RESIDUAL * tolerance);
+    let runs = options.max_iterations * (2 * guess.len() + 2);
+    let (mut taken, mut limit) = (0, None);
+    let mut failure = None;
+    let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
+        let mut refuse = |error: SolveError| {
+            let reason = error.to_string();
+            failure = Some(error);
+            BoundaryError::Residual { reason }
+        };
+        let left = limit.map_or(settings.max_steps, |limit: usize| settings.max_steps.min(limit.saturating_sub(taken)));
+        if left == 0 {
+            return Err(refuse(SolveError::Search { horizon, steps: taken }));
+        }
+        prepared.set_constants(constants.to_vec());
+        let run_options = Options { max_steps: left, ..settings.options(tolerance) };
+        let run = prepared.integrate(horizon, &run_options).map_err(&mut refuse)?;
+        let steps = run.solution.work.steps + run.solution.work.rejected;
+        taken += steps;
+        limit.get_or_insert(LONGER * runs * steps);
+        if let Ending::Stopped { t, cause } = Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution) {
+            return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
+        }
+        let mut end = vec![0.0; prepared.start.len()];
+        run.solution.dense.evaluate(horizon, &mut end);
+        for (r, &place) in residual.iter_mut().zip(&places) {
+            *r = end[place];
+        }
+        Ok(())
+    };
+    let shot = shoot(&mut residual, &guess, &options);
+    match (shot, failure) {
+        (Ok(shot), _) => Ok(shot.unknowns),
+        (Err(_), Some(error)) => Err(error),
+        (Err(error), None) => Err(SolveError::Boundary { horizon, error }),
+    }
+}

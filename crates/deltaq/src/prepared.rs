@@ -1,0 +1,123 @@
+//! Equations compiled and started, for runs of the time loop and for other integrators than ours.
+
+use equations::{Compiled, Equations, Plan, Role};
+use integrate::{Method, Options, Start};
+
+use crate::single_run::{SingleRun, UNITS, move_digits};
+use crate::start_values::StartValues;
+use crate::{Setting, Settings, SolveError};
+
+/// Equations compiled and started: what every run of the same motion shares.
+#[derive(Clone)]
+pub struct Prepared {
+    /// The equations.
+    pub equations: Equations,
+    /// `ẏ = F(t, y)`; the constants and the guess are set.
+    pub compiled: Compiled,
+    /// The form in which it is evaluated.
+    pub form: Plan,
+    /// Values of the free constants.
+    pub constants: Vec<f64>,
+    /// `t₀`.
+    pub t: f64,
+    /// `y(t₀)`.
+    pub start: Vec<f64>,
+    /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty where the derivation knows none.
+    pub guess: Vec<f64>,
+    pub(crate) values: StartValues,
+}
+
+impl Prepared {
+    /// With the free constants zero.
+    pub(crate) fn new(setting: Setting, equations: Equations, settings: &Settings) -> Result<Self, SolveError> {
+        let constants = vec![0.0; equations.free_constants.len()];
+        Prepared::around(setting, equations, constants, settings)
+    }
+
+    /// In a form that suits these values of the free constants.
+    pub(crate) fn around(
+        setting: Setting,
+        equations: Equations,
+        constants: Vec<f64>,
+        settings: &Settings,
+    ) -> Result<Self, SolveError> {
+        let t = setting.start.t;
+        let mut values = StartValues::new(setting, &equations)?;
+        values.set_constants(&constants);
+        let point = [&[t], values.evaluate().0, &constants[..]].concat();
+        let form = if settings.plain { Plan::plain(&equations) } else { Plan::choose(&equations, Some(&point))? };
+        let compiled = Compiled::with_plan(&equations, &form)?;
+        let (start, guess) = (Vec::new(), Vec::new());
+        let mut prepared = Prepared { equations, compiled, form, constants: Vec::new(), t, start, guess, values };
+        prepared.set_constants(constants);
+        prepared.complete(settings.method)?;
+        Ok(prepared)
+    }
+
+    /// Compiles what `method` needs beyond the rates, unless that is done: it is done by the first run anyway.
+    ///
+    /// # Errors
+    /// [`SolveError::Compile`].
+    pub fn complete(&mut self, method: Method) -> Result<(), SolveError> {
+        if method.is_implicit() && !self.compiled.has_jacobian() {
+            self.compiled = self.compiled.clone().with_jacobian(&self.equations)?;
+        }
+        if method == Method::Taylor && !self.compiled.has_series() {
+            self.compiled = self.compiled.clone().with_series(&self.equations, &self.form)?;
+        }
+        Ok(())
+    }
+
+    /// Sets the free constants, and by them the start.
+    pub(crate) fn set_constants(&mut self, constants: Vec<f64>) {
+        self.values.set_constants(&constants);
+        let (start, guess) = self.values.evaluate();
+        (self.start, self.guess) = (start.to_vec(), guess.to_vec());
+        self.constants = constants;
+        self.set_compiled();
+    }
+
+    /// Sets the constants and the guess of the compiled equations.
+    fn set_compiled(&mut self) {
+        self.compiled.set_constants(&self.constants);
+        if !self.guess.is_empty() {
+            self.compiled.set_guess(&self.guess);
+        }
+    }
+
+    /// Integrates once from the start to `end`: half of what [`crate::solve`] does, for those who know the error from elsewhere.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the run cannot be started; how it ended is in [`SingleRun::solution`].
+    pub fn integrate(&mut self, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
+        self.complete(options.method)?;
+        let y = self.start.clone();
+        self.integrate_from(y, end, options)
+    }
+
+    fn integrate_from(&mut self, y: Vec<f64>, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
+        self.set_compiled();
+        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, options)
+    }
+
+    /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last digits changed: how far the two
+    /// ends are apart then also tells what those digits are worth.
+    pub(crate) fn second_run(
+        &mut self,
+        kept: &SingleRun,
+        end: f64,
+        settings: &Settings,
+    ) -> Result<SingleRun, SolveError> {
+        let mut y = self.start.clone();
+        // places are exact; what moves is known as well as the constraints can tell it
+        let place = |role: Role| matches!(role, Role::Position | Role::DisplacementParameter | Role::Memory);
+        let (states, lost) = (&self.equations.states, self.equations.lost_digits.max(UNITS));
+        move_digits(&mut y, |i| if place(states[i].role) { UNITS } else { lost });
+        let mut options = settings.options(settings.tolerance);
+        if kept.solution.work.steps == 0 || kept.end() == end {
+            return self.integrate_from(y, end, &options);
+        }
+        options.sizes.clone_from(&kept.sizes);
+        self.integrate_from(y, kept.end(), &options)
+    }
+}

@@ -1,0 +1,62 @@
+//! What a motion starts from, and how it is integrated.
+
+use integrate::{Interrupt, Method, Options, Projection};
+use mechanics::{State, System};
+use scene::Scene;
+
+/// The tolerance of the second run over that of the first.
+pub const TIGHTER: f64 = 1e-2;
+
+/// What a motion starts from: a system and a state on its constraint.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// The system.
+    pub system: &'a System,
+    /// `(t₀, q₀, v₀)`.
+    pub start: &'a State,
+    /// Time at which the motion is to end.
+    pub end: f64,
+}
+
+/// What every motion of a scene starts from.
+pub fn setting(scene: &Scene) -> Setting<'_> {
+    Setting { system: &scene.system, start: &scene.start, end: scene.start.t + scene.duration }
+}
+
+/// How a motion is integrated.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Tolerance of the first run; the second, whose trajectory is kept, has [`TIGHTER`] times this.
+    pub tolerance: f64,
+    /// Method.
+    pub method: Method,
+    /// Projection onto the constraint after every step.
+    pub projection: Projection,
+    /// Limit on the steps of one run.
+    pub max_steps: usize,
+    /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that [`equations::Plan::choose`]
+    /// finds cheapest. The motion is the same to round-off.
+    pub plain: bool,
+    /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
+    pub interrupt: Option<Interrupt>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let (method, projection) = (Method::Dop853, Projection::EveryStep);
+        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000, plain: false, interrupt: None }
+    }
+}
+
+impl Settings {
+    /// Of one run at `tolerance`.
+    pub(crate) fn options(&self, tolerance: f64) -> Options {
+        Options {
+            method: self.method,
+            projection: self.projection,
+            max_steps: self.max_steps,
+            interrupt: self.interrupt.clone(),
+            ..Options::with_tolerance(tolerance)
+        }
+    }
+}

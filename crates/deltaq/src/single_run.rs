@@ -1,0 +1,159 @@
+//! One run of the time loop.
+
+use equations::{Compiled, EvaluationFailure, Outputs};
+use integrate::{Options, Problem, Solution, Start};
+
+use crate::SolveError;
+
+/// What a single run came to. Alone it says nothing of its error but what its tolerance does.
+#[derive(Clone)]
+pub struct SingleRun {
+    /// How it ended, what it cost, the states over time.
+    pub solution: Solution,
+    /// Evaluations that fell back on the plain form.
+    pub(crate) fallbacks: usize,
+    /// Unknowns of the instant along the way, where its equations have several roots.
+    anchors: Vec<(f64, Vec<f64>)>,
+    /// [`Options::sizes`] of the run.
+    pub(crate) sizes: Vec<f64>,
+}
+
+impl SingleRun {
+    /// Runs from `start`, with the sizes of its own start where `options` have none; the constants and the guess of `compiled` are set.
+    pub(crate) fn new(
+        compiled: &mut Compiled,
+        start: &Start,
+        end: f64,
+        options: &Options,
+    ) -> Result<SingleRun, SolveError> {
+        let mut anchors = Vec::new();
+        let unknowns = compiled.settle(start.t, &start.y).map_err(SolveError::AtStart)?.to_vec();
+        if compiled.needs_guess() {
+            anchors.push((start.t, unknowns));
+        }
+        let mut rates = vec![0.0; start.y.len()];
+        compiled.rates(start.t, &start.y, &mut rates).map_err(SolveError::AtStart)?;
+        let mut options = options.clone();
+        if options.sizes.is_empty() {
+            options.sizes = sizes(&start.y, &rates, end - start.t);
+        }
+        let before = compiled.fallbacks();
+        let mut runner = Runner { compiled, anchors };
+        let solution = integrate::integrate(&mut runner, start, end, &options)?;
+        let anchors = runner.anchors;
+        Ok(SingleRun { solution, anchors, fallbacks: compiled.fallbacks() - before, sizes: options.sizes })
+    }
+
+    /// The time reached.
+    pub fn end(&self) -> f64 {
+        self.solution.dense.end()
+    }
+
+    /// The states at `t`, which has to be an end of the run where that kept its ends only. Where the equations of the instant have several
+    /// roots, `compiled` solves them from the right one after this.
+    pub fn states_at(&self, compiled: &mut Compiled, t: f64, states: &mut [f64]) {
+        if let Some(unknowns) = self.unknowns_near(t) {
+            compiled.set_guess(unknowns);
+        }
+        self.solution.dense.evaluate(t, states);
+    }
+
+    /// Coordinates, velocities, multipliers and invariants at `t`; as [`SingleRun::states_at`].
+    ///
+    /// # Errors
+    /// [`SolveError::Reading`] where the equations of the instant cannot be solved.
+    pub fn at(&self, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
+        let mut states = vec![0.0; compiled.dimension()];
+        self.states_at(compiled, t, &mut states);
+        outputs(compiled, t, &states)
+    }
+
+    /// The unknowns of the instant near `t`, where its equations have several roots.
+    pub(crate) fn unknowns_near(&self, t: f64) -> Option<&[f64]> {
+        let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
+        nearest.map(|(_, unknowns)| &unknowns[..])
+    }
+}
+
+/// What is read off at a state.
+pub(crate) fn outputs(compiled: &mut Compiled, t: f64, states: &[f64]) -> Result<Outputs, SolveError> {
+    compiled.outputs(t, states).map_err(|failure| SolveError::Reading { t, failure })
+}
+
+/// Units in the last place by which a start is moved.
+pub(crate) const UNITS: f64 = 4.0;
+
+/// So many units in the last place of each, up or down as the place in `y` has it.
+pub(crate) fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
+    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
+    for (i, x) in y.iter_mut().enumerate() {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        let part = units(i) * f64::EPSILON;
+        *x *= if state & 1 == 0 { 1.0 + part } else { 1.0 - part };
+    }
+}
+
+/// Parts of the largest size under which a size is round-off.
+const NO_SIZE: f64 = 1e-14;
+
+/// The size of each state, by which the absolute tolerance is multiplied: what it is at the start or what its rate there makes of it within the
+/// run, if that is under 1. So a motion of 10⁻¹² m is resolved as well as one of 1 m. A state that starts as round-off
+/// of the others, or at rest in zero, says nothing of its size, and has 1.
+pub(crate) fn sizes(y: &[f64], rates: &[f64], length: f64) -> Vec<f64> {
+    let reach: Vec<f64> = y.iter().zip(rates).map(|(y, rate)| y.abs().max((rate * length).abs())).collect();
+    let least = NO_SIZE * reach.iter().copied().fold(0.0, f64::max);
+    reach.into_iter().map(|size| if size > least { size.min(1.0) } else { 1.0 }).collect()
+}
+
+/// Compiled equations as the time integrator sees them.
+struct Runner<'a> {
+    compiled: &'a mut Compiled,
+    anchors: Vec<(f64, Vec<f64>)>,
+}
+
+fn refused(failure: EvaluationFailure) -> integrate::EvaluationError {
+    integrate::EvaluationError { reason: failure.to_string() }
+}
+
+impl Problem for Runner<'_> {
+    fn dimension(&self) -> usize {
+        self.compiled.dimension()
+    }
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.compiled.rates(t, y, rates).map_err(refused)
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.compiled.jacobian(t, y, jacobian).map_err(refused)
+    }
+    fn has_taylor(&self) -> bool {
+        self.compiled.has_series()
+    }
+    fn taylor(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        unit: f64,
+        coefficients: &mut [f64],
+    ) -> Result<(), integrate::EvaluationError> {
+        self.compiled.taylor(t, y, unit, coefficients).map_err(refused)
+    }
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, integrate::EvaluationError> {
+        self.compiled.project(t, y).map_err(refused)
+    }
+    fn accepted(&mut self, t: f64, y: &[f64]) -> Result<(), integrate::EvaluationError> {
+        if self.compiled.needs_guess() {
+            let unknowns = self.compiled.settle(t, y).map_err(refused)?.to_vec();
+            self.anchors.push((t, unknowns));
+        }
+        Ok(())
+    }
+    fn events(&self) -> usize {
+        self.compiled.guards()
+    }
+    fn event_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.compiled.guard_values(t, y, values);
+        Ok(())
+    }
+}

@@ -1,0 +1,76 @@
+//! What the states of derived equations start from.
+
+use std::collections::HashMap;
+
+use equations::Equations;
+use mechanics::complete_removal_start;
+use symbolic::{Expr, Symbol, Tape, Workspace};
+
+use crate::{Setting, SolveError};
+
+/// The expressions in which a derivation says what motions start from:
+/// `t, q, v`, what belongs to a removal, the free constants → the states, guesses for the unknowns of the instant.
+#[derive(Clone)]
+pub(crate) struct StartValues {
+    tape: Tape,
+    workspace: Workspace<f64>,
+    symbols: Vec<Symbol>,
+    pub(crate) inputs: Vec<f64>,
+    outputs: Vec<f64>,
+    states: usize,
+    unknowns: usize,
+}
+
+impl StartValues {
+    /// At the start of `setting`, with the free constants zero.
+    pub(crate) fn new(setting: Setting, equations: &Equations) -> Result<Self, SolveError> {
+        let mut values = setting.system.values_at(setting.start);
+        if let Some(removal) = &equations.removal {
+            values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
+        }
+        let (mut symbols, mut inputs): (Vec<Symbol>, Vec<f64>) = values.into_iter().unzip();
+        symbols.extend(equations.constant_symbols());
+        inputs.resize(symbols.len(), 0.0);
+        let mut outputs: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
+        outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
+        let tape = equations.tape(&symbols, &outputs)?;
+        Ok(StartValues {
+            workspace: tape.workspace(),
+            outputs: vec![0.0; outputs.len()],
+            states: equations.states.len(),
+            unknowns: equations.unknowns().len(),
+            tape,
+            symbols,
+            inputs,
+        })
+    }
+
+    /// The place of a symbol in `inputs`.
+    pub(crate) fn place(&self, symbol: Symbol) -> Option<usize> {
+        self.symbols.iter().position(|&s| s == symbol)
+    }
+
+    /// The place of the first free constant in `inputs`, where there are so many.
+    pub(crate) fn first_constant(&self, constants: usize) -> usize {
+        self.inputs.len() - constants
+    }
+
+    /// Another start of the same system.
+    pub(crate) fn set(&mut self, values: &HashMap<Symbol, f64>) {
+        for (symbol, input) in self.symbols.iter().zip(&mut self.inputs) {
+            *input = values.get(symbol).copied().unwrap_or(*input);
+        }
+    }
+
+    pub(crate) fn set_constants(&mut self, constants: &[f64]) {
+        let first = self.first_constant(constants.len());
+        self.inputs[first..].copy_from_slice(constants);
+    }
+
+    /// The states, and the guess for the unknowns of the instant; that is empty unless the derivation has one for each.
+    pub(crate) fn evaluate(&mut self) -> (&[f64], &[f64]) {
+        self.tape.evaluate(&self.inputs, &mut self.workspace, &mut self.outputs);
+        let (states, guess) = self.outputs.split_at(self.states);
+        (states, if guess.len() == self.unknowns { guess } else { &[] })
+    }
+}
