@@ -54,7 +54,7 @@
 
 use mechanics::{Removal, State, System};
 use nalgebra::DMatrix;
-use symbolic::{Expr, Symbol, Tape};
+use symbolic::{Evaluator, Expr, Symbol};
 
 mod composition;
 mod drift;
@@ -105,7 +105,7 @@ pub struct Discrete {
     start: Node,
     end: f64,
     /// `q` from `(t, u, w)`, for removals.
-    coordinates: Option<Tape>,
+    coordinates: Option<Evaluator<f64>>,
     /// How the start depends on `P₀`, for removals.
     costates: Option<Natural>,
     ends: Ends,
@@ -216,7 +216,7 @@ impl Discrete {
         let slopes = DMatrix::from_row_slice(m + k, k, &slopes);
         let guess: Vec<f64> = [&start.rates[..], &memory_rates, &start.costates].concat();
         let inputs: Vec<Symbol> = std::iter::once(system.time).chain(x.iter().copied()).collect();
-        let coordinates = g.compile(&inputs, &removal.coordinates, &system.parameter_values())?;
+        let coordinates = system.evaluator(&inputs, &removal.coordinates)?;
         let principle = Principle {
             lagrangian: augmented,
             forces: vec![g.zero(); m + k],
@@ -263,15 +263,15 @@ impl Discrete {
     /// [`DiscreteError::NoNaturalEnd`].
     pub fn positions(&mut self, steps: usize) -> Result<Vec<Vec<f64>>, DiscreteError> {
         let nodes = self.nodes(steps)?;
-        let Some(tape) = &self.coordinates else { return Ok(nodes.into_iter().map(|node| node.x.value).collect()) };
-        let mut workspace = tape.workspace();
+        let Some(coordinates) = &mut self.coordinates else {
+            return Ok(nodes.into_iter().map(|node| node.x.value).collect());
+        };
         let mut positions = Vec::with_capacity(nodes.len());
         for node in nodes {
             let inputs: Vec<f64> = std::iter::once(node.t).chain(node.x.value).collect();
-            let mut q = vec![0.0; tape.outputs()];
-            tape.evaluate(&inputs, &mut workspace, &mut q);
-            check_finite("a coordinate", node.t, &q)?;
-            positions.push(q);
+            let q = coordinates.evaluate(&inputs);
+            check_finite("a coordinate", node.t, q)?;
+            positions.push(q.to_vec());
         }
         Ok(positions)
     }

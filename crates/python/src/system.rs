@@ -240,15 +240,12 @@ impl System {
             let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
             let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
             let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-            let tape = system.graph.compile(&inputs, &system.constraints, &system.parameter_values());
-            let tape = tape.map_err(errors::solve)?;
-            let (mut registers, mut row) = (tape.workspace(), vec![0.0; tape.outputs()]);
+            let mut constraints = system.evaluator(&inputs, &system.constraints).map_err(errors::solve)?;
             let mut values = Vec::new();
             for i in 0..count.unwrap_or(1) {
-                tape.evaluate(&[t.row(i), q.row(i), v.row(i)].concat(), &mut registers, &mut row);
-                values.extend_from_slice(&row);
+                values.extend_from_slice(constraints.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));
             }
-            (values, count, row.len())
+            (values, count, constraints.values().len())
         };
         array(py, values, count, &[width])
     }

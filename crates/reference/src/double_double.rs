@@ -2,7 +2,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use symbolic::Scalar;
+use mechanics::linear::Entry;
+use symbolic::{Scalar, SeriesScalar};
 
 use crate::Wide;
 
@@ -154,6 +155,12 @@ impl From<i64> for DoubleDouble {
     }
 }
 
+impl Entry for DoubleDouble {
+    fn size(self) -> f64 {
+        self.high.abs()
+    }
+}
+
 impl Wide for DoubleDouble {
     const EPSILON: f64 = 1.0 / (1_u128 << 106) as f64;
 
@@ -161,22 +168,12 @@ impl Wide for DoubleDouble {
         self.high
     }
 
-    /// The terms' errors are added up in `f64`: as accurate as the sum of the magnitudes of the terms allows, and no term waits for the last.
-    fn convolution(a: &[Self], b: &[Self]) -> Self {
-        let (mut sum, mut errors) = (0.0, 0.0);
-        for (x, y) in a.iter().zip(b.iter().rev()) {
-            let (p, e) = two_product(x.high, y.high);
-            let (s, f) = two_sum(sum, p);
-            sum = s;
-            errors += f + (e + (x.high * y.low + x.low * y.high));
-        }
-        DoubleDouble::sum(sum, errors)
-    }
-
     fn is_finite(self) -> bool {
         self.high.is_finite() && self.low.is_finite()
     }
 }
+
+impl SeriesScalar for DoubleDouble {}
 
 impl Scalar for DoubleDouble {
     fn from_f64(x: f64) -> Self {

@@ -1,9 +1,9 @@
 //! Equations of motion in any wide type: `ẏ = F(t, y, z)` with `R(z; t, y) = 0`.
 
 use equations::Equations;
-use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+use mechanics::linear::Factors;
+use symbolic::{CompileError, Evaluator, Expr, SeriesTape, SeriesWorkspace, Symbol, Tape};
 
-use crate::linear::Factors;
 use crate::{ReferenceError, Wide};
 
 /// Newton steps allowed for one instant, and the relative step after which one more step leaves round-off only.
@@ -11,24 +11,6 @@ const STEPS: usize = 30;
 const SMALL: f64 = 1e-18;
 
 const INSTANT: &str = "equations of the instant";
-
-/// A tape with its registers and outputs.
-pub(crate) struct Program<T> {
-    pub(crate) tape: Tape,
-    registers: Workspace<T>,
-    pub(crate) values: Vec<T>,
-}
-
-impl<T: Wide> Program<T> {
-    pub(crate) fn new(tape: Tape) -> Self {
-        Program { registers: tape.workspace(), values: vec![T::zero(); tape.outputs()], tape }
-    }
-
-    pub(crate) fn run(&mut self, inputs: &[T]) -> &[T] {
-        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
-        &self.values
-    }
-}
 
 /// Where the numbers of a motion stand among the inputs of its tapes: `t, y, z`, free constants, parameters.
 ///
@@ -72,7 +54,9 @@ struct WideBlock<T> {
     first: usize,
     size: usize,
     linear: bool,
-    program: Program<T>,
+    program: Evaluator<T>,
+    /// Of the matrix at the solution.
+    factors: Factors<T>,
 }
 
 /// What is read off a motion at one time, in a wide type.
@@ -92,8 +76,8 @@ pub struct Point<T> {
 pub(crate) struct Instant<T> {
     pub(crate) layout: Layout,
     blocks: Vec<WideBlock<T>>,
-    rates: Program<T>,
-    outputs: Program<T>,
+    rates: Evaluator<T>,
+    outputs: Evaluator<T>,
     dimension: usize,
     inputs: Vec<T>,
 }
@@ -108,9 +92,10 @@ impl<T: Wide> Instant<T> {
             let matrix = g.jacobian(&block.residuals, &block.unknowns);
             let linear = !matrix.entries().iter().any(|&e| block.unknowns.iter().any(|&z| g.depends_on(e, z)));
             let outputs = [matrix.entries(), &block.residuals].concat();
-            let program = Program::new(layout.compile(equations, &outputs)?);
-            blocks.push(WideBlock { first, size: block.unknowns.len(), linear, program });
-            first += block.unknowns.len();
+            let program = Evaluator::new(layout.compile(equations, &outputs)?);
+            let size = block.unknowns.len();
+            blocks.push(WideBlock { first, size, linear, program, factors: Factors::new(size) });
+            first += size;
         }
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
         let multipliers: Vec<Expr> = equations.multipliers.iter().map(|m| m.expression).collect();
@@ -121,8 +106,8 @@ impl<T: Wide> Instant<T> {
             *input = T::from_f64(x);
         }
         Ok(Instant {
-            rates: Program::new(layout.compile(equations, &rates)?),
-            outputs: Program::new(layout.compile(equations, &outputs)?),
+            rates: Evaluator::new(layout.compile(equations, &rates)?),
+            outputs: Evaluator::new(layout.compile(equations, &outputs)?),
             dimension: equations.coordinates.len(),
             layout,
             blocks,
@@ -136,18 +121,26 @@ impl<T: Wide> Instant<T> {
         self.inputs[first..first + unknowns.len()].copy_from_slice(unknowns);
     }
 
+    /// The series of states, from the solution of the instant.
+    pub(crate) fn expand(&mut self, tape: &SeriesTape, workspace: &mut SeriesWorkspace<T>) {
+        let blocks = &mut self.blocks;
+        tape.expand(&self.inputs, T::from_f64(1.0), workspace, 1, &mut |block, residual| {
+            residual.iter_mut().for_each(|x| *x = -*x);
+            blocks[block].factors.solve(residual);
+        });
+    }
+
     /// `z` as solved last.
     pub(crate) fn unknowns(&self) -> &[T] {
         let first = self.layout.first_unknown();
         &self.inputs[first..first + self.layout.unknowns]
     }
 
-    /// Solves the equations of the instant, from the last solution, and returns the factors of each block at its solution.
-    pub(crate) fn solve(&mut self, t: T, y: &[T]) -> Result<Vec<Factors<T>>, ReferenceError> {
+    /// Solves the equations of the instant, from the last solution.
+    pub(crate) fn solve(&mut self, t: T, y: &[T]) -> Result<(), ReferenceError> {
         self.inputs[0] = t;
         self.inputs[1..1 + y.len()].copy_from_slice(y);
         let z = self.layout.first_unknown();
-        let mut solved = Vec::with_capacity(self.blocks.len());
         for block in &mut self.blocks {
             let place = z + block.first..z + block.first + block.size;
             // a step from a point that is not finite would never come back
@@ -156,21 +149,21 @@ impl<T: Wide> Instant<T> {
             }
             let mut last = false;
             for step in 0.. {
-                let values = block.program.run(&self.inputs);
-                let (matrix, residual) = values.split_at(block.size * block.size);
-                let factors = Factors::new(matrix, block.size).map_err(|singular| ReferenceError::Singular {
+                block.program.evaluate(&self.inputs);
+                let (matrix, residual) = block.program.values_mut().split_at_mut(block.size * block.size);
+                block.factors.factorize(matrix).map_err(|singular| ReferenceError::Singular {
                     what: INSTANT,
                     time: t.to_f64(),
-                    pivot: singular.pivot,
+                    pivot: singular.reciprocal,
                 })?;
+                block.factors.solve(residual);
                 let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
-                for (x, dx) in self.inputs[place.clone()].iter_mut().zip(factors.solve(residual)) {
-                    *x = *x - dx;
+                for (x, dx) in self.inputs[place.clone()].iter_mut().zip(residual) {
+                    *x = *x - *dx;
                     length = length.max(dx.size());
                     size = size.max(x.size());
                 }
                 if block.linear || last {
-                    solved.push(factors);
                     break;
                 }
                 let relative = length / size;
@@ -185,13 +178,13 @@ impl<T: Wide> Instant<T> {
                 }
             }
         }
-        Ok(solved)
+        Ok(())
     }
 
     /// `F(t, y)`.
     pub(crate) fn rates(&mut self, t: T, y: &[T], rates: &mut [T]) -> Result<(), ReferenceError> {
         self.solve(t, y)?;
-        rates.copy_from_slice(self.rates.run(&self.inputs));
+        rates.copy_from_slice(self.rates.evaluate(&self.inputs));
         Ok(())
     }
 
@@ -199,7 +192,7 @@ impl<T: Wide> Instant<T> {
     pub(crate) fn point(&mut self, t: T, y: &[T]) -> Result<Point<T>, ReferenceError> {
         self.solve(t, y)?;
         let n = self.dimension;
-        let values = self.outputs.run(&self.inputs);
+        let values = self.outputs.evaluate(&self.inputs);
         Ok(Point {
             coordinates: values[..n].to_vec(),
             velocities: values[n..2 * n].to_vec(),

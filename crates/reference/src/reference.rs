@@ -98,8 +98,8 @@ const TRIES: usize = 3;
 
 /// The motion at `times` with an error of at most `accuracy` (kinetic metric) in double-double arithmetic.
 ///
-/// Two methods compute it, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes and a linear solve per evaluation, and a Taylor
-/// series of the traced residuals. They share the start, the tapes, the solution of a single instant
+/// Two methods compute it, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes and a linear solve per evaluation, and Taylor
+/// series of rates and residuals. They share the start, the tapes, the solution of a single instant
 /// and the number type; how they go from one time to the next they do not share. [`Reference::errors`] is how far the kept
 /// run, the Taylor series at the tighter tolerance, is from the other method and from itself at the looser tolerance. While that is over
 /// `accuracy`, tolerances become tighter, three times at most.
@@ -133,7 +133,7 @@ const TRIES: usize = 3;
 /// use symbolic::Scalar;
 /// let right = reference::DoubleDouble::from_f64(2.0).cos();
 /// assert!(motion.error() < 1e-20);
-/// assert!(reference::Wide::size(motion.points[1].coordinates[0] - right) < 1e-25);
+/// assert!(reference::Entry::size(motion.points[1].coordinates[0] - right) < 1e-25);
 /// assert!(motion.distance(1, &[2.0_f64.cos()]) < 1e-16);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -2,8 +2,9 @@
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
-use reference::DoubleDouble;
-use symbolic::Scalar;
+use mechanics::linear::Factors;
+use reference::{DoubleDouble, Entry};
+use symbolic::{Scalar, Xorshift};
 
 type Exact = FBig<HalfEven, 2>;
 
@@ -18,23 +19,11 @@ fn value(x: DoubleDouble) -> Exact {
     exact(high) + exact(low)
 }
 
-/// Random numbers with 106 bits, a pure function of the count.
-struct Numbers(u64);
-
-impl Numbers {
-    fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Between the bounds, on a logarithmic scale where they have one sign.
-    fn between(&mut self, low: f64, high: f64) -> DoubleDouble {
-        let unit = self.unit();
-        let x = if low > 0.0 { low * (high / low).powf(unit) } else { low + (high - low) * unit };
-        DoubleDouble::sum(x, x * f64::EPSILON * (self.unit() - 0.5))
-    }
+/// A random number of 106 bits between the bounds, on a logarithmic scale where they have one sign.
+fn between(random: &mut Xorshift, low: f64, high: f64) -> DoubleDouble {
+    let unit = random.unit();
+    let x = if low > 0.0 { low * (high / low).powf(unit) } else { low + (high - low) * unit };
+    DoubleDouble::sum(x, x * f64::EPSILON * (random.unit() - 0.5))
 }
 
 /// Largest relative error of `ours` against `theirs` over 300 pairs.
@@ -43,10 +32,10 @@ fn worst(
     ours: impl Fn(DoubleDouble, DoubleDouble) -> DoubleDouble,
     theirs: impl Fn(&Exact, &Exact) -> Exact,
 ) -> f64 {
-    let mut numbers = Numbers(0x9E37_79B9_7F4A_7C15);
+    let mut random = Xorshift::default();
     let mut worst = 0.0_f64;
     for _ in 0..300 {
-        let [a, b] = ranges.map(|(low, high)| numbers.between(low, high));
+        let [a, b] = ranges.map(|(low, high)| between(&mut random, low, high));
         let right = theirs(&value(a), &value(b));
         let difference = value(ours(a, b)) - &right;
         let relative = (difference.to_f64().value() / right.to_f64().value()).abs();
@@ -129,4 +118,20 @@ fn integer_powers_keep_the_sign_of_the_base() {
     assert!(minus_two.powf(DoubleDouble::from_f64(0.5)).parts().0.is_nan());
     assert!(minus_two.log().parts().0.is_nan() && minus_two.sqrt().parts().0.is_nan());
     assert!(DoubleDouble::from_f64(2.0).asin().parts().0.is_nan());
+}
+
+#[test]
+fn linear_systems_are_solved_to_the_last_digits_in_any_units() {
+    // [ 2 0 −1; 0 1 −1; 1 1 0 ] z = (1, 2, 3), z = (2/3, 7/3, 1/3)
+    for unit in [1e-12, 1.0, 1e12] {
+        let number = DoubleDouble::from_f64;
+        let (u, zero, one) = (number(unit), number(0.0), number(1.0));
+        let mut factors = Factors::new(3);
+        factors.factorize(&[number(2.0), zero, -u, zero, one, -u, u, u, zero]).unwrap();
+        let mut z = [one, number(2.0), u * number(3.0)];
+        factors.solve(&mut z);
+        let right = [(2, 3), (7, 3), (1, 3)].map(|(p, q)| DoubleDouble::from_ratio(p, q));
+        assert!((z[0] - right[0]).size().max((z[1] - right[1]).size()) < 1e-30);
+        assert!((z[2] * u - right[2]).size() < 1e-30);
+    }
 }

@@ -35,6 +35,8 @@ mod bounded;
 mod calculus;
 mod content;
 mod evaluate;
+mod evaluator;
+mod excerpt;
 mod expand;
 mod factor;
 mod function;
@@ -54,6 +56,7 @@ mod print_latex;
 mod print_plain;
 mod program;
 mod questions;
+mod random;
 mod range;
 mod scalar;
 mod series;
@@ -63,14 +66,18 @@ mod tape;
 
 pub use bounded::Bounded;
 pub use evaluate::CompileError;
+pub use evaluator::Evaluator;
+pub use excerpt::excerpt;
 pub use function::Function;
 pub use graph::{Expr, Graph, Symbol};
 pub use identity::Vanishing;
 pub use matrix::Matrix;
 pub use parse_error::{ParseError, ParseErrorKind};
+pub use random::{SplitMix, Xorshift};
 pub use range::Range;
 pub use scalar::Scalar;
 pub use series::{
     Correct, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
 };
+pub use suggest::nearest;
 pub use tape::{Tape, Workspace};

@@ -31,13 +31,10 @@ impl Drift {
 /// Follows `e(t, q, v, multipliers)` along a motion: the first of its multipliers, by the names in `multipliers`.
 fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) -> Result<Drift, SolveError> {
     let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
-    let tape = system.graph.compile(&symbols, &[e], &system.parameter_values())?;
-    let mut registers = tape.workspace::<f64>();
+    let mut evaluator = system.evaluator(&symbols, &[e])?;
     let mut value = |t: f64, o: &Outputs| {
-        let mut out = [0.0];
         let read = [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
-        tape.evaluate(&read, &mut registers, &mut out);
-        out[0]
+        evaluator.evaluate(&read)[0]
     };
     let (mut first, mut change, mut error, mut size) = (None, 0.0_f64, 0.0_f64, 1.0_f64);
     for t in motion.grid(INSTANTS) {
