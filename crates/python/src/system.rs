@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{derive_at, prepare, removals, setting, solve_choice};
-use integrate::Method;
 use mechanics::integrability;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -18,7 +17,7 @@ use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
 use crate::motion::{Motion, Sampled, State};
 use crate::scene_text::{Arguments, write};
-use crate::{arguments, background, errors};
+use crate::{arguments, background, errors, reading};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
@@ -52,15 +51,34 @@ impl System {
         System { scene: Mutex::new(scene), text, overrides }
     }
 
-    /// A system from the text of a scene.
-    pub(crate) fn parse(py: Python<'_>, name: &str, text: String, overrides: Overrides) -> PyResult<System> {
-        let scene = py.detach(|| Scene::parse_with(name, &text, &overrides));
-        Ok(System::of(scene.map_err(|error| errors::scene(py, &error))?, text, overrides))
-    }
-
     /// The scene. No lock of Python is waited for while it is held.
     fn scene(&self) -> MutexGuard<'_, Scene> {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl System {
+    /// Expressions of t, q and v at the given points, row after row, and how many points there are.
+    fn values(
+        &self,
+        [t, q, v]: [Floats<'_>; 3],
+        expressions: impl Fn(&mechanics::System) -> Vec<symbolic::Expr>,
+    ) -> PyResult<(Vec<f64>, Option<usize>)> {
+        let scene = self.scene();
+        let system = &scene.system;
+        let n = system.dimension();
+        let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
+        let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
+        let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
+        let outputs = expressions(system);
+        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values()).map_err(errors::solve)?;
+        let (mut registers, mut row) = (tape.workspace(), vec![0.0; tape.outputs()]);
+        let mut values = Vec::new();
+        for i in 0..count.unwrap_or(1) {
+            tape.evaluate(&[t.row(i), q.row(i), v.row(i)].concat(), &mut registers, &mut row);
+            values.extend_from_slice(&row);
+        }
+        Ok((values, count))
     }
 }
 
@@ -113,7 +131,7 @@ impl System {
             multipliers,
             duration,
         })?;
-        System::parse(py, name, text, Overrides::new())
+        reading::parsed(py, name, text, Overrides::new())
     }
 
     /// Name: that of the file without its ending.
@@ -233,21 +251,24 @@ impl System {
         q: Floats<'_>,
         v: Floats<'_>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (values, count, width) = {
-            let scene = self.scene();
-            let system = &scene.system;
-            let n = system.dimension();
-            let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
-            let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
-            let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-            let mut constraints = system.evaluator(&inputs, &system.constraints).map_err(errors::solve)?;
-            let mut values = Vec::new();
-            for i in 0..count.unwrap_or(1) {
-                values.extend_from_slice(constraints.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));
-            }
-            (values, count, constraints.values().len())
-        };
-        array(py, values, count, &[width])
+        let (values, count) = self.values([t, q, v], |system| system.constraints.clone())?;
+        array(py, values, count, &[self.scene().system.constraints.len()])
+    }
+
+    /// The mass matrix M(q, v, t), the second derivative of L by velocities, shape (n, n) or (k, n, n); arguments as in `constraint`.
+    ///
+    /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
+    #[pyo3(signature = (t, q, v))]
+    fn mass<'py>(
+        &self,
+        py: Python<'py>,
+        t: Floats<'_>,
+        q: Floats<'_>,
+        v: Floats<'_>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (values, count) = self.values([t, q, v], |system| system.velocity_hessian().entries().to_vec())?;
+        let n = self.scene().system.dimension();
+        array(py, values, count, &[n, n])
     }
 
     /// The equations of motion under a formulation, one of FORMULATIONS.
@@ -273,8 +294,7 @@ impl System {
         }
         let work = move || {
             let equations = derive_at(&scene.system, &scene.start, &choice)?;
-            let mut made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
-            made.complete(Method::Radau5)?; // with a Jacobian
+            let made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
             Ok((made, scene))
         };
         let made = background::run(py, &interrupt, work)?;
@@ -362,11 +382,11 @@ impl System {
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps)?;
         let (scene, given) = (self.scene().clone(), constants.is_some());
         let choice = arguments::choice(&scene, formulation, removal, constants)?;
-        let times = ensemble::times(times, &scene)?;
+        let (times, end) = ensemble::times(times, &scene)?;
         let name = scene.name.clone();
         let with = |values: Overrides| Scene::parse_with(&name, &self.text, &[&self.overrides[..], &values].concat());
         let varied = Varied::read(vary)?;
-        let task = ensemble::Task { varied, scene, with: &with, choice, given, times, settings, threads };
+        let task = ensemble::Task { varied, scene, with: &with, choice, given, times, end, settings, threads };
         let integrated = background::run(py, &interrupt, move || task.run())?;
         Ensemble::new(py, integrated.map_err(|refused| ensemble::refused(py, refused))?)
     }

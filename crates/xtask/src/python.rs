@@ -24,18 +24,44 @@ const NAMES: [&str; 3] = ["python3.11", "python3", "python"];
 
 pub(crate) fn check() -> Result<Outcome> {
     let python = environment()?;
+    let Module { site, size } = module(&python)?;
+    let mut tests = outside(&python);
+    succeed(tests.args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE).env("PYTHONPATH", &site))?;
+    Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
+}
+
+/// Times other tools beside the module, each in Python, and writes `reports/peers.md`.
+pub(crate) fn peers(arguments: &[&str]) -> Result<Outcome> {
+    let target = target()?;
+    let scripts = Path::new("validation").join("peers");
+    let python = make(&target, "peers", &scripts.join("requirements.txt"))?;
+    let Module { site, .. } = module(&environment()?)?;
+    let mut run = outside(&python);
+    run.arg("-B").arg(scripts.join("peers.py")).arg("--target").arg(target.join("peers"));
+    succeed(run.args(arguments).env("PYTHONPATH", &site))
+}
+
+/// The module as a wheel would install it.
+struct Module {
+    /// The folder that Python has to look into.
+    site: PathBuf,
+    /// The library in bytes.
+    size: u64,
+}
+
+/// Lays out what `pip install` asks maturin for, but for the library, which the build has made.
+fn module(python: &Path) -> Result<Module> {
     build()?;
     let target = target()?;
     let site = target.join("python-module");
     if site.exists() {
         std::fs::remove_dir_all(&site).with_context(|| site.display().to_string())?;
     }
-    // what `pip install` asks maturin for, but for the library, which the build has made
     let folder = site.join("deltaq");
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    let mut metadata = outside(&python);
+    let mut metadata = outside(python);
     metadata.args(["-m", "maturin", "pep517", "write-dist-info", "--metadata-directory"]).arg(&site);
-    succeed(metadata.arg("--interpreter").arg(&python).current_dir(CRATE).stdout(Stdio::null()))?;
+    succeed(metadata.arg("--interpreter").arg(python).current_dir(CRATE).stdout(Stdio::null()))?;
     for file in std::fs::read_dir(SOURCES).context(SOURCES)? {
         let file = file.context(SOURCES)?;
         if file.path().is_file() {
@@ -46,31 +72,30 @@ pub(crate) fn check() -> Result<Outcome> {
     let library = target.join("release").join(format!("{DLL_PREFIX}deltaq_python{DLL_SUFFIX}"));
     let module = if cfg!(windows) { "_native.pyd" } else { "_native.abi3.so" };
     let size = std::fs::copy(&library, folder.join(module)).with_context(|| library.display().to_string())?;
-    let mut tests = outside(&python);
-    succeed(tests.args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE).env("PYTHONPATH", &site))?;
-    Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
+    Ok(Module { site, size })
 }
 
-/// The Python of an environment with what `requirements.txt` pins.
+/// The Python of an environment with what the checks need.
 pub(crate) fn environment() -> Result<PathBuf> {
     static MADE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
-    let made = MADE.get_or_init(|| target().and_then(|target| make(&target)).map_err(|error| format!("{error:#}")));
-    made.clone().map_err(anyhow::Error::msg)
+    let made = || target().and_then(|target| make(&target, "python", Path::new(REQUIREMENTS)));
+    MADE.get_or_init(|| made().map_err(|error| format!("{error:#}"))).clone().map_err(anyhow::Error::msg)
 }
 
-/// It is built once for each content of that file: in a folder beside its place, and then moved, so that half an environment is never used.
-fn make(target: &Path) -> Result<PathBuf> {
-    let text = std::fs::read_to_string(REQUIREMENTS).context(REQUIREMENTS)?;
-    let (name, version) = interpreter()?;
+/// The Python of an environment with what a file of requirements pins. It is built once for each content of that file: in a folder beside its
+/// place, and then moved, so that half an environment is never used.
+fn make(target: &Path, name: &str, requirements: &Path) -> Result<PathBuf> {
+    let text = std::fs::read_to_string(requirements).with_context(|| requirements.display().to_string())?;
+    let (program, version) = interpreter()?;
     let mut hasher = DefaultHasher::new();
     (text, version).hash(&mut hasher);
-    let place = target.join(format!("python-venv-{:016x}", hasher.finish()));
+    let place = target.join(format!("{name}-venv-{:016x}", hasher.finish()));
     if !place.exists() {
-        let draft = target.join(format!("python-venv-draft-{}", std::process::id()));
-        succeed(outside(name).args(["-m", "venv"]).arg(&draft))?;
+        let draft = target.join(format!("{name}-venv-draft-{}", std::process::id()));
+        succeed(outside(program).args(["-m", "venv"]).arg(&draft))?;
         let mut install = outside(interpreter_of(&draft));
         let options = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
-        succeed(install.args(options).arg(REQUIREMENTS))?;
+        succeed(install.args(options).arg(requirements))?;
         // Another run may have been faster; its environment is as good.
         if std::fs::rename(&draft, &place).is_err() {
             std::fs::remove_dir_all(&draft).with_context(|| draft.display().to_string())?;
