@@ -214,7 +214,7 @@ impl Equations {
     #[pyo3(signature = (t, y))]
     fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
         let width = self.states.len();
-        self.ready().prepare(Method::Radau5).map_err(errors::solve)?;
+        self.ready().complete(Method::Radau5).map_err(errors::solve)?;
         let (values, count) = self.rows(&t, &y, width * width, Compiled::jacobian)?;
         array(py, values, count, &[width, width])
     }
@@ -296,19 +296,19 @@ impl Equations {
         };
         let ready = &mut *ready;
         let run = || -> Result<_, SolveError> {
-            ready.prepare(options.method)?;
+            ready.complete(options.method)?;
             let clock = Instant::now();
-            let mut run = ready.integrate(end, &options)?;
+            let run = ready.integrate(end, &options)?;
             times.retain(|&t| t <= run.end());
             let width = ready.start.len();
             let mut states = vec![0.0; width * times.len()];
             for (&t, row) in times.iter().zip(states.chunks_exact_mut(width)) {
-                run.states_at(ready, t, row)?;
+                run.states_at(&mut ready.compiled, t, row);
             }
             Ok((run, states, clock.elapsed().as_secs_f64()))
         };
         let (run, states, seconds) = background::run(py, &interrupt, run)?.map_err(errors::solve)?;
-        let (status, cause) = match &run.status {
+        let (status, cause) = match &run.solution.status {
             Status::Completed => ("completed", None),
             Status::Stopped { t, cause } => stopped(*t, cause),
         };
@@ -318,7 +318,7 @@ impl Equations {
             times: array(py, times, count, &[])?.unbind(),
             status,
             cause,
-            work: work(py, &run.work)?,
+            work: work(py, &run.solution.work)?,
             seconds,
         })
     }

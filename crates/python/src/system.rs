@@ -17,7 +17,7 @@ use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
 use crate::motion::{Motion, Sampled, State};
 use crate::scene_text::{Arguments, write};
-use crate::{arguments, background, errors, reading};
+use crate::{arguments, background, errors};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
@@ -51,6 +51,12 @@ impl System {
         System { scene: Mutex::new(scene), text, overrides }
     }
 
+    /// A system from the text of a scene.
+    pub(crate) fn parse(py: Python<'_>, name: &str, text: String, overrides: Overrides) -> PyResult<System> {
+        let scene = py.detach(|| Scene::parse_with(name, &text, &overrides));
+        Ok(System::of(scene.map_err(|error| errors::scene(py, &error))?, text, overrides))
+    }
+
     /// The scene. No lock of Python is waited for while it is held.
     fn scene(&self) -> MutexGuard<'_, Scene> {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner)
@@ -71,12 +77,10 @@ impl System {
         let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
         let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
         let outputs = expressions(system);
-        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values()).map_err(errors::solve)?;
-        let (mut registers, mut row) = (tape.workspace(), vec![0.0; tape.outputs()]);
+        let mut program = system.evaluator(&inputs, &outputs).map_err(errors::solve)?;
         let mut values = Vec::new();
         for i in 0..count.unwrap_or(1) {
-            tape.evaluate(&[t.row(i), q.row(i), v.row(i)].concat(), &mut registers, &mut row);
-            values.extend_from_slice(&row);
+            values.extend_from_slice(program.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));
         }
         Ok((values, count))
     }
@@ -131,7 +135,7 @@ impl System {
             multipliers,
             duration,
         })?;
-        reading::parsed(py, name, text, Overrides::new())
+        System::parse(py, name, text, Overrides::new())
     }
 
     /// Name: that of the file without its ending.
