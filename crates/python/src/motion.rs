@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::{Ending, ErrorEstimate, Setting, SolveError, constant_names, error_estimate};
+use deltaq::{ErrorEstimate, Setting, SolveError, constant_names, error_estimate};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -165,10 +165,7 @@ impl Motion {
         let names = Names::of(&motion.equations);
         let count = Some(times.len());
         let samples = Outputs::new(py, &rows, dimension, &names, count)?;
-        let (status, cause) = match &motion.ending {
-            Ending::Completed => ("completed", None),
-            Ending::Stopped { t, cause } => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
-        };
+        let (status, cause) = motion.ending.status(None);
         let (constants, work, projection, seconds) =
             (PyDict::new(py), PyDict::new(py), PyDict::new(py), PyDict::new(py));
         for (name, value) in constant_names(&motion.equations).iter().zip(&motion.constants) {
