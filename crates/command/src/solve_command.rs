@@ -211,11 +211,7 @@ fn json_text(
         "scene": scene.name,
         "formulation": choice.formulation,
         "removal": choice.removal.as_ref().map(|r| &r.name),
-        "status": match (&motion.ending, complaint) {
-            (Ending::Stopped { .. }, _) => "stopped",
-            (Ending::Completed, Some(_)) => "untrusted",
-            (Ending::Completed, None) => "completed",
-        },
+        "status": motion.ending.status(complaint.map(str::to_owned)).0,
         "cause": complaint,
         "end": motion.end(),
         "free_constants": constants,

@@ -18,6 +18,15 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// `completed`, `untrusted` (where there is a complaint) or `stopped`, and why it is not completed.
+    pub fn status(&self, complaint: Option<String>) -> (&'static str, Option<String>) {
+        match (self, complaint) {
+            (Ending::Stopped { t, cause }, _) => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
+            (Ending::Completed, Some(words)) => ("untrusted", Some(words)),
+            (Ending::Completed, None) => ("completed", None),
+        }
+    }
+
     /// Of one run.
     pub(crate) fn of(equations: &Equations, compiled: &mut Compiled, run: &Solution) -> Ending {
         let Status::Stopped { t, cause } = &run.status else { return Ending::Completed };

@@ -310,7 +310,7 @@ impl Equations {
         let (run, states, seconds) = background::run(py, &interrupt, run)?.map_err(errors::solve)?;
         let (status, cause) = match &run.solution.status {
             Status::Completed => ("completed", None),
-            Status::Stopped { t, cause } => stopped(*t, cause),
+            Status::Stopped { t, cause } => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
         };
         let count = Some(times.len());
         Ok(Trajectory {

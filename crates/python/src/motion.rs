@@ -1,9 +1,8 @@
 //! Motions, read off at many times.
 
-use std::fmt::Display;
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::{Ending, ErrorEstimate, Seconds, Setting, SolveError, constant_names, error_estimate};
+use deltaq::{ErrorEstimate, Seconds, Setting, SolveError, constant_names, error_estimate};
 use integrate::Work;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -185,11 +184,6 @@ pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
     Ok(items.into_py_dict(py)?.unbind())
 }
 
-/// `status` and `cause` of what stopped.
-pub(crate) fn stopped(t: f64, cause: &dyn Display) -> (&'static str, Option<String>) {
-    ("stopped", Some(format!("stopped at t = {t}: {cause}")))
-}
-
 impl Motion {
     pub(crate) fn new(py: Python<'_>, sampled: Sampled) -> PyResult<Motion> {
         let Sampled { motion, times, rows, estimate, dimension } = sampled;
@@ -197,10 +191,7 @@ impl Motion {
         let count = Some(times.len());
         let Outputs { coordinates, velocities, multipliers, invariants } =
             Outputs::new(py, &rows, dimension, &names, count)?;
-        let (status, cause) = match &motion.ending {
-            Ending::Completed => ("completed", None),
-            Ending::Stopped { t, cause } => stopped(*t, cause),
-        };
+        let (status, cause) = motion.ending.status(None);
         let constants = constant_names(&motion.equations).into_iter().zip(motion.constants.iter().copied());
         let projection = PyDict::new(py);
         projection.set_item("count", motion.projection.projections)?;

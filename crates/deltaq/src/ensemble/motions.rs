@@ -7,7 +7,7 @@ use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
 use crate::metric::subtract;
 use crate::single_run::outputs;
-use crate::{Ending, ErrorEstimate, Metric, SolveError};
+use crate::{ErrorEstimate, Metric, SolveError};
 
 /// What became of a member, read off.
 #[derive(Clone, Debug)]
@@ -22,14 +22,9 @@ pub struct MemberMotion {
 }
 
 impl MemberMotion {
-    /// `completed`, `untrusted` (its estimate is too large: [`ErrorEstimate::complaint`]) or `stopped`, and why it is not completed.
+    /// [`crate::Ending::status`], untrusted where its estimate is too large ([`ErrorEstimate::complaint`]).
     pub fn status(&self) -> (&'static str, Option<String>) {
-        let doubt = self.estimate.and_then(|estimate| estimate.complaint());
-        match (&self.run.ending, doubt) {
-            (Ending::Stopped { t, cause }, _) => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
-            (Ending::Completed, Some(words)) => ("untrusted", Some(words)),
-            (Ending::Completed, None) => ("completed", None),
-        }
+        self.run.ending.status(self.estimate.and_then(|estimate| estimate.complaint()))
     }
 }
 
