@@ -54,7 +54,7 @@
 
 use mechanics::{Removal, State, System};
 use nalgebra::DMatrix;
-use symbolic::{Expr, Symbol, Tape};
+use symbolic::{Evaluator, Expr, Symbol};
 
 mod composition;
 mod drift;
@@ -107,7 +107,7 @@ pub struct Discrete {
     start: Node,
     end: f64,
     /// `q` from `(t, u, w)`, for removals.
-    coordinates: Option<Tape>,
+    coordinates: Option<Evaluator<f64>>,
     /// How the start depends on `P₀`, for removals.
     costates: Option<Natural>,
     ends: Ends,
@@ -231,7 +231,7 @@ impl Discrete {
         let step = Step::new(g, &system.parameter_values(), &interval, &principle, &guess)?;
         let costates = Some(Natural { first: start.costates.clone(), slopes });
         let discrete = Discrete::new(step, start.t, rest, p, guess, end)?;
-        Ok(Discrete { costates, ends, coordinates: Some(coordinates), ..discrete })
+        Ok(Discrete { costates, ends, coordinates: Some(Evaluator::new(coordinates)), ..discrete })
     }
 
     /// `guess` are the rates and multipliers at the start.
@@ -265,15 +265,15 @@ impl Discrete {
     /// [`DiscreteError::NoNaturalEnd`].
     pub fn positions(&mut self, steps: usize) -> Result<Vec<Vec<f64>>, DiscreteError> {
         let nodes = self.nodes(steps)?;
-        let Some(tape) = &self.coordinates else { return Ok(nodes.into_iter().map(|node| node.x.value).collect()) };
-        let mut workspace = tape.workspace();
+        let Some(coordinates) = &mut self.coordinates else {
+            return Ok(nodes.into_iter().map(|node| node.x.value).collect());
+        };
         let mut positions = Vec::with_capacity(nodes.len());
         for node in nodes {
             let inputs: Vec<f64> = std::iter::once(node.t).chain(node.x.value).collect();
-            let mut q = vec![0.0; tape.outputs()];
-            tape.evaluate(&inputs, &mut workspace, &mut q);
-            check_finite("a coordinate", node.t, &q)?;
-            positions.push(q);
+            let q = coordinates.evaluate(&inputs);
+            check_finite("a coordinate", node.t, q)?;
+            positions.push(q.to_vec());
         }
         Ok(positions)
     }

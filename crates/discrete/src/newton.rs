@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use mechanics::linear::Factors;
-use symbolic::{Expr, Graph, Symbol, Tape, Workspace};
+use symbolic::{Evaluator, Expr, Graph, Symbol};
 
 use crate::DiscreteError;
 
@@ -25,37 +25,12 @@ const CONTRACTION: f64 = 0.5;
 /// What corrections under this part of the unknowns lead to is near.
 const FAR: f64 = 1e-2;
 
-/// A tape with its registers and outputs.
-#[derive(Clone, Debug)]
-pub(crate) struct Program {
-    tape: Tape,
-    workspace: Workspace<f64>,
-    pub(crate) outputs: Vec<f64>,
-}
-
-impl Program {
-    pub(crate) fn new(
-        g: &Graph,
-        inputs: &[Symbol],
-        outputs: &[Expr],
-        parameters: &HashMap<Symbol, f64>,
-    ) -> Result<Self, DiscreteError> {
-        let tape = g.compile(inputs, outputs, parameters)?;
-        Ok(Program { workspace: tape.workspace(), outputs: vec![0.0; tape.outputs()], tape })
-    }
-
-    pub(crate) fn evaluate(&mut self, inputs: &[f64]) -> &[f64] {
-        self.tape.evaluate(inputs, &mut self.workspace, &mut self.outputs);
-        &self.outputs
-    }
-}
-
 /// As many equations as unknowns, the unknowns being the last inputs.
 #[derive(Clone, Debug)]
 pub(crate) struct Iteration {
     pub(crate) inputs: Vec<f64>,
     /// Residuals, then their Jacobian row by row.
-    program: Program,
+    program: Evaluator<f64>,
     factors: Factors,
     correction: Vec<f64>,
     /// Whether one correction solves the equations.
@@ -84,7 +59,7 @@ impl Iteration {
         let floor = |values: &[f64]| Some(largest(values)).filter(|&x| x > 0.0).unwrap_or(1.0);
         Ok(Iteration {
             inputs: vec![0.0; inputs.len()],
-            program: Program::new(g, inputs, &outputs, parameters)?,
+            program: Evaluator::new(g.compile(inputs, &outputs, parameters)?),
             factors: Factors::new(count),
             correction: vec![0.0; count],
             linear,

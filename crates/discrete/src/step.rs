@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use mechanics::fresh_symbol;
-use symbolic::{Expr, Graph, Symbol};
+use symbolic::{CompileError, Evaluator, Expr, Graph, Symbol};
 
 use crate::DiscreteError;
-use crate::newton::{Iteration, Program, check_finite};
+use crate::newton::{Iteration, check_finite};
 use crate::sum::Compensated;
 
 /// The symbols of one interval.
@@ -108,13 +108,13 @@ pub(crate) struct Step {
     /// `t, h, x, p, v, ẋ, ν` → the first line of [`Principle`].
     balance: Iteration,
     /// The same → `p_{k+1} − p_k` but for the reaction at `k + 1`, then `c`.
-    impulse: Program,
+    impulse: Evaluator<f64>,
     /// `t, h, x, p, v, ν` → `𝓛_ẋ − p` (with a reaction: `− (h/2) R ν`) and `c` at the node.
     legendre: Iteration,
     /// The same → `(h/2) R ν`.
-    reaction: Program,
+    reaction: Evaluator<f64>,
     /// The same → `ẋ·p − 𝓛`, then `c`.
-    readings: Program,
+    readings: Evaluator<f64>,
     /// The last midpoint times and what solved the steps there, the last first.
     past: [Option<(f64, Vec<f64>)>; 2],
 }
@@ -165,7 +165,9 @@ impl Step {
         let known = [vec![interval.t, interval.h], interval.left.clone(), interval.momentum.clone()].concat();
         let at_node = [&known[..], &interval.velocity, multipliers].concat();
         let over = [&known[..], &interval.velocity, &interval.rate, multipliers].concat();
-        let program = |inputs: &[Symbol], outputs: &[Expr]| Program::new(g, inputs, outputs, parameters);
+        let program = |inputs: &[Symbol], outputs: &[Expr]| -> Result<_, CompileError> {
+            Ok(Evaluator::new(g.compile(inputs, outputs, parameters)?))
+        };
         let iteration =
             |inputs: &[Symbol], outputs: &[Expr]| Iteration::new(g, inputs, outputs, parameters, guess, size);
         Ok(Step {
@@ -254,7 +256,7 @@ impl Step {
 
     /// `c` at the midpoint of the last step.
     pub(crate) fn discrete_conditions(&self) -> &[f64] {
-        &self.impulse.outputs[self.size..]
+        &self.impulse.values()[self.size..]
     }
 
     /// Puts the straight line through the last two solutions at the time `middle` into the unknowns, where there are two.

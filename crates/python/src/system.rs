@@ -10,6 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
+use symbolic::Evaluator;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, finite, times};
 use crate::comparison::{Comparison, check_tolerance, compare};
@@ -235,13 +236,12 @@ impl System {
             let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
             let tape = system.graph.compile(&inputs, &system.constraints, &system.parameter_values());
             let tape = tape.map_err(errors::solve)?;
-            let (mut registers, mut row) = (tape.workspace(), vec![0.0; tape.outputs()]);
+            let mut constraints = Evaluator::new(tape);
             let mut values = Vec::new();
             for i in 0..count.unwrap_or(1) {
-                tape.evaluate(&[t.row(i), q.row(i), v.row(i)].concat(), &mut registers, &mut row);
-                values.extend_from_slice(&row);
+                values.extend_from_slice(constraints.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));
             }
-            (values, count, row.len())
+            (values, count, constraints.values().len())
         };
         array(py, values, count, &[width])
     }

@@ -25,7 +25,7 @@
 
 use mechanics::{State, System};
 use nalgebra::{ColPivQR, DMatrix, DVector, Dyn};
-use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+use symbolic::{CompileError, Evaluator, Expr, Symbol};
 
 mod error;
 mod motion;
@@ -78,13 +78,11 @@ pub struct Maggi {
 /// A pivoted QR factorization.
 type Factors = ColPivQR<f64, Dyn, Dyn>;
 
-/// A tape with its registers and buffers.
+/// Outputs at `(t, q, v)` or `(t, q)`.
 #[derive(Clone, Debug)]
 struct Program {
-    tape: Tape,
-    workspace: Workspace<f64>,
+    evaluator: Evaluator<f64>,
     inputs: Vec<f64>,
-    outputs: Vec<f64>,
 }
 
 /// `M, F, A, γ, f` at one instant; matrices row-major.
@@ -101,9 +99,7 @@ struct Instant<'a> {
 impl Program {
     fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
         let tape = system.graph.compile(inputs, outputs, &system.parameter_values())?;
-        let workspace = tape.workspace();
-        let (inputs, outputs) = (vec![0.0; tape.inputs()], vec![0.0; tape.outputs()]);
-        Ok(Program { tape, workspace, inputs, outputs })
+        Ok(Program { inputs: vec![0.0; tape.inputs()], evaluator: Evaluator::new(tape) })
     }
 
     /// The outputs at `(t, q, v)` (or at `(t, q)` with an empty `v`).
@@ -111,8 +107,7 @@ impl Program {
         self.inputs[0] = t;
         self.inputs[1..=q.len()].copy_from_slice(q);
         self.inputs[q.len() + 1..].copy_from_slice(v);
-        self.tape.evaluate(&self.inputs, &mut self.workspace, &mut self.outputs);
-        &self.outputs
+        self.evaluator.evaluate(&self.inputs)
     }
 }
 

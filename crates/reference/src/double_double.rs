@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use symbolic::Scalar;
+use symbolic::{Scalar, SeriesScalar};
 
 use crate::Wide;
 
@@ -161,22 +161,12 @@ impl Wide for DoubleDouble {
         self.high
     }
 
-    /// The terms' errors are added up in `f64`: as accurate as the sum of the magnitudes of the terms allows, and no term waits for the last.
-    fn convolution(a: &[Self], b: &[Self]) -> Self {
-        let (mut sum, mut errors) = (0.0, 0.0);
-        for (x, y) in a.iter().zip(b.iter().rev()) {
-            let (p, e) = two_product(x.high, y.high);
-            let (s, f) = two_sum(sum, p);
-            sum = s;
-            errors += f + (e + (x.high * y.low + x.low * y.high));
-        }
-        DoubleDouble::sum(sum, errors)
-    }
-
     fn is_finite(self) -> bool {
         self.high.is_finite() && self.low.is_finite()
     }
 }
+
+impl SeriesScalar for DoubleDouble {}
 
 impl Scalar for DoubleDouble {
     fn from_f64(x: f64) -> Self {

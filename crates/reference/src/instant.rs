@@ -1,7 +1,7 @@
 //! Equations of motion in any wide type: `ẏ = F(t, y, z)` with `R(z; t, y) = 0`.
 
 use equations::Equations;
-use symbolic::{CompileError, Expr, Symbol, Tape, Workspace};
+use symbolic::{CompileError, Evaluator, Expr, Symbol, Tape};
 
 use crate::linear::Factors;
 use crate::{ReferenceError, Wide};
@@ -11,24 +11,6 @@ const STEPS: usize = 30;
 const SMALL: f64 = 1e-18;
 
 const INSTANT: &str = "equations of the instant";
-
-/// A tape with its registers and outputs.
-pub(crate) struct Program<T> {
-    pub(crate) tape: Tape,
-    registers: Workspace<T>,
-    pub(crate) values: Vec<T>,
-}
-
-impl<T: Wide> Program<T> {
-    pub(crate) fn new(tape: Tape) -> Self {
-        Program { registers: tape.workspace(), values: vec![T::zero(); tape.outputs()], tape }
-    }
-
-    pub(crate) fn run(&mut self, inputs: &[T]) -> &[T] {
-        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
-        &self.values
-    }
-}
 
 /// Where the numbers of a motion stand among the inputs of its tapes: `t, y, z`, free constants, parameters.
 ///
@@ -72,7 +54,7 @@ struct WideBlock<T> {
     first: usize,
     size: usize,
     linear: bool,
-    program: Program<T>,
+    program: Evaluator<T>,
 }
 
 /// What is read off a motion at one time, in a wide type.
@@ -92,8 +74,8 @@ pub struct Point<T> {
 pub(crate) struct Instant<T> {
     pub(crate) layout: Layout,
     blocks: Vec<WideBlock<T>>,
-    rates: Program<T>,
-    outputs: Program<T>,
+    rates: Evaluator<T>,
+    outputs: Evaluator<T>,
     dimension: usize,
     inputs: Vec<T>,
 }
@@ -108,7 +90,7 @@ impl<T: Wide> Instant<T> {
             let matrix = g.jacobian(&block.residuals, &block.unknowns);
             let linear = !matrix.entries().iter().any(|&e| block.unknowns.iter().any(|&z| g.depends_on(e, z)));
             let outputs = [matrix.entries(), &block.residuals].concat();
-            let program = Program::new(layout.compile(equations, &outputs)?);
+            let program = Evaluator::new(layout.compile(equations, &outputs)?);
             blocks.push(WideBlock { first, size: block.unknowns.len(), linear, program });
             first += block.unknowns.len();
         }
@@ -121,8 +103,8 @@ impl<T: Wide> Instant<T> {
             *input = T::from_f64(x);
         }
         Ok(Instant {
-            rates: Program::new(layout.compile(equations, &rates)?),
-            outputs: Program::new(layout.compile(equations, &outputs)?),
+            rates: Evaluator::new(layout.compile(equations, &rates)?),
+            outputs: Evaluator::new(layout.compile(equations, &outputs)?),
             dimension: equations.coordinates.len(),
             layout,
             blocks,
@@ -134,6 +116,11 @@ impl<T: Wide> Instant<T> {
     pub(crate) fn set_guess(&mut self, unknowns: &[T]) {
         let first = self.layout.first_unknown();
         self.inputs[first..first + unknowns.len()].copy_from_slice(unknowns);
+    }
+
+    /// `t, y, z`, free constants and parameters, as solved last.
+    pub(crate) fn inputs(&self) -> &[T] {
+        &self.inputs
     }
 
     /// `z` as solved last.
@@ -156,7 +143,7 @@ impl<T: Wide> Instant<T> {
             }
             let mut last = false;
             for step in 0.. {
-                let values = block.program.run(&self.inputs);
+                let values = block.program.evaluate(&self.inputs);
                 let (matrix, residual) = values.split_at(block.size * block.size);
                 let factors = Factors::new(matrix, block.size).map_err(|singular| ReferenceError::Singular {
                     what: INSTANT,
@@ -191,7 +178,7 @@ impl<T: Wide> Instant<T> {
     /// `F(t, y)`.
     pub(crate) fn rates(&mut self, t: T, y: &[T], rates: &mut [T]) -> Result<(), ReferenceError> {
         self.solve(t, y)?;
-        rates.copy_from_slice(self.rates.run(&self.inputs));
+        rates.copy_from_slice(self.rates.evaluate(&self.inputs));
         Ok(())
     }
 
@@ -199,7 +186,7 @@ impl<T: Wide> Instant<T> {
     pub(crate) fn point(&mut self, t: T, y: &[T]) -> Result<Point<T>, ReferenceError> {
         self.solve(t, y)?;
         let n = self.dimension;
-        let values = self.outputs.run(&self.inputs);
+        let values = self.outputs.evaluate(&self.inputs);
         Ok(Point {
             coordinates: values[..n].to_vec(),
             velocities: values[n..2 * n].to_vec(),

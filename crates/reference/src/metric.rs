@@ -1,15 +1,15 @@
 //! Distances in the kinetic metric, taken in the wide type.
 
 use mechanics::System;
-use symbolic::{CompileError, Symbol};
+use symbolic::{CompileError, Evaluator, Symbol};
 
 use crate::Wide;
-use crate::instant::{Point, Program};
+use crate::instant::Point;
 use crate::reference::Distance;
 
 /// `M = ∂²L/∂v²` and `f` at one point of a motion.
 pub(crate) struct Metric<T> {
-    program: Program<T>,
+    program: Evaluator<T>,
     dimension: usize,
     parameters: Vec<f64>,
 }
@@ -21,21 +21,21 @@ impl<T: Wide> Metric<T> {
             system.parameters.iter().map(|p| (p.symbol, p.value)).unzip();
         let symbols = [vec![system.time], system.positions(), system.velocities(), names].concat();
         let tape = system.graph.compile(&symbols, &outputs, &Default::default())?;
-        Ok(Metric { program: Program::new(tape), dimension: system.dimension(), parameters })
+        Ok(Metric { program: Evaluator::new(tape), dimension: system.dimension(), parameters })
     }
 
     pub(crate) fn load(&mut self, t: T, point: &Point<T>) {
         let parameters: Vec<T> = self.parameters.iter().map(|&x| T::from_f64(x)).collect();
-        self.program.run(&[&[t], &point.coordinates[..], &point.velocities, &parameters].concat());
+        self.program.evaluate(&[&[t], &point.coordinates[..], &point.velocities, &parameters].concat());
     }
 
     /// `M`, row-major, as `f64`.
     pub(crate) fn mass(&self) -> Vec<f64> {
-        self.program.values[..self.dimension * self.dimension].iter().map(|m| m.to_f64()).collect()
+        self.program.values()[..self.dimension * self.dimension].iter().map(|m| m.to_f64()).collect()
     }
 
     pub(crate) fn constraint_residual(&self) -> f64 {
-        self.program.values[self.dimension * self.dimension..].iter().fold(0.0, |worst: f64, f| worst.max(f.size()))
+        self.program.values()[self.dimension * self.dimension..].iter().fold(0.0, |worst: f64, f| worst.max(f.size()))
     }
 
     /// `√|Δᵀ M Δ|` with `Δ = a − b`.

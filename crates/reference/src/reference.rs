@@ -119,8 +119,8 @@ const TRIES: usize = 3;
 
 /// The motion at `times` with an error of at most `accuracy` (kinetic metric) in double-double arithmetic.
 ///
-/// Two methods compute it, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes and a linear solve per evaluation, and a Taylor
-/// series of the traced residuals. They share the start, the tapes, the solution of a single instant
+/// Two methods compute it, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes and a linear solve per evaluation, and Taylor
+/// series of rates and residuals. They share the start, the tapes, the solution of a single instant
 /// and the number type; how they go from one time to the next they do not share. [`Reference::errors`] is how far the kept
 /// run, the Taylor series at the tighter tolerance, is from the other method and from itself at the looser tolerance. While that is over
 /// `accuracy`, tolerances become tighter, three times at most.

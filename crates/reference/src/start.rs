@@ -7,9 +7,9 @@
 
 use equations::Equations;
 use mechanics::{Removal, State, System, complete_removal_start};
-use symbolic::{Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol};
 
-use crate::instant::{Program, parameters};
+use crate::instant::parameters;
 use crate::linear::{Factors, Singular};
 use crate::{ReferenceError, Wide};
 
@@ -68,7 +68,7 @@ pub(crate) fn start<T: Wide>(
     let mut outputs: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
     outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
     let tape = equations.graph.compile(&known.symbols, &outputs, &Default::default())?;
-    let mut states = Program::new(tape).run(&known.values).to_vec();
+    let mut states = Evaluator::new(tape).evaluate(&known.values).to_vec();
     let guess = states.split_off(equations.states.len());
     let whole = guess.len() == equations.unknowns().len();
     Ok(Start { states, guess: if whole { guess } else { Vec::new() } })
@@ -83,14 +83,14 @@ fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Resul
     let (mass, jacobian) = (system.velocity_hessian(), system.constraint_jacobian());
     let outputs = [mass.entries(), jacobian.entries(), &system.constraints].concat();
     let symbols = [&known.symbols[..], &system.velocities()].concat();
-    let mut program = Program::new(system.graph.compile(&symbols, &outputs, &Default::default())?);
+    let mut program = Evaluator::new(system.graph.compile(&symbols, &outputs, &Default::default())?);
     let size = n + h;
     let mut v = start.clone();
     // κ of the last step stands in the residual, so that the sum of the steps is the one with the least length
     let mut kappa = vec![T::zero(); h];
     newton(VELOCITY, state.t, || {
         let inputs = [&known.values[..], &v].concat();
-        let values = program.run(&inputs);
+        let values = program.evaluate(&inputs);
         let (m, rest) = values.split_at(n * n);
         let (a, f) = rest.split_at(h * n);
         let mut matrix = vec![T::zero(); size * size];
@@ -136,7 +136,7 @@ fn complete<T: Wide>(
     let named: Vec<(Symbol, Expr)> = removal.start.iter().map(|(&s, &e)| (s, e)).collect();
     let expressions: Vec<Expr> = named.iter().map(|n| n.1).collect();
     let tape = g.compile(&known.symbols, &expressions, &Default::default())?;
-    let values = Program::new(tape).run(&known.values).to_vec();
+    let values = Evaluator::new(tape).evaluate(&known.values).to_vec();
     for ((symbol, _), value) in named.into_iter().zip(values) {
         if !known.symbols.contains(&symbol) {
             known.push(symbol, value);
@@ -157,10 +157,10 @@ fn complete<T: Wide>(
         let mut outputs = equations.clone();
         outputs.extend(g.jacobian(&equations, &unknowns).entries());
         let symbols = [&known.symbols[..], &unknowns].concat();
-        let mut program = Program::new(g.compile(&symbols, &outputs, &Default::default())?);
+        let mut program = Evaluator::new(g.compile(&symbols, &outputs, &Default::default())?);
         newton(REMOVAL, state.t, || {
             let inputs = [&known.values[..], &x].concat();
-            let values = program.run(&inputs);
+            let values = program.evaluate(&inputs);
             let (r, j) = values.split_at(m);
             // the equations are consistent: normal equations find their root
             let mut normal = vec![T::zero(); n * n];

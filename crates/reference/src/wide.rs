@@ -1,19 +1,15 @@
 //! What references ask of a number type.
 
-use symbolic::Scalar;
+use symbolic::SeriesScalar;
 
 /// A number type in which a motion can be computed.
-pub trait Wide: Scalar + PartialOrd + std::fmt::Debug + 'static {
+pub trait Wide: SeriesScalar + PartialOrd + std::fmt::Debug + 'static {
     /// Relative spacing of the numbers.
     const EPSILON: f64;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
     /// Neither infinite nor "not a number".
     fn is_finite(self) -> bool;
-    /// `Σ a_j b_{n−1−j}` for two slices of length `n`.
-    fn convolution(a: &[Self], b: &[Self]) -> Self {
-        a.iter().zip(b.iter().rev()).fold(Self::zero(), |sum, (&x, &y)| sum + x * y)
-    }
     /// 0
     fn zero() -> Self {
         Self::from_f64(0.0)

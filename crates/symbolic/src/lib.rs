@@ -35,6 +35,7 @@ mod bounded;
 mod calculus;
 mod content;
 mod evaluate;
+mod evaluator;
 mod expand;
 mod factor;
 mod function;
@@ -63,6 +64,7 @@ mod tape;
 
 pub use bounded::Bounded;
 pub use evaluate::CompileError;
+pub use evaluator::Evaluator;
 pub use function::Function;
 pub use graph::{Expr, Graph, Symbol};
 pub use identity::Vanishing;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result};
-use symbolic::{Symbol, Tape, Workspace};
+use symbolic::{Evaluator, Symbol};
 
 use super::context::Context;
 
@@ -18,8 +18,7 @@ const SIZE: f64 = 2e-3;
 
 /// An action `∫ L dt` over curves of a context's free functions, with integrals in `L`.
 pub struct Action {
-    tape: Tape,
-    workspace: Workspace<f64>,
+    evaluator: Evaluator<f64>,
     /// Values of the integrals at the start.
     pub start: Vec<f64>,
 }
@@ -48,8 +47,7 @@ impl Action {
         }
         outputs.push(context.expression(lagrangian)?);
         let tape = g.compile(&inputs, &outputs, constants).context("the action cannot be compiled")?;
-        let workspace = tape.workspace();
-        Ok(Action { tape, workspace, start: vec![0.0; integrals.len()] })
+        Ok(Action { evaluator: Evaluator::new(tape), start: vec![0.0; integrals.len()] })
     }
 
     /// The action over `[t₀, t₁]`, by the rule of Simpson on the integrals and on `L` at once.
@@ -91,7 +89,7 @@ impl Action {
         let mut inputs = vec![t];
         inputs.extend(curve(t).into_iter().flatten());
         inputs.extend(&y[..self.start.len()]);
-        self.tape.evaluate(&inputs, &mut self.workspace, rates);
+        rates.copy_from_slice(self.evaluator.evaluate(&inputs));
     }
 
     /// `dI/dε` at `ε = 0` along `curve + ε variation`: central differences at two sizes, extrapolated to zero.

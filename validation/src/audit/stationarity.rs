@@ -10,7 +10,7 @@ use deltaq::{Setting, Settings, solve};
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
-use symbolic::{Expr, Symbol, Tape, Workspace};
+use symbolic::{Evaluator, Expr, Symbol};
 
 use super::action::{Action, BUMPS, Jet, bump};
 use super::context::Context;
@@ -99,8 +99,7 @@ impl Stationarity {
 struct Law {
     /// The highest derivative in it.
     order: usize,
-    tape: Tape,
-    workspace: Workspace<f64>,
+    evaluator: Evaluator<f64>,
     inputs: Vec<Symbol>,
 }
 
@@ -127,7 +126,7 @@ impl Law {
         // an equation of order 2 has its own ü in β
         let outputs = g.substitute_all(&outputs, &HashMap::from([(highest, solved)]));
         let tape = g.compile(&inputs, &outputs, constants)?;
-        Ok(Law { order, workspace: tape.workspace(), tape, inputs })
+        Ok(Law { order, evaluator: Evaluator::new(tape), inputs })
     }
 
     fn integrate(&mut self) -> Result<DenseOutput> {
@@ -156,7 +155,7 @@ impl Problem for Law {
         self.inputs.len()
     }
     fn rates(&mut self, _t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
-        self.tape.evaluate(y, &mut self.workspace, rates);
+        rates.copy_from_slice(self.evaluator.evaluate(y));
         Ok(())
     }
     fn jacobian(&mut self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> Result<(), EvaluationError> {

@@ -6,7 +6,7 @@ use discrete::Composition;
 use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use symbolic::Tape;
+use symbolic::Evaluator;
 
 use super::cases::{choice, sledge_reference};
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
@@ -246,10 +246,8 @@ impl Loss {
 
 /// `f` and `∂f/∂v` at `(t, q, v)`.
 struct Constraint {
-    tape: Tape,
-    workspace: symbolic::Workspace<f64>,
+    evaluator: Evaluator<f64>,
     inputs: Vec<f64>,
-    outputs: Vec<f64>,
     count: usize,
 }
 
@@ -261,17 +259,15 @@ impl Constraint {
         let jacobian = system.graph.jacobian(&system.constraints, &velocities);
         let outputs = [&system.constraints[..], jacobian.entries()].concat();
         let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values())?;
-        let (workspace, outputs) = (tape.workspace(), vec![0.0; tape.outputs()]);
-        Ok(Constraint { tape, workspace, inputs: Vec::new(), outputs, count: system.constraints.len() })
+        Ok(Constraint { evaluator: Evaluator::new(tape), inputs: Vec::new(), count: system.constraints.len() })
     }
 
     /// Largest `|f_i|/(|∂f_i/∂v| |v|)`.
     fn residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.inputs.clear();
         self.inputs.extend(std::iter::once(&t).chain(q).chain(v));
-        self.tape.evaluate(&self.inputs, &mut self.workspace, &mut self.outputs);
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let (values, rows) = self.outputs.split_at(self.count);
+        let (values, rows) = self.evaluator.evaluate(&self.inputs).split_at(self.count);
         let parts = values.iter().zip(rows.chunks_exact(v.len())).map(|(f, row)| f.abs() / (norm(row) * norm(v)));
         parts.fold(0.0, f64::max)
     }

@@ -3,7 +3,7 @@
 use deltaq::{CERTAINTY, Motion, SolveError};
 use equations::Outputs;
 use mechanics::System;
-use symbolic::{Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol};
 
 use super::CheckError;
 use crate::Case;
@@ -32,12 +32,10 @@ impl Drift {
 fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) -> Result<Drift, SolveError> {
     let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
     let tape = system.graph.compile(&symbols, &[e], &system.parameter_values())?;
-    let mut registers = tape.workspace::<f64>();
+    let mut evaluator = Evaluator::new(tape);
     let mut value = |t: f64, o: &Outputs| {
-        let mut out = [0.0];
         let read = [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
-        tape.evaluate(&read, &mut registers, &mut out);
-        out[0]
+        evaluator.evaluate(&read)[0]
     };
     let (mut first, mut change, mut error, mut size) = (None, 0.0_f64, 0.0_f64, 1.0_f64);
     for t in motion.grid(INSTANTS) {

@@ -1,0 +1,48 @@
+//! A tape with all that one thread needs to evaluate it again and again.
+
+use crate::{Scalar, Tape, Workspace};
+
+/// A [`Tape`] with its registers and its outputs. Clone it for another thread.
+///
+/// ```
+/// use std::collections::HashMap;
+/// use symbolic::{Evaluator, Graph};
+/// let g = Graph::new();
+/// let x = g.symbol("x");
+/// let mut square = Evaluator::new(g.compile(&[x], &[g.powi(g.variable(x), 2)], &HashMap::new())?);
+/// assert_eq!(square.evaluate(&[3.0]), [9.0]);
+/// assert_eq!(square.values(), [9.0]);
+/// # Ok::<(), symbolic::CompileError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Evaluator<T> {
+    tape: Tape,
+    registers: Workspace<T>,
+    values: Vec<T>,
+}
+
+impl<T: Scalar> Evaluator<T> {
+    /// Evaluates `tape`; until it is first evaluated the outputs are zero.
+    pub fn new(tape: Tape) -> Self {
+        Evaluator { registers: tape.workspace(), values: vec![T::from_f64(0.0); tape.outputs()], tape }
+    }
+
+    /// The outputs at `inputs`; allocates nothing.
+    ///
+    /// # Panics
+    /// If there are not as many `inputs` as the tape has.
+    pub fn evaluate(&mut self, inputs: &[T]) -> &[T] {
+        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
+        &self.values
+    }
+
+    /// The outputs of the last evaluation.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    /// What is evaluated.
+    pub fn tape(&self) -> &Tape {
+        &self.tape
+    }
+}
