@@ -1,30 +1,32 @@
 //! Reference states of the paper's examples at the default starts of their scenes, from code that shares nothing with the solvers.
 //!
-//! Written by `validation/referees/references.py` (then `rustfmt`); do not edit. SymPy derives the equations from `L` and `f`, MPFR with
+//! `references.csv` is written by `validation/referees/references.py`. SymPy derives the equations from `L` and `f`, MPFR with
 //! 42 digits evaluates them, and two methods integrate them: Gragg-Bulirsch-Stoer extrapolation and Gauss-Legendre collocation of order 16.
 //! `agreement` is how far these two are apart; every digit printed is right.
 
+use std::sync::LazyLock;
+
 /// Which motion of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// `d/dt L_v − L_q = Aᵀ λ`.
     Chetaev,
     /// `𝓛 = L + μ·f`.
     Vakonomic {
         /// `μ` at the start, in the order of the scene's constraints.
-        multipliers: &'static [f64],
+        multipliers: Vec<f64>,
     },
     /// The scene's first removal, `G = L + P·B`.
     Removed {
         /// `P` at the start by memory variable; what is not named is zero.
-        costates: &'static [(&'static str, f64)],
+        costates: Vec<(&'static str, f64)>,
         /// With natural constants: `P = 0` here (s); `costates` is then what that comes to.
         horizon: Option<f64>,
     },
 }
 
 /// The state of one motion at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// File name of the scene without its ending.
     pub scene: &'static str,
@@ -33,11 +35,11 @@ pub struct Reference {
     /// s.
     pub t: f64,
     /// Coordinates in the order of the scene.
-    pub q: &'static [f64],
+    pub q: Vec<f64>,
     /// Velocities in the same order.
-    pub v: &'static [f64],
+    pub v: Vec<f64>,
     /// `λ` (Chetaev) or `μ` (vakonomic) in the order of the constraints, or `P` (removed) in the order of `costates`.
-    pub multipliers: &'static [f64],
+    pub multipliers: Vec<f64>,
     /// Largest difference between the two methods over all components.
     pub agreement: f64,
     /// Largest change of a component when parameters and start are rounded to `f64`: no double-precision run can be asked to come closer.
@@ -45,403 +47,27 @@ pub struct Reference {
 }
 
 /// All reference states.
-pub const REFERENCES: &[Reference] = &[
-    Reference {
-        scene: "sledge",
-        motion: Motion::Chetaev,
-        t: 1.0,
-        q: &[1.0650187127472872, 1.541944143979487, 1.4],
-        v: &[0.4922348248718867, 2.8539202753182837, 1.1],
-        multipliers: &[6.950273667447334],
-        agreement: 1.9e-34,
-        rounding: 8.2e-16,
-    },
-    Reference {
-        scene: "sledge",
-        motion: Motion::Chetaev,
-        t: 5.0,
-        q: &[0.5665785577430448, 9.743979602132363, 5.8],
-        v: &[-1.8948627827949533, 0.9941704973566281, 1.1],
-        multipliers: &[-4.128685360858821],
-        agreement: 3.4e-24,
-        rounding: 2.5e-15,
-    },
-    Reference {
-        scene: "sledge",
-        motion: Motion::Vakonomic { multipliers: &[0.0] },
-        t: 1.0,
-        q: &[0.7203904682758732, 0.19691769689766442, 2.226192130174722],
-        v: &[1.525076046393057, -1.9838293496229766, 0.4177851321650471],
-        multipliers: &[-3.497429992600823],
-        agreement: 1.5e-24,
-        rounding: 1.3e-15,
-    },
-    Reference {
-        scene: "sledge",
-        motion: Motion::Vakonomic { multipliers: &[0.0] },
-        t: 5.0,
-        q: &[3.9768292200685083, 0.08162682966711517, 1.3034949277134835],
-        v: &[1.4035350236834077, 5.1251028498439535, -2.470572921297622],
-        multipliers: &[-18.84431762219115],
-        agreement: 6.0e-23,
-        rounding: 8.4e-14,
-    },
-    Reference {
-        scene: "sledge",
-        motion: Motion::Vakonomic { multipliers: &[1.5] },
-        t: 1.0,
-        q: &[2.209415376584401, 0.9962187923694082, 0.18947371441200664],
-        v: &[4.010245600997429, 0.7690614072026036, -1.4639652807213825],
-        multipliers: &[0.8264947999283542],
-        agreement: 1.1e-26,
-        rounding: 3.8e-16,
-    },
-    Reference {
-        scene: "sledge",
-        motion: Motion::Vakonomic { multipliers: &[1.5] },
-        t: 5.0,
-        q: &[12.786877560711662, 2.452162302341363, -1.3366959297335106],
-        v: &[0.672972602043115, -2.8220106465073784, -13.561873935583291],
-        multipliers: &[18.980097278128802],
-        agreement: 1.2e-22,
-        rounding: 8.8e-14,
-    },
-    Reference {
-        scene: "sledge",
-        motion: Motion::Removed { costates: &[("x", 38.20193938047861), ("y", 0.0)], horizon: Some(10.0) },
-        t: 1.0,
-        q: &[1.3103757015570117, -0.010774993927373494, -0.16342587810213768],
-        v: &[3.0311410815325286, -0.49982461092635005, 1.700562767273903],
-        multipliers: &[34.38174544243075, 0.0],
-        agreement: 6.6e-24,
-        rounding: 3.8e-15,
-    },
-    Reference {
-        scene: "sledge",
-        motion: Motion::Removed { costates: &[("x", 38.20193938047861), ("y", 0.0)], horizon: Some(10.0) },
-        t: 5.0,
-        q: &[42.766732743357366, 0.0915086533149183, 0.09241195287918838],
-        v: &[17.89953611777998, 1.6588559718338105, -3.014295865106416],
-        multipliers: &[19.100969690239307, 0.0],
-        agreement: 9.4e-23,
-        rounding: 4.2e-14,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Chetaev,
-        t: 1.0,
-        q: &[0.9299932982022427, 5.293216013402848, 0.23553660151522796, -23.804932565030352, 1.3293951564710733],
-        v: &[0.8734074575163032, 2.3732114906976154, -4.414034610593478, -12.504353495830202, 7.935967970596512],
-        multipliers: &[9.17806862868871e-25, 2.063776239800662],
-        agreement: 5.2e-23,
-        rounding: 6.7e-15,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Chetaev,
-        t: 2.5,
-        q: &[0.9079835173873079, 11.646492219282349, -1.6686360367716377, -54.861330813468506, 1.3637185791717303],
-        v: &[-0.9815745361840339, 2.512322669468055, -3.995945916928331, -12.877128488440196, -9.424966504629847],
-        multipliers: &[2.8034423176321964e-25, 2.0754278377392303],
-        agreement: 2.7e-23,
-        rounding: 8.6e-15,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Vakonomic { multipliers: &[0.0, 0.0] },
-        t: 1.0,
-        q: &[0.9717334062014493, 6.12189677219806, -8.283465141557752, -20.157318786426558, 0.9633423728427133],
-        v: &[1.0096511789605163, 1.2760036277511846, -3.943072208787886, -6.666170022219522, -9.584328238282714],
-        multipliers: &[0.31604339709274326, -0.01075784004556332],
-        agreement: 4.2e-23,
-        rounding: 8.1e-15,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Vakonomic { multipliers: &[0.0, 0.0] },
-        t: 2.5,
-        q: &[0.7562814517636236, 13.074764925955785, -17.77683283838086, -46.020508361159024, 1.21828846362561],
-        v: &[-1.664721096847827, 3.062690853548428, -5.529550800066354, -12.165987747831807, 16.028151759153825],
-        multipliers: &[0.23579577359052525, -0.27330207684517477],
-        agreement: 3.7e-23,
-        rounding: 1.4e-14,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Vakonomic { multipliers: &[0.2, -0.1] },
-        t: 1.0,
-        q: &[0.9513728878472753, 6.038444583236673, -13.257666285068417, -14.233191147650734, 1.2242714645221544],
-        v: &[0.6714403386989607, 2.248679641982577, -0.1293735418752298, -15.118112223500209, -6.757198938216007],
-        multipliers: &[0.22315094888627993, 0.2806718589444003],
-        agreement: 3.2e-23,
-        rounding: 3.4e-15,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Vakonomic { multipliers: &[0.2, -0.1] },
-        t: 2.5,
-        q: &[0.8520453725363072, 13.248074183481092, -27.026207618689032, -35.47044916437979, 2.503614321687275],
-        v: &[-1.442546380515472, 2.1292567150727137, -24.306295797409962, -27.04701282424207, -7.044500943067108],
-        multipliers: &[0.4497302324319278, -0.24537530095974214],
-        agreement: 5.4e-22,
-        rounding: 8.4e-14,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Removed { costates: &[("r", 0.0), ("gamma", 0.0)], horizon: None },
-        t: 1.0,
-        q: &[0.834957776564897, 4.056468289299749, 4.463479248684611, -2.6931069670529473, 2.302291370029523],
-        v: &[1.380499368247065, -2.6782189380628214, 11.696504692941488, 17.217886623968806, -13.748890951513307],
-        multipliers: &[-1.9757750271974819, 0.0],
-        agreement: 1.6e-21,
-        rounding: 3.9e-13,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Removed { costates: &[("r", 0.0), ("gamma", 0.0)], horizon: None },
-        t: 2.5,
-        q: &[1.000962838042678, 7.920116518256094, 10.044245591993887, -8.318301475999418, 1.9368472904821004],
-        v: &[0.16424276252048375, -2.135056888518995, -3.092244897310169, 10.74193277149075, -3.2830236995198567],
-        multipliers: &[-0.2580133977895348, 0.0],
-        agreement: 5.2e-20,
-        rounding: 1.1e-11,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Removed { costates: &[("r", 0.3), ("gamma", -0.1)], horizon: None },
-        t: 1.0,
-        q: &[0.9499853044912195, 4.368264992670302, 10.274325802073747, -2.895846325188298, 1.9737545331461224],
-        v: &[1.1128277903307693, -1.4794107128388647, 10.532360370144078, 10.637274020379817, -7.11358978690582],
-        multipliers: &[-2.26882127569523, -0.1],
-        agreement: 1.2e-21,
-        rounding: 8.7e-14,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Removed { costates: &[("r", 0.3), ("gamma", -0.1)], horizon: None },
-        t: 2.5,
-        q: &[0.9754787806260875, 8.954731437402877, -7.486285202111117, 0.19482876096809476, 1.8761621026069617],
-        v: &[-0.6362473889020359, 0.697314629534314, 3.2215603096385874, 7.515564100792734, -17.293942564547717],
-        multipliers: &[1.8417565892762278, -0.1],
-        agreement: 1.5e-19,
-        rounding: 8.6e-12,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Removed { costates: &[("r", -3.890119303420906), ("gamma", 0.0)], horizon: Some(0.5) },
-        t: 0.25,
-        q: &[0.8901088906110405, -0.003239620888860513, 1.597539050159695, -0.8088697051295239, 1.3383500852024777],
-        v: &[-1.104099922849382, 2.4985751932330196, 9.343946935487011, -15.976864637771579, 6.584856570018982],
-        multipliers: &[-1.9007275287661907, 0.0],
-        agreement: 4.2e-24,
-        rounding: 1.0e-14,
-    },
-    Reference {
-        scene: "ball-in-cone",
-        motion: Motion::Removed { costates: &[("r", -3.890119303420906), ("gamma", 0.0)], horizon: Some(0.5) },
-        t: 0.5,
-        q: &[0.43058290261140036, -0.04539853469527258, 6.585155592088017, 0.5677118927767861, 0.5319204153299392],
-        v: &[-2.457047675550141, -7.616976792506574, 54.83517364997886, -33.848913325460124, -2.085537574505917],
-        multipliers: &[-4.543731051049179e-26, 0.0],
-        agreement: 2.5e-23,
-        rounding: 3.2e-14,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Chetaev,
-        t: 0.5,
-        q: &[
-            0.26158061730692067,
-            0.16267087695621674,
-            1.8091589655642624,
-            0.43369938695551385,
-            0.17998637904116976,
-            0.2463687650956512,
-        ],
-        v: &[
-            0.12069479040200881,
-            0.1413265435320103,
-            0.3496720215269334,
-            0.8651401516642667,
-            0.3733329481206213,
-            0.45980118594852054,
-        ],
-        multipliers: &[-0.036527626105927025, -0.0032527907089084365, 0.030480122114145237, 0.06792249023412882],
-        agreement: 4.5e-34,
-        rounding: 9.2e-17,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Chetaev,
-        t: 1.0,
-        q: &[
-            0.32026777418996655,
-            0.23851469225717573,
-            1.9593769637827902,
-            0.8674785397475616,
-            0.36858828525046433,
-            0.46120585342074905,
-        ],
-        v: &[
-            0.11396777704289589,
-            0.16021873023981492,
-            0.25825521799728857,
-            0.8713996176560478,
-            0.3785356635776566,
-            0.4017139922867988,
-        ],
-        multipliers: &[-0.02093366044593095, 0.0002538576465644717, 0.008366587496209874, 0.03193837608105637],
-        agreement: 7.9e-34,
-        rounding: 9.7e-17,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Vakonomic { multipliers: &[0.0, 0.0, 0.0, 0.0] },
-        t: 0.5,
-        q: &[
-            0.2615111737468151,
-            0.16270570547604485,
-            1.8093206350658904,
-            0.433455460364079,
-            0.18013952739992597,
-            0.24655642623335533,
-        ],
-        v: &[
-            0.12025939207121036,
-            0.14154354078870202,
-            0.350643565722797,
-            0.8636333829114873,
-            0.37434028226493027,
-            0.4609656850672703,
-        ],
-        multipliers: &[0.02883947958854542, 0.0056703955717697105, -0.026700015066742515, -0.05279642504565896],
-        agreement: 2.5e-34,
-        rounding: 9.2e-17,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Vakonomic { multipliers: &[0.0, 0.0, 0.0, 0.0] },
-        t: 1.0,
-        q: &[
-            0.3197009753013859,
-            0.23879152715580407,
-            1.9605375019637217,
-            0.8655782723463843,
-            0.3699978044436052,
-            0.46268183259407325,
-        ],
-        v: &[
-            0.11232403294976616,
-            0.16100371985711354,
-            0.26132948770198106,
-            0.8660665553747009,
-            0.38288784961172895,
-            0.40587525699879334,
-        ],
-        multipliers: &[0.04719155391020861, 0.009708884345213291, -0.029662000376907683, -0.07271349277356869],
-        agreement: 5.0e-34,
-        rounding: 9.7e-17,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Vakonomic { multipliers: &[0.02, -0.01, 0.03, 0.01] },
-        t: 0.5,
-        q: &[
-            0.2605105561025606,
-            0.16321136073862078,
-            1.811671611147396,
-            0.4299639047377854,
-            0.1822273404774001,
-            0.24909571016045537,
-        ],
-        v: &[
-            0.11664471652194937,
-            0.14335617526272754,
-            0.35856279149220793,
-            0.8514067295683941,
-            0.3823434337148132,
-            0.4696920695579597,
-        ],
-        multipliers: &[0.05065655749287954, -0.0012958401252454448, -0.0053798763048732755, -0.040959149581840486],
-        agreement: 3.2e-34,
-        rounding: 9.1e-17,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Vakonomic { multipliers: &[0.02, -0.01, 0.03, 0.01] },
-        t: 1.0,
-        q: &[
-            0.31632516847355036,
-            0.24045819292984763,
-            1.9675561790504523,
-            0.8544443231612254,
-            0.3776640974142118,
-            0.47053635334354793,
-        ],
-        v: &[
-            0.10659300636680362,
-            0.1637288827525179,
-            0.2715447878657287,
-            0.8484344861335692,
-            0.39689547209978876,
-            0.41786935181460383,
-        ],
-        multipliers: &[0.06944302375062235, 0.005094131179400086, -0.011347109899171613, -0.05942134333320274],
-        agreement: 5.6e-34,
-        rounding: 9.6e-17,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Removed {
-            costates: &[("phi1", 0.05), ("phi2", -0.03), ("s", 0.08), ("phi", 0.0)],
-            horizon: None,
+pub static REFERENCES: LazyLock<Vec<Reference>> =
+    LazyLock::new(|| include_str!("references.csv").lines().skip(1).map(read).collect());
+
+fn number(field: &str) -> f64 {
+    field.parse().unwrap_or_else(|_| panic!("`{field}` in references.csv is not a number"))
+}
+
+fn read(line: &'static str) -> Reference {
+    let [scene, motion, constants, horizon, t, q, v, multipliers, agreement, rounding] =
+        line.split(',').collect::<Vec<_>>().try_into().expect("ten columns");
+    let numbers = |field: &str| field.split_whitespace().map(number).collect();
+    let named = constants.split_whitespace().filter_map(|pair| pair.split_once('='));
+    let motion = match motion {
+        "chetaev" => Motion::Chetaev,
+        "vakonomic" => Motion::Vakonomic { multipliers: numbers(constants) },
+        "removed-constraint" => Motion::Removed {
+            costates: named.map(|(name, x)| (name, number(x))).collect(),
+            horizon: (!horizon.is_empty()).then(|| number(horizon)),
         },
-        t: 0.5,
-        q: &[
-            0.26298355697116127,
-            0.16193505017391163,
-            1.8058002649446958,
-            0.4385571421687779,
-            0.1769060430483219,
-            0.24259867783681482,
-        ],
-        v: &[
-            0.127202230607513,
-            0.13786318124315713,
-            0.3348114456546283,
-            0.8870592905707149,
-            0.35802474137747625,
-            0.44246456372905707,
-        ],
-        multipliers: &[0.048828906859708344, -0.034415956401348737, 0.10907118604130887, 0.0],
-        agreement: 1.4e-34,
-        rounding: 8.5e-17,
-    },
-    Reference {
-        scene: "three-cylinders",
-        motion: Motion::Removed {
-            costates: &[("phi1", 0.05), ("phi2", -0.03), ("s", 0.08), ("phi", 0.0)],
-            horizon: None,
-        },
-        t: 1.0,
-        q: &[
-            0.3272883178925935,
-            0.23470842558957258,
-            1.9443142317070017,
-            0.8902423302527177,
-            0.3509343297633697,
-            0.44267206740371257,
-        ],
-        v: &[
-            0.13022298339072366,
-            0.15116291356921133,
-            0.2267157345510479,
-            0.9210076127956459,
-            0.33375487924899516,
-            0.35941410207574703,
-        ],
-        multipliers: &[0.049007973209003915, -0.03878137889620856, 0.13207678479096743, 0.0],
-        agreement: 1.3e-34,
-        rounding: 7.6e-17,
-    },
-];
+        other => panic!("`{other}` in references.csv is no motion"),
+    };
+    let [t, agreement, rounding] = [t, agreement, rounding].map(number);
+    Reference { scene, motion, t, q: numbers(q), v: numbers(v), multipliers: numbers(multipliers), agreement, rounding }
+}

@@ -2,11 +2,11 @@
 
 Each system is stated once more below (L, f, removal). SymPy derives the equations of the three formulations, they are evaluated in MPFR
 arithmetic (gmpy2, 40 digits) and integrated by two methods that have nothing in common: Gragg-Bulirsch-Stoer extrapolation and
-Gauss-Legendre collocation of order 16. What both agree on is printed, as tests/src/references.rs. `--claims` also tests the statements
+Gauss-Legendre collocation of order 16. What both agree on is printed, as tests/src/references.csv. `--claims` also tests the statements
 of the theory (bridge, matching constants, leading coefficients, invariants) and prints what it finds.
 
     pip install sympy gmpy2 mpmath
-    python references.py            > ../../tests/src/references.rs
+    python references.py            > ../../tests/src/references.csv
     python references.py --claims
 """
 
@@ -427,73 +427,23 @@ CASES = [
     Case(three_cylinders, "Removed", ("0.5", 1), ("0.05", "-0.03", "0.08")),
 ]
 
-HEADER = """//! Reference states of the paper's examples at the default starts of their scenes, from code that shares nothing with the solvers.
-//!
-//! Written by `validation/referees/references.py` (then `rustfmt`); do not edit. SymPy derives the equations from `L` and `f`, MPFR with
-//! 42 digits evaluates them, and two methods integrate them: Gragg-Bulirsch-Stoer extrapolation and Gauss-Legendre collocation of order 16.
-//! `agreement` is how far these two are apart; every digit printed is right.
-
-/// Which motion of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
-    /// `d/dt L_v − L_q = Aᵀ λ`.
-    Chetaev,
-    /// `𝓛 = L + μ·f`.
-    Vakonomic {
-        /// `μ` at the start, in the order of the scene's constraints.
-        multipliers: &'static [f64],
-    },
-    /// The scene's first removal, `G = L + P·B`.
-    Removed {
-        /// `P` at the start by memory variable; what is not named is zero.
-        costates: &'static [(&'static str, f64)],
-        /// With natural constants: `P = 0` here (s); `costates` is then what that comes to.
-        horizon: Option<f64>,
-    },
-}
-
-/// The state of one motion at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reference {
-    /// File name of the scene without its ending.
-    pub scene: &'static str,
-    /// Which motion.
-    pub motion: Motion,
-    /// s.
-    pub t: f64,
-    /// Coordinates in the order of the scene.
-    pub q: &'static [f64],
-    /// Velocities in the same order.
-    pub v: &'static [f64],
-    /// `λ` (Chetaev) or `μ` (vakonomic) in the order of the constraints, or `P` (removed) in the order of `costates`.
-    pub multipliers: &'static [f64],
-    /// Largest difference between the two methods over all components.
-    pub agreement: f64,
-    /// Largest change of a component when parameters and start are rounded to `f64`: no double-precision run can be asked to come closer.
-    pub rounding: f64,
-}
-
-/// All reference states.
-pub const REFERENCES: &[Reference] = &["""
+COLUMNS = "scene,motion,constants,horizon,t,q,v,multipliers,agreement,rounding"
+MOTIONS = {"Chetaev": "chetaev", "Vakonomic": "vakonomic", "Removed": "removed-constraint"}
 
 
 def listed(values):
-    return "&[" + ", ".join(repr(float(v)) for v in values) + "]"
+    return " ".join(repr(float(v)) for v in values)
 
 
 def emit(case, name, results):
-    if case.motion == "Chetaev":
-        motion = "Motion::Chetaev"
-    elif case.motion == "Vakonomic":
-        motion = f"Motion::Vakonomic {{ multipliers: {listed(mpfr(c) for c in case.constants)} }}"
-    else:
-        pairs = ", ".join(f'("{w}", {float(p)!r})' for w, p in zip(case.memory, case.costates))
-        horizon = "None" if case.horizon is None else f"Some({float(case.horizon)!r})"
-        motion = f"Motion::Removed {{ costates: &[{pairs}], horizon: {horizon} }}"
+    constants = listed(mpfr(c) for c in case.constants) if case.motion == "Vakonomic" else ""
+    if case.motion == "Removed":
+        constants = " ".join(f"{w}={float(p)!r}" for w, p in zip(case.memory, case.costates))
+    horizon = "" if case.horizon is None else repr(float(case.horizon))
     for t, q, v, extra, agreement, rounding in results:
         assert agreement < mpfr("1e-17"), (name, case.motion, float(t), float(agreement))
-        print(f'    Reference {{ scene: "{name}", motion: {motion}, t: {float(t)!r}, q: {listed(q)}, v: {listed(v)}, '
-              f"multipliers: {listed(extra)}, agreement: {float(agreement):.1e}, rounding: {float(rounding):.1e} }},")  # fmt: skip
+        state = [repr(float(t)), listed(q), listed(v), listed(extra), f"{float(agreement):.1e}", f"{float(rounding):.1e}"]
+        print(",".join([name, MOTIONS[case.motion], constants, horizon, *state]))
 
 
 def work(index):
@@ -512,10 +462,9 @@ def references():
 
     with multiprocessing.Pool(2) as pool:
         done = pool.map(work, range(len(CASES)), chunksize=1)
-    print(HEADER)
+    print(COLUMNS)
     for case, (case.memory, case.costates, name, results) in zip(CASES, done):
         emit(case, name, results)
-    print("];")
 
 
 

@@ -201,7 +201,7 @@ fn the_closed_form_of_the_sledge_agrees_with_the_independent_references() {
     for reference in chetaev {
         let state = sledge.at(reference.t);
         let found = [state.x, state.y, state.phi, state.reaction];
-        let known = reference.q.iter().chain(reference.multipliers);
+        let known = reference.q.iter().chain(&reference.multipliers);
         for (a, b) in found.into_iter().zip(known) {
             assert!((a - b).abs() <= 1e-14 * b.abs(), "{a} is not {b} at t = {}", reference.t);
         }

@@ -17,11 +17,11 @@ fn costates(scene: &scene::Scene, named: &[(&str, f64)]) -> Vec<f64> {
 
 /// The names of the formulation and of the constants, and the motion itself.
 fn motion(reference: &Reference, scene: &scene::Scene, natural: bool) -> Result<deltaq::Motion, SolveError> {
-    let (name, removal, rule) = match reference.motion {
+    let (name, removal, rule) = match &reference.motion {
         Motion::Chetaev => ("chetaev", None, ConstantsRule::Zero),
         Motion::Vakonomic { multipliers } => ("vakonomic", None, ConstantsRule::Given(multipliers.to_vec())),
         Motion::Removed { horizon: Some(horizon), .. } if natural => {
-            ("removed-constraint", scene.removals.first(), ConstantsRule::Natural { horizon })
+            ("removed-constraint", scene.removals.first(), ConstantsRule::Natural { horizon: *horizon })
         }
         Motion::Removed { costates: named, .. } => {
             ("removed-constraint", scene.removals.first(), ConstantsRule::Given(costates(scene, named)))
@@ -33,11 +33,12 @@ fn motion(reference: &Reference, scene: &scene::Scene, natural: bool) -> Result<
 /// Largest relative error over coordinates, velocities and, where they have the same meaning, multipliers.
 fn error(reference: &Reference, motion: &mut deltaq::Motion) -> f64 {
     let now = at(motion, reference.t);
-    let size = reference.q.iter().chain(reference.v).fold(1.0_f64, |a, x| a.max(x.abs()));
-    let state = largest_difference(&now.coordinates, reference.q).max(largest_difference(&now.velocities, reference.v));
+    let size = reference.q.iter().chain(&reference.v).fold(1.0_f64, |a, x| a.max(x.abs()));
+    let state =
+        largest_difference(&now.coordinates, &reference.q).max(largest_difference(&now.velocities, &reference.v));
     let multipliers = match reference.motion {
         Motion::Removed { .. } => 0.0,
-        _ => largest_difference(&now.multipliers, reference.multipliers),
+        _ => largest_difference(&now.multipliers, &reference.multipliers),
     };
     let largest = reference.multipliers.iter().fold(1.0_f64, |a, x| a.max(x.abs()));
     (state / size).max(multipliers / largest)
@@ -45,14 +46,14 @@ fn error(reference: &Reference, motion: &mut deltaq::Motion) -> f64 {
 
 fn is_quadrature(scene: &scene::Scene, reference: &Reference) -> bool {
     // a constant for gamma, which neither L nor a rate contains
-    let Motion::Removed { costates, .. } = reference.motion else { return false };
+    let Motion::Removed { costates, .. } = &reference.motion else { return false };
     scene.name == "ball-in-cone" && costates.iter().any(|(name, x)| *name == "gamma" && *x != 0.0)
 }
 
 #[test]
 fn every_reference_state_is_met() {
     let mut met = 0;
-    for reference in REFERENCES {
+    for reference in REFERENCES.iter() {
         let mut scene = scene(reference.scene, &[]);
         scene.duration = reference.t;
         let what = format!("{}, {:?}, t = {}", reference.scene, reference.motion, reference.t);
@@ -74,8 +75,8 @@ fn every_reference_state_is_met() {
 #[test]
 fn natural_constants_are_found_from_the_horizon() {
     let mut found = 0;
-    for reference in REFERENCES {
-        let Motion::Removed { costates: named, horizon: Some(horizon) } = reference.motion else { continue };
+    for reference in REFERENCES.iter() {
+        let Motion::Removed { costates: named, horizon: Some(horizon) } = &reference.motion else { continue };
         let mut scene = scene(reference.scene, &[]);
         scene.duration = reference.t;
         let what = format!("{}, P = 0 at {horizon} s, t = {}", reference.scene, reference.t);
