@@ -3,7 +3,7 @@
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use reference::DoubleDouble;
-use symbolic::Scalar;
+use symbolic::{Scalar, Xorshift};
 
 type Exact = FBig<HalfEven, 2>;
 
@@ -18,23 +18,11 @@ fn value(x: DoubleDouble) -> Exact {
     exact(high) + exact(low)
 }
 
-/// Random numbers with 106 bits, a pure function of the count.
-struct Numbers(u64);
-
-impl Numbers {
-    fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Between the bounds, on a logarithmic scale where they have one sign.
-    fn between(&mut self, low: f64, high: f64) -> DoubleDouble {
-        let unit = self.unit();
-        let x = if low > 0.0 { low * (high / low).powf(unit) } else { low + (high - low) * unit };
-        DoubleDouble::sum(x, x * f64::EPSILON * (self.unit() - 0.5))
-    }
+/// A random number of 106 bits between the bounds, on a logarithmic scale where they have one sign.
+fn between(random: &mut Xorshift, low: f64, high: f64) -> DoubleDouble {
+    let unit = random.unit();
+    let x = if low > 0.0 { low * (high / low).powf(unit) } else { low + (high - low) * unit };
+    DoubleDouble::sum(x, x * f64::EPSILON * (random.unit() - 0.5))
 }
 
 /// Largest relative error of `ours` against `theirs` over 300 pairs.
@@ -43,10 +31,10 @@ fn worst(
     ours: impl Fn(DoubleDouble, DoubleDouble) -> DoubleDouble,
     theirs: impl Fn(&Exact, &Exact) -> Exact,
 ) -> f64 {
-    let mut numbers = Numbers(0x9E37_79B9_7F4A_7C15);
+    let mut random = Xorshift::default();
     let mut worst = 0.0_f64;
     for _ in 0..300 {
-        let [a, b] = ranges.map(|(low, high)| numbers.between(low, high));
+        let [a, b] = ranges.map(|(low, high)| between(&mut random, low, high));
         let right = theirs(&value(a), &value(b));
         let difference = value(ours(a, b)) - &right;
         let relative = (difference.to_f64().value() / right.to_f64().value()).abs();

@@ -1,6 +1,6 @@
 //! Is an expression identically zero?
 
-use crate::{Bounded, Expr, Graph, Scalar, Symbol};
+use crate::{Bounded, Evaluator, Expr, Graph, Scalar, SplitMix, Symbol};
 use std::collections::HashMap;
 
 /// Terms beyond which the exact test gives up.
@@ -86,10 +86,9 @@ impl Graph {
         let Ok(tape) = self.compile(&symbols, &[e], &HashMap::new()) else {
             return Vanishing::Undecided { tried: 0 };
         };
-        let mut workspace = tape.workspace();
-        let mut random = SplitMix { state: 0x5eed };
+        let mut evaluator = Evaluator::new(tape);
+        let mut random = SplitMix::new(0x5eed);
         let mut inputs = vec![Bounded::from_f64(0.0); symbols.len()];
-        let mut output = [Bounded::from_f64(0.0)];
         let mut points = 0;
         let mut tried = 0;
         while points < POINTS && tried < TRIES {
@@ -97,14 +96,16 @@ impl Graph {
             // Where a root or logarithm needs positive values, random signs may never give them all.
             let signed = tried % 2 == 1;
             for (x, symbol) in inputs.iter_mut().zip(&symbols) {
-                *x = Bounded::from_f64(constants.get(symbol).copied().unwrap_or_else(|| random.coordinate(signed)));
+                *x = Bounded::from_f64(
+                    constants.get(symbol).copied().unwrap_or_else(|| coordinate(&mut random, signed)),
+                );
             }
-            tape.evaluate(&inputs, &mut workspace, &mut output);
-            if !output[0].is_finite() {
+            let output = evaluator.evaluate(&inputs)[0];
+            if !output.is_finite() {
                 continue;
             }
-            if !output[0].may_be_zero() {
-                return Vanishing::No { value: output[0].value, bound: output[0].round_off() };
+            if !output.may_be_zero() {
+                return Vanishing::No { value: output.value, bound: output.round_off() };
             }
             points += 1;
         }
@@ -112,24 +113,9 @@ impl Graph {
     }
 }
 
-/// Sebastiano Vigna's SplitMix64.
-struct SplitMix {
-    state: u64,
-}
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// In [0.2, 1.3], with a random sign if `signed`.
-    fn coordinate(&mut self, signed: bool) -> f64 {
-        let bits = self.next();
-        let x = 0.2 + 1.1 * (bits >> 11) as f64 / (1_u64 << 53) as f64;
-        if signed && bits & 1 == 1 { -x } else { x }
-    }
+/// In [0.2, 1.3], with a random sign if `signed`.
+fn coordinate(random: &mut SplitMix, signed: bool) -> f64 {
+    let bits = random.bits();
+    let x = 0.2 + 1.1 * (bits >> 11) as f64 / (1_u64 << 53) as f64;
+    if signed && bits & 1 == 1 { -x } else { x }
 }

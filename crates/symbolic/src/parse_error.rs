@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::excerpt::excerpt;
+
 /// A formula that could not be read: what is wrong, and the place.
 ///
 /// ```
@@ -154,9 +156,6 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// Characters shown on each side of the place.
-const WINDOW: usize = 50;
-
 impl ParseError {
     fn line_start(&self) -> usize {
         self.text[..self.offset].rfind('\n').map_or(0, |i| i + 1)
@@ -171,38 +170,14 @@ impl ParseError {
     pub fn column(&self) -> usize {
         self.text[self.line_start()..self.offset].chars().count() + 1
     }
-
-    /// The line with the offending piece, cut to a window round it, and the row of carets below it.
-    fn excerpt(&self) -> (String, String) {
-        let before = &self.text[self.line_start()..self.offset];
-        let after = &self.text[self.offset..];
-        let after = &after[..after.find('\n').unwrap_or(after.len())];
-        let cut_before = before.char_indices().rev().nth(WINDOW - 1).map_or(0, |(i, _)| i);
-        let cut_after = after.char_indices().nth(WINDOW).map_or(after.len(), |(i, _)| i);
-        let mut line = String::new();
-        if cut_before > 0 {
-            line.push('…');
-        }
-        line.extend(before[cut_before..].chars().map(printable));
-        let margin = line.chars().count();
-        line.extend(after[..cut_after].trim_end_matches('\r').chars().map(printable));
-        if cut_after < after.len() {
-            line.push('…');
-        }
-        let end = self.length.min(cut_after);
-        let carets = after.char_indices().take_while(|(i, _)| *i < end).count().max(1);
-        (line, " ".repeat(margin) + &"^".repeat(carets))
-    }
-}
-
-/// Control characters, tabs among them, become spaces, so that the carets stand right.
-fn printable(c: char) -> char {
-    if c.is_control() { ' ' } else { c }
 }
 
 impl fmt::Display for ParseError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (line, carets) = self.excerpt();
+        let line = self.text[self.line_start()..].split('\n').next().unwrap_or_default();
+        let piece = self.text[self.offset..].split('\n').next().unwrap_or_default();
+        let length = piece.char_indices().take_while(|(i, _)| *i < self.length).count();
+        let [line, carets] = excerpt(line, self.column(), length);
         write!(f, "line {}, column {}: {}", self.line(), self.column(), self.kind)?;
         write!(f, "\n  {line}\n  {carets}")
     }

@@ -27,7 +27,7 @@ pub(crate) fn smooth_substitute(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The nearest of `names` by edit distance, if it is near enough to be a slip.
+/// The nearest of `names` by edit distance (swaps of neighbours count as one), if it is near enough to be a slip. Case does not count.
 pub(crate) fn nearest<'n>(name: &str, names: impl IntoIterator<Item = &'n str>) -> Option<String> {
     if name.len() > 40 {
         return None;
@@ -35,7 +35,7 @@ pub(crate) fn nearest<'n>(name: &str, names: impl IntoIterator<Item = &'n str>) 
     let limit = (name.len() / 3).clamp(1, 3);
     names
         .into_iter()
-        .map(|other| (edit_distance(name, other), other))
+        .map(|other| (strsim::osa_distance(&name.to_ascii_lowercase(), &other.to_ascii_lowercase()), other))
         .filter(|(distance, other)| *distance <= limit && *distance < other.len().max(2))
         .min_by_key(|(distance, other)| (*distance, primes(other).abs_diff(primes(name))))
         .map(|(_, other)| other.to_owned())
@@ -43,24 +43,4 @@ pub(crate) fn nearest<'n>(name: &str, names: impl IntoIterator<Item = &'n str>) 
 
 fn primes(name: &str) -> usize {
     name.len() - name.trim_end_matches('\'').len()
-}
-
-/// Insertions, deletions, replacements and swaps of neighbours; letters that differ in case only are
-/// equal.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let (a, b) = (a.to_ascii_lowercase().into_bytes(), b.to_ascii_lowercase().into_bytes());
-    let mut before = vec![0; b.len() + 1];
-    let mut previous: Vec<usize> = (0..=b.len()).collect();
-    for i in 1..=a.len() {
-        let mut row = vec![i; b.len() + 1];
-        for j in 1..=b.len() {
-            let replaced = previous[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            row[j] = replaced.min(previous[j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                row[j] = row[j].min(before[j - 2] + 1);
-            }
-        }
-        before = std::mem::replace(&mut previous, row);
-    }
-    previous[b.len()]
 }

@@ -12,6 +12,7 @@ use deltaq::{
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
+use symbolic::Xorshift;
 
 use crate::catalogue;
 
@@ -116,13 +117,8 @@ impl Throughput {
 
 /// Sledges that start anywhere on the slope, in any direction, at up to 2 m/s along the blade and 2 rad/s: on the constraint exactly.
 fn starts(count: usize) -> Vec<State> {
-    let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut number = |from: f64, to: f64| {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        from + (to - from) * ((seed >> 11) as f64 / (1_u64 << 53) as f64)
-    };
+    let mut random = Xorshift::default();
+    let mut number = |from: f64, to: f64| from + (to - from) * random.unit();
     let mut start = || {
         let (x, y, phi) = (number(-1.0, 1.0), number(-1.0, 1.0), number(-1.2, 1.2));
         let (speed, rate) = (number(-2.0, 2.0), number(-2.0, 2.0));

@@ -8,6 +8,7 @@ use equations::{Compiled, Derivation, Equations, Role};
 use mechanics::{ConstantsRule, complete_removal_start};
 use scene::Scene;
 use serde::Serialize;
+use symbolic::SplitMix;
 
 /// How much is asked of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -83,19 +84,6 @@ pub(super) struct Transcription {
     times: Vec<f64>,
     /// `y` (s) at each of the times.
     states: Vec<Vec<f64>>,
-}
-
-/// Uniform numbers in [−1, 1): the splitmix64 sequence.
-struct Uniform(u64);
-
-impl Uniform {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
 }
 
 /// How far random states are from the start: positions, parameters and memory; everything else.
@@ -276,16 +264,18 @@ fn samples(scene: &Scene, choice: &Choice, equations: &Equations, count: usize) 
         _ => SPREAD.1,
     };
     let mut compiled = Compiled::new(equations)?;
-    let mut uniform = Uniform(1);
+    let mut random = SplitMix::new(1);
+    // in [−1, 1)
+    let mut uniform = || 2.0 * random.unit() - 1.0;
     let mut samples = Samples { states: Vec::new(), rates: Vec::new(), multipliers: Vec::new() };
     let mut rates = vec![0.0; base.len()];
     for _ in 0..TRIES * count {
         if samples.states.len() == count {
             break;
         }
-        let t = scene.start.t + 0.5 * (1.0 + uniform.next());
+        let t = scene.start.t + 0.5 * (1.0 + uniform());
         let y: Vec<f64> =
-            base.iter().zip(&equations.states).map(|(x, state)| x + spread(state.role) * uniform.next()).collect();
+            base.iter().zip(&equations.states).map(|(x, state)| x + spread(state.role) * uniform()).collect();
         let solved = compiled.rates(t, &y, &mut rates).is_ok() && rates.iter().all(|x| x.is_finite());
         let Ok(outputs) = compiled.outputs(t, &y) else { continue };
         if !solved {

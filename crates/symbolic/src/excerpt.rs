@@ -1,0 +1,22 @@
+//! A line of a text with carets under a place in it.
+
+/// Characters shown on each side of the place.
+const WINDOW: usize = 60;
+
+/// `line` cut to a window round `column` (in characters, from 1), and a row of carets under the `length` characters that start there.
+///
+/// ```
+/// assert_eq!(symbolic::excerpt("1 + 2 x", 7, 1), ["1 + 2 x", "      ^"]);
+/// ```
+pub fn excerpt(line: &str, column: usize, length: usize) -> [String; 2] {
+    let line = line.trim_end_matches('\r');
+    let before = column.saturating_sub(1);
+    let first = before.saturating_sub(WINDOW);
+    let dots = |cut: bool| if cut { "…" } else { "" };
+    // control characters, tabs among them, become spaces, so that the carets stand right
+    let printable = |c: char| if c.is_control() { ' ' } else { c };
+    let shown: String = line.chars().skip(first).take(before - first + WINDOW).map(printable).collect();
+    let shown = format!("{}{shown}{}", dots(first > 0), dots(line.chars().count() > before + WINDOW));
+    let margin = before - first + usize::from(first > 0);
+    [shown, " ".repeat(margin) + &"^".repeat(length.clamp(1, WINDOW))]
+}
