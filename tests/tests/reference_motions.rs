@@ -3,7 +3,7 @@
 use deltaq::{Choice, Settings, choices, derive, ready, setting};
 use equations::Equations;
 use mechanics::StartError;
-use reference::{DoubleDouble, Question, Reference, ReferenceError, Wide, reference, reference_in};
+use reference::{DoubleDouble, Entry, Question, Reference, ReferenceError, reference, reference_in};
 use scene::Scene;
 use symbolic::Scalar;
 use tests::references::{Motion, REFERENCES};

@@ -218,7 +218,7 @@ impl Discrete {
         let slopes = DMatrix::from_row_slice(m + k, k, &slopes);
         let guess: Vec<f64> = [&start.rates[..], &memory_rates, &start.costates].concat();
         let inputs: Vec<Symbol> = std::iter::once(system.time).chain(x.iter().copied()).collect();
-        let coordinates = g.compile(&inputs, &removal.coordinates, &system.parameter_values())?;
+        let coordinates = system.evaluator(&inputs, &removal.coordinates)?;
         let principle = Principle {
             lagrangian: augmented,
             forces: vec![g.zero(); m + k],
@@ -231,7 +231,7 @@ impl Discrete {
         let step = Step::new(g, &system.parameter_values(), &interval, &principle, &guess)?;
         let costates = Some(Natural { first: start.costates.clone(), slopes });
         let discrete = Discrete::new(step, start.t, rest, p, guess, end)?;
-        Ok(Discrete { costates, ends, coordinates: Some(Evaluator::new(coordinates)), ..discrete })
+        Ok(Discrete { costates, ends, coordinates: Some(coordinates), ..discrete })
     }
 
     /// `guess` are the rates and multipliers at the start.

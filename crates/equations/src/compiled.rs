@@ -1,10 +1,10 @@
 //! Equations of motion turned into numbers: tapes and small linear solves, ready for any time integrator.
 
-use symbolic::{CompileError, Expr};
+use symbolic::{CompileError, Evaluator, Expr};
 
 use crate::derivatives::Derivatives;
 use crate::equations::Equations;
-use crate::instant::{CompiledBlock, EvaluationFailure, Program};
+use crate::instant::{CompiledBlock, EvaluationFailure};
 use crate::plan::Plan;
 use crate::projection::Projector;
 use crate::series::Series;
@@ -16,13 +16,13 @@ use crate::straight::Straight;
 #[derive(Clone)]
 pub struct Compiled {
     equations_of_instant: Vec<CompiledBlock>,
-    rates: Program,
-    outputs: Program,
+    rates: Evaluator<f64>,
+    outputs: Evaluator<f64>,
     /// The chosen plan, where there is another than the plain one, and how often it was not to be trusted.
     straight: Option<Straight>,
     left: Vec<usize>,
     fallbacks: usize,
-    guards: Program,
+    guards: Evaluator<f64>,
     projector: Option<Projector>,
     derivatives: Option<Derivatives>,
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
@@ -139,9 +139,9 @@ impl Compiled {
             left: plan.left.clone(),
             fallbacks: 0,
             equations_of_instant: blocks,
-            rates: Program::new(equations, &all, &rates)?,
-            outputs: Program::new(equations, &all, &outputs)?,
-            guards: Program::new(equations, &known, &equations.guards)?,
+            rates: equations.evaluator(&all, &rates)?,
+            outputs: equations.evaluator(&all, &outputs)?,
+            guards: equations.evaluator(&known, &equations.guards)?,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             derivatives: None,
             series: None,
@@ -247,7 +247,7 @@ impl Compiled {
             self.fallbacks += 1;
         }
         self.solve_instant(t, y)?;
-        rates.copy_from_slice(self.rates.run(&self.inputs));
+        rates.copy_from_slice(self.rates.evaluate(&self.inputs));
         Ok(())
     }
 
@@ -258,7 +258,7 @@ impl Compiled {
 
     /// What one evaluation of the rates costs, in the plain plan and in the chosen one.
     pub fn cost(&self) -> [Cost; 2] {
-        let plain = self.cost_of(&|_| true, self.rates.len());
+        let plain = self.cost_of(&|_| true, self.rates.tape().len());
         let chosen = self.straight.as_ref().map(|s| self.cost_of(&|k| self.left.contains(&k), s.len()));
         [plain, chosen.unwrap_or(plain)]
     }
@@ -266,7 +266,7 @@ impl Compiled {
     fn cost_of(&self, solved: &dyn Fn(usize) -> bool, rates: usize) -> Cost {
         let blocks = self.equations_of_instant.iter().enumerate().filter(|(k, _)| solved(*k)).map(|(_, b)| b);
         blocks.fold(Cost { instructions: rates, factorization: 0 }, |cost, block| Cost {
-            instructions: cost.instructions + block.program.len(),
+            instructions: cost.instructions + block.program.tape().len(),
             factorization: cost.factorization
                 + block.size * (block.size * block.size - 1) / 3
                 + block.size * block.size,
@@ -286,18 +286,18 @@ impl Compiled {
             }
         }
         self.solve_instant(t, y)?;
-        Ok(self.sizes.outputs(self.outputs.run(&self.inputs)))
+        Ok(self.sizes.outputs(self.outputs.evaluate(&self.inputs)))
     }
 
     /// Number of guards.
     pub fn guards(&self) -> usize {
-        self.guards.values.len()
+        self.guards.values().len()
     }
 
     /// Values of the guards, whose zeros are singularities.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
-        values.copy_from_slice(self.guards.run(&self.inputs[..self.sizes.known()]));
+        values.copy_from_slice(self.guards.evaluate(&self.inputs[..self.sizes.known()]));
     }
 
     /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.

@@ -1,16 +1,16 @@
 //! `∂F/∂y` of compiled equations.
 
-use symbolic::{CompileError, Expr};
+use symbolic::{CompileError, Evaluator, Expr};
 
 use crate::definitions::jacobian;
 use crate::equations::Equations;
-use crate::instant::{CompiledBlock, Program};
+use crate::instant::CompiledBlock;
 
 /// `∂F/∂y` by the implicit function theorem, exact derivatives from the graph.
 #[derive(Clone)]
 pub(crate) struct Derivatives {
     /// ∂(rates)/∂y row-major, then ∂(rates)/∂z row-major, then ∂R/∂y row-major, block after block.
-    program: Program,
+    program: Evaluator<f64>,
     states: usize,
     unknowns: usize,
     column: Vec<f64>,
@@ -27,7 +27,7 @@ impl Derivatives {
         let inputs = [&equations.known_symbols()[..], &unknowns].concat();
         let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
         Ok(Derivatives {
-            program: Program::by_way_of(equations, &definitions, &inputs, &outputs)?,
+            program: equations.evaluator_by(&definitions, &inputs, &outputs)?,
             states: rates.len(),
             unknowns: unknowns.len(),
             column: vec![0.0; largest],
@@ -37,7 +37,7 @@ impl Derivatives {
     /// Writes `∂F/∂y`, row-major, at `t, y, constants, z`, where `z` solves the blocks, whose factors are at hand.
     pub(crate) fn write(&mut self, inputs: &[f64], blocks: &mut [CompiledBlock], jacobian: &mut [f64]) {
         let n = self.states;
-        let values = self.program.run(inputs);
+        let values = self.program.evaluate(inputs);
         let (direct, rest) = values.split_at(n * n);
         let (by_unknown, mut by_state) = rest.split_at(n * self.unknowns);
         jacobian.copy_from_slice(direct);

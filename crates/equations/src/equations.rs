@@ -5,7 +5,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use symbolic::{CompileError, Expr, Graph, Matrix, Symbol, Tape};
+use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Scalar, Symbol, Tape};
 
 use crate::definitions::{needed, symbols_behind};
 use mechanics::{Removal, System};
@@ -217,6 +217,25 @@ impl Equations {
     ) -> Result<Tape, CompileError> {
         let definitions = needed(&self.graph, definitions, inputs, outputs);
         self.graph.compile_with(inputs, &definitions, outputs, &self.parameters)
+    }
+
+    /// [`Equations::tape`], ready to be evaluated.
+    pub(crate) fn evaluator<T: Scalar>(
+        &self,
+        inputs: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Evaluator<T>, CompileError> {
+        self.evaluator_by(&self.definitions, inputs, outputs)
+    }
+
+    /// [`Equations::evaluator`] with other definitions.
+    pub(crate) fn evaluator_by<T: Scalar>(
+        &self,
+        definitions: &[(Symbol, Expr)],
+        inputs: &[Symbol],
+        outputs: &[Expr],
+    ) -> Result<Evaluator<T>, CompileError> {
+        Ok(Evaluator::new(self.tape_by(definitions, inputs, outputs)?))
     }
 
     /// Symbols of `y`.

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use symbolic::{CompileError, Expr, Scalar, Symbol, Tape, Workspace};
+use symbolic::{CompileError, Evaluator, Expr, Symbol};
 
 use crate::equations::{Block, Equations};
 use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
@@ -36,41 +36,6 @@ pub enum EvaluationFailure {
     },
 }
 
-/// A tape with its registers and outputs.
-#[derive(Clone)]
-pub(crate) struct Program<S = f64> {
-    tape: Tape,
-    registers: Workspace<S>,
-    pub(crate) values: Vec<S>,
-}
-
-impl<S: Scalar> Program<S> {
-    pub(crate) fn new(equations: &Equations, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        Program::by_way_of(equations, &equations.definitions, inputs, outputs)
-    }
-
-    /// With definitions of its own.
-    pub(crate) fn by_way_of(
-        equations: &Equations,
-        definitions: &[(Symbol, Expr)],
-        inputs: &[Symbol],
-        outputs: &[Expr],
-    ) -> Result<Self, CompileError> {
-        let tape = equations.tape_by(definitions, inputs, outputs)?;
-        Ok(Program { registers: tape.workspace(), values: vec![S::from_f64(0.0); outputs.len()], tape })
-    }
-
-    /// Number of instructions.
-    pub(crate) fn len(&self) -> usize {
-        self.tape.len()
-    }
-
-    pub(crate) fn run(&mut self, inputs: &[S]) -> &[S] {
-        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
-        &self.values
-    }
-}
-
 /// Where the numbers of one block are, and how it is solved.
 #[derive(Clone)]
 pub(crate) struct CompiledBlock {
@@ -78,7 +43,7 @@ pub(crate) struct CompiledBlock {
     pub(crate) first: usize,
     pub(crate) size: usize,
     /// Outputs: the matrix `∂R/∂z` row-major, then `R`; linear blocks at `z = 0`, others at the current `z`.
-    pub(crate) program: Program,
+    pub(crate) program: Evaluator<f64>,
     pub(crate) linear: bool,
     pub(crate) factors: Factors,
     regular: &'static str,
@@ -95,8 +60,8 @@ const FAR: f64 = 1e-8;
 impl CompiledBlock {
     /// Evaluates, factorizes, and leaves `−(∂R/∂z)⁻¹ R` in the place of `R`.
     pub(crate) fn step(&mut self, inputs: &[f64]) -> Result<(), EvaluationFailure> {
-        self.program.run(inputs);
-        let (matrix, residual) = self.program.values.split_at_mut(self.size * self.size);
+        self.program.evaluate(inputs);
+        let (matrix, residual) = self.program.values_mut().split_at_mut(self.size * self.size);
         let regular = self.regular;
         self.factors.factorize(matrix).map_err(|Singular { reciprocal }| EvaluationFailure::Singular {
             reciprocal,
@@ -111,7 +76,7 @@ impl CompiledBlock {
     }
 
     pub(crate) fn solution(&self) -> &[f64] {
-        &self.program.values[self.size * self.size..]
+        &self.program.values()[self.size * self.size..]
     }
 
     /// Newton's method from the current `z`; ends when the step no longer shrinks at round-off.
@@ -165,7 +130,7 @@ impl CompiledBlock {
         Ok(CompiledBlock {
             first,
             size,
-            program: Program::new(equations, if linear { known } else { all }, &outputs)?,
+            program: equations.evaluator(if linear { known } else { all }, &outputs)?,
             linear,
             factors: Factors::new(size),
             regular: block.regular,

@@ -1,9 +1,8 @@
 //! Equations of motion at several points at once, one a lane: for ensembles.
 
-use symbolic::{CompileError, LANES, Lanes, Scalar, SeriesTape, SeriesWorkspace, Symbol};
+use symbolic::{CompileError, Evaluator, LANES, Lanes, Scalar, SeriesTape, SeriesWorkspace, Symbol};
 
 use crate::equations::{Block, Equations};
-use crate::instant::Program;
 use crate::plan::Plan;
 use crate::projection::{LIMIT, STEPS};
 use crate::series::Series;
@@ -16,8 +15,8 @@ use mechanics::fresh_symbol;
 pub struct LaneEquations {
     series: SeriesTape,
     workspace: SeriesWorkspace<Lanes>,
-    condition: Option<Program<Lanes>>,
-    guards: Program<Lanes>,
+    condition: Option<Evaluator<Lanes>>,
+    guards: Evaluator<Lanes>,
     projection: Option<Projection>,
     states: usize,
     /// `t, y, constants`.
@@ -42,12 +41,12 @@ impl LaneEquations {
         let known = equations.known_symbols();
         let condition = plan
             .condition
-            .map(|condition| Program::by_way_of(equations, &plan.all_definitions(equations), &known, &[condition]));
+            .map(|condition| equations.evaluator_by(&plan.all_definitions(equations), &known, &[condition]));
         Ok(Ok(LaneEquations {
             workspace: series.workspace(1),
             series,
             condition: condition.transpose()?,
-            guards: Program::new(equations, &known, &equations.guards)?,
+            guards: equations.evaluator(&known, &equations.guards)?,
             projection,
             states: equations.states.len(),
             inputs: vec![Lanes::from_f64(0.0); known.len()],
@@ -61,7 +60,7 @@ impl LaneEquations {
 
     /// Number of guards.
     pub fn guards(&self) -> usize {
-        self.guards.values.len()
+        self.guards.values().len()
     }
 
     /// Sets the free constants of one lane.
@@ -102,14 +101,14 @@ impl LaneEquations {
         }
         match &mut self.condition {
             None => [true; LANES],
-            Some(condition) => condition.run(&self.inputs)[0].0.map(|x| x <= Plan::LIMIT),
+            Some(condition) => condition.evaluate(&self.inputs)[0].0.map(|x| x <= Plan::LIMIT),
         }
     }
 
     /// [`crate::Compiled::guard_values`] of every lane.
     pub fn guard_values(&mut self, t: &[f64; LANES], y: &[[f64; LANES]], values: &mut [[f64; LANES]]) {
         self.load(t, y);
-        for (value, guard) in values.iter_mut().zip(self.guards.run(&self.inputs)) {
+        for (value, guard) in values.iter_mut().zip(self.guards.evaluate(&self.inputs)) {
             *value = guard.0;
         }
     }
@@ -133,7 +132,7 @@ impl LaneEquations {
 #[derive(Clone)]
 struct Projection {
     /// Outputs: `δv`, `f`, then the condition.
-    program: Program<Lanes>,
+    program: Evaluator<Lanes>,
     places: Vec<usize>,
     constraints: usize,
 }
@@ -176,7 +175,7 @@ impl Projection {
         }
         let known = equations.known_symbols();
         let outputs = [&wanted[..], &projection.constraints, plan.condition.as_slice()].concat();
-        let program = Program::by_way_of(&step, &plan.all_definitions(&step), &known, &outputs)?;
+        let program = step.evaluator_by(&plan.all_definitions(&step), &known, &outputs)?;
         Ok(Ok(Some(Projection { program, places, constraints: h })))
     }
 
@@ -186,7 +185,7 @@ impl Projection {
         let mut moved = vec![[0.0; LANES]; n];
         let mut under_way = [true; LANES];
         for _ in 0..STEPS {
-            let values = self.program.run(inputs);
+            let values = self.program.evaluate(inputs);
             let (change, rest) = values.split_at(n);
             let (f, condition) = rest.split_at(self.constraints);
             let (mut step, mut speed) = ([0.0_f64; LANES], [0.0_f64; LANES]);

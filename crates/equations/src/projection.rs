@@ -1,9 +1,9 @@
 //! Return of a state onto its constraint.
 
-use symbolic::{CompileError, Symbol};
+use symbolic::{CompileError, Evaluator, Symbol};
 
 use crate::equations::{ConstraintProjection, Equations};
-use crate::instant::{EvaluationFailure, Program};
+use crate::instant::EvaluationFailure;
 use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
 
 /// Newton steps allowed; a step under this length relative to the velocity ends the iteration.
@@ -21,7 +21,7 @@ pub(crate) const LIMIT: f64 = 4.0 * f64::EPSILON;
 #[derive(Clone)]
 pub(crate) struct Projector {
     /// Outputs: the matrix row-major, then `f`.
-    program: Program,
+    program: Evaluator<f64>,
     /// Where the velocities stand in `y`.
     places: Vec<usize>,
     constraints: usize,
@@ -51,7 +51,7 @@ impl Projector {
         outputs.extend(&projection.constraints);
         let place = |v: &Symbol| known.iter().position(|s| s == v).map(|i| i - 1);
         Ok(Projector {
-            program: Program::new(equations, known, &outputs)?,
+            program: equations.evaluator(known, &outputs)?,
             places: projection.velocities.iter().filter_map(place).collect(),
             constraints: h,
             factors: Factors::new(n + h),
@@ -65,7 +65,7 @@ impl Projector {
         let size = n + self.constraints;
         let mut moved = vec![0.0; n];
         for _ in 0..STEPS {
-            let values = self.program.run(inputs);
+            let values = self.program.evaluate(inputs);
             let (matrix, f) = values.split_at(size * size);
             if f.iter().all(|&x| x == 0.0) {
                 break;

@@ -1,16 +1,15 @@
 //! Rates and outputs of a plan, as straight-line programs.
 
-use symbolic::{CompileError, Expr, Symbol};
+use symbolic::{CompileError, Evaluator, Expr, Symbol};
 
 use crate::equations::Equations;
-use crate::instant::Program;
 use crate::plan::Plan;
 
 /// Compiled definitions: rates and outputs each by a tape of their own, so that neither computes what only the other needs.
 #[derive(Clone)]
 pub(crate) struct Straight {
-    rates: Program,
-    outputs: Program,
+    rates: Evaluator<f64>,
+    outputs: Evaluator<f64>,
     watched: bool,
     /// Places in `(t, y, constants, z)` of what the tapes take.
     places: Vec<usize>,
@@ -30,7 +29,7 @@ impl Straight {
         let definitions = plan.all_definitions(equations);
         let program = |wanted: &[Expr]| {
             let condition = plan.condition.as_slice();
-            Program::by_way_of(equations, &definitions, &inputs, &[wanted, condition].concat())
+            equations.evaluator_by(&definitions, &inputs, &[wanted, condition].concat())
         };
         Ok(Straight {
             rates: program(&plan.rates(equations))?,
@@ -48,19 +47,19 @@ impl Straight {
 
     /// Number of instructions of one evaluation of the rates.
     pub(crate) fn len(&self) -> usize {
-        self.rates.len()
+        self.rates.tape().len()
     }
 
     /// The rates; `None` where they cannot be trusted.
     pub(crate) fn rates(&mut self, values: &[f64]) -> Option<&[f64]> {
         let inputs = gather(&mut self.inputs, &self.places, values);
-        trusted(self.rates.run(inputs), self.watched)
+        trusted(self.rates.evaluate(inputs), self.watched)
     }
 
     /// As [`Straight::rates`].
     pub(crate) fn outputs(&mut self, values: &[f64]) -> Option<&[f64]> {
         let inputs = gather(&mut self.inputs, &self.places, values);
-        trusted(self.outputs.run(inputs), self.watched)
+        trusted(self.outputs.evaluate(inputs), self.watched)
     }
 }
 

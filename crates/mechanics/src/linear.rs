@@ -1,7 +1,22 @@
 //! Small dense linear systems in place, without allocation: the one solve of every instant.
 //!
-//! Written here and not taken from a crate because it runs once an evaluation on matrices of 1 to 20 rows, where the
+//! In `f64`, and in the wide types of references. Written here and not taken from a crate because it runs once an evaluation on matrices of 1 to 20 rows, where the
 //! allocation of a general factorization costs more than the elimination.
+
+use symbolic::Scalar;
+
+/// A number type in which linear systems are solved.
+pub trait Entry: Scalar {
+    /// `|x|` as `f64`: for norms, pivots and step sizes, never for the solution itself.
+    fn size(self) -> f64;
+}
+
+impl Entry for f64 {
+    #[inline]
+    fn size(self) -> f64 {
+        self.abs()
+    }
+}
 
 /// A matrix that cannot be solved with: the smallest pivot over the largest after scaling, and the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,24 +30,25 @@ pub const PIVOT_LIMIT: f64 = 1e-13;
 
 /// LU factors of an n×n matrix, row-major, with partial pivoting; rows and columns scaled so that units do not matter.
 #[derive(Clone, Debug)]
-pub struct Factors {
+pub struct Factors<T = f64> {
     n: usize,
-    lu: Vec<f64>,
+    lu: Vec<T>,
     rows: Vec<usize>,
-    row_scale: Vec<f64>,
-    column_scale: Vec<f64>,
-    work: Vec<f64>,
+    row_scale: Vec<T>,
+    column_scale: Vec<T>,
+    work: Vec<T>,
 }
 
-impl Factors {
+impl<T: Entry> Factors<T> {
     /// Room for n×n.
     pub fn new(n: usize) -> Self {
-        let (lu, rows) = (vec![0.0; n * n], vec![0; n]);
-        Factors { n, lu, rows, row_scale: vec![1.0; n], column_scale: vec![1.0; n], work: vec![0.0; n] }
+        let [zero, one] = [0.0, 1.0].map(T::from_f64);
+        let (lu, rows) = (vec![zero; n * n], vec![0; n]);
+        Factors { n, lu, rows, row_scale: vec![one; n], column_scale: vec![one; n], work: vec![zero; n] }
     }
 
     /// Factorizes `matrix` (row-major, n×n).
-    pub fn factorize(&mut self, matrix: &[f64]) -> Result<(), Singular> {
+    pub fn factorize(&mut self, matrix: &[T]) -> Result<(), Singular> {
         let n = self.n;
         self.lu.copy_from_slice(matrix);
         self.scale()?;
@@ -40,9 +56,9 @@ impl Factors {
             *row = i;
         }
         for k in 0..n {
-            let mut best = (k, self.lu[k * n + k].abs());
+            let mut best = (k, self.lu[k * n + k].size());
             for i in k + 1..n {
-                let x = self.lu[i * n + k].abs();
+                let x = self.lu[i * n + k].size();
                 if x > best.1 {
                     best = (i, x);
                 }
@@ -59,13 +75,13 @@ impl Factors {
             let (upper, lower) = self.lu.split_at_mut((k + 1) * n);
             let pivot_row = &upper[k * n..];
             for row in lower.chunks_exact_mut(n) {
-                if row[k] == 0.0 {
+                if row[k].size() == 0.0 {
                     continue;
                 }
                 let factor = row[k] / pivot_row[k];
                 row[k] = factor;
                 for j in k + 1..n {
-                    row[j] -= factor * pivot_row[j];
+                    row[j] = row[j] - factor * pivot_row[j];
                 }
             }
         }
@@ -76,49 +92,49 @@ impl Factors {
     fn scale(&mut self) -> Result<(), Singular> {
         let n = self.n;
         for j in 0..n {
-            let largest = (0..n).fold(0.0_f64, |a, i| a.max(self.lu[i * n + j].abs()));
+            let largest = (0..n).fold(0.0_f64, |a, i| a.max(self.lu[i * n + j].size()));
             if largest == 0.0 || !largest.is_finite() {
                 return Err(Singular { reciprocal: if largest == 0.0 { 0.0 } else { f64::NAN } });
             }
-            self.column_scale[j] = 1.0 / largest;
+            self.column_scale[j] = T::from_f64(1.0 / largest);
         }
         for (i, row) in self.lu.chunks_exact_mut(n).enumerate() {
             let mut largest = 0.0_f64;
             for (x, s) in row.iter_mut().zip(&self.column_scale) {
-                *x *= s;
-                largest = largest.max(x.abs());
+                *x = *x * *s;
+                largest = largest.max(x.size());
             }
             if largest == 0.0 || !largest.is_finite() {
                 return Err(Singular { reciprocal: if largest == 0.0 { 0.0 } else { f64::NAN } });
             }
-            self.row_scale[i] = 1.0 / largest;
+            self.row_scale[i] = T::from_f64(1.0 / largest);
             for x in row {
-                *x *= self.row_scale[i];
+                *x = *x * self.row_scale[i];
             }
         }
         Ok(())
     }
 
     /// Overwrites `b` by the solution.
-    pub fn solve(&mut self, b: &mut [f64]) {
+    pub fn solve(&mut self, b: &mut [T]) {
         let n = self.n;
         for i in 0..n {
             let row = self.rows[i];
             let mut x = b[row] * self.row_scale[row];
             for j in 0..i {
-                x -= self.lu[i * n + j] * self.work[j];
+                x = x - self.lu[i * n + j] * self.work[j];
             }
             self.work[i] = x;
         }
         for i in (0..n).rev() {
             let mut x = self.work[i];
             for j in i + 1..n {
-                x -= self.lu[i * n + j] * self.work[j];
+                x = x - self.lu[i * n + j] * self.work[j];
             }
             self.work[i] = x / self.lu[i * n + i];
         }
         for (x, (z, scale)) in b.iter_mut().zip(self.work.iter().zip(&self.column_scale)) {
-            *x = z * scale;
+            *x = *z * *scale;
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use nalgebra::DMatrix;
-use symbolic::{Bounded, Graph, Matrix, Scalar, Symbol};
+use symbolic::{Bounded, Evaluator, Graph, Matrix, Scalar, SplitMix, Symbol};
 
 /// Singular values under this fraction of the largest count as zero.
 pub(crate) const RANK_LIMIT: f64 = 1e-9;
@@ -36,10 +36,9 @@ pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, 
     let symbols: BTreeSet<Symbol> = matrix.entries().iter().flat_map(|&e| graph.symbols_of(e)).collect();
     let symbols: Vec<Symbol> = symbols.into_iter().collect();
     let Ok(tape) = graph.compile(&symbols, matrix.entries(), &HashMap::new()) else { return 0 };
-    let mut registers = tape.workspace();
-    let mut entries = vec![Bounded::from_f64(0.0); matrix.entries().len()];
+    let mut evaluator = Evaluator::new(tape);
     let mut at = |point| {
-        tape.evaluate(&random_values(&symbols, constants, point), &mut registers, &mut entries);
+        let entries = evaluator.evaluate(&random_values(&symbols, constants, point));
         let number = |e: &Bounded| if e.may_be_zero() { 0.0 } else { e.value };
         let of = |part: &dyn Fn(&Bounded) -> f64| {
             DMatrix::from_row_iterator(matrix.rows(), matrix.columns(), entries.iter().map(part))
@@ -52,10 +51,7 @@ pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, 
 /// Values in ±[0.3, 1.3] for every symbol that is not a constant, a pure function of its place and `point`.
 fn random_values(symbols: &[Symbol], constants: &HashMap<Symbol, f64>, point: u64) -> Vec<Bounded> {
     let value = |(i, symbol): (usize, &Symbol)| {
-        let mut x = (point << 32 | i as u64).wrapping_add(0x9E37_79B9_7F4A_7C15);
-        x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^= x >> 31;
+        let x = SplitMix::new(point << 32 | i as u64).bits();
         let magnitude = 0.3 + (x >> 11) as f64 / (1u64 << 53) as f64;
         let random = if x & 1 == 0 { magnitude } else { -magnitude };
         Bounded::from_f64(constants.get(symbol).copied().unwrap_or(random))

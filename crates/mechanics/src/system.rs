@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use symbolic::{Expr, Graph, Matrix, ParseError, Symbol};
+use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, ParseError, Scalar, Symbol};
 
 /// One generalized coordinate `q`, with the symbols of its velocity and acceleration.
 #[derive(Clone, Debug)]
@@ -119,6 +119,14 @@ impl System {
     /// Values of the parameters.
     pub fn parameter_values(&self) -> HashMap<Symbol, f64> {
         self.parameters.iter().map(|p| (p.symbol, p.value)).collect()
+    }
+
+    /// `outputs` from the values of `inputs`, with the parameters folded in.
+    ///
+    /// # Errors
+    /// [`CompileError`] where a symbol is neither input nor parameter.
+    pub fn evaluator<T: Scalar>(&self, inputs: &[Symbol], outputs: &[Expr]) -> Result<Evaluator<T>, CompileError> {
+        Ok(Evaluator::new(self.graph.compile(inputs, outputs, &self.parameter_values())?))
     }
 
     /// Values of `t, q, v` at `state`; parameters are left to [`System::parameter_values`].

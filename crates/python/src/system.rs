@@ -10,7 +10,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
-use symbolic::Evaluator;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, finite, times};
 use crate::comparison::{Comparison, check_tolerance, compare};
@@ -234,9 +233,7 @@ impl System {
             let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
             let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
             let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-            let tape = system.graph.compile(&inputs, &system.constraints, &system.parameter_values());
-            let tape = tape.map_err(errors::solve)?;
-            let mut constraints = Evaluator::new(tape);
+            let mut constraints = system.evaluator(&inputs, &system.constraints).map_err(errors::solve)?;
             let mut values = Vec::new();
             for i in 0..count.unwrap_or(1) {
                 values.extend_from_slice(constraints.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));

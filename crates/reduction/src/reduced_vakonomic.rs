@@ -168,7 +168,11 @@ impl Problem {
         let q = system.positions();
         let Some(frame) = &self.frame else {
             let gradient = g.gradient(system.lagrangian, &q);
-            return gradient.iter().zip(along).map(|(&l_q, &along)| multiplied_out(g, g.sub(l_q, along))).collect();
+            return gradient
+                .iter()
+                .zip(along)
+                .map(|(&l_q, &along)| g.expand_if_shorter(g.sub(l_q, along), LONG))
+                .collect();
         };
         let u = frame.velocities.iter().map(|u| g.variable(u.symbol));
         let linear = momenta.iter().zip(&frame.inertia).zip(u).map(|((&l_u, &c), u)| g.mul(u, g.sub(l_u, g.mul(c, u))));
@@ -270,9 +274,11 @@ impl Problem {
         if g.size(&[lagrangian]) > WHOLE || g.size(&v) > WHOLE {
             return None;
         }
-        let function = g.sub(g.dot(&self.p, &v), shorter(g, lagrangian));
+        let function = g.sub(g.dot(&self.p, &v), g.expand_if_shorter(lagrangian, usize::MAX));
         let w: Vec<Symbol> = self.quasi.free.iter().map(|w| w.symbol).collect();
-        let minus = |by: &[Symbol]| g.gradient(function, by).into_iter().map(|e| shorter(g, g.neg(e))).collect();
+        let minus = |by: &[Symbol]| {
+            g.gradient(function, by).into_iter().map(|e| g.expand_if_shorter(g.neg(e), usize::MAX)).collect()
+        };
         Some(Whole { balance: minus(&w), rates: minus(&system.positions()) })
     }
 }
@@ -322,17 +328,6 @@ fn stationarity(
     let rest = columns.projected(g, &rest, definitions);
     let w: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.symbol)).collect();
     reduced.iter().zip(rest).map(|(row, rest)| g.add(g.dot(row, &w), rest)).collect()
-}
-
-/// `e` multiplied out, if that makes it shorter and is soon done.
-fn multiplied_out(g: &Graph, e: Expr) -> Expr {
-    if g.size(&[e]) > LONG { e } else { shorter(g, e) }
-}
-
-/// `e` multiplied out, if that makes it shorter.
-fn shorter(g: &Graph, e: Expr) -> Expr {
-    let expanded = g.expand(e);
-    if g.size(&[expanded]) < g.size(&[e]) { expanded } else { e }
 }
 
 /// Outputs, free constants and invariants.

@@ -98,8 +98,7 @@ struct Instant<'a> {
 
 impl Program {
     fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        let tape = system.graph.compile(inputs, outputs, &system.parameter_values())?;
-        Ok(Program { inputs: vec![0.0; tape.inputs()], evaluator: Evaluator::new(tape) })
+        Ok(Program { inputs: vec![0.0; inputs.len()], evaluator: system.evaluator(inputs, outputs)? })
     }
 
     /// The outputs at `(t, q, v)` (or at `(t, q)` with an empty `v`).

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use mechanics::linear::Entry;
 use symbolic::{Scalar, SeriesScalar};
 
 use crate::Wide;
@@ -151,6 +152,12 @@ impl From<i64> for DoubleDouble {
         let high = n as f64;
         let low = i128::from(n) - high as i128;
         DoubleDouble::sum(high, low as f64)
+    }
+}
+
+impl Entry for DoubleDouble {
+    fn size(self) -> f64 {
+        self.high.abs()
     }
 }
 

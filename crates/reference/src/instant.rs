@@ -1,9 +1,9 @@
 //! Equations of motion in any wide type: `ẏ = F(t, y, z)` with `R(z; t, y) = 0`.
 
 use equations::Equations;
-use symbolic::{CompileError, Evaluator, Expr, Symbol, Tape};
+use mechanics::linear::Factors;
+use symbolic::{CompileError, Evaluator, Expr, SeriesTape, SeriesWorkspace, Symbol, Tape};
 
-use crate::linear::Factors;
 use crate::{ReferenceError, Wide};
 
 /// Newton steps allowed for one instant, and the relative step after which one more step leaves round-off only.
@@ -55,6 +55,8 @@ struct WideBlock<T> {
     size: usize,
     linear: bool,
     program: Evaluator<T>,
+    /// Of the matrix at the solution.
+    factors: Factors<T>,
 }
 
 /// What is read off a motion at one time, in a wide type.
@@ -91,8 +93,9 @@ impl<T: Wide> Instant<T> {
             let linear = !matrix.entries().iter().any(|&e| block.unknowns.iter().any(|&z| g.depends_on(e, z)));
             let outputs = [matrix.entries(), &block.residuals].concat();
             let program = Evaluator::new(layout.compile(equations, &outputs)?);
-            blocks.push(WideBlock { first, size: block.unknowns.len(), linear, program });
-            first += block.unknowns.len();
+            let size = block.unknowns.len();
+            blocks.push(WideBlock { first, size, linear, program, factors: Factors::new(size) });
+            first += size;
         }
         let rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
         let multipliers: Vec<Expr> = equations.multipliers.iter().map(|m| m.expression).collect();
@@ -118,9 +121,13 @@ impl<T: Wide> Instant<T> {
         self.inputs[first..first + unknowns.len()].copy_from_slice(unknowns);
     }
 
-    /// `t, y, z`, free constants and parameters, as solved last.
-    pub(crate) fn inputs(&self) -> &[T] {
-        &self.inputs
+    /// The series of states, from the solution of the instant.
+    pub(crate) fn expand(&mut self, tape: &SeriesTape, workspace: &mut SeriesWorkspace<T>) {
+        let blocks = &mut self.blocks;
+        tape.expand(&self.inputs, T::from_f64(1.0), workspace, 1, &mut |block, residual| {
+            residual.iter_mut().for_each(|x| *x = -*x);
+            blocks[block].factors.solve(residual);
+        });
     }
 
     /// `z` as solved last.
@@ -129,12 +136,11 @@ impl<T: Wide> Instant<T> {
         &self.inputs[first..first + self.layout.unknowns]
     }
 
-    /// Solves the equations of the instant, from the last solution, and returns the factors of each block at its solution.
-    pub(crate) fn solve(&mut self, t: T, y: &[T]) -> Result<Vec<Factors<T>>, ReferenceError> {
+    /// Solves the equations of the instant, from the last solution.
+    pub(crate) fn solve(&mut self, t: T, y: &[T]) -> Result<(), ReferenceError> {
         self.inputs[0] = t;
         self.inputs[1..1 + y.len()].copy_from_slice(y);
         let z = self.layout.first_unknown();
-        let mut solved = Vec::with_capacity(self.blocks.len());
         for block in &mut self.blocks {
             let place = z + block.first..z + block.first + block.size;
             // a step from a point that is not finite would never come back
@@ -143,21 +149,21 @@ impl<T: Wide> Instant<T> {
             }
             let mut last = false;
             for step in 0.. {
-                let values = block.program.evaluate(&self.inputs);
-                let (matrix, residual) = values.split_at(block.size * block.size);
-                let factors = Factors::new(matrix, block.size).map_err(|singular| ReferenceError::Singular {
+                block.program.evaluate(&self.inputs);
+                let (matrix, residual) = block.program.values_mut().split_at_mut(block.size * block.size);
+                block.factors.factorize(matrix).map_err(|singular| ReferenceError::Singular {
                     what: INSTANT,
                     time: t.to_f64(),
-                    pivot: singular.pivot,
+                    pivot: singular.reciprocal,
                 })?;
+                block.factors.solve(residual);
                 let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
-                for (x, dx) in self.inputs[place.clone()].iter_mut().zip(factors.solve(residual)) {
-                    *x = *x - dx;
+                for (x, dx) in self.inputs[place.clone()].iter_mut().zip(residual) {
+                    *x = *x - *dx;
                     length = length.max(dx.size());
                     size = size.max(x.size());
                 }
                 if block.linear || last {
-                    solved.push(factors);
                     break;
                 }
                 let relative = length / size;
@@ -172,7 +178,7 @@ impl<T: Wide> Instant<T> {
                 }
             }
         }
-        Ok(solved)
+        Ok(())
     }
 
     /// `F(t, y)`.

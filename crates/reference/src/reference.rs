@@ -154,7 +154,7 @@ const TRIES: usize = 3;
 /// use symbolic::Scalar;
 /// let right = reference::DoubleDouble::from_f64(2.0).cos();
 /// assert!(motion.error() < 1e-20);
-/// assert!(reference::Wide::size(motion.points[1].coordinates[0] - right) < 1e-25);
+/// assert!(reference::Entry::size(motion.points[1].coordinates[0] - right) < 1e-25);
 /// assert!(motion.distance(1, &[2.0_f64.cos()]) < 1e-16);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -6,11 +6,11 @@
 //! computed from that velocity in the wide type.
 
 use equations::Equations;
+use mechanics::linear::{Factors, Singular};
 use mechanics::{Removal, State, System, complete_removal_start};
 use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::instant::parameters;
-use crate::linear::{Factors, Singular};
 use crate::{ReferenceError, Wide};
 
 /// Steps allowed, and the relative step after which one more step leaves round-off only.
@@ -107,7 +107,7 @@ fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Resul
             }
         }
         residual[n..].copy_from_slice(f);
-        let step = Factors::new(&matrix, size)?.solve(&residual);
+        let step = solution(&matrix, residual)?;
         let (mut length, mut speed) = (0.0_f64, f64::MIN_POSITIVE);
         for (x, &dx) in v.iter_mut().zip(&step) {
             *x = *x - dx;
@@ -173,7 +173,7 @@ fn complete<T: Wide>(
                     }
                 }
             }
-            let step = Factors::new(&normal, n)?.solve(&right);
+            let step = solution(&normal, right)?;
             let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
             for (x, dx) in x.iter_mut().zip(step) {
                 *x = *x - dx;
@@ -189,6 +189,14 @@ fn complete<T: Wide>(
     Ok(())
 }
 
+/// The solution of `matrix x = right`.
+fn solution<T: Wide>(matrix: &[T], mut right: Vec<T>) -> Result<Vec<T>, Singular> {
+    let mut factors = Factors::new(right.len());
+    factors.factorize(matrix)?;
+    factors.solve(&mut right);
+    Ok(right)
+}
+
 /// Repeats `step`, which returns its relative length, until one is small, and once more.
 fn newton(
     what: &'static str,
@@ -198,7 +206,7 @@ fn newton(
     let mut length = f64::INFINITY;
     for _ in 0..STEPS {
         let last = length < SMALL;
-        length = step().map_err(|singular| ReferenceError::Singular { what, time, pivot: singular.pivot })?;
+        length = step().map_err(|singular| ReferenceError::Singular { what, time, pivot: singular.reciprocal })?;
         if last {
             return Ok(());
         }

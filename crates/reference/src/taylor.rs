@@ -77,11 +77,8 @@ impl<T: Wide> Taylor<T> {
 
     /// Coefficients of the states at `(t, y)`, and of all that they depend on.
     fn expand(&mut self, instant: &mut Instant<T>, t: T) -> Result<(), ReferenceError> {
-        let factors = instant.solve(t, &self.y)?;
-        self.tape.expand(instant.inputs(), T::from_f64(1.0), &mut self.workspace, 1, &mut |block, residual| {
-            let change = factors[block].solve(residual);
-            residual.iter_mut().zip(change).for_each(|(x, change)| *x = -change);
-        });
+        instant.solve(t, &self.y)?;
+        instant.expand(&self.tape, &mut self.workspace);
         Ok(())
     }
 

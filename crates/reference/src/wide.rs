@@ -1,9 +1,10 @@
 //! What references ask of a number type.
 
+use mechanics::linear::Entry;
 use symbolic::SeriesScalar;
 
 /// A number type in which a motion can be computed.
-pub trait Wide: SeriesScalar + PartialOrd + std::fmt::Debug + 'static {
+pub trait Wide: SeriesScalar + Entry + PartialOrd + std::fmt::Debug + 'static {
     /// Relative spacing of the numbers.
     const EPSILON: f64;
     /// The nearest `f64`.
@@ -13,10 +14,6 @@ pub trait Wide: SeriesScalar + PartialOrd + std::fmt::Debug + 'static {
     /// 0
     fn zero() -> Self {
         Self::from_f64(0.0)
-    }
-    /// Size as `f64`: for norms, pivots and step sizes, never for the motion itself.
-    fn size(self) -> f64 {
-        self.to_f64().abs()
     }
 }
 

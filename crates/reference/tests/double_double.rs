@@ -2,7 +2,8 @@
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
-use reference::DoubleDouble;
+use mechanics::linear::Factors;
+use reference::{DoubleDouble, Entry};
 use symbolic::{Scalar, Xorshift};
 
 type Exact = FBig<HalfEven, 2>;
@@ -117,4 +118,20 @@ fn integer_powers_keep_the_sign_of_the_base() {
     assert!(minus_two.powf(DoubleDouble::from_f64(0.5)).parts().0.is_nan());
     assert!(minus_two.log().parts().0.is_nan() && minus_two.sqrt().parts().0.is_nan());
     assert!(DoubleDouble::from_f64(2.0).asin().parts().0.is_nan());
+}
+
+#[test]
+fn linear_systems_are_solved_to_the_last_digits_in_any_units() {
+    // [ 2 0 −1; 0 1 −1; 1 1 0 ] z = (1, 2, 3), z = (2/3, 7/3, 1/3)
+    for unit in [1e-12, 1.0, 1e12] {
+        let number = DoubleDouble::from_f64;
+        let (u, zero, one) = (number(unit), number(0.0), number(1.0));
+        let mut factors = Factors::new(3);
+        factors.factorize(&[number(2.0), zero, -u, zero, one, -u, u, u, zero]).unwrap();
+        let mut z = [one, number(2.0), u * number(3.0)];
+        factors.solve(&mut z);
+        let right = [(2, 3), (7, 3), (1, 3)].map(|(p, q)| DoubleDouble::from_ratio(p, q));
+        assert!((z[0] - right[0]).size().max((z[1] - right[1]).size()) < 1e-30);
+        assert!((z[2] * u - right[2]).size() < 1e-30);
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use reference::{DoubleDouble, Wide};
+use reference::{DoubleDouble, Entry};
 use symbolic::{Graph, Scalar, SeriesInput, Symbol};
 
 const ORDER: usize = 25;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use symbolic::ParseErrorKind;
+use symbolic::{ParseErrorKind, excerpt};
 
 use mechanics::{RemovalError, StartError};
 
@@ -263,9 +263,6 @@ fn joined(roles: &[&str]) -> String {
     if roles.is_empty() { "none of them".into() } else { roles.join(" and ") }
 }
 
-/// Characters of a long line that are shown on each side of the place.
-const WINDOW: usize = 60;
-
 impl SceneError {
     /// The fault `kind` at the bytes `span` of `text`.
     pub(crate) fn at(file: &str, text: &str, span: Range<usize>, kind: SceneErrorKind) -> Self {
@@ -296,19 +293,10 @@ impl fmt::Display for SceneError {
             return write!(f, "{}: {}", self.file, self.kind);
         }
         write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.kind)?;
-        let before = self.column.saturating_sub(1);
-        let first = before.saturating_sub(WINDOW);
-        let mut shown: String = if first > 0 { "…".into() } else { String::new() };
-        let margin = shown.chars().count() + before - first;
-        let printable = |c: char| if c.is_control() { ' ' } else { c };
-        shown.extend(self.source_line.chars().skip(first).take(before - first + WINDOW).map(printable));
-        if self.source_line.chars().count() > before + WINDOW {
-            shown.push('…');
-        }
-        let carets = self.length.min(WINDOW);
+        let [line, carets] = excerpt(&self.source_line, self.column, self.length);
         let number = self.line.to_string();
         let gutter = " ".repeat(number.len());
-        write!(f, "\n{number} | {shown}\n{gutter} | {}{}", " ".repeat(margin), "^".repeat(carets))
+        write!(f, "\n{number} | {line}\n{gutter} | {carets}")
     }
 }
 

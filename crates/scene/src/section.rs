@@ -233,12 +233,5 @@ fn with_article(value: &DeValue) -> &'static str {
 
 /// The entry of `known` that `name` may have been meant for.
 pub(super) fn suggestion(name: &str, known: &[String]) -> Option<String> {
-    const LONGEST: usize = 40;
-    let length = name.chars().count();
-    if length > LONGEST {
-        return None;
-    }
-    let distance = |k: &String| strsim::osa_distance(name, k);
-    let best = known.iter().min_by_key(|k| distance(k))?;
-    (distance(best) <= 1 + length / 4 && name != best).then(|| best.clone())
+    symbolic::nearest(name, known.iter().map(String::as_str))
 }

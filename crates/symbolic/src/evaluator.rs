@@ -41,6 +41,11 @@ impl<T: Scalar> Evaluator<T> {
         &self.values
     }
 
+    /// The same, to be worked on in place until the next evaluation.
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+
     /// What is evaluated.
     pub fn tape(&self) -> &Tape {
         &self.tape

@@ -24,6 +24,16 @@ impl Graph {
     pub fn expand(&self, e: Expr) -> Expr {
         self.arena.borrow_mut().expand(e, TERM_LIMIT)
     }
+
+    /// [`Graph::expand`], if that makes `e` shorter and `e` has at most `limit` nodes.
+    pub fn expand_if_shorter(&self, e: Expr, limit: usize) -> Expr {
+        let size = self.size(&[e]);
+        if size > limit {
+            return e;
+        }
+        let expanded = self.expand(e);
+        if self.size(&[expanded]) < size { expanded } else { e }
+    }
 }
 
 impl Arena {

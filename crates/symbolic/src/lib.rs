@@ -79,4 +79,5 @@ pub use scalar::Scalar;
 pub use series::{
     Correct, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
 };
+pub use suggest::nearest;
 pub use tape::{Tape, Workspace};

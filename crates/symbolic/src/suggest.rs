@@ -27,14 +27,21 @@ pub(crate) fn smooth_substitute(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The nearest of `names` by edit distance (swaps of neighbours count as one), if it is near enough to be a slip. Case does not count.
-pub(crate) fn nearest<'n>(name: &str, names: impl IntoIterator<Item = &'n str>) -> Option<String> {
+/// The nearest of `names` but `name` itself by edit distance (swaps of neighbours count as one, case does not count), if it is
+/// near enough to be a slip.
+///
+/// ```
+/// assert_eq!(symbolic::nearest("lagrangain", ["forces", "lagrangian"]).as_deref(), Some("lagrangian"));
+/// assert_eq!(symbolic::nearest("length", ["duration"]), None);
+/// ```
+pub fn nearest<'n>(name: &str, names: impl IntoIterator<Item = &'n str>) -> Option<String> {
     if name.len() > 40 {
         return None;
     }
     let limit = (name.len() / 3).clamp(1, 3);
     names
         .into_iter()
+        .filter(|other| *other != name)
         .map(|other| (strsim::osa_distance(&name.to_ascii_lowercase(), &other.to_ascii_lowercase()), other))
         .filter(|(distance, other)| *distance <= limit && *distance < other.len().max(2))
         .min_by_key(|(distance, other)| (*distance, primes(other).abs_diff(primes(name))))

@@ -258,8 +258,8 @@ impl Constraint {
         let inputs = [vec![system.time], system.positions(), velocities.clone()].concat();
         let jacobian = system.graph.jacobian(&system.constraints, &velocities);
         let outputs = [&system.constraints[..], jacobian.entries()].concat();
-        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values())?;
-        Ok(Constraint { evaluator: Evaluator::new(tape), inputs: Vec::new(), count: system.constraints.len() })
+        let evaluator = system.evaluator(&inputs, &outputs)?;
+        Ok(Constraint { evaluator, inputs: Vec::new(), count: system.constraints.len() })
     }
 
     /// Largest `|f_i|/(|∂f_i/∂v| |v|)`.

@@ -9,7 +9,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use symbolic::{CompileError, Expr, Graph, Symbol};
+use symbolic::{CompileError, Evaluator, Expr, Graph, Symbol};
 
 use crate::definitions::{apart, symbols_behind};
 use crate::equations::{Block, Equations};
@@ -158,11 +158,9 @@ fn add_definitions<'a>(
     if symbols.is_empty() {
         return Ok(());
     }
-    let tape = equations.tape(known, &equations.graph.variables(&symbols))?;
-    let (mut registers, mut values) = (tape.workspace(), vec![0.0; symbols.len()]);
+    let mut values = equations.evaluator(known, &equations.graph.variables(&symbols))?;
     for point in points {
-        tape.evaluate(point, &mut registers, &mut values);
-        point.extend(&values);
+        point.extend_from_slice(values.evaluate(point));
     }
     known.extend(symbols);
     Ok(())
@@ -211,14 +209,13 @@ impl Trial<'_> {
             return Ok(());
         };
         let outputs = [&self.wanted[..], &[g.sum(&found.watched)]].concat();
-        let tape = g.compile_with(self.known, &found.list, &outputs, &self.equations.parameters)?;
-        let (mut registers, mut values) = (tape.workspace(), vec![0.0; outputs.len()]);
-        let bad = self.around.iter().filter(|point| {
-            tape.evaluate(point, &mut registers, &mut values);
-            values.last().is_none_or(|&condition| condition.is_nan() || condition > BAD)
-        });
-        let bad = bad.count();
-        let price = tape.len() * (AROUND + 4 * bad);
+        let mut way_taken =
+            Evaluator::new(g.compile_with(self.known, &found.list, &outputs, &self.equations.parameters)?);
+        let mut is_bad = |point: &Vec<f64>| {
+            way_taken.evaluate(point).last().is_none_or(|&condition| condition.is_nan() || condition > BAD)
+        };
+        let bad = self.around.iter().filter(|point| is_bad(point)).count();
+        let price = way_taken.tape().len() * (AROUND + 4 * bad);
         if self.best.as_ref().is_none_or(|best| price < best.price) {
             self.best = Some(Best { price, definitions: found, way, clean: bad == 0 });
         }
@@ -371,15 +368,8 @@ fn pattern(
 ) -> Result<Option<Pattern>, CompileError> {
     let g = &equations.graph;
     let entries: Vec<Expr> = block.rows.iter().flat_map(|row| row.values().copied()).collect();
-    let tape = g.compile(known, &entries, &equations.parameters)?;
-    let mut values: Vec<Vec<f64>> = points
-        .iter()
-        .map(|point| {
-            let mut values = vec![0.0; entries.len()];
-            tape.evaluate(point, &mut tape.workspace(), &mut values);
-            values
-        })
-        .collect();
+    let mut evaluator = Evaluator::new(g.compile(known, &entries, &equations.parameters)?);
+    let mut values: Vec<Vec<f64>> = points.iter().map(|point| evaluator.evaluate(point).to_vec()).collect();
     if !values[1].iter().all(|x| x.is_finite()) {
         values[1] = values[0].clone(); // the point beside it is outside of where the equations mean something
     }

@@ -3,63 +3,27 @@
 use std::collections::{BTreeSet, HashMap};
 
 use nalgebra::{DMatrix, DVector};
-use symbolic::{Bounded, CompileError, Expr, Scalar, Symbol, Tape, Workspace};
+use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
 
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, Root, solve};
 use crate::{State, System};
 
-/// A tape with its registers and outputs, the parameters of a system folded in.
-pub(super) struct Numeric {
-    tape: Tape,
-    registers: Workspace<f64>,
-    values: Vec<f64>,
-}
+/// `outputs` at a state.
+pub(super) struct AtState(Evaluator<f64>);
 
-impl Numeric {
-    pub(super) fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        let tape = system.graph.compile(inputs, outputs, &system.parameter_values())?;
-        Ok(Numeric { registers: tape.workspace(), values: vec![0.0; outputs.len()], tape })
-    }
-
-    /// A tape whose inputs are `q, v, t`.
-    pub(super) fn of_state(system: &System, outputs: &[Expr]) -> Result<Self, CompileError> {
+impl AtState {
+    pub(super) fn new(system: &System, outputs: &[Expr]) -> Result<Self, CompileError> {
         let inputs = [system.positions(), system.velocities(), vec![system.time]].concat();
-        Numeric::new(system, &inputs, outputs)
-    }
-
-    pub(super) fn run(&mut self, inputs: &[f64]) -> &[f64] {
-        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
-        &self.values
+        Ok(AtState(system.evaluator(&inputs, outputs)?))
     }
 
     pub(super) fn at(&mut self, state: &State) -> &[f64] {
-        let inputs = [&state.q[..], &state.v, &[state.t]].concat();
-        self.run(&inputs)
+        self.0.evaluate(&[&state.q[..], &state.v, &[state.t]].concat())
     }
 }
 
-/// As [`Numeric`], with the size of the terms behind every value: what a residual is compared with.
-struct Measured {
-    tape: Tape,
-    registers: Workspace<Bounded>,
-    inputs: Vec<Bounded>,
-    values: Vec<Bounded>,
-}
-
-impl Measured {
-    fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        let tape = system.graph.compile(inputs, outputs, &system.parameter_values())?;
-        let zeros = |count| vec![Bounded::from_f64(0.0); count];
-        Ok(Measured { registers: tape.workspace(), inputs: zeros(inputs.len()), values: zeros(outputs.len()), tape })
-    }
-
-    fn run(&mut self, inputs: &[f64]) -> &[Bounded] {
-        for (bounded, &x) in self.inputs.iter_mut().zip(inputs) {
-            *bounded = Bounded::from_f64(x);
-        }
-        self.tape.evaluate(&self.inputs, &mut self.registers, &mut self.values);
-        &self.values
-    }
+fn bounded(point: &[f64]) -> Vec<Bounded> {
+    point.iter().map(|&x| Bounded::from_f64(x)).collect()
 }
 
 /// Equations `e(x; known) = 0` in some symbols `x` of a graph.
@@ -104,12 +68,12 @@ impl<'a> Problem<'a> {
         let mut outputs = self.equations.clone();
         outputs.extend(g.jacobian(&self.equations, &self.unknowns).entries());
         let inputs = [&self.unknowns[..], &known_symbols].concat();
-        let mut measured = Measured::new(self.system, &inputs, &outputs)?;
+        let mut measured = self.system.evaluator(&inputs, &outputs)?;
         let mut point: Vec<f64> = vec![0.0; n];
         point.extend(known.iter().map(|k| k.1));
         let evaluate = |x: &DVector<f64>| {
             point[..n].copy_from_slice(x.as_slice());
-            let (residuals, jacobian) = measured.run(&point).split_at(m);
+            let (residuals, jacobian) = measured.evaluate(&bounded(&point)).split_at(m);
             Evaluation {
                 magnitude: DVector::from_iterator(m, residuals.iter().map(|r| r.magnitude)),
                 residual: DVector::from_iterator(m, residuals.iter().map(|r| r.value)),
@@ -129,8 +93,8 @@ impl<'a> Problem<'a> {
         let (symbols, point): (Vec<Symbol>, Vec<f64>) = self.known_in_order().into_iter().unzip();
         let mut outputs = self.equations.clone();
         outputs.extend(self.system.graph.jacobian(&self.equations, &symbols).entries());
-        let mut measured = Measured::new(self.system, &symbols, &outputs)?;
-        let (residuals, derivatives) = measured.run(&point).split_at(self.equations.len());
+        let mut measured = self.system.evaluator(&symbols, &outputs)?;
+        let (residuals, derivatives) = measured.evaluate(&bounded(&point)).split_at(self.equations.len());
         let n = point.len();
         let x = DVector::from_column_slice(&point);
         let single = |(i, r): (usize, &Bounded)| {
@@ -163,8 +127,8 @@ impl<'a> Problem<'a> {
         let mut all = outputs.to_vec();
         all.extend(self.system.graph.jacobian(outputs, &self.unknowns).entries());
         let point: Vec<f64> = inputs.iter().map(|s| values[s]).collect();
-        let mut numeric = Numeric::new(self.system, &inputs, &all)?;
-        let (values, derivatives) = numeric.run(&point).split_at(outputs.len());
+        let mut numeric = self.system.evaluator(&inputs, &all)?;
+        let (values, derivatives) = numeric.evaluate(&point).split_at(outputs.len());
         let mut open = Vec::with_capacity(outputs.len());
         for i in 0..outputs.len() {
             let gradient = DVector::from_column_slice(&derivatives[i * n..(i + 1) * n]);

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::numeric::Numeric;
+use super::numeric::AtState;
 use super::{StartError, check_lengths};
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, solve};
 use crate::{State, System};
@@ -38,7 +38,7 @@ pub fn project_velocity(system: &System, state: &State) -> Result<(State, f64), 
 
 fn mass_matrix(system: &System, state: &State) -> Result<DMatrix<f64>, StartError> {
     let n = system.dimension();
-    let mut numeric = Numeric::of_state(system, system.velocity_hessian().entries())?;
+    let mut numeric = AtState::new(system, system.velocity_hessian().entries())?;
     Ok(DMatrix::from_row_slice(n, n, numeric.at(state)))
 }
 
@@ -49,7 +49,7 @@ struct Equations<'a> {
     constraints: usize,
     sigma: f64,
     /// Outputs: `f`, `A` row-major, `∂f/∂q` row-major, then `∂A/∂v`, one n×n block a constraint.
-    numeric: Numeric,
+    numeric: AtState,
 }
 
 impl<'a> Equations<'a> {
@@ -61,7 +61,7 @@ impl<'a> Equations<'a> {
         outputs.extend(a.entries());
         outputs.extend(g.jacobian(&system.constraints, &system.positions()).entries());
         outputs.extend(g.jacobian(a.entries(), &system.velocities()).entries());
-        let mut numeric = Numeric::of_state(system, &outputs)?;
+        let mut numeric = AtState::new(system, &outputs)?;
         let a = DMatrix::from_row_slice(h, n, &numeric.at(state)[h..h + h * n]);
         let sigma = mass.amax() / a.amax();
         let sigma = if sigma > 0.0 && sigma.is_finite() { sigma } else { 1.0 };

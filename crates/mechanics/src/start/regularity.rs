@@ -1,8 +1,9 @@
 //! Whether a system has well-posed equations of motion at a point, whatever its units.
 
 use nalgebra::{DMatrix, DVector};
+use symbolic::Xorshift;
 
-use super::numeric::Numeric;
+use super::numeric::AtState;
 use super::{Quantity, StartError};
 use crate::newton::decompose;
 use crate::{State, System};
@@ -50,7 +51,7 @@ fn check_finite(system: &System, state: &State) -> Result<(), StartError> {
         .chain(system.constraints.iter().enumerate().map(|(i, &f)| (Quantity::Constraint(i + 1), f)))
         .chain(system.forces.iter().zip(&system.coordinates).map(|(&f, c)| (Quantity::Force(c.name.clone()), f)));
     for (quantity, e) in quantities {
-        let value = match Numeric::of_state(system, &[e]) {
+        let value = match AtState::new(system, &[e]) {
             Ok(mut numeric) => numeric.at(state)[0],
             Err(symbolic::CompileError::NotFinite { .. }) => f64::NAN,
             Err(error) => return Err(error.into()),
@@ -75,7 +76,7 @@ impl ScaledMatrices {
         let (n, h) = (system.dimension(), system.constraints.len());
         let mut entries = system.constraint_jacobian().entries().to_vec();
         entries.extend(system.velocity_hessian().entries());
-        let mut numeric = Numeric::of_state(system, &entries)?;
+        let mut numeric = AtState::new(system, &entries)?;
         let here = numeric.at(state).to_vec();
         if let Some(place) = here.iter().position(|x| !x.is_finite()) {
             let quantity = if place < h * n { Quantity::ConstraintJacobian } else { Quantity::MassMatrix };
@@ -163,14 +164,8 @@ fn column_scale(usual_a: &DMatrix<f64>, usual_m: &DMatrix<f64>) -> DVector<f64> 
 
 /// A state a little way off, a pure function of `point`.
 fn nearby(state: &State, point: u64) -> State {
-    let mut seed = point.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let mut shift = |x: f64| {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        let unit = (seed >> 11) as f64 / (1u64 << 53) as f64;
-        x + DISTANCE * (1.0 + x.abs()) * (2.0 * unit - 1.0)
-    };
+    let mut random = Xorshift::new(point);
+    let mut shift = |x: f64| x + DISTANCE * (1.0 + x.abs()) * (2.0 * random.unit() - 1.0);
     let q = state.q.iter().map(|&x| shift(x)).collect();
     let v = state.v.iter().map(|&x| shift(x)).collect();
     State { t: state.t, q, v }

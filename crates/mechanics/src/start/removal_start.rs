@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Symbol};
 
-use super::numeric::{Numeric, Problem, Solved};
+use super::numeric::{Problem, Solved};
 use super::{StartError, check_lengths};
 use crate::newton::NewtonOptions;
 use crate::{Removal, State, System};
@@ -91,6 +91,6 @@ fn start_values(
 ) -> Result<Vec<(Symbol, f64)>, StartError> {
     let (symbols, expressions): (Vec<Symbol>, Vec<Expr>) = removal.start.iter().map(|(&s, &e)| (s, e)).unzip();
     let (inputs, point): (Vec<Symbol>, Vec<f64>) = known.iter().map(|(&s, &x)| (s, x)).unzip();
-    let mut numeric = Numeric::new(system, &inputs, &expressions)?;
-    Ok(symbols.into_iter().zip(numeric.run(&point).iter().copied()).collect())
+    let mut numeric = system.evaluator(&inputs, &expressions)?;
+    Ok(symbols.into_iter().zip(numeric.evaluate(&point).iter().copied()).collect())
 }

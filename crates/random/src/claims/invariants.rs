@@ -3,7 +3,7 @@
 use deltaq::{CERTAINTY, Motion, SolveError};
 use equations::Outputs;
 use mechanics::System;
-use symbolic::{Evaluator, Expr, Symbol};
+use symbolic::{Expr, Symbol};
 
 use super::CheckError;
 use crate::Case;
@@ -31,8 +31,7 @@ impl Drift {
 /// Follows `e(t, q, v, multipliers)` along a motion: the first of its multipliers, by the names in `multipliers`.
 fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) -> Result<Drift, SolveError> {
     let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
-    let tape = system.graph.compile(&symbols, &[e], &system.parameter_values())?;
-    let mut evaluator = Evaluator::new(tape);
+    let mut evaluator = system.evaluator(&symbols, &[e])?;
     let mut value = |t: f64, o: &Outputs| {
         let read = [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
         evaluator.evaluate(&read)[0]

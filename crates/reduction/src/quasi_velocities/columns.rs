@@ -66,10 +66,11 @@ impl Columns {
             })
             .collect();
         let count = self.columns.len();
+        let multiplied_out = |e| g.expand_if_shorter(e, 4 * SIDE);
         let mut reduced = vec![vec![g.zero(); count]; count];
         for (i, column) in self.columns.iter().enumerate() {
             for (j, product) in products.iter().enumerate().take(i + 1) {
-                let entry = definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, column, product)));
+                let entry = definitions.short(g, "m", SIDE, multiplied_out(dot(g, column, product)));
                 (reduced[i][j], reduced[j][i]) = (entry, entry);
             }
         }
@@ -79,8 +80,10 @@ impl Columns {
     /// `Sᵀ force`, with an entry of `force` for each coordinate.
     pub fn projected(&self, g: &Graph, force: &[Expr], definitions: &mut Definitions) -> Vec<Expr> {
         let force: Sparse = force.iter().copied().enumerate().collect();
+        // what the columns of `S` have in common with a force cancels
+        let multiplied_out = |e| g.expand_if_shorter(e, 4 * SIDE);
         let columns = self.columns.iter();
-        columns.map(|column| definitions.short(g, "m", SIDE, multiplied_out(g, dot(g, column, &force)))).collect()
+        columns.map(|column| definitions.short(g, "m", SIDE, multiplied_out(dot(g, column, &force)))).collect()
     }
 
     /// The same without definitions for the results, for a force that contains unknowns.
@@ -111,14 +114,4 @@ fn reach(rows: &[Sparse], column: &Sparse) -> BTreeSet<usize> {
 fn dot(g: &Graph, a: &Sparse, b: &Sparse) -> Expr {
     let terms: Vec<Expr> = a.iter().filter_map(|(i, &x)| Some(g.mul(x, *b.get(i)?))).collect();
     g.sum(&terms)
-}
-
-/// `e` multiplied out, if that makes it shorter: what the columns of `S` have in common with a force cancels.
-fn multiplied_out(g: &Graph, e: Expr) -> Expr {
-    let size = g.size(&[e]);
-    if size > 4 * SIDE {
-        return e;
-    }
-    let expanded = g.expand(e);
-    if g.size(&[expanded]) < size { expanded } else { e }
 }
