@@ -243,6 +243,22 @@ impl Maggi {
         motion::solve(self, start, end, tolerance, form)
     }
 
+    /// [`Maggi::solve`] at two tolerances, so that their distance tells the error: in [`Form::for_system`], and where its splitting
+    /// of the velocities is lost on the way, by accelerations.
+    ///
+    /// # Errors
+    /// Those of [`Maggi::new`] and [`Maggi::solve`].
+    pub fn two_runs(system: &System, start: &State, end: f64, tolerances: [f64; 2]) -> Result<[Motion; 2], MaggiError> {
+        let mut maggi = Maggi::new(system)?;
+        let mut both = |form: Form| -> Result<_, MaggiError> {
+            let [first, second] = tolerances.map(|tolerance| maggi.solve(start, end, tolerance, form));
+            Ok([first?, second?])
+        };
+        let runs = both(Form::for_system(system))?;
+        let whole = runs.iter().all(|run| matches!(run.ending(), Ending::Completed));
+        if whole { Ok(runs) } else { both(Form::Accelerations) }
+    }
+
     fn instant(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<Instant<'_>, MaggiError> {
         self.check_length("positions", q)?;
         self.check_length("velocities", v)?;
