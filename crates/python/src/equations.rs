@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, times};
-use crate::motion::{Names, Outputs, stopped, work};
+use crate::motion::{Names, Outputs, work};
 use crate::{arguments, background, ensemble, errors};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;

@@ -1,9 +1,17 @@
 //! The node store behind a graph: hash-consing, names, dependency sets.
 
+use crate::Function;
 use crate::number::{Number, Rational};
-use crate::{Expr, Function, Symbol};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
+
+/// A node of a [`crate::Graph`]. Equal expressions are the same node (hash-consing).
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Expr(pub(crate) u32);
+
+/// A named variable of a [`crate::Graph`].
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Symbol(pub(crate) u32);
 
 /// What an expression is made of. Children always have smaller ids than their parents.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -1,18 +1,10 @@
 //! The graph and its constructors.
 
-use crate::Function;
 use crate::arena::{Arena, Node};
 use crate::matrix::Matrix;
 use crate::number::{Number, Rational};
+use crate::{Expr, Function, Symbol};
 use std::cell::RefCell;
-
-/// A node of a [`Graph`]. Equal expressions are the same node (hash-consing).
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct Expr(pub(crate) u32);
-
-/// A named variable of a [`Graph`].
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct Symbol(pub(crate) u32);
 
 /// The store of expressions. Building needs only `&Graph`; it is `Send`, not `Sync`, and a clone
 /// keeps all ids.

@@ -64,12 +64,13 @@ mod simplify;
 mod suggest;
 mod tape;
 
+pub use arena::{Expr, Symbol};
 pub use bounded::Bounded;
 pub use evaluate::CompileError;
 pub use evaluator::Evaluator;
 pub use excerpt::excerpt;
 pub use function::Function;
-pub use graph::{Expr, Graph, Symbol};
+pub use graph::Graph;
 pub use identity::Vanishing;
 pub use matrix::Matrix;
 pub use parse_error::{ParseError, ParseErrorKind};
