@@ -14,7 +14,7 @@ struct Arrow {
 }
 
 /// What each member may be built on. A member that is not named here may be built on none.
-const ALLOWED: [(&str, &[&str]); 22] = [
+const ALLOWED: [(&str, &[&str]); 21] = [
     ("symbolic", &[]),
     ("mechanics", &["symbolic"]),
     // examples and tests of the rooms below are scenes
@@ -84,7 +84,6 @@ const ALLOWED: [(&str, &[&str]); 22] = [
         ],
     ),
     ("engine", &["symbolic", "scene", "deltaq", "picture", "validation"]),
-    ("peers", &["mechanics", "scene", "equations", "integrate", "deltaq", "reference", "picture", "validation"]),
     ("python", &["symbolic", "mechanics", "scene", "equations", "integrate", "deltaq"]),
     ("xtask", &[]),
 ];

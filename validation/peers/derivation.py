@@ -115,7 +115,7 @@ def derive(scene, algebra, formulation, removal):
 
 def ordered(tags, theirs, values):
     """Start values in the order of `tags`; a state that is not among `theirs` starts at zero."""
-    table = {tuple(tag): x for tag, x in zip(theirs, values)}
+    table = dict(zip(theirs, values))
     return [table.get(tag, 0.0) for tag in tags]
 
 
@@ -187,3 +187,19 @@ def without_constants(algebra, tags, y, rates, start):
     rates = algebra.substitute([rates[i] for i in kept], [(y[i], start[i]) for i in fixed])
     # a constant rate may have turned into a number of the host language
     return [tags[i] for i in kept], [y[i] for i in kept], list(rates), [start[i] for i in kept], {tags[i]: start[i] for i in fixed}
+
+
+class Places:
+    """Columns of coordinates in tables of states, by tags; a state that never changes has a value instead of a column."""
+
+    def __init__(self, coordinates, tags, fixed):
+        self.places = []
+        for name in coordinates:
+            known = [tag for tag in (("q", name), ("w", name), ("u", name)) if tag in tags or tag in fixed]
+            if not known:
+                raise ValueError(f"no state is the coordinate {name}")
+            self.places.append((tags.index(known[0]), None) if known[0] in tags else (None, fixed[known[0]]))
+
+    def __call__(self, table):
+        picked = [table[:, j] if j is not None else np.full(len(table), x) for j, x in self.places]
+        return np.stack(picked, axis=1)

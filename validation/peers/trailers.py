@@ -27,6 +27,17 @@ def reduced(sin, cos, theta, u, omega, m, J, d):
     return rates + [-(change * u) / total, 0.0 * omega]
 
 
+def symbolic(scene, algebra):
+    """Tags, states and rates of `reduced` in the expressions of a tool."""
+    n = len(scene.coordinates) - 3
+    tags = [("q", x) for x in scene.coordinates] + [("u", ""), ("omega", "")]
+    y = [algebra.symbol(f"y_{i}") for i in range(n + 5)]
+    m, J, d = (algebra.number(repr(scene.parameters[name])) for name in ("m", "J", "d"))
+    rates = reduced(algebra.sin, algebra.cos, y[2 : n + 3], y[n + 3], y[n + 4], m, J, d)
+    # the turn rate never changes
+    return tags, y, rates[:-1] + [algebra.number("0")]
+
+
 def reduced_loop(t, y, n, m, J, d):
     """The same for numba and for plain Python: y = (x, y, theta_0 ... theta_n, u), omega in the last place."""
     dy = np.empty(n + 5)

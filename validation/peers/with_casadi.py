@@ -5,8 +5,8 @@ import numpy as np
 
 import trailers
 from algebras import Casadi
-from derivation import derive, explicit, ordered, without_constants
-from places import Places
+from derivation import Places, derive, explicit, ordered, without_constants
+from reader import Scene
 
 OPTIONS = {
     "CVODES, Adams": {"linear_multistep_method": "adams", "nonlinear_solver_iteration": "functional"},
@@ -18,26 +18,21 @@ LARGE = 30
 
 
 class Tool:
-    PACKAGES = ["casadi"]
-
     def methods(self, case):
-        return list(OPTIONS) if case["form"] != "reduced" else list(OPTIONS)[:2]
+        return list(OPTIONS) if case.form != "reduced" else list(OPTIONS)[:2]
 
-    def setup(self, case, scene):
+    def setup(self, case):
+        scene = Scene(case.toml)
         algebra = Casadi()
         self.differential = None
-        if case["form"] == "reduced":
-            n = len(scene.coordinates) - 3
-            p = scene.parameters
-            tags = [("q", x) for x in scene.coordinates] + [("u", ""), ("omega", "")]
-            y = [algebra.symbol(f"y_{i}") for i in range(n + 5)]
-            rates = [ca.SX(e) for e in trailers.reduced(ca.sin, ca.cos, y[2 : n + 3], y[n + 3], y[n + 4], p["m"], p["J"], p["d"])]
-            start = ordered(tags, case["tags"], case["start"])
+        if case.form == "reduced":
+            tags, y, rates = trailers.symbolic(scene, algebra)
+            start = ordered(tags, case.tags, case.start)
             self.tags, y, rates, self.start, fixed = without_constants(algebra, tags, y, rates, start)
             self.problem = {"x": ca.vertcat(*y), "ode": ca.vertcat(*rates)}
         else:
-            instant = derive(scene, algebra, case["formulation"], case["removal"])
-            start = ordered(instant.tags, case["tags"], case["start"])
+            instant = derive(scene, algebra, case.formulation, case.removal)
+            start = ordered(instant.tags, case.tags, case.start)
             z, y_all = ca.vertcat(*instant.z), ca.vertcat(*instant.y)
             matrix = ca.vertcat(*[ca.horzcat(*row) for row in instant.matrix])
             matrix, right = ca.sparsify(matrix), ca.vertcat(*instant.right)

@@ -6,8 +6,8 @@ import numpy as np
 import trailers
 import simplified
 from algebras import Heyoka, Sympy
-from derivation import derive, explicit, ordered, without_constants
-from places import Places
+from derivation import Places, derive, explicit, ordered, without_constants
+from reader import Scene
 
 OWN, COMPACT, SIMPLIFIED = "Taylor", "Taylor, compact mode", "Taylor, simplified by SymPy"
 # the reference: coefficients and states with 113 bits
@@ -23,33 +23,24 @@ class System:
         self.places = Places(scene.coordinates, tags, fixed)
 
 
-
 class Tool:
-    PACKAGES = ["heyoka", "sympy"]
-
     def methods(self, case):
-        if case["purpose"] == "reference":
+        if case.purpose == "reference":
             return [REFERENCE]
         # one function for the whole step, or functions in loops: more to compile and faster, or the other way round
-        trailers = case["name"].startswith("trailers")
-        return [OWN, COMPACT] + ([] if trailers else [SIMPLIFIED])
+        return [OWN, COMPACT] + ([] if case.trailers else [SIMPLIFIED])
 
-    def setup(self, case, scene):
+    def setup(self, case):
+        scene = Scene(case.toml)
         self.case, self.scene, self.ready, self.short = case, scene, {}, None
         self.algebra = algebra = Heyoka()
-        if case["form"] == "reduced":
-            n = len(scene.coordinates) - 3
-            tags = [("q", x) for x in scene.coordinates] + [("u", ""), ("omega", "")]
-            y = [algebra.symbol(f"y_{i}") for i in range(n + 5)]
-            p = {name: algebra.number(repr(x)) for name, x in scene.parameters.items()}
-            rates = trailers.reduced(hy.sin, hy.cos, y[2 : n + 3], y[n + 3], y[n + 4], p["m"], p["J"], p["d"])
-            start = ordered(tags, case["tags"], case["start"])
-            # the turn rate never changes
-            rates[n + 4] = algebra.number("0")
+        if case.form == "reduced":
+            tags, y, rates = trailers.symbolic(scene, algebra)
+            start = ordered(tags, case.tags, case.start)
             found = without_constants(algebra, tags, y, rates, start)
         else:
-            instant = derive(scene, algebra, case["formulation"], case["removal"])
-            found = explicit(instant, algebra, ordered(instant.tags, case["tags"], case["start"]))
+            instant = derive(scene, algebra, case.formulation, case.removal)
+            found = explicit(instant, algebra, ordered(instant.tags, case.tags, case.start))
         self.own = System(scene, *found)
         return algebra.uncounted
 
@@ -62,8 +53,8 @@ class Tool:
             return self.own
         if self.short is None:
             case = self.case
-            instant = derive(self.scene, Sympy(), case["formulation"], case["removal"])
-            tags, y, rates, start, fixed = simplified.explicit(instant, ordered(instant.tags, case["tags"], case["start"]))
+            instant = derive(self.scene, Sympy(), case.formulation, case.removal)
+            tags, y, rates, start, fixed = simplified.explicit(instant, ordered(instant.tags, case.tags, case.start))
             y, rates = [hy.expression(str(x)) for x in y], [hy.from_sympy(e) for e in rates]
             self.short = System(self.scene, tags, y, rates, start, fixed)
         return self.short

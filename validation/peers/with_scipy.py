@@ -8,35 +8,34 @@ import compiled_dop853
 import trailers
 from algebras import Sympy
 from code_lines import Lines, function
-from derivation import derive, ordered
-from places import Places
+from derivation import Places, derive, ordered
+from reader import Scene
 
 SOLVERS = ["DOP853", "LSODA", "Radau"]
 COMPILED = "DOP853 compiled whole"
 
 
 class Tool:
-    PACKAGES = ["scipy", "numba", "sympy", "numpy"]
-
     def methods(self, case):
         return [f"{solver}, {kind}" for kind in ("Python", "numba") for solver in SOLVERS] + [COMPILED]
 
-    def setup(self, case, scene):
-        self.by_hand = case["form"] in ("reduced", "multipliers")
+    def setup(self, case):
+        scene = Scene(case.toml)
+        self.by_hand = case.form in ("reduced", "multipliers")
         if self.by_hand:
             n = len(scene.coordinates) - 3
             p = scene.parameters
             names = [("q", x) for x in scene.coordinates]
-            names += [("u", ""), ("omega", "")] if case["form"] == "reduced" else [("v", x) for x in scene.coordinates]
-            self.hand = trailers.reduced_loop if case["form"] == "reduced" else trailers.multipliers
+            names += [("u", ""), ("omega", "")] if case.form == "reduced" else [("v", x) for x in scene.coordinates]
+            self.hand = trailers.reduced_loop if case.form == "reduced" else trailers.multipliers
             self.arguments = (n, float(p["m"]), float(p["J"]), float(p["d"]))
             hand, arguments = self.hand, self.arguments
             self.python = lambda t, y: hand(t, y, *arguments)
-            self.tags, fixed, self.start = names, {}, ordered(names, case["tags"], case["start"])
+            self.tags, fixed, self.start = names, {}, ordered(names, case.tags, case.start)
         else:
             algebra = Sympy()
-            instant = derive(scene, algebra, case["formulation"], case["removal"])
-            self.lines = Lines(instant, ordered(instant.tags, case["tags"], case["start"]))
+            instant = derive(scene, algebra, case.formulation, case.removal)
+            self.lines = Lines(instant, ordered(instant.tags, case.tags, case.start))
             self.python = function(self.lines.for_python())
             self.tags, fixed, self.start = self.lines.tags, self.lines.fixed, self.lines.start
         self.start = np.array(self.start, dtype=float)

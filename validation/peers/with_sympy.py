@@ -3,22 +3,22 @@
 import numpy as np
 
 import lagranges_method
+from reader import Scene
 
 
 class Tool:
-    PACKAGES = ["sympy"]
-
     def methods(self, case):
         return []
 
-    def setup(self, case, scene):
+    def setup(self, case):
+        scene = Scene(case.toml)
         self.case, self.scene = case, scene
         self.accelerations = lagranges_method.accelerations(scene)
         return 0.0
 
     def rates(self):
         case, scene = self.case, self.scene
-        table = {tuple(tag): x for tag, x in zip(case["tags"], case["start"])}
+        table = dict(zip(case.tags, case.start))
         q = [table[("q", x)] for x in scene.coordinates]
         v = [table[("v", x)] for x in scene.coordinates]
         tags = [("q", x) for x in scene.coordinates] + [("v", x) for x in scene.coordinates]

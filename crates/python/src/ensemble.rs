@@ -62,6 +62,7 @@ pub(crate) struct Task<'a> {
     /// The constants of `choice` are those of all members, whatever their multipliers are.
     pub(crate) given: bool,
     pub(crate) times: Vec<f64>,
+    pub(crate) end: f64,
     pub(crate) settings: Settings,
     pub(crate) threads: usize,
 }
@@ -83,9 +84,10 @@ pub(crate) struct Integrated {
     choice: Choice,
 }
 
-/// The times at which members are read off: in ascending order, from the start on; by default the end.
-pub(crate) fn times(given: Option<FloatList<'_>>, scene: &Scene) -> PyResult<Vec<f64>> {
-    let Some(given) = given else { return Ok(vec![setting(scene).end]) };
+/// The times at which a run is read off, in ascending order, from the start on, by default the end; and the end.
+pub(crate) fn times(given: Option<FloatList<'_>>, scene: &Scene) -> PyResult<(Vec<f64>, f64)> {
+    let end = setting(scene).end;
+    let Some(given) = given else { return Ok((vec![end], end)) };
     let times = finite("times", given.as_array().iter().copied().collect())?;
     let start = scene.start.t;
     if let Some(early) = times.iter().find(|&&t| t < start) {
@@ -95,18 +97,20 @@ pub(crate) fn times(given: Option<FloatList<'_>>, scene: &Scene) -> PyResult<Vec
         Some(pair) => {
             Err(PyValueError::new_err(format!("times: {} comes after {}; ascending order is needed", pair[1], pair[0])))
         }
-        None => Ok(times),
+        None => {
+            let end = times.last().copied().filter(|&t| t > start).unwrap_or(end);
+            Ok((times, end))
+        }
     }
 }
 
 impl Task<'_> {
     pub(crate) fn run(self) -> Result<Integrated, Refused> {
-        let Task { varied, scene, with, choice, given, times, settings, threads } = self;
+        let Task { varied, scene, with, choice, given, times, end, settings, threads } = self;
         let graph = &scene.system.graph;
         let names: Vec<String> = scene.system.parameters.iter().map(|p| graph.name(p.symbol)).collect();
         let parameters: Vec<&str> =
             varied.values.keys().map(String::as_str).filter(|n| names.iter().any(|p| p == n)).collect();
-        let end = times.last().copied().filter(|&t| t > scene.start.t).unwrap_or(setting(&scene).end);
         let interrupted = || settings.interrupt.as_ref().is_some_and(Interrupt::is_raised);
         let starts = over_threads(threads, varied.count, |i| {
             if interrupted() {

@@ -1,17 +1,20 @@
 //! Equations of motion as functions of arrays.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
-use deltaq::{EquationStyle, Ready, constant_names, equations_text, ready, setting};
+use deltaq::{EquationStyle, Ready, SolveError, constant_names, equations_text, ready_to_run, setting};
 use equations::{Compiled, EvaluationFailure, Role};
+use integrate::{Dense, Method, Options, Status};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, times};
-use crate::motion::{Names, Outputs};
-use crate::{arguments, background, errors};
+use crate::motion::{Names, Outputs, ended, work};
+use crate::{arguments, background, ensemble, errors};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
@@ -36,12 +39,30 @@ pub(crate) struct Equations {
     /// Names of the free constants.
     #[pyo3(get)]
     constants: Vec<String>,
-    /// The equations and what was left out of them, in the language of scenes.
-    #[pyo3(get)]
-    text: String,
-    /// The equations in LaTeX: one `aligned` environment.
-    #[pyo3(get)]
-    latex: String,
+}
+
+/// One run of the time loop. No second run stands beside it: nothing is known of its error but what its tolerance says.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Trajectory {
+    /// The times asked for that were reached, shape (k,).
+    times: Py<PyArrayDyn<f64>>,
+    /// States y at `times`, shape (k, m); `Equations.outputs` reads coordinates and all else off them.
+    states: Py<PyArrayDyn<f64>>,
+    /// "completed" or "stopped".
+    status: &'static str,
+    /// Why the run stopped, None where it is complete.
+    cause: Option<String>,
+    /// What the run cost, as in `Motion.work`.
+    work: Py<PyDict>,
+    /// Wall-clock seconds of the run and of reading the states off.
+    seconds: f64,
+}
+
+#[pymethods]
+impl Trajectory {
+    fn __repr__(&self) -> String {
+        format!("<deltaq.Trajectory {}, {} s>", self.status, self.seconds)
+    }
 }
 
 /// Calls `body` with each row of `t` and `y`: the row's number, time and state.
@@ -56,20 +77,23 @@ fn each(t: &Rows, y: &Rows, mut body: impl FnMut(f64, &[f64]) -> Result<(), Eval
 impl Equations {
     pub(crate) fn new(ready: Ready, scene: Scene) -> Equations {
         let equations = &ready.equations;
-        let g = &equations.graph;
-        let lines: Vec<String> =
-            equations.statements.iter().map(|s| format!("{} &= {}", g.latex(s.left), g.latex(s.right))).collect();
         Equations {
             dimension: scene.system.dimension(),
             scene: Mutex::new(scene),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
-            states: equations.states.iter().map(|y| g.name(y.symbol)).collect(),
+            states: equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect(),
             constants: constant_names(equations),
-            text: equations_text(equations, EquationStyle::Plain),
-            latex: format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n")),
             ready: Mutex::new(ready),
         }
+    }
+
+    fn ready(&self) -> MutexGuard<'_, Ready> {
+        self.ready.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn scene(&self) -> Scene {
+        self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Reads `t` and `y`, and calls `body` with the compiled equations, which start from the same guess in each call.
@@ -84,7 +108,7 @@ impl Equations {
         if t.count().is_some() && y.count().is_none() {
             return Err(PyValueError::new_err("t has several entries, y has a single row"));
         }
-        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut ready = self.ready();
         let Ready { compiled, guess, .. } = &mut *ready;
         if !guess.is_empty() {
             compiled.set_guess(guess);
@@ -94,7 +118,7 @@ impl Equations {
 
     /// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
     fn state(&self, q: &[f64], v: &[f64], mu: &[f64]) -> PyResult<(Vec<f64>, Vec<usize>)> {
-        let ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        let ready = self.ready();
         let equations = &ready.equations;
         let place =
             |list: &[symbolic::Expr], symbol| list.iter().position(|&e| equations.graph.as_symbol(e) == Some(symbol));
@@ -126,19 +150,35 @@ impl Equations {
 
 #[pymethods]
 impl Equations {
+    /// The equations and what was left out of them, in the language of scenes.
+    #[getter]
+    fn text(&self) -> String {
+        equations_text(&self.ready().equations, EquationStyle::Plain)
+    }
+
+    /// The equations in LaTeX: one `aligned` environment.
+    #[getter]
+    fn latex(&self) -> String {
+        let equations = &self.ready().equations;
+        let latex = |e| equations.graph.latex(e);
+        let lines: Vec<String> =
+            equations.statements.iter().map(|s| format!("{} &= {}", latex(s.left), latex(s.right))).collect();
+        format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
+    }
+
     /// The state y(t0) that belongs to the start of the system, shape (m,).
     ///
     /// constants: the free constants, "zero", {"horizon": T} (natural at time T) or an array. By default those that `System.equations` was given.
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
-        let Ready { equations, start, .. } = self.ready.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let Ready { equations, start, .. } = self.ready().clone();
         let start = match rule {
             None => start,
             Some(rule) => {
                 let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000)?;
-                let scene = self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone();
-                let work = move || ready(setting(&scene), equations, &rule, &settings);
+                let scene = self.scene();
+                let work = move || ready_to_run(setting(&scene), equations, &rule, &settings);
                 background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
             }
         };
@@ -167,6 +207,7 @@ impl Equations {
     #[pyo3(signature = (t, y))]
     fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
         let width = self.states.len();
+        self.ready().prepare(Method::Radau5).map_err(errors::solve)?;
         let (values, count) = self.evaluate(&t, &y, |compiled, t, y| {
             let mut values = Vec::with_capacity(width * width * y.count().unwrap_or(1));
             let mut jacobian = vec![0.0; width * width];
@@ -191,7 +232,7 @@ impl Equations {
             })?;
             Ok(rows)
         })?;
-        let names = Names::of(&self.ready.lock().unwrap_or_else(PoisonError::into_inner).equations);
+        let names = Names::of(&self.ready().equations);
         Outputs::new(py, &rows, self.dimension, &names, count)
     }
 
@@ -217,7 +258,7 @@ impl Equations {
         }
         let (y, places) = self.state(&q, &v, &mu)?;
         let mut rates = vec![0.0; y.len()];
-        let mut ready = self.ready.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut ready = self.ready();
         let Ready { compiled, guess, .. } = &mut *ready;
         if !guess.is_empty() {
             compiled.set_guess(guess);
@@ -226,12 +267,70 @@ impl Equations {
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
-    fn _repr_latex_(&self) -> String {
-        format!("$\\displaystyle {}$", self.latex)
+    /// One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending order: half of what
+    /// `System.solve` does, for those who know the error from elsewhere.
+    ///
+    /// method: one of METHODS; what it needs beyond the rates is compiled by the first run with it. tolerance: relative and absolute.
+    /// project, max_steps: as in `System.solve`. Where the start and the last time alone are asked for, nothing is kept in between.
+    ///
+    /// Other threads go on meanwhile; Ctrl-C ends it. SolveError where there is no run; one that stops early says so in `status`.
+    #[pyo3(signature = (times, *, method="dop853", tolerance=1e-11, project=true, max_steps=1_000_000))]
+    fn integrate(
+        &self,
+        py: Python<'_>,
+        times: FloatList<'_>,
+        method: &str,
+        tolerance: f64,
+        project: bool,
+        max_steps: usize,
+    ) -> PyResult<Trajectory> {
+        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps)?;
+        let (mut times, end) = ensemble::times(Some(times), &self.scene())?;
+        let mut ready = self.ready();
+        let is_end = |&t: &f64| t == ready.t || t == end;
+        let options = Options {
+            method: settings.method,
+            projection: settings.projection,
+            max_steps,
+            dense: if times.iter().all(is_end) { Dense::EndOnly } else { Dense::Everywhere },
+            interrupt: Some(interrupt.clone()),
+            ..Options::with_tolerance(tolerance)
+        };
+        let ready = &mut *ready;
+        let run = || -> Result<_, SolveError> {
+            ready.prepare(options.method)?;
+            let clock = Instant::now();
+            let mut run = ready.integrate(end, &options)?;
+            times.retain(|&t| t <= run.end());
+            let width = ready.start.len();
+            let mut states = vec![0.0; width * times.len()];
+            for (&t, row) in times.iter().zip(states.chunks_exact_mut(width)) {
+                run.states_at(ready, t, row)?;
+            }
+            Ok((run, states, clock.elapsed().as_secs_f64()))
+        };
+        let (run, states, seconds) = background::run(py, &interrupt, run)?.map_err(errors::solve)?;
+        let (status, cause) = match &run.status {
+            Status::Completed => ended(None),
+            Status::Stopped { t, cause } => ended(Some((*t, cause))),
+        };
+        let count = Some(times.len());
+        Ok(Trajectory {
+            states: array(py, states, count, &[self.states.len()])?.unbind(),
+            times: array(py, times, count, &[])?.unbind(),
+            status,
+            cause,
+            work: work(py, &run.work)?,
+            seconds,
+        })
     }
 
-    fn __str__(&self) -> &str {
-        &self.text
+    fn _repr_latex_(&self) -> String {
+        format!("$\\displaystyle {}$", self.latex())
+    }
+
+    fn __str__(&self) -> String {
+        self.text()
     }
 
     fn __repr__(&self) -> String {

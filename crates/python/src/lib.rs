@@ -22,7 +22,7 @@ mod _native {
     #[pymodule_export]
     use crate::ensemble::Ensemble;
     #[pymodule_export]
-    use crate::equations::Equations;
+    use crate::equations::{Equations, Trajectory};
     #[pymodule_export]
     use crate::errors::{
         BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, RemovalError,

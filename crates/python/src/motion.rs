@@ -1,12 +1,14 @@
 //! Motions, read off at many times.
 
+use std::fmt::Display;
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::{Ending, ErrorEstimate, Setting, SolveError, constant_names, error_estimate};
+use deltaq::{Ending, ErrorEstimate, Seconds, Setting, SolveError, constant_names, error_estimate};
+use integrate::Work;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::arrays::{Floats, array, columns, times};
 use crate::errors;
@@ -123,7 +125,18 @@ pub(crate) struct Motion {
     /// Times, shape (k,), in the unit of time of the system.
     #[pyo3(get)]
     times: Py<PyArrayDyn<f64>>,
-    samples: Py<Outputs>,
+    /// Coordinates q at `times`, shape (k, n), in the units of the system.
+    #[pyo3(get)]
+    coordinates: Py<PyArrayDyn<f64>>,
+    /// Velocities q' at `times`, shape (k, n), in units of the coordinates per unit of time.
+    #[pyo3(get)]
+    velocities: Py<PyArrayDyn<f64>>,
+    /// Multipliers and costates by name, each of shape (k,).
+    #[pyo3(get)]
+    multipliers: Py<PyDict>,
+    /// Quantities that should stay constant by name, each of shape (k,).
+    #[pyo3(get)]
+    invariants: Py<PyDict>,
     /// Largest difference of the two runs, in the kinetic metric sqrt(dq' M dq): a bound in practice for the error of the coordinates.
     #[pyo3(get)]
     error_estimate: f64,
@@ -159,39 +172,53 @@ pub(crate) struct Motion {
     seconds: Py<PyDict>,
 }
 
+/// What a run cost, by name.
+pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
+    let Work { steps, rejected, evaluations, jacobians, orders, .. } = *work;
+    let items = [
+        ("steps", steps),
+        ("rejected", rejected),
+        ("evaluations", evaluations),
+        ("jacobians", jacobians),
+        ("orders", orders),
+    ];
+    Ok(items.into_py_dict(py)?.unbind())
+}
+
+/// `status` and `cause` of what stopped at a time, or was completed.
+pub(crate) fn ended(stop: Option<(f64, impl Display)>) -> (&'static str, Option<String>) {
+    let cause = stop.map(|(t, cause)| format!("stopped at t = {t}: {cause}"));
+    (if cause.is_some() { "stopped" } else { "completed" }, cause)
+}
+
 impl Motion {
     pub(crate) fn new(py: Python<'_>, sampled: Sampled) -> PyResult<Motion> {
         let Sampled { motion, times, rows, estimate, dimension } = sampled;
         let names = Names::of(&motion.equations);
         let count = Some(times.len());
-        let samples = Outputs::new(py, &rows, dimension, &names, count)?;
+        let Outputs { coordinates, velocities, multipliers, invariants } =
+            Outputs::new(py, &rows, dimension, &names, count)?;
         let (status, cause) = match &motion.ending {
-            Ending::Completed => ("completed", None),
-            Ending::Stopped { t, cause } => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
+            Ending::Completed => ended(None::<(_, &str)>),
+            Ending::Stopped { t, cause } => ended(Some((*t, cause))),
         };
-        let (constants, work, projection, seconds) =
-            (PyDict::new(py), PyDict::new(py), PyDict::new(py), PyDict::new(py));
-        for (name, value) in constant_names(&motion.equations).iter().zip(&motion.constants) {
-            constants.set_item(name, value)?;
-        }
-        work.set_item("steps", motion.work.steps)?;
-        work.set_item("rejected", motion.work.rejected)?;
-        work.set_item("evaluations", motion.work.evaluations)?;
-        work.set_item("jacobians", motion.work.jacobians)?;
-        work.set_item("orders", motion.work.orders)?;
+        let constants = constant_names(&motion.equations).into_iter().zip(motion.constants.iter().copied());
+        let projection = PyDict::new(py);
         projection.set_item("count", motion.projection.projections)?;
         projection.set_item("largest", motion.projection.largest)?;
         projection.set_item("total", motion.projection.total)?;
-        seconds.set_item("derive", motion.seconds.derive)?;
-        seconds.set_item("compile", motion.seconds.compile)?;
-        seconds.set_item("integrate", motion.seconds.integrate)?;
+        let Seconds { derive, compile, integrate } = motion.seconds;
+        let seconds = [("derive", derive), ("compile", compile), ("integrate", integrate)];
         Ok(Motion {
             names,
             dimension,
             formulation: motion.equations.formulation,
             removal: motion.equations.removal.as_ref().map(|r| r.name.clone()),
             times: array(py, times, count, &[])?.unbind(),
-            samples: Py::new(py, samples)?,
+            coordinates,
+            velocities,
+            multipliers,
+            invariants,
             error_estimate: estimate.absolute,
             relative_error_estimate: estimate.relative,
             status,
@@ -199,10 +226,10 @@ impl Motion {
             doubt: motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
             start: motion.start(),
             end: motion.end(),
-            constants: constants.unbind(),
-            work: work.unbind(),
+            constants: constants.into_py_dict(py)?.unbind(),
+            work: work(py, &motion.work)?,
             projection: projection.unbind(),
-            seconds: seconds.unbind(),
+            seconds: seconds.into_py_dict(py)?.unbind(),
             motion: Mutex::new(motion),
         })
     }
@@ -210,30 +237,6 @@ impl Motion {
 
 #[pymethods]
 impl Motion {
-    /// Coordinates q at `times`, shape (k, n), in the units of the system.
-    #[getter]
-    fn coordinates(&self, py: Python<'_>) -> Py<PyArrayDyn<f64>> {
-        self.samples.get().coordinates.clone_ref(py)
-    }
-
-    /// Velocities q' at `times`, shape (k, n), in units of the coordinates per unit of time.
-    #[getter]
-    fn velocities(&self, py: Python<'_>) -> Py<PyArrayDyn<f64>> {
-        self.samples.get().velocities.clone_ref(py)
-    }
-
-    /// Multipliers and costates by name, each of shape (k,).
-    #[getter]
-    fn multipliers(&self, py: Python<'_>) -> Py<PyDict> {
-        self.samples.get().multipliers.clone_ref(py)
-    }
-
-    /// Quantities that should stay constant by name, each of shape (k,).
-    #[getter]
-    fn invariants(&self, py: Python<'_>) -> Py<PyDict> {
-        self.samples.get().invariants.clone_ref(py)
-    }
-
     /// Everything at time t, read off the dense output (order 7 for dop853).
     ///
     /// t is a number or of shape (k,), from start to end; ValueError elsewhere.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{derive_at, ready, removals, setting, solve_choice};
+use deltaq::{derive_at, ready_to_run, removals, setting, solve_choice};
 use mechanics::integrability;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -54,6 +54,31 @@ impl System {
     /// The scene. No lock of Python is waited for while it is held.
     fn scene(&self) -> MutexGuard<'_, Scene> {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl System {
+    /// Expressions of t, q and v at the given points, row after row, and how many points there are.
+    fn values(
+        &self,
+        [t, q, v]: [Floats<'_>; 3],
+        expressions: impl Fn(&mechanics::System) -> Vec<symbolic::Expr>,
+    ) -> PyResult<(Vec<f64>, Option<usize>)> {
+        let scene = self.scene();
+        let system = &scene.system;
+        let n = system.dimension();
+        let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
+        let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
+        let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
+        let outputs = expressions(system);
+        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values()).map_err(errors::solve)?;
+        let (mut registers, mut row) = (tape.workspace(), vec![0.0; tape.outputs()]);
+        let mut values = Vec::new();
+        for i in 0..count.unwrap_or(1) {
+            tape.evaluate(&[t.row(i), q.row(i), v.row(i)].concat(), &mut registers, &mut row);
+            values.extend_from_slice(&row);
+        }
+        Ok((values, count))
     }
 }
 
@@ -226,24 +251,24 @@ impl System {
         q: Floats<'_>,
         v: Floats<'_>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (values, count, width) = {
-            let scene = self.scene();
-            let system = &scene.system;
-            let n = system.dimension();
-            let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
-            let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
-            let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-            let tape = system.graph.compile(&inputs, &system.constraints, &system.parameter_values());
-            let tape = tape.map_err(errors::solve)?;
-            let (mut registers, mut row) = (tape.workspace(), vec![0.0; tape.outputs()]);
-            let mut values = Vec::new();
-            for i in 0..count.unwrap_or(1) {
-                tape.evaluate(&[t.row(i), q.row(i), v.row(i)].concat(), &mut registers, &mut row);
-                values.extend_from_slice(&row);
-            }
-            (values, count, row.len())
-        };
-        array(py, values, count, &[width])
+        let (values, count) = self.values([t, q, v], |system| system.constraints.clone())?;
+        array(py, values, count, &[self.scene().system.constraints.len()])
+    }
+
+    /// The mass matrix M(q, v, t), the second derivative of L by velocities, shape (n, n) or (k, n, n); arguments as in `constraint`.
+    ///
+    /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
+    #[pyo3(signature = (t, q, v))]
+    fn mass<'py>(
+        &self,
+        py: Python<'py>,
+        t: Floats<'_>,
+        q: Floats<'_>,
+        v: Floats<'_>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (values, count) = self.values([t, q, v], |system| system.velocity_hessian().entries().to_vec())?;
+        let n = self.scene().system.dimension();
+        array(py, values, count, &[n, n])
     }
 
     /// The equations of motion under a formulation, one of FORMULATIONS.
@@ -269,7 +294,7 @@ impl System {
         }
         let work = move || {
             let equations = derive_at(&scene.system, &scene.start, &choice)?;
-            let made = ready(setting(&scene), equations, &choice.constants, &settings)?;
+            let made = ready_to_run(setting(&scene), equations, &choice.constants, &settings)?;
             Ok((made, scene))
         };
         let made = background::run(py, &interrupt, work)?;
@@ -357,11 +382,11 @@ impl System {
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps)?;
         let (scene, given) = (self.scene().clone(), constants.is_some());
         let choice = arguments::choice(&scene, formulation, removal, constants)?;
-        let times = ensemble::times(times, &scene)?;
+        let (times, end) = ensemble::times(times, &scene)?;
         let name = scene.name.clone();
         let with = |values: Overrides| Scene::parse_with(&name, &self.text, &[&self.overrides[..], &values].concat());
         let varied = Varied::read(vary)?;
-        let task = ensemble::Task { varied, scene, with: &with, choice, given, times, settings, threads };
+        let task = ensemble::Task { varied, scene, with: &with, choice, given, times, end, settings, threads };
         let integrated = background::run(py, &interrupt, move || task.run())?;
         Ensemble::new(py, integrated.map_err(|refused| ensemble::refused(py, refused))?)
     }

@@ -89,6 +89,40 @@ def test_a_motion_of_our_own(sledge, system):
     assert residual.shape == (1,) and abs(residual[0]) < 1e-10
 
 
+@pytest.mark.parametrize("method", deltaq.METHODS)
+def test_single_runs(sledge, system, method):
+    equations = system.equations("chetaev")
+    times = np.linspace(0, 10, 21)
+    tolerance = 1e-6 if method in ("tr-bdf2", "esdirk34") else 1e-9
+    run = equations.integrate(times, method=method, tolerance=tolerance)
+    assert run.status == "completed" and run.cause is None and run.work["steps"] > 0 and run.seconds > 0
+    np.testing.assert_array_equal(run.times, times)
+    outputs = equations.outputs(run.times, run.states)
+    np.testing.assert_allclose(outputs.coordinates[:, 2], sledge.phi(times), atol=1e3 * tolerance)
+    np.testing.assert_allclose(np.hypot(*outputs.velocities[:, :2].T), np.abs(sledge.speed(times)), atol=1e4 * tolerance)
+    # at its ends alone
+    ends = equations.integrate([0, 10], method=method, tolerance=tolerance)
+    np.testing.assert_array_equal(ends.states[0], run.states[0])
+    np.testing.assert_allclose(ends.states[1], run.states[-1], atol=1e4 * tolerance)
+
+
+def test_single_runs_that_stop(system):
+    run = system.equations().integrate([0, 0.001, 10], max_steps=3)
+    assert run.status == "stopped" and "3" in run.cause and len(run.times) == len(run.states) < 3
+    with pytest.raises(ValueError, match="ascending"):
+        system.equations().integrate([2, 1])
+    with pytest.raises(ValueError, match="unknown method"):
+        system.equations().integrate([1], method="euler")
+    with pytest.raises(deltaq.CallError):
+        system.equations().integrate([1], tolerance=0)
+
+
+def test_mass_matrices(sledge, system):
+    q, v = np.zeros((5, 3)), np.ones((5, 3))
+    np.testing.assert_allclose(system.mass(0, q, v), np.tile(np.diag([1, 1, sledge.k**2]), (5, 1, 1)), atol=1e-15)
+    assert system.mass(0, q[0], v[0]).shape == (3, 3)
+
+
 def test_constraint_residuals(system):
     q, v = np.zeros((5, 3)), np.ones((5, 3))
     np.testing.assert_array_equal(system.constraint(0, q, v), np.ones((5, 1)))

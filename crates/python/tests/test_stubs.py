@@ -37,11 +37,14 @@ def test_classes(name):
     assert cls.__module__ == "deltaq"
     assert [base.id for base in CLASSES[name].bases] == [base.__name__ for base in cls.__bases__ if base is not object]
     body = {node.name: node for node in CLASSES[name].body if isinstance(node, ast.FunctionDef)}
-    assert public(body) == public(vars(cls))
-    for member in public(body):
+    # what only can be read; an exception has its attributes as an instance
+    values = {node.target.id for node in CLASSES[name].body if isinstance(node, ast.AnnAssign) and "Final" in ast.unparse(node)}
+    assert public(body) | values == public(vars(cls))
+    for member in public(body) | values:
         assert inspect.getdoc(getattr(cls, member)), f"{name}.{member} is not described"
-        if not body[member].decorator_list:
-            same_parameters(body[member], getattr(cls, member))
+        assert inspect.isdatadescriptor(getattr(cls, member)) == (member in values)
+    for member in public(body):
+        same_parameters(body[member], getattr(cls, member))
     if "__new__" in body:
         same_parameters(body["__new__"], cls, without=1)
 

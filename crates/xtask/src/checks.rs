@@ -116,17 +116,13 @@ pub(crate) fn run(checks: &[Check]) -> ExitCode {
 }
 
 /// Writes `reports/engine.md`. No check: what it runs is another program, at a length of its own.
-pub(crate) fn engine() -> ExitCode {
-    chore(cargo().args(["run", "--release", "--package", "engine"]))
+pub(crate) fn engine() -> Result<Outcome> {
+    succeed(cargo().args(["run", "--release", "--package", "engine"]))
 }
 
-/// Writes `reports/peers.md`. No check: what it writes are times, of this machine and in this hour.
-pub(crate) fn peers(arguments: &[&str]) -> ExitCode {
-    chore(cargo().args(["run", "--release", "--package", "peers", "--"]).args(arguments))
-}
-
-fn chore(command: &mut Command) -> ExitCode {
-    match succeed(command) {
+/// Runs what is no check.
+pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
+    match outcome {
         Ok(_) => ExitCode::SUCCESS,
         Err(error) => {
             println!("{error:#}");

@@ -25,10 +25,10 @@ fn main() -> ExitCode {
     }
     let checks = checks::all();
     if arguments == ["engine"] {
-        return checks::engine();
+        return checks::chore(checks::engine());
     }
     if let ["peers", rest @ ..] = arguments.as_slice() {
-        return checks::peers(rest);
+        return checks::chore(python::peers(rest));
     }
     let chosen = match arguments.as_slice() {
         [] | ["help" | "--help" | "-h"] => {

@@ -15,6 +15,8 @@ use crate::checks::{Outcome, build, outside, succeed, target};
 const CRATE: &str = "crates/python";
 /// What of the module is written in Python.
 const SOURCES: &str = "crates/python/python/deltaq";
+/// Where the module is timed beside other tools.
+const PEERS: &str = "validation/peers";
 /// What the checks take from Python's package index.
 const REQUIREMENTS: &str = "crates/xtask/requirements.txt";
 /// The oldest Python for which the module is built.
@@ -23,6 +25,23 @@ const OLDEST: (u32, u32) = (3, 11);
 const NAMES: [&str; 3] = ["python3.11", "python3", "python"];
 
 pub(crate) fn check() -> Result<Outcome> {
+    let (site, size) = module()?;
+    let mut tests = outside(environment()?);
+    succeed(tests.args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE).env("PYTHONPATH", site))?;
+    Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
+}
+
+/// Writes `reports/peers.md`. No check: what it writes are times, of this machine and in this hour.
+pub(crate) fn peers(arguments: &[&str]) -> Result<Outcome> {
+    let target = target()?;
+    let python = make(&target, "peers", &format!("{PEERS}/requirements.txt"))?;
+    let mut run = outside(python);
+    run.arg("-B").arg(format!("{PEERS}/peers.py")).arg("--target").arg(target.join("peers")).args(arguments);
+    succeed(run.env("PYTHONPATH", module()?.0))
+}
+
+/// Builds the module; the folder in which Python finds it, and the size of its library in bytes.
+fn module() -> Result<(PathBuf, u64)> {
     let python = environment()?;
     build()?;
     let target = target()?;
@@ -46,31 +65,32 @@ pub(crate) fn check() -> Result<Outcome> {
     let library = target.join("release").join(format!("{DLL_PREFIX}deltaq_python{DLL_SUFFIX}"));
     let module = if cfg!(windows) { "_native.pyd" } else { "_native.abi3.so" };
     let size = std::fs::copy(&library, folder.join(module)).with_context(|| library.display().to_string())?;
-    let mut tests = outside(&python);
-    succeed(tests.args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE).env("PYTHONPATH", &site))?;
-    Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
+    Ok((site, size))
 }
 
 /// The Python of an environment with what `requirements.txt` pins.
 pub(crate) fn environment() -> Result<PathBuf> {
     static MADE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
-    let made = MADE.get_or_init(|| target().and_then(|target| make(&target)).map_err(|error| format!("{error:#}")));
+    let made = MADE.get_or_init(|| {
+        target().and_then(|target| make(&target, "python", REQUIREMENTS)).map_err(|error| format!("{error:#}"))
+    });
     made.clone().map_err(anyhow::Error::msg)
 }
 
-/// It is built once for each content of that file: in a folder beside its place, and then moved, so that half an environment is never used.
-fn make(target: &Path) -> Result<PathBuf> {
-    let text = std::fs::read_to_string(REQUIREMENTS).context(REQUIREMENTS)?;
-    let (name, version) = interpreter()?;
+/// The Python of an environment with what a file pins. It is built once for each content of that file: in a folder beside its place, and then
+/// moved, so that half an environment is never used.
+fn make(target: &Path, name: &str, requirements: &str) -> Result<PathBuf> {
+    let text = std::fs::read_to_string(requirements).with_context(|| requirements.to_string())?;
+    let (program, version) = interpreter()?;
     let mut hasher = DefaultHasher::new();
     (text, version).hash(&mut hasher);
-    let place = target.join(format!("python-venv-{:016x}", hasher.finish()));
+    let place = target.join(format!("{name}-venv-{:016x}", hasher.finish()));
     if !place.exists() {
-        let draft = target.join(format!("python-venv-draft-{}", std::process::id()));
-        succeed(outside(name).args(["-m", "venv"]).arg(&draft))?;
+        let draft = target.join(format!("{name}-venv-draft-{}", std::process::id()));
+        succeed(outside(program).args(["-m", "venv"]).arg(&draft))?;
         let mut install = outside(interpreter_of(&draft));
         let options = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
-        succeed(install.args(options).arg(REQUIREMENTS))?;
+        succeed(install.args(options).arg(requirements))?;
         // Another run may have been faster; its environment is as good.
         if std::fs::rename(&draft, &place).is_err() {
             std::fs::remove_dir_all(&draft).with_context(|| draft.display().to_string())?;

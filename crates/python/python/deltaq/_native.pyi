@@ -1,6 +1,6 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Final, Literal, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -36,12 +36,9 @@ def parse(text: str, overrides: Mapping[str, float] | None = None, *, name: str 
 
 @final
 class State:
-    @property
-    def t(self) -> float: ...
-    @property
-    def q(self) -> _Array: ...
-    @property
-    def v(self) -> _Array: ...
+    t: Final[float]
+    q: Final[_Array]
+    v: Final[_Array]
 
 @final
 class System:
@@ -66,38 +63,24 @@ class System:
         name: str = "system",
         title: str | None = None,
     ) -> System: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def title(self) -> str: ...
-    @property
-    def source(self) -> str: ...
-    @property
-    def coordinates(self) -> list[str]: ...
-    @property
-    def units(self) -> dict[str, str]: ...
-    @property
-    def dimension(self) -> int: ...
-    @property
-    def parameters(self) -> dict[str, float]: ...
-    @property
-    def lagrangian(self) -> str: ...
-    @property
-    def constraints(self) -> list[str]: ...
-    @property
-    def forces(self) -> dict[str, str]: ...
-    @property
-    def start(self) -> State: ...
-    @property
-    def multipliers(self) -> list[float]: ...
-    @property
-    def duration(self) -> float: ...
-    @property
-    def removals(self) -> list[str]: ...
-    @property
-    def integrability(self) -> str: ...
+    name: Final[str]
+    title: Final[str]
+    source: Final[str]
+    coordinates: Final[list[str]]
+    units: Final[dict[str, str]]
+    dimension: Final[int]
+    parameters: Final[dict[str, float]]
+    lagrangian: Final[str]
+    constraints: Final[list[str]]
+    forces: Final[dict[str, str]]
+    start: Final[State]
+    multipliers: Final[list[float]]
+    duration: Final[float]
+    removals: Final[list[str]]
+    integrability: Final[str]
     def to_toml(self) -> str: ...
     def constraint(self, t: _Floats, q: _Floats, v: _Floats) -> _Array: ...
+    def mass(self, t: _Floats, q: _Floats, v: _Floats) -> _Array: ...
     def equations(
         self,
         formulation: str = "chetaev",
@@ -137,196 +120,136 @@ class System:
 
 @final
 class Outputs:
-    @property
-    def coordinates(self) -> _Array: ...
-    @property
-    def velocities(self) -> _Array: ...
-    @property
-    def multipliers(self) -> dict[str, Any]: ...
-    @property
-    def invariants(self) -> dict[str, Any]: ...
+    coordinates: Final[_Array]
+    velocities: Final[_Array]
+    multipliers: Final[dict[str, Any]]
+    invariants: Final[dict[str, Any]]
 
 @final
 class Equations:
-    @property
-    def formulation(self) -> str: ...
-    @property
-    def removal(self) -> str | None: ...
-    @property
-    def states(self) -> list[str]: ...
-    @property
-    def constants(self) -> list[str]: ...
-    @property
-    def text(self) -> str: ...
-    @property
-    def latex(self) -> str: ...
+    formulation: Final[str]
+    removal: Final[str | None]
+    states: Final[list[str]]
+    constants: Final[list[str]]
+    text: Final[str]
+    latex: Final[str]
     def initial_state(self, constants: _Constants | None = None) -> _Array: ...
     def rates(self, t: _Floats, y: _Floats) -> _Array: ...
     def jacobian(self, t: _Floats, y: _Floats) -> _Array: ...
     def outputs(self, t: _Floats, y: _Floats) -> Outputs: ...
     def acceleration(self, t: float, q: _Floats, v: _Floats, mu: _Floats | None = None) -> _Array: ...
+    def integrate(
+        self,
+        times: _Floats,
+        *,
+        method: str = "dop853",
+        tolerance: float = 1e-11,
+        project: bool = True,
+        max_steps: int = 1_000_000,
+    ) -> Trajectory: ...
     def _repr_latex_(self) -> str: ...
 
 @final
+class Trajectory:
+    times: Final[_Array]
+    states: Final[_Array]
+    status: Final[Literal["completed", "stopped"]]
+    cause: Final[str | None]
+    work: Final[dict[str, int]]
+    seconds: Final[float]
+
+@final
 class Motion:
-    @property
-    def formulation(self) -> str: ...
-    @property
-    def removal(self) -> str | None: ...
-    @property
-    def times(self) -> _Array: ...
-    @property
-    def coordinates(self) -> _Array: ...
-    @property
-    def velocities(self) -> _Array: ...
-    @property
-    def multipliers(self) -> dict[str, _Array]: ...
-    @property
-    def invariants(self) -> dict[str, _Array]: ...
-    @property
-    def error_estimate(self) -> float: ...
-    @property
-    def relative_error_estimate(self) -> float: ...
-    @property
-    def status(self) -> Literal["completed", "stopped"]: ...
-    @property
-    def cause(self) -> str | None: ...
-    @property
-    def doubt(self) -> str | None: ...
-    @property
-    def start(self) -> float: ...
-    @property
-    def end(self) -> float: ...
-    @property
-    def constants(self) -> dict[str, float]: ...
-    @property
-    def work(self) -> dict[str, int]: ...
-    @property
-    def projection(self) -> dict[str, float]: ...
-    @property
-    def seconds(self) -> dict[str, float]: ...
+    formulation: Final[str]
+    removal: Final[str | None]
+    times: Final[_Array]
+    coordinates: Final[_Array]
+    velocities: Final[_Array]
+    multipliers: Final[dict[str, _Array]]
+    invariants: Final[dict[str, _Array]]
+    error_estimate: Final[float]
+    relative_error_estimate: Final[float]
+    status: Final[Literal["completed", "stopped"]]
+    cause: Final[str | None]
+    doubt: Final[str | None]
+    start: Final[float]
+    end: Final[float]
+    constants: Final[dict[str, float]]
+    work: Final[dict[str, int]]
+    projection: Final[dict[str, float]]
+    seconds: Final[dict[str, float]]
     def at(self, t: _Floats) -> Outputs: ...
 
 @final
 class Ensemble:
-    @property
-    def formulation(self) -> str: ...
-    @property
-    def removal(self) -> str | None: ...
-    @property
-    def times(self) -> _Array: ...
-    @property
-    def varied(self) -> dict[str, _Array]: ...
-    @property
-    def coordinates(self) -> _Array: ...
-    @property
-    def velocities(self) -> _Array: ...
-    @property
-    def multipliers(self) -> dict[str, _Array]: ...
-    @property
-    def invariants(self) -> dict[str, _Array]: ...
-    @property
-    def error_estimate(self) -> _Array: ...
-    @property
-    def relative_error_estimate(self) -> _Array: ...
-    @property
-    def status(self) -> list[Literal["completed", "untrusted", "stopped", "refused"]]: ...
-    @property
-    def cause(self) -> list[str | None]: ...
-    @property
-    def reached(self) -> list[int]: ...
-    @property
-    def alone(self) -> list[str | None]: ...
+    formulation: Final[str]
+    removal: Final[str | None]
+    times: Final[_Array]
+    varied: Final[dict[str, _Array]]
+    coordinates: Final[_Array]
+    velocities: Final[_Array]
+    multipliers: Final[dict[str, _Array]]
+    invariants: Final[dict[str, _Array]]
+    error_estimate: Final[_Array]
+    relative_error_estimate: Final[_Array]
+    status: Final[list[Literal["completed", "untrusted", "stopped", "refused"]]]
+    cause: Final[list[str | None]]
+    reached: Final[list[int]]
+    alone: Final[list[str | None]]
     def __len__(self) -> int: ...
 
 @final
 class Growth:
-    @property
-    def exponent(self) -> float: ...
-    @property
-    def uncertainty(self) -> float: ...
-    @property
-    def coefficient(self) -> _Array: ...
-    @property
-    def length(self) -> float: ...
+    exponent: Final[float]
+    uncertainty: Final[float]
+    coefficient: Final[_Array]
+    length: Final[float]
 
 @final
 class LeadingTerm:
-    @property
-    def exponent(self) -> int: ...
-    @property
-    def coefficient(self) -> _Array: ...
-    @property
-    def length(self) -> float: ...
+    exponent: Final[int]
+    coefficient: Final[_Array]
+    length: Final[float]
 
 @final
 class Pair:
-    @property
-    def first(self) -> str: ...
-    @property
-    def second(self) -> str: ...
-    @property
-    def verdict(self) -> _Verdict: ...
-    @property
-    def because(self) -> str | None: ...
-    @property
-    def tau(self) -> dict[float, float | None]: ...
-    @property
-    def largest_gap(self) -> float: ...
-    @property
-    def largest_by_coordinate(self) -> dict[str, float]: ...
-    @property
-    def certain_from(self) -> float | None: ...
-    @property
-    def error_estimates(self) -> tuple[float, float]: ...
-    @property
-    def end(self) -> float: ...
-    @property
-    def times(self) -> _Array: ...
-    @property
-    def gap(self) -> _Array: ...
-    @property
-    def limit(self) -> _Array: ...
-    @property
-    def growth(self) -> Growth | None: ...
-    @property
-    def predicted(self) -> LeadingTerm | None: ...
+    first: Final[str]
+    second: Final[str]
+    verdict: Final[_Verdict]
+    because: Final[str | None]
+    tau: Final[dict[float, float | None]]
+    largest_gap: Final[float]
+    largest_by_coordinate: Final[dict[str, float]]
+    certain_from: Final[float | None]
+    error_estimates: Final[tuple[float, float]]
+    end: Final[float]
+    times: Final[_Array]
+    gap: Final[_Array]
+    limit: Final[_Array]
+    growth: Final[Growth | None]
+    predicted: Final[LeadingTerm | None]
 
 @final
 class Fit:
-    @property
-    def run(self) -> str: ...
-    @property
-    def target(self) -> str: ...
-    @property
-    def constants(self) -> dict[str, float] | None: ...
-    @property
-    def verdict(self) -> _Verdict | None: ...
-    @property
-    def largest_gap(self) -> float | None: ...
+    run: Final[str]
+    target: Final[str]
+    constants: Final[dict[str, float] | None]
+    verdict: Final[_Verdict | None]
+    largest_gap: Final[float | None]
 
 @final
 class Run:
-    @property
-    def label(self) -> str: ...
-    @property
-    def formulation(self) -> str: ...
-    @property
-    def removal(self) -> str | None: ...
-    @property
-    def motion(self) -> Motion | None: ...
-    @property
-    def error(self) -> str | None: ...
+    label: Final[str]
+    formulation: Final[str]
+    removal: Final[str | None]
+    motion: Final[Motion | None]
+    error: Final[str | None]
 
 @final
 class Comparison:
-    @property
-    def integrability(self) -> str: ...
-    @property
-    def runs(self) -> list[Run]: ...
-    @property
-    def pairs(self) -> list[Pair]: ...
-    @property
-    def fits(self) -> list[Fit]: ...
+    integrability: Final[str]
+    runs: Final[list[Run]]
+    pairs: Final[list[Pair]]
+    fits: Final[list[Fit]]
     def pair(self, a: str, b: str) -> Pair: ...
     def verdict(self, a: str, b: str) -> _Verdict: ...
