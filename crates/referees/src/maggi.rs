@@ -249,6 +249,25 @@ impl Maggi {
         motion::solve(self, start, end, tolerance, form)
     }
 
+    /// The form of runs: [`Form::Reduced`] where every constraint is linear or affine in the velocities, else [`Form::Accelerations`].
+    pub fn form(&self) -> Form {
+        if self.affine.is_ok() { Form::Reduced } else { Form::Accelerations }
+    }
+
+    /// [`Maggi::solve`] at two tolerances, so that the difference tells of the error: in the form of [`Maggi::form`], and where its splitting is
+    /// lost on the way, in accelerations.
+    ///
+    /// # Errors
+    /// As [`Maggi::solve`].
+    pub fn solve_twice(&mut self, start: &State, end: f64, tolerances: [f64; 2]) -> Result<[Motion; 2], MaggiError> {
+        let form = self.form();
+        let mut both =
+            |form| Ok([self.solve(start, end, tolerances[0], form)?, self.solve(start, end, tolerances[1], form)?]);
+        let runs = both(form)?;
+        let complete = runs.iter().all(|run| *run.ending() == Ending::Completed);
+        if complete || form == Form::Accelerations { Ok(runs) } else { both(Form::Accelerations) }
+    }
+
     fn instant(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<Instant<'_>, MaggiError> {
         self.check_length("positions", q)?;
         self.check_length("velocities", v)?;

@@ -17,7 +17,7 @@ use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
 use proptest::strategy::ValueTree;
 use random::{Kind, augmented, draw};
 use referees::discrete::Discrete;
-use referees::maggi::{Form, Maggi};
+use referees::maggi::Maggi;
 use scene::Scene;
 use symbolic::Symbol;
 use validation::catalogue::find;
@@ -154,10 +154,9 @@ impl Trial {
 
     fn maggi(&self, judged: &mut Motion, end: f64) -> Word {
         let Scene { system, start, .. } = &self.scene;
-        let form = Form::for_system(system);
-        let mut maggi = Maggi::new(system).unwrap_or_else(|e| panic!("{}: {e}", self.what));
-        let mut runs = [SETTINGS.tolerance, SETTINGS.tolerance * TIGHTER]
-            .map(|tolerance| maggi.solve(start, end, tolerance, form).unwrap_or_else(|e| panic!("{}: {e}", self.what)));
+        let tolerances = [SETTINGS.tolerance, SETTINGS.tolerance * TIGHTER];
+        let runs = Maggi::new(system).and_then(|mut maggi| maggi.solve_twice(start, end, tolerances));
+        let mut runs = runs.unwrap_or_else(|e| panic!("{}: {e}", self.what));
         let (mut difference, mut error) = (0.0_f64, 0.0_f64);
         for t in instants(start.t, end) {
             let [looser, kept] = runs.each_mut().map(|run| run.state(t).unwrap_or_else(|e| panic!("{e}")).q);

@@ -1,10 +1,10 @@
 //! Closed forms and orders.
 
-use mechanics::{Removal, State, System};
+use mechanics::Removal;
 use scene::Scene;
-use symbolic::Graph;
 
 use super::*;
+use crate::closed_forms::{Heisenberg, Sledge};
 
 /// Errors under this are round-off.
 const PLATEAU: f64 = 1e-11;
@@ -34,13 +34,11 @@ fn known(q: Vec<f64>) -> Result<Vec<f64>, DiscreteError> {
 fn chetaev_sledge_has_its_closed_form() {
     let scene = scene("sledge");
     let mut discrete = Discrete::chetaev(&scene.system, &scene.start, 1.5).unwrap();
-    // mathematics: φ = φ₀ + ωt, v = v₀ + k (sin φ − sin φ₀), x and y by elementary integrals, k = g sin α/ω
-    let (phi0, omega, speed) = (0.3_f64, 1.1, 0.5);
-    let k = 9.81 * 0.4_f64.sin() / omega;
-    let c = speed - k * phi0.sin();
-    let x = |phi: f64| (c * phi.sin() + k * phi.sin().powi(2) / 2.0) / omega;
-    let y = |phi: f64| (-c * phi.cos() + k * (phi / 2.0 - (2.0 * phi).sin() / 4.0)) / omega;
-    let exact = |t: f64| known(vec![x(phi0 + omega * t) - x(phi0), y(phi0 + omega * t) - y(phi0), phi0 + omega * t]);
+    let start = Sledge { gravity_along: 9.81 * 0.4_f64.sin(), x: 0.0, y: 0.0, phi: 0.3, speed: 0.5, omega: 1.1 };
+    let exact = |t: f64| {
+        let at = start.at(t);
+        known(vec![at.x, at.y, at.phi])
+    };
     let found = convergence(&mut discrete, 20, 4, exact).unwrap();
     assert_orders("sledge", &found, 0, 3);
     assert_orders("sledge", &found, 1, 1);
@@ -50,36 +48,36 @@ fn chetaev_sledge_has_its_closed_form() {
 #[test]
 fn vakonomic_heisenberg_runs_on_circles() {
     let scene = scene("heisenberg");
-    let mu = 0.8;
-    let mut discrete = Discrete::vakonomic(&scene.system, &scene.start, &[mu], 4.0).unwrap();
-    // the velocity (0.6, 0.8) turns at the rate μ; z' = (x y' − y x')/2
-    let exact = |t: f64| {
-        let (s, c) = ((mu * t).sin() / mu, (1.0 - (mu * t).cos()) / mu);
-        let (dx, dy) = (0.6 * s - 0.8 * c, 0.6 * c + 0.8 * s);
-        // the segment of the circle over its chord, and the triangle that the chord makes with the origin
-        let z = (t - (mu * t).sin() / mu) / (2.0 * mu) + 0.5 * 0.5 * dy;
-        known(vec![0.5 + dx, dy, z])
-    };
+    let start = Heisenberg { multiplier: 0.8, position: [0.5, 0.0, 0.0], velocity: [0.6, 0.8] };
+    let mut discrete = Discrete::vakonomic(&scene.system, &scene.start, &[start.multiplier], 4.0).unwrap();
+    let exact = |t: f64| known(start.at(t).to_vec());
     let found = convergence(&mut discrete, 30, 4, exact).unwrap();
     assert_orders("heisenberg", &found, 0, 3);
     assert_orders("heisenberg", &found, 1, 2);
     assert!(found.difference < 1e-11, "{:?}", found.errors);
 }
 
-/// `L = (x'² − x²)/2`, without constraints, as a removal of its own.
-fn oscillator() -> (System, State) {
-    let mut system = System::new(Graph::new(), &[("x", "m"), ("y", "m")]);
-    let g = &system.graph;
-    let square = |name: &str| g.powi(g.variable(g.symbol(name)), 2);
-    let both = g.sum(&[square("x'"), square("y'"), g.neg(square("x")), g.mul(g.integer(-4), square("y"))]);
-    let lagrangian = g.div(both, g.integer(2));
-    system.lagrangian = lagrangian;
-    (system, State { t: 0.2, q: vec![1.0, 0.0], v: vec![0.5, 2.0] })
-}
+/// Two oscillators without a constraint.
+const OSCILLATORS: &str = r#"
+title = "Two oscillators"
+[coordinates]
+x = { start = 1 }
+y = { start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2 - x^2 - 4*y^2)/2"
+constraints = []
+[start]
+time = 0.2
+[start.velocities]
+"x'" = 0.5
+"y'" = 2
+[run]
+duration = 2
+"#;
 
 #[test]
 fn oscillators_keep_time_by_all_three() {
-    let (system, start) = oscillator();
+    let Scene { system, start, .. } = Scene::parse("oscillators", OSCILLATORS).unwrap();
     let removal = Removal::by_coordinates(&system, &start).unwrap();
     let at = RemovedStart::at(&system, &removal, &start, &[]).unwrap();
     for (what, discrete) in [

@@ -1,7 +1,7 @@
 //! The motion in time, with the state either `(q, v)` or `(q, ν)`.
 
 use integrate::{EvaluationError, Options, Problem, Projection, Solution, Start, Status, StopCause};
-use mechanics::{State, System};
+use mechanics::State;
 use nalgebra::{ColPivQR, DMatrix, DVector, Dyn, LU, RowDVector};
 
 use super::{Maggi, MaggiError, check_finite, dot, row_lengths, solve_square};
@@ -29,18 +29,6 @@ pub enum Form {
     /// `(q, v)`, 2n numbers, with `v' = a` of [`Maggi::accelerations`]. For any constraints; nothing breaks but what is
     /// singular in itself. `f` stays zero only as well as the integration is accurate.
     Accelerations,
-}
-
-impl Form {
-    /// [`Form::Reduced`] where every constraint is linear or affine in the velocities, else [`Form::Accelerations`].
-    pub fn for_system(system: &System) -> Form {
-        let (g, velocities) = (&system.graph, system.velocities());
-        let curved = |&f| {
-            let slopes = g.gradient(f, &velocities);
-            slopes.into_iter().any(|e| velocities.iter().any(|&v| g.depends_on(e, v)))
-        };
-        if system.constraints.iter().any(curved) { Form::Accelerations } else { Form::Reduced }
-    }
 }
 
 /// How a run ended.

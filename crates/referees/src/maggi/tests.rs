@@ -4,6 +4,7 @@ use mechanics::{State, System};
 use scene::Scene;
 
 use super::{Ending, Form, Maggi, MaggiError, Residual, dot};
+use crate::closed_forms::{Sledge, SledgeState};
 
 const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
 const APPELL_HAMEL: &str = include_str!("../../../../validation/scenes/appell-hamel.toml");
@@ -86,15 +87,11 @@ fn shifted(mut x: Four, i: usize, by: f64) -> Four {
     x
 }
 
-/// `x`, `y`, `φ` and their rates of the sledge, by the elementary integrals.
+/// `x`, `y`, `φ` and their rates of the sledge.
 fn sledge(t: f64, omega: f64) -> [f64; 6] {
-    let (phi0, u0, weight) = (0.3_f64, 0.5, 9.81 * 0.4_f64.sin());
-    let (phi, k) = (phi0 + omega * t, weight / omega);
-    let c = u0 - k * phi0.sin();
-    let x = |phi: f64| (c * phi.sin() + k * phi.sin().powi(2) / 2.0) / omega;
-    let y = |phi: f64| (-c * phi.cos() + k * (phi / 2.0 - (2.0 * phi).sin() / 4.0)) / omega;
-    let u = c + k * phi.sin();
-    [x(phi) - x(phi0), y(phi) - y(phi0), phi, u * phi.cos(), u * phi.sin(), omega]
+    let start = Sledge { gravity_along: 9.81 * 0.4_f64.sin(), x: 0.0, y: 0.0, phi: 0.3, speed: 0.5, omega };
+    let SledgeState { x, y, phi, speed, .. } = start.at(t);
+    [x, y, phi, speed * phi.cos(), speed * phi.sin(), omega]
 }
 
 #[test]
@@ -168,8 +165,8 @@ fn length_of(a: &[f64]) -> f64 {
 #[test]
 fn general_motion_balances_momenta_and_both_forms_agree() {
     let scene = scene(GENERAL, &[]);
-    assert_eq!(Form::for_system(&scene.system), Form::Reduced);
     let mut maggi = Maggi::new(&scene.system).unwrap();
+    assert_eq!(maggi.form(), Form::Reduced);
     let mut full = maggi.solve(&scene.start, 3.0, 1e-13, Form::Accelerations).unwrap();
     let mut reduced = maggi.solve(&scene.start, 3.0, 1e-13, Form::Reduced).unwrap();
     assert_eq!((full.ending(), reduced.ending()), (&Ending::Completed, &Ending::Completed));
@@ -208,8 +205,8 @@ fn general_motion_balances_momenta_and_both_forms_agree() {
 #[test]
 fn appell_hamel_runs_straight_and_slows() {
     let scene = scene(APPELL_HAMEL, &[]);
-    assert_eq!(Form::for_system(&scene.system), Form::Accelerations);
     let mut maggi = Maggi::new(&scene.system).unwrap();
+    assert_eq!(maggi.form(), Form::Accelerations);
     let mut motion = maggi.solve(&scene.start, 1.0, 1e-13, Form::Accelerations).unwrap();
     let (a, slowing) = (0.5, 9.81 * 0.5 / 1.25);
     let (run, speed) = (5.0 - slowing / 2.0, 5.0 - slowing);
