@@ -4,7 +4,7 @@ import deltaq
 
 METHODS = {name.title().replace("-", ""): name for name in deltaq.METHODS}
 # on the car with trailers, which is not stiff and may be long, the explicit ones
-EXPLICIT = ["Taylor", "Dop853", "Tsit45"]
+EXPLICIT = [name for name in ("Taylor", "Dop853", "Tsit45") if name in METHODS]
 # two runs, the second at a hundredth of the tolerance, and the difference as an error estimate
 SOLVE = "solve: two runs of Dop853"
 BODIES = "quasi-velocities, a place for every body"

@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{FloatList, Floats, Rows, array, common, times};
-use crate::motion::{Names, Outputs, ended, work};
+use crate::motion::{Names, Outputs, stopped, work};
 use crate::{arguments, background, ensemble, errors};
 
 type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -311,8 +311,8 @@ impl Equations {
         };
         let (run, states, seconds) = background::run(py, &interrupt, run)?.map_err(errors::solve)?;
         let (status, cause) = match &run.status {
-            Status::Completed => ended(None),
-            Status::Stopped { t, cause } => ended(Some((*t, cause))),
+            Status::Completed => ("completed", None),
+            Status::Stopped { t, cause } => stopped(*t, cause),
         };
         let count = Some(times.len());
         Ok(Trajectory {

@@ -185,10 +185,9 @@ pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
     Ok(items.into_py_dict(py)?.unbind())
 }
 
-/// `status` and `cause` of what stopped at a time, or was completed.
-pub(crate) fn ended(stop: Option<(f64, impl Display)>) -> (&'static str, Option<String>) {
-    let cause = stop.map(|(t, cause)| format!("stopped at t = {t}: {cause}"));
-    (if cause.is_some() { "stopped" } else { "completed" }, cause)
+/// `status` and `cause` of what stopped.
+pub(crate) fn stopped(t: f64, cause: &dyn Display) -> (&'static str, Option<String>) {
+    ("stopped", Some(format!("stopped at t = {t}: {cause}")))
 }
 
 impl Motion {
@@ -199,8 +198,8 @@ impl Motion {
         let Outputs { coordinates, velocities, multipliers, invariants } =
             Outputs::new(py, &rows, dimension, &names, count)?;
         let (status, cause) = match &motion.ending {
-            Ending::Completed => ended(None::<(_, &str)>),
-            Ending::Stopped { t, cause } => ended(Some((*t, cause))),
+            Ending::Completed => ("completed", None),
+            Ending::Stopped { t, cause } => stopped(*t, cause),
         };
         let constants = constant_names(&motion.equations).into_iter().zip(motion.constants.iter().copied());
         let projection = PyDict::new(py);
