@@ -1,15 +1,9 @@
 //! What a step keeps: its mirror, the symplectic form, and what sums of increments would lose.
 
-use scene::Scene;
-
+use super::tests::scene;
 use super::*;
 
 const SCENES: [&str; 6] = ["sledge", "particle", "ball-in-cone", "heisenberg", "trailer", "appell-hamel"];
-
-fn scene(name: &str) -> Scene {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/scenes");
-    Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
-}
 
 /// The motions of a scene that there are, over a time of 1.
 fn motions(name: &str) -> Vec<(String, Discrete)> {

@@ -6,7 +6,7 @@ use symbolic::Graph;
 
 use super::*;
 
-fn scene(name: &str) -> Scene {
+pub(crate) fn scene(name: &str) -> Scene {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/scenes");
     Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
 }

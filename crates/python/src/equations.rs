@@ -116,6 +116,22 @@ impl Equations {
         Ok((body(compiled, &t, &y)?, count))
     }
 
+    /// What `read` writes, `width` numbers at each `t` and `y`.
+    fn rows(
+        &self,
+        t: &Floats<'_>,
+        y: &Floats<'_>,
+        width: usize,
+        mut read: impl FnMut(&mut Compiled, f64, &[f64], &mut [f64]) -> Result<(), EvaluationFailure>,
+    ) -> PyResult<(Vec<f64>, Option<usize>)> {
+        self.evaluate(t, y, |compiled, t, y| {
+            let mut values = vec![0.0; width * y.count().unwrap_or(1)];
+            let mut rows = values.chunks_exact_mut(width.max(1));
+            each(t, y, |t, y| rows.next().map_or(Ok(()), |row| read(compiled, t, y, row)))?;
+            Ok(values)
+        })
+    }
+
     /// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
     fn state(&self, q: &[f64], v: &[f64], mu: &[f64]) -> PyResult<(Vec<f64>, Vec<usize>)> {
         let ready = self.ready();
@@ -190,16 +206,7 @@ impl Equations {
     #[pyo3(signature = (t, y))]
     fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
         let width = self.states.len();
-        let (values, count) = self.evaluate(&t, &y, |compiled, t, y| {
-            let mut values = Vec::with_capacity(width * y.count().unwrap_or(1));
-            let mut rates = vec![0.0; width];
-            each(t, y, |t, y| {
-                compiled.rates(t, y, &mut rates)?;
-                values.extend_from_slice(&rates);
-                Ok(())
-            })?;
-            Ok(values)
-        })?;
+        let (values, count) = self.rows(&t, &y, width, Compiled::rates)?;
         array(py, values, count, &[width])
     }
 
@@ -208,16 +215,7 @@ impl Equations {
     fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
         let width = self.states.len();
         self.ready().prepare(Method::Radau5).map_err(errors::solve)?;
-        let (values, count) = self.evaluate(&t, &y, |compiled, t, y| {
-            let mut values = Vec::with_capacity(width * width * y.count().unwrap_or(1));
-            let mut jacobian = vec![0.0; width * width];
-            each(t, y, |t, y| {
-                compiled.jacobian(t, y, &mut jacobian)?;
-                values.extend_from_slice(&jacobian);
-                Ok(())
-            })?;
-            Ok(values)
-        })?;
+        let (values, count) = self.rows(&t, &y, width * width, Compiled::jacobian)?;
         array(py, values, count, &[width, width])
     }
 

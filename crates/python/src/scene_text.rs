@@ -87,7 +87,8 @@ fn value(object: &Bound<'_, PyAny>) -> PyResult<String> {
         return Ok(format!("[{}]", entries?.join(", ")));
     }
     match object.extract::<f64>() {
-        Ok(number) => Ok(toml_number(number)),
+        // TOML's `inf` is Rust's, too; its `nan` is not
+        Ok(number) => Ok(format!("{number:?}").to_lowercase()),
         Err(_) => Err(PyTypeError::new_err(format!(
             "{} where a number, a string, a list or a dict is expected",
             object.get_type()
@@ -95,24 +96,7 @@ fn value(object: &Bound<'_, PyAny>) -> PyResult<String> {
     }
 }
 
-/// The shortest number that reads back as the same one. (TOML's `nan` and `inf` are Rust's, too.)
-fn toml_number(x: f64) -> String {
-    if x.is_nan() { "nan".into() } else { format!("{x:?}") }
-}
-
-/// A basic string.
+/// A basic string. Line breaks and tabs mean nothing in a formula, and a place is easier to find without escapes.
 fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => out.extend(['\\', c]),
-            // Line breaks and tabs mean nothing in a formula, and a place is easier to find without escapes.
-            '\n' | '\r' | '\t' => out.push(' '),
-            c if c.is_control() => {
-                let _ = write!(out, "\\u{:04X}", u32::from(c));
-            }
-            c => out.push(c),
-        }
-    }
-    out + "\""
+    scene::quoted(&text.replace(['\n', '\r', '\t'], " "))
 }

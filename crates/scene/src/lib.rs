@@ -55,3 +55,4 @@ mod write;
 pub use error::{NameFault, SceneError, SceneErrorKind, Unavailable};
 pub use load::SIZE_LIMIT;
 pub use scene::Scene;
+pub use write::quoted;

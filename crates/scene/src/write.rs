@@ -143,8 +143,8 @@ fn number(x: f64) -> String {
     format!("{x:?}")
 }
 
-/// A basic string.
-fn quoted(text: &str) -> String {
+/// `text` as a basic string of TOML.
+pub fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {
