@@ -28,11 +28,12 @@ use random::parallel;
 use random::{Batch, Kind};
 
 mod environment;
+mod python_environment;
 mod questions;
 mod table;
 
-pub use crate::python_environment::NotRun;
-pub use questions::{Amount, Question, Tag, tags};
+pub use python_environment::NotRun;
+pub use questions::{Amount, Question};
 pub use table::{headline, referee_table, verdict_words};
 
 /// What the referee says about one comparison.

@@ -4,7 +4,6 @@ pub mod audit;
 pub mod bench;
 pub mod casadi_job;
 pub mod catalogue;
-pub mod python_environment;
 pub mod report;
 pub mod scaling;
 pub mod stability;

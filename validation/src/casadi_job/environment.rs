@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::python_environment::{self, NotRun, files};
+use super::python_environment::{self, NotRun, files};
 
 const REQUIREMENTS: &str = include_str!("../../casadi/requirements.txt");
 
@@ -22,7 +22,7 @@ const SCRIPTS: [(&str, &str); 6] = [
 /// # Errors
 /// [`NotRun`].
 pub fn interpreter() -> Result<PathBuf, NotRun> {
-    python_environment::interpreter("casadi", REQUIREMENTS)
+    python_environment::interpreter(REQUIREMENTS)
 }
 
 /// Runs the scripts on a job; the text of their answer.

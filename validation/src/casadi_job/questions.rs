@@ -19,7 +19,7 @@ pub struct Amount {
 }
 
 /// What a state is and of what: `("q", "x")`, `("v", "x")`, `("mu", "1")`, `("u", "s")`, `("du", "s")`, `("ddu", "s")`, `("p", "s")`, `("w", "x")`, `("P", "x")`.
-pub type Tag = (String, String);
+type Tag = (String, String);
 
 /// One scene.
 #[derive(Clone, Debug, Serialize)]
@@ -223,7 +223,7 @@ fn names(equations: &Equations) -> Vec<String> {
 }
 
 /// What each state is, in the words that the referee understands.
-pub fn tags(equations: &Equations) -> Vec<Tag> {
+fn tags(equations: &Equations) -> Vec<Tag> {
     let g = &equations.graph;
     let mut costates = equations.free_constants.iter().filter_map(|c| c.memory);
     let mut multiplier = 0;

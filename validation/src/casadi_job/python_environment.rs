@@ -1,4 +1,4 @@
-//! Virtual environments of Python, each made once for each version of its requirements.
+//! The virtual environment of the referee, made once for each version of its requirements.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -43,7 +43,7 @@ pub enum NotRun {
 const MARKS: [&str; 2] = ["CACHEDIR.TAG", ".rustc_info.json"];
 
 /// The folder that cargo builds into, from the place of this program; `target` in the current folder where that cannot be found.
-pub fn target() -> PathBuf {
+fn target() -> PathBuf {
     let program = std::env::current_exe().unwrap_or_default();
     let marked = |folder: &&Path| MARKS.iter().any(|mark| folder.join(mark).exists());
     program.ancestors().find(marked).map_or_else(|| PathBuf::from("target"), Path::to_path_buf)
@@ -54,18 +54,18 @@ fn hash(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, byte| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-pub(crate) fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
+pub(super) fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
     move |error| NotRun::Files { what, kind: error.kind() }
 }
 
-/// The interpreter of the environment `name` with the packages of `requirements`, made now if it is not there yet. What is half made is never seen: it is built beside its place and
+/// The interpreter of the environment with the packages of `requirements`, made now if it is not there yet. What is half made is never seen: it is built beside its place and
 /// moved there when it is complete.
 ///
 /// # Errors
 /// [`NotRun`].
-pub fn interpreter(name: &str, requirements: &str) -> Result<PathBuf, NotRun> {
+pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     let target = target();
-    let place = target.join(format!("{name}-{:016x}", hash(requirements)));
+    let place = target.join(format!("casadi-{:016x}", hash(requirements)));
     let python = Path::new("bin").join("python");
     if place.join(&python).exists() {
         return Ok(place.join(python));
@@ -75,10 +75,8 @@ pub fn interpreter(name: &str, requirements: &str) -> Result<PathBuf, NotRun> {
         return Err(NotRun::NoPython);
     }
     std::fs::create_dir_all(&target).map_err(files("the target folder"))?;
-    let building = tempfile::Builder::new()
-        .prefix(&format!("{name}-new-"))
-        .tempdir_in(&target)
-        .map_err(files("an environment"))?;
+    let building =
+        tempfile::Builder::new().prefix("casadi-new-").tempdir_in(&target).map_err(files("an environment"))?;
     let folder = building.path().join("environment");
     let run = |command: &mut Command| command.output().map_err(|_| NotRun::NoPython);
     let made = run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
