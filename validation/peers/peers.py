@@ -77,7 +77,8 @@ def main():
     write(arguments.out or (Path("reports") if whole else arguments.target), {"peers.md": page(races, provenance)} | pictures)
     fields = ("reference", "setups", "checks", "rungs", "failures")
     measured = [{"problem": race.case.title} | {name: getattr(race, name) for name in fields} for race in races]
-    text = json.dumps(provenance | {"problems": measured}, indent=1, default=vars)
+    everything = provenance | {"effort": effort._asdict(), "problems": measured}
+    text = json.dumps(everything, indent=1, default=vars)
     write(arguments.target, {"peers.json": text + "\n"})
 
 
