@@ -11,36 +11,25 @@ use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-use crate::cli::{Format, MethodName, MotionArguments, SolveArguments};
-use validation::catalogue;
+use crate::answer::{Answer, pretty};
+use crate::cli::{Format, MotionArguments, SolveArguments};
+use validation::stability::Stepping;
 
 /// Times at which invariants are sampled.
 const SAMPLES: usize = 200;
-
-/// How the command ended: the text to print, and whether the trajectory can be trusted.
-pub struct Answer {
-    /// For standard output.
-    pub text: String,
-    /// Why the trajectory cannot be trusted to the end, for standard error.
-    pub complaint: Option<String>,
-}
 
 /// Runs the command.
 ///
 /// # Errors
 /// Bad input: the scene, the formulation, the removal, the constants, the times.
 pub fn run(arguments: &SolveArguments) -> Result<Answer> {
-    check_tolerance(arguments.tolerance)?;
-    let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
+    let mut settings = settings(&arguments.motion)?;
+    if let Stepping::Adaptive(method) = arguments.method {
+        settings.method = method;
+    }
+    let scene = arguments.motion.scene.find()?;
     let choice = choice(&scene, &arguments.motion)?;
-    let defaults = Settings::default();
-    let settings = Settings {
-        tolerance: arguments.tolerance,
-        method: arguments.method.of_time_loop().unwrap_or(defaults.method),
-        projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
-        ..defaults
-    };
-    let wanted = match &arguments.times {
+    let wanted = match &arguments.motion.times {
         Some(text) => times(text, &scene)?,
         None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
     };
@@ -61,7 +50,7 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
         }
     };
     let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();
-    let text = match arguments.format {
+    let text = match arguments.motion.format {
         Format::Csv => csv(&scene, &mut motion, &reached)?,
         Format::Json => json_text(&scene, &choice, &mut motion, &reached, estimate.absolute, complaint.as_deref())?,
     };
@@ -70,7 +59,7 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
 
 /// The steps of the method that has no time loop; none for the others.
 fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
-    if arguments.method != MethodName::Leapfrog {
+    if arguments.method != Stepping::Leapfrog {
         if arguments.step.is_some() || arguments.order.is_some() {
             bail!(
                 "--step and --order belong to --method leapfrog; the other methods choose their steps by --tolerance"
@@ -78,13 +67,20 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
         }
         return Ok(None);
     }
-    if arguments.no_projection {
+    if arguments.motion.no_projection {
         bail!("--no-projection is for the other methods: every step of leapfrog ends on the constraint");
     }
     let step = arguments.step.context("--method leapfrog takes equal steps: say how long with --step")?;
     let order = arguments.order.as_deref().unwrap_or("2");
     let composition = order.parse().ok().and_then(Composition::of_order);
     Ok(Some(Steps { step, composition: composition.with_context(|| format!("there is no order {order}"))? }))
+}
+
+/// Tolerance and projection that were asked for.
+pub(crate) fn settings(arguments: &MotionArguments) -> Result<Settings> {
+    check_tolerance(arguments.tolerance)?;
+    let projection = if arguments.no_projection { Projection::Off } else { Projection::EveryStep };
+    Ok(Settings { tolerance: arguments.tolerance, projection, ..Settings::default() })
 }
 
 /// Tolerances that make sense.
@@ -235,5 +231,5 @@ fn json_text(
             "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
         },
     });
-    Ok(serde_json::to_string_pretty(&value)? + "\n")
+    Ok(pretty(&value))
 }

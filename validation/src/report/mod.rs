@@ -12,6 +12,7 @@ mod referees_section;
 mod scaling_page;
 mod scene_page;
 mod stability_page;
+mod table;
 mod tables;
 mod verdicts;
 
@@ -26,4 +27,5 @@ pub use referees_section::referees_section;
 pub use scaling_page::{scaling_files, scaling_text};
 pub use scene_page::{answer, scene_page};
 pub use stability_page::StabilityReport;
+pub use table::Table;
 pub use verdicts::{difference_of_verdicts, verdicts};

@@ -9,8 +9,8 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
-use crate::report::File;
 use crate::report::numbers::short;
+use crate::report::{File, Table};
 use picture::{Aspect, Axis, Curve, Picture, Style};
 use random::parallel;
 use random::realization::{Realization, distance, realize, realize_removal};
@@ -157,34 +157,28 @@ impl RealizationReport {
                  else in these reports; the realizations are Newton's equations of an unconstrained system, those with friction by an implicit method.\n";
         for (name, approaches) in &self.scenes {
             let _ = writeln!(page, "\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n");
-            page += "| realization | $N = 10^2$ | $10^3$ | $10^4$ | $10^5$ | rate |\n|---|---:|---:|---:|---:|---:|\n";
+            let mut table = Table::new(["realization", ">$N = 10^2$", ">$10^3$", ">$10^4$", ">$10^5$", ">rate"]);
             for a in approaches {
-                let cells: Vec<String> =
-                    a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) }).collect();
+                let cells = a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) });
                 let rate = a.rate().map_or("too close to tell".into(), short);
-                let _ = writeln!(page, "| {} | {} | {rate} |", a.name, cells.join(" | "));
+                table.cells([a.name.to_string()].into_iter().chain(cells).chain([rate]));
             }
+            page += &table.to_string();
         }
         let _ = writeln!(
             page,
             "\n## Random systems\n\n{COUNT} systems of seed {SEED}, constraints linear or affine and not integrable:\n"
         );
-        page += "| realization | least rate | median | largest | systems | too close to tell |\n|---|---:|---:|---:|---:|---:|\n";
+        let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell"];
+        let mut table = Table::new(columns);
         for name in [FRICTION, ADDED_MASS, AUGMENTED] {
             let (rates, open) = self.random_rates(name);
             if let (Some(least), Some(most)) = (rates.first(), rates.last()) {
-                let median = rates[rates.len() / 2];
-                let _ = writeln!(
-                    page,
-                    "| {name} | {} | {} | {} | {} | {open} |",
-                    short(*least),
-                    short(median),
-                    short(*most),
-                    rates.len()
-                );
+                let [least, median, most] = [*least, rates[rates.len() / 2], *most].map(short);
+                table.row(&[&name, &least, &median, &most, &rates.len(), &open]);
             }
         }
-        page
+        page + &table.to_string()
     }
 }
 

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use anyhow::Result;
 
-use crate::report::File;
-use crate::report::numbers::short;
+use crate::report::numbers::{or_dash, short};
+use crate::report::{File, Table};
 use crate::scaling::{Cost, Exponent, FROM, Line, Point};
 use picture::{Aspect, Axis, Curve, Picture, Style};
 
@@ -57,38 +57,28 @@ fn answer(lines: &[Line]) -> String {
 pub fn scaling_text(lines: &[Line]) -> String {
     let mut text = format!(
         "## Exponents from n = {FROM}\n\nCost ∝ nᵖ, fitted to logarithms, with the standard error of p. Asked for: at most \
-         {RIGHT_HAND_SIDE} for a right-hand side, at most {DERIVATION} for the derivation.\n\n\
-         | formulation | to n | derivation, s | expressions | right-hand side, s | operations | solve, s |\n|---|--:|--:|--:|--:|--:|--:|\n"
+         {RIGHT_HAND_SIDE} for a right-hand side, at most {DERIVATION} for the derivation.\n\n"
     );
+    let columns = ["formulation", ">to n", ">derivation, s", ">expressions", ">right-hand side, s", ">operations"];
+    let mut table = Table::new(columns.into_iter().chain([">solve, s"]));
     for line in lines {
         let longest = line.points.last().map_or(0, |p| p.trailers);
-        let _ = write!(text, "| {} | {longest} |", line.formulation);
-        for cost in [Cost::Derivation, Cost::Expressions, Cost::RightHandSide, Cost::Operations, Cost::Solve] {
-            let _ = write!(text, " {} |", line.exponent(cost).map_or("–".into(), fitted));
-        }
-        text += "\n";
+        let costs = [Cost::Derivation, Cost::Expressions, Cost::RightHandSide, Cost::Operations, Cost::Solve];
+        let costs = costs.map(|cost| line.exponent(cost).map_or("–".into(), fitted));
+        table.cells([line.formulation.to_string(), longest.to_string()].into_iter().chain(costs));
     }
+    text += &table.to_string();
     for line in lines {
-        let _ = write!(
-            text,
-            "\n## {}\n\n| n | states | expressions | derivation, ms | operations | right-hand side, µs | evaluations | solve, ms |\n\
-             |--:|--:|--:|--:|--:|--:|--:|--:|\n",
-            line.formulation
-        );
+        let columns = [">n", ">states", ">expressions", ">derivation, ms", ">operations", ">right-hand side, µs"];
+        let mut table = Table::new(columns.into_iter().chain([">evaluations", ">solve, ms"]));
         for p in &line.points {
             let evaluations = p.evaluations.map_or("–".into(), |n| n.to_string());
-            let solve = p.solve.map_or("–".into(), |s| short(1e3 * s));
-            let _ = writeln!(
-                text,
-                "| {} | {} | {} | {} | {} | {} | {evaluations} | {solve} |",
-                p.trailers,
-                p.states,
-                p.expressions,
-                short(1e3 * p.derivation),
-                p.operations,
-                short(1e6 * p.right_hand_side),
-            );
+            let solve = or_dash(p.solve.map(|s| 1e3 * s));
+            let (derivation, side) = (short(1e3 * p.derivation), short(1e6 * p.right_hand_side));
+            let counts = [&p.trailers, &p.states, &p.expressions, &p.operations];
+            table.row(&[counts[0], counts[1], counts[2], &derivation, counts[3], &side, &evaluations, &solve]);
         }
+        let _ = write!(text, "\n## {}\n\n{table}", line.formulation);
         if let Some(reason) = &line.ended {
             let _ = writeln!(text, "\nEnds here: {reason}.");
         }

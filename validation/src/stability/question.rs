@@ -5,6 +5,7 @@ use deltaq::{Metric, Motion, Setting, Settings, TIGHTER, solve};
 use equations::Equations;
 use integrate::Method;
 use mechanics::{ConstantsRule, State, System};
+use serde::{Serialize, Serializer};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::reference::{Known, Reference};
@@ -68,7 +69,7 @@ pub struct Question {
 }
 
 /// An answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Cell {
     /// Name of the case.
     pub case: &'static str,
@@ -77,11 +78,17 @@ pub struct Cell {
     /// Formulation.
     pub formulation: String,
     /// Method.
+    #[serde(serialize_with = "name")]
     pub method: Method,
     /// What came of it.
+    #[serde(flatten)]
     pub verdict: Verdict,
     /// Steps of the kept run.
     pub steps: usize,
+}
+
+fn name<S: Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(method.name())
 }
 
 /// Every method on every question of `cases`.

@@ -6,6 +6,7 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use super::members::Members;
+use crate::answer::pretty;
 use crate::cli::Format;
 
 /// Members that a complaint describes.
@@ -172,9 +173,9 @@ impl<'a> Answers<'a> {
         Some(text)
     }
 
-    pub(super) fn finish(self, seconds: Seconds) -> serde_json::Result<String> {
+    pub(super) fn finish(self, seconds: Seconds) -> String {
         if self.format == Format::Csv {
-            return Ok(self.text);
+            return self.text;
         }
         let counts: Map<String, Value> =
             STATUSES.iter().zip(self.statuses).map(|(name, count)| (name.to_string(), json!(count))).collect();
@@ -186,6 +187,6 @@ impl<'a> Answers<'a> {
             "members": self.values,
             "seconds": { "start": seconds.start, "derive": seconds.derive, "integrate": seconds.integrate },
         });
-        Ok(serde_json::to_string_pretty(&value)? + "\n")
+        pretty(&value)
     }
 }
