@@ -8,8 +8,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub use ensemble::{EnsembleArguments, MOST_MEMBERS, MotionArguments, Range};
-use scene::Scene;
 use random::Kind;
+use scene::Scene;
 use validation::catalogue::{self, NotFound};
 use validation::stability::Stepping;
 

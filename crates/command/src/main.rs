@@ -12,6 +12,7 @@ mod show_command;
 mod solve_command;
 mod stability_command;
 
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use anyhow::{Error, Result};
@@ -28,7 +29,11 @@ fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         // the help that was asked for is an answer, too
-        Err(told) if !told.use_stderr() => return printed(&told.render().ansi().to_string().into()),
+        Err(told) if !told.use_stderr() => {
+            let help = told.render();
+            let terminal = std::io::stdout().is_terminal();
+            return printed(&if terminal { help.ansi().to_string() } else { help.to_string() }.into());
+        }
         Err(error) => error.exit(),
     };
     match run(cli) {
