@@ -214,7 +214,7 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
         None => out.join("measured"),
     };
     let mut measured = results.measured;
-    for part in &mut measured {
+    if let Some(part) = &mut measured {
         let pages = part.files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
         pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
         write_all(&folder, &part.files)?;
@@ -228,7 +228,7 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
     for (line, page) in further {
         let _ = writeln!(told, "{page:<24} {line}");
     }
-    for part in measured {
+    if let Some(part) = measured {
         let _ = writeln!(told, "{:<24} {}", folder.join(part.page).display(), part.headline);
     }
     let seconds = clock.elapsed().as_secs_f64();

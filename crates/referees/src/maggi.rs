@@ -249,6 +249,21 @@ impl Maggi {
         motion::solve(self, start, end, tolerance, form)
     }
 
+    /// The motion of `system` at two tolerances, whose difference is an error estimate: in the form for the system, and
+    /// where the splitting of that is lost on the way, by accelerations.
+    ///
+    /// # Errors
+    /// Those of [`Maggi::new`] and [`Maggi::solve`].
+    pub fn twice(system: &System, start: &State, end: f64, tolerances: [f64; 2]) -> Result<[Motion; 2], MaggiError> {
+        let mut maggi = Maggi::new(system)?;
+        let mut both = |form| -> Result<[Motion; 2], MaggiError> {
+            let [first, second] = tolerances.map(|tolerance| maggi.solve(start, end, tolerance, form));
+            Ok([first?, second?])
+        };
+        let runs = both(Form::for_system(system))?;
+        if runs.iter().any(|run| run.end() < end) { both(Form::Accelerations) } else { Ok(runs) }
+    }
+
     fn instant(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<Instant<'_>, MaggiError> {
         self.check_length("positions", q)?;
         self.check_length("velocities", v)?;

@@ -2,10 +2,9 @@
 
 use anyhow::Result;
 use deltaq::{Comparison, Metric};
-use scene::Scene;
 
 use crate::casadi_job::{Outcome, Row, Word, referee_table};
-use referees::maggi::{Form, Maggi, MaggiError, Motion};
+use referees::maggi::{Maggi, Motion};
 
 /// Tolerances of the two runs of Maggi's equations; their difference estimates the error of the first.
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
@@ -58,7 +57,7 @@ fn maggi(comparison: &mut Comparison) -> Result<Option<Row>> {
         note: String::new(),
         condition: None,
     };
-    let mut runs = match two_runs(scene, motion.end()) {
+    let mut runs = match Maggi::twice(&scene.system, &scene.start, motion.end(), TOLERANCES) {
         Ok(runs) => runs,
         Err(error) => {
             row.note = error.to_string();
@@ -93,15 +92,4 @@ fn maggi(comparison: &mut Comparison) -> Result<Option<Row>> {
     }
     row.verdict = if relative <= row.tolerance { Word::Agrees } else { Word::Disagrees };
     Ok(Some(row))
-}
-
-/// Maggi's motion at both tolerances: in the reduced form, and where its splitting is lost on the way, in the other.
-fn two_runs(scene: &Scene, end: f64) -> Result<[Motion; 2], MaggiError> {
-    let mut maggi = Maggi::new(&scene.system)?;
-    let mut run = |form, tolerance| maggi.solve(&scene.start, end, tolerance, form);
-    let mut form = Form::for_system(&scene.system);
-    if run(form, TOLERANCES[0])?.end() < end {
-        form = Form::Accelerations;
-    }
-    Ok([run(form, TOLERANCES[0])?, run(form, TOLERANCES[1])?])
 }

@@ -101,7 +101,7 @@ pub fn judge(
     let mut samples = Vec::with_capacity(SAMPLES + 1);
     for t in motion.grid(SAMPLES) {
         let (kept, looser) = motion.at_in_both_runs(t)?;
-        let Some((truth, second)) = known.at(t) else { continue };
+        let Some((truth, second)) = known(t) else { continue };
         let q = &kept.coordinates;
         let mut length = |a: &[f64], b: &[f64]| {
             let mut difference: Vec<f64> = a.iter().zip(b).take(allowance.compared).map(|(a, b)| a - b).collect();

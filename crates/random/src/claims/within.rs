@@ -3,7 +3,7 @@
 use super::CheckError;
 use crate::Case;
 use crate::case::{Which, equations};
-use referees::maggi::{Form, Maggi};
+use referees::maggi::Maggi;
 
 /// Instants at which the constraint is looked at.
 const INSTANTS: usize = 12;
@@ -28,18 +28,10 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
 /// Tolerances of the two runs of the referee.
 const MAGGI: [f64; 2] = [1e-10, 1e-12];
 
-/// Chetaev's motion against that of Maggi's equations, each with its own error estimate. Where the splitting into dependent and independent
-/// velocities that was chosen at the start is lost, Maggi's accelerations are integrated instead.
+/// Chetaev's motion against that of Maggi's equations, each with its own error estimate.
 fn maggi(case: &mut Case) -> Result<(), CheckError> {
     let (start, end) = (case.scene.start.clone(), case.end());
-    let mut maggi = Maggi::new(&case.scene.system)?;
-    let mut both = |form: Form| -> Result<_, CheckError> {
-        Ok((maggi.solve(&start, end, MAGGI[0], form)?, maggi.solve(&start, end, MAGGI[1], form)?))
-    };
-    let (mut looser, mut kept) = both(Form::for_system(&case.scene.system))?;
-    if looser.end().min(kept.end()) < end {
-        (looser, kept) = both(Form::Accelerations)?;
-    }
+    let [mut looser, mut kept] = Maggi::twice(&case.scene.system, &start, end, MAGGI)?;
     let (mut gap, mut limit, mut size) = (0.0_f64, 0.0_f64, 1.0_f64);
     let last = kept.end().min(looser.end());
     for t in case.chetaev.grid(INSTANTS).into_iter().filter(|&t| t <= last) {
