@@ -6,9 +6,9 @@ use serde_json::json;
 use crate::cli::{BenchArguments, ScalingArguments};
 use crate::main_job::bench_all;
 use random::parallel;
-use validation::bench::{Effort, MEMBERS, ensemble_table, ensemble_throughput};
+use validation::bench::{Effort, MEMBERS, ensemble_throughput};
 use validation::catalogue;
-use validation::report::{bench_files, bench_json, bench_table, scaling_files, scaling_text};
+use validation::report::{bench_files, bench_json, bench_table, ensemble_text, scaling_files, scaling_text};
 use validation::scaling::{FORMULATIONS, Limits, TRAILERS, measure};
 
 /// Repeats of each way to integrate an ensemble; the least time counts.
@@ -26,7 +26,7 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
         if !(tolerance > 0.0 && tolerance < 1.0) {
             bail!("--ensemble is {tolerance}; it must be between 0 and 1");
         }
-        return Ok(ensemble_table(&ensemble_throughput(MEMBERS, tolerance, REPEATS)?));
+        return Ok(ensemble_text(&ensemble_throughput(MEMBERS, tolerance, REPEATS)?));
     }
     let effort = Effort { seconds: arguments.seconds, ..Effort::default() };
     let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();

@@ -4,6 +4,7 @@
 mod answer;
 mod bench_command;
 mod cli;
+mod columns;
 mod compare_command;
 mod ensemble_command;
 mod main_job;

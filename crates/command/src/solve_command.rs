@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, pretty};
 use crate::cli::{Format, MotionArguments, SolveArguments};
+use crate::columns::{Columns, row};
 use validation::stability::Stepping;
 
 /// Times at which invariants are sampled.
@@ -50,9 +51,19 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
         }
     };
     let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();
+    let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
+    let columns = Columns::of(&scene, &motion.equations);
     let text = match arguments.motion.format {
-        Format::Csv => csv(&scene, &mut motion, &reached)?,
-        Format::Json => json_text(&scene, &choice, &mut motion, &reached, estimate.absolute, complaint.as_deref())?,
+        Format::Csv => {
+            let rows = rows.iter().zip(&reached).map(|(now, &t)| row(t, now) + "\n");
+            columns.names().join(",") + "\n" + &rows.collect::<String>()
+        }
+        Format::Json => {
+            let mut value = json_of(&scene, &choice, &mut motion, complaint.as_deref())?;
+            (value["times"], value["error_estimate"]) = (json!(reached), json!(estimate.absolute));
+            columns.write(&mut value, &rows);
+            pretty(&value)
+        }
     };
     Ok(Answer { text, complaint })
 }
@@ -164,38 +175,8 @@ pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
     Ok(times)
 }
 
-fn csv(scene: &Scene, motion: &mut Motion, times: &[f64]) -> Result<String> {
-    let mut columns = vec!["t".to_string()];
-    columns.extend(scene.system.coordinates.iter().map(|c| c.name.clone()));
-    columns.extend(scene.system.coordinates.iter().map(|c| format!("{}'", c.name)));
-    columns.extend(motion.equations.multipliers.iter().map(|m| m.name.clone()));
-    let mut text = columns.join(",") + "\n";
-    for &t in times {
-        let now = motion.at(t)?;
-        let numbers = [vec![t], now.coordinates, now.velocities, now.multipliers].concat();
-        text += &(numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",") + "\n");
-    }
-    Ok(text)
-}
-
-fn json_text(
-    scene: &Scene,
-    choice: &Choice,
-    motion: &mut Motion,
-    times: &[f64],
-    error_estimate: f64,
-    complaint: Option<&str>,
-) -> Result<String> {
-    let mut rows = Vec::new();
-    for &t in times {
-        rows.push(motion.at(t)?);
-    }
-    let names: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
-    let columns = |names: &[String], row: &dyn Fn(&equations::Outputs) -> Vec<f64>| -> Value {
-        let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
-        names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
-    };
-    let multipliers: Vec<String> = motion.equations.multipliers.iter().map(|m| m.name.clone()).collect();
+/// Everything about a motion but where it was.
+fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, complaint: Option<&str>) -> Result<Value> {
     let invariants: Map<String, Value> = motion
         .invariant_drift(&motion.grid(SAMPLES))?
         .into_iter()
@@ -203,7 +184,7 @@ fn json_text(
         .collect();
     let constants: Map<String, Value> =
         deltaq::constant_names(&motion.equations).into_iter().zip(motion.constants.iter().map(|&c| json!(c))).collect();
-    let value = json!({
+    Ok(json!({
         "scene": scene.name,
         "formulation": choice.formulation,
         "removal": choice.removal.as_ref().map(|r| &r.name),
@@ -215,11 +196,6 @@ fn json_text(
         "cause": complaint,
         "end": motion.end(),
         "free_constants": constants,
-        "times": times,
-        "coordinates": columns(&names, &|r| r.coordinates.clone()),
-        "velocities": columns(&names, &|r| r.velocities.clone()),
-        "multipliers": columns(&multipliers, &|r| r.multipliers.clone()),
-        "error_estimate": error_estimate,
         "invariants": invariants,
         "projection": { "count": motion.projection.projections, "largest": motion.projection.largest },
         "work": {
@@ -230,6 +206,5 @@ fn json_text(
         "seconds": {
             "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
         },
-    });
-    Ok(pretty(&value))
+    }))
 }

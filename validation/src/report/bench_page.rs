@@ -95,34 +95,51 @@ fn fastest(found: Option<Fastest>) -> String {
     })
 }
 
-/// Throughput of ensembles.
+/// The section on ensembles, where any were measured.
 fn ensemble_section(measured: &[Throughput]) -> String {
+    if measured.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\n## Many motions at once\n\n{}\nSo few members are for a look: `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n",
+        ensemble_text(measured)
+    )
+}
+
+/// Throughput of ensembles: what was measured, and how.
+pub fn ensemble_text(measured: &[Throughput]) -> String {
     let Some(first) = measured.first() else { return String::new() };
-    let text = format!(
-        "\n## Many motions at once\n\nSledges with random starts, {} of each formulation, by `taylor` at {:.0e} over the time of the scene: one by one, eight at a time in the lanes of \
-         the processor's vectors, and in lanes over {} cores. Compiled once, states at the end only. *Lanes* is the throughput in lanes over that one by one, *cores* that over all cores \
+    let mut text = format!(
+        "Sledges with random starts, {} of each formulation, by `taylor` at {:.0e} over the time of the scene: one by one, eight at a time in the lanes of \
+         the processor's vectors, and in lanes over {} cores. Compiled once, states at the end only. *Start* is the time to find what a member starts from, in no other column. \
+         *Lanes* is the throughput in lanes over that one by one, *cores* that over all cores \
          over that on one. *Processor time* is that spent in lanes on one core over that spent together on all: 1 where dividing the work costs nothing, whatever else runs on \
-         the machine. *Difference* is the largest of a state at the end, one by one and in lanes; over the cores there is none, to the last bit{}. So few members are for a look: \
-         `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n\n",
+         the machine. *Difference* is the largest of a state at the end, one by one and in lanes; over the cores there is none, to the last bit{}.\n\n",
         first.members,
         first.tolerance,
         first.threads,
         if measured.iter().all(|m| m.over_cores == 0.0) { "" } else { " (**not so here**)" },
     );
-    let columns = ["formulation", ">members", ">steps of one", ">one by one (µs each)", ">lanes (µs each)"];
-    let more = [">all cores (µs each)", ">lanes", ">cores", ">processor time", ">difference", ">alone"];
+    let columns =
+        ["formulation", ">members", ">steps, one by one and in lanes", ">start (µs each)", ">one by one (µs each)"];
+    let more =
+        [">lanes (µs each)", ">all cores (µs each)", ">lanes", ">cores", ">processor time", ">difference", ">alone"];
     let mut table = Table::new(columns.into_iter().chain(more));
     for m in measured {
-        let [single, lanes, cores] = m.microseconds().map(short);
+        let head =
+            [m.label.clone(), m.members.to_string(), m.mean_steps().map(|steps| format!("{steps:.1}")).join(", ")];
+        let [single, lanes, cores] = m.microseconds();
+        let times = [1e6 * m.prepare / m.members as f64, single, lanes, cores].map(short);
+        let ratios = [m.over_single(), m.over_one_core()].map(|ratio| format!("{ratio:.2}"));
         let efficiency = m.efficiency().map_or("–".into(), |e| format!("{e:.2}"));
-        let steps = format!("{:.0}", m.mean_steps()[1]);
-        let [by_lanes, by_cores] = [m.over_single(), m.over_one_core()].map(|ratio| format!("{ratio:.2}"));
-        let difference = format!("{:.1e}", m.difference);
-        let head: [&dyn std::fmt::Display; 6] = [&m.label, &m.members, &steps, &single, &lanes, &cores];
-        let tail: [&dyn std::fmt::Display; 5] = [&by_lanes, &by_cores, &efficiency, &difference, &m.alone.0];
-        table.row(&[&head[..], &tail].concat());
+        let tail = [efficiency, format!("{:.1e}", m.difference), m.alone.0.to_string()];
+        table.cells(head.into_iter().chain(times).chain(ratios).chain(tail));
     }
-    text + &table.to_string()
+    text += &table.to_string();
+    for (label, why) in measured.iter().filter_map(|m| Some((&m.label, m.alone.1.as_ref()?))) {
+        let _ = writeln!(text, "\n{label}, the first that went alone: {why}.");
+    }
+    text
 }
 
 fn section(entry: &Entry) -> String {

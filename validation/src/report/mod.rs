@@ -17,7 +17,7 @@ mod tables;
 mod verdicts;
 
 pub use audit_page::AuditReport;
-pub use bench_page::{bench_files, bench_headline, bench_json, bench_table};
+pub use bench_page::{bench_files, bench_headline, bench_json, bench_table, ensemble_text};
 pub use files::{File, write_all};
 pub use overview::overview;
 pub use pictures::pictures;
