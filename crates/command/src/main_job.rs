@@ -277,17 +277,8 @@ pub(crate) fn protocol() -> Settings {
 
 /// All scenes, over all processors, in the order of `names`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
-    let bar = parallel::progress(names.len(), quiet);
     let settings = protocol();
-    let results = parallel::map(names, |name| {
-        bar.set_message(name.to_string());
-        let scene = catalogue::find(name, &[]).map_err(anyhow::Error::from);
-        let result = scene.and_then(|scene| scene_files(scene, &settings));
-        bar.inc(1);
-        result
-    });
-    bar.finish_and_clear();
-    results.into_iter().collect()
+    parallel::try_map(names, quiet, ToString::to_string, |name| scene_files(catalogue::find(name, &[])?, &settings))
 }
 
 /// References of all scenes over all processors, then measurements one after the other.
@@ -295,15 +286,10 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
 /// # Errors
 /// Where a scene cannot be read.
 pub fn bench_all(names: &[&str], overrides: &[(String, f64)], effort: &Effort, quiet: bool) -> Result<Vec<Bench>> {
-    let bar = parallel::progress(2 * names.len(), quiet);
-    bar.set_message("references");
-    let prepared = parallel::map(names, |name| {
-        let prepared = bench::prepare(name, overrides);
-        bar.inc(1);
-        prepared
-    });
+    let prepared = parallel::try_map(names, quiet, |_| "references".into(), |name| bench::prepare(name, overrides))?;
+    let bar = parallel::progress(names.len(), quiet);
     let benches = prepared.into_iter().map(|prepared| {
-        let measured = bench::measure(prepared?, effort, |words| bar.set_message(words.to_string()));
+        let measured = bench::measure(prepared, effort, |words| bar.set_message(words.to_string()));
         bar.inc(1);
         measured
     });

@@ -203,6 +203,11 @@ pub enum PictureError {
 }
 
 impl Picture {
+    /// A picture in which each axis fills its side.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
+        Picture { title: title.into(), x, y, curves, aspect: Aspect::Fill }
+    }
+
     /// The picture as a complete SVG document.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use picture::{Aspect, Axis, Curve, Picture, PictureError, Style};
+use picture::{Axis, Curve, Picture, PictureError, Style};
 use rapier3d_f64::VERSION;
 use validation::report::{File, Table};
 
@@ -146,11 +146,7 @@ fn short(x: f64) -> String {
 }
 
 fn picture(study: &Study) -> Result<String, PictureError> {
-    let style = |formulation: &str| match formulation {
-        "chetaev" => Style::Chetaev,
-        "vakonomic" => Style::Vakonomic,
-        _ => Style::RemovedConstraint,
-    };
+    let style = |formulation: &str| Style::of_formulation(formulation).unwrap_or(Style::RemovedConstraint);
     let curve = |label: String, style: Style, levels: &[Level], read: &dyn Fn(&Level) -> Option<f64>| Curve {
         label,
         style,
@@ -172,12 +168,6 @@ fn picture(study: &Study) -> Result<String, PictureError> {
     curves.push(curve(format!("to {first}, extrapolated"), Style::Chetaev, &study.hard, &extrapolated));
     curves.push(curve(format!("to {first}, extrapolated, 1 MHz"), Style::Chetaev, &study.yielding, &extrapolated));
     curves.push(curve(format!("to {first}, contacts as shipped"), Style::Chetaev, &study.shipped, &as_shipped));
-    Picture {
-        title: format!("{}: the engine's distance from each formulation", study.title),
-        x: Axis::log("dt (s)"),
-        y: Axis::log("relative distance"),
-        curves,
-        aspect: Aspect::Fill,
-    }
-    .to_svg()
+    let title = format!("{}: the engine's distance from each formulation", study.title);
+    Picture::new(title, Axis::log("dt (s)"), Axis::log("relative distance"), curves).to_svg()
 }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use crate::report::numbers::{enumerate, or_dash, short};
 use crate::report::{File, Table};
-use picture::{Aspect, Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
+use picture::{Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
 use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.
@@ -261,14 +261,10 @@ fn times(summary: &Summary) -> Result<String> {
         points.push((DURATION, part));
         Curve { label: names.passes.trim_start_matches("tau(1e-3), ").into(), style, points }
     });
-    let picture = Picture {
-        title: "Nonintegrable random systems: when the gap passes 1e-3".into(),
-        x: Axis { range: Some((0.0, DURATION)), ..Axis::linear("t") },
-        y: Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") },
-        curves: curves.collect(),
-        aspect: Aspect::Fill,
-    };
-    Ok(picture.to_svg()?)
+    let x = Axis { range: Some((0.0, DURATION)), ..Axis::linear("t") };
+    let y = Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") };
+    let title = "Nonintegrable random systems: when the gap passes 1e-3";
+    Ok(Picture::new(title, x, y, curves.collect()).to_svg()?)
 }
 
 /// Histograms of the growth exponents, as outlines.

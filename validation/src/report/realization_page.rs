@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use crate::catalogue;
 use crate::report::numbers::short;
 use crate::report::{File, Table};
-use picture::{Aspect, Axis, Curve, Picture, Style};
+use picture::{Axis, Curve, Picture, Style};
 use random::parallel;
 use random::realization::{Realization, distance, realize, realize_removal};
 use random::{Case, Kind, draw_recipe, free_constants};
@@ -70,24 +70,15 @@ impl RealizationReport {
     /// # Errors
     /// Where a motion cannot be had.
     pub fn new(quiet: bool) -> Result<RealizationReport> {
-        let bar = parallel::progress(SCENES.len() + COUNT as usize, quiet);
-        bar.set_message("realizations");
-        let scenes = parallel::map(&SCENES, |(name, duration)| {
-            let approaches = of_scene(name, *duration).with_context(|| format!("realizations of `{name}`"));
-            bar.inc(1);
-            approaches.map(|approaches| (name.to_string(), approaches))
-        });
+        let scene = |(name, _): &(&str, f64)| format!("realizations of `{name}`");
+        let scenes = parallel::try_map(&SCENES, quiet, scene, |asked| -> Result<_> {
+            Ok((asked.0.to_string(), of_scene(asked.0, asked.1).with_context(|| scene(asked))?))
+        })?;
         let indices: Vec<u64> = (0..COUNT).collect();
-        let random = parallel::map(&indices, |&index| {
-            let approaches = of_random(index).with_context(|| format!("realizations of random system {index}"));
-            bar.inc(1);
-            approaches
-        });
-        bar.finish_and_clear();
-        Ok(RealizationReport {
-            scenes: scenes.into_iter().collect::<Result<_>>()?,
-            random: random.into_iter().collect::<Result<_>>()?,
-        })
+        let system = |index: &u64| format!("realizations of random system {index}");
+        let random =
+            parallel::try_map(&indices, quiet, system, |index| of_random(*index).with_context(|| system(index)))?;
+        Ok(RealizationReport { scenes, random })
     }
 
     /// Rates of one realization on the random systems, sorted; and how many cannot be told.
@@ -258,12 +249,7 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
         style: a.style,
         points: STRENGTHS.iter().copied().zip(a.distances.iter().copied()).collect(),
     };
-    let picture = Picture {
-        title: format!("{name}: realizations"),
-        x: Axis::log("strength N"),
-        y: Axis::log("distance in the kinetic metric"),
-        curves: approaches.iter().map(curve).collect(),
-        aspect: Aspect::Fill,
-    };
-    Ok(picture.to_svg()?)
+    let (x, y) = (Axis::log("strength N"), Axis::log("distance in the kinetic metric"));
+    let curves = approaches.iter().map(curve).collect();
+    Ok(Picture::new(format!("{name}: realizations"), x, y, curves).to_svg()?)
 }

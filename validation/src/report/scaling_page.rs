@@ -7,7 +7,7 @@ use anyhow::Result;
 use crate::report::numbers::{or_dash, short};
 use crate::report::{File, Table};
 use crate::scaling::{Cost, Exponent, FROM, Line, Point};
-use picture::{Aspect, Axis, Curve, Picture, Style};
+use picture::{Axis, Curve, Picture, Style};
 
 /// Largest exponents that are asked for: of one right-hand side, and of the derivation.
 const RIGHT_HAND_SIDE: f64 = 1.2;
@@ -94,22 +94,11 @@ fn fitted(exponent: Exponent) -> String {
 }
 
 fn picture(lines: &[Line], title: &str, label: &str, cost: impl Fn(&Point) -> Option<f64>) -> Result<String> {
-    let style = |name: &str| match name {
-        name if name.starts_with("chetaev") => Style::Chetaev,
-        name if name.starts_with("vakonomic") => Style::Vakonomic,
-        _ => Style::RemovedConstraint,
-    };
     let curve = |line: &Line| Curve {
         label: line.formulation.into(),
-        style: style(line.formulation),
+        style: Style::of_formulation(line.formulation).unwrap_or(Style::RemovedConstraint),
         points: line.points.iter().filter_map(|p| Some((p.trailers as f64, cost(p)?))).collect(),
     };
-    let picture = Picture {
-        title: format!("{title} of a car with n trailers"),
-        x: Axis::log("n"),
-        y: Axis::log(label),
-        aspect: Aspect::Fill,
-        curves: lines.iter().map(curve).collect(),
-    };
-    Ok(picture.to_svg()?)
+    let curves = lines.iter().map(curve).collect();
+    Ok(Picture::new(format!("{title} of a car with n trailers"), Axis::log("n"), Axis::log(label), curves).to_svg()?)
 }

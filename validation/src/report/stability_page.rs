@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use crate::report::numbers::short;
 use crate::report::{File, Table};
 use crate::stability::{CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Verdict, long_runs, run, tolerance};
-use picture::{Aspect, Axis, Curve, Picture, Style};
+use picture::{Axis, Curve, Picture, Style};
 
 /// Lines of the pictures, method by method.
 const STYLES: [Style; 4] = [Style::Chetaev, Style::Vakonomic, Style::RemovedConstraint, Style::Substituted];
@@ -211,14 +211,10 @@ impl StabilityReport {
             });
             Curve { label: method.name().into(), style: STYLES[i % STYLES.len()], points: points.collect() }
         };
-        let picture = Picture {
-            title: format!("{name}: true error of what is not refused"),
-            x: Axis::log(variable(name)),
-            y: Axis::log("error over distance"),
-            curves: Method::ALL.iter().enumerate().map(curve).collect(),
-            aspect: Aspect::Fill,
-        };
-        Ok(picture.to_svg()?)
+        let title = format!("{name}: true error of what is not refused");
+        let (x, y) = (Axis::log(variable(name)), Axis::log("error over distance"));
+        let curves = Method::ALL.iter().enumerate().map(curve).collect();
+        Ok(Picture::new(title, x, y, curves).to_svg()?)
     }
 }
 

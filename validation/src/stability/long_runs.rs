@@ -137,15 +137,8 @@ pub struct LongRun {
 pub fn long_runs(quiet: bool) -> Result<Vec<LongRun>> {
     let asked: Vec<(&Long, Stepping)> =
         LONG.iter().flat_map(|long| Stepping::COMPARED.into_iter().map(move |stepping| (long, stepping))).collect();
-    let bar = parallel::progress(asked.len(), quiet);
-    let runs = parallel::map(&asked, |(long, stepping)| {
-        bar.set_message(long.scene);
-        let run = long.run(*stepping).with_context(|| format!("{}, {}", long.scene, long.formulation));
-        bar.inc(1);
-        run
-    });
-    bar.finish_and_clear();
-    runs.into_iter().collect()
+    let name = |(long, _): &(&Long, Stepping)| format!("{}, {}", long.scene, long.formulation);
+    parallel::try_map(&asked, quiet, name, |asked| asked.0.run(asked.1).with_context(|| name(asked)))
 }
 
 impl Long {

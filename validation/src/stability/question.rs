@@ -98,15 +98,9 @@ fn name<S: Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error
 pub fn run(cases: &[&Case], quiet: bool) -> Result<Vec<Cell>> {
     let questions: Vec<(&'static str, Question)> =
         cases.iter().flat_map(|case| (case.questions)().into_iter().map(|q| (case.name, q))).collect();
-    let bar = parallel::progress(questions.len(), quiet);
-    let cells = parallel::map(&questions, |(case, question)| {
-        bar.set_message(*case);
-        let cells = question.cells(case);
-        bar.inc(1);
-        cells
-    });
-    bar.finish_and_clear();
-    Ok(cells.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+    let name = |(case, _): &(&str, Question)| case.to_string();
+    let cells = parallel::try_map(&questions, quiet, name, |(case, question)| question.cells(case))?;
+    Ok(cells.into_iter().flatten().collect())
 }
 
 impl Question {
