@@ -17,7 +17,7 @@
 //!   removed constraint: `u` fixed at both ends, `w(t₁)` free, so that `P(t₁) = 0` has to come out);
 //! - Chetaev's accelerations, with those of SymPy's `LagrangesMethod`.
 //!
-//! The virtual environment is made in cargo's target folder when it is first needed.
+//! The virtual environment is made when it is first needed, in cargo's target folder; by an installed program in the user's cache.
 
 use anyhow::{Context, Result};
 use scene::Scene;

@@ -1,12 +1,15 @@
-//! `deltaq bench`.
+//! `deltaq bench` and `deltaq scaling`: what it costs, over accuracy and over size.
 
 use anyhow::{Result, bail};
+use serde_json::json;
 
-use crate::cli::{BenchArguments, TextOrJson};
+use crate::cli::{BenchArguments, ScalingArguments};
 use crate::main_job::bench_all;
-use validation::bench::{Effort, MEMBERS, ensemble_table, ensemble_throughput};
+use random::parallel;
+use validation::bench::{Effort, MEMBERS, ensemble_throughput};
 use validation::catalogue;
-use validation::report::{bench_files, bench_json, bench_table, write_all};
+use validation::report::{bench_files, bench_json, bench_table, ensemble_text, scaling_files, scaling_text};
+use validation::scaling::{FORMULATIONS, Limits, TRAILERS, measure};
 
 /// Repeats of each way to integrate an ensemble; the least time counts.
 const REPEATS: usize = 5;
@@ -23,18 +26,27 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
         if !(tolerance > 0.0 && tolerance < 1.0) {
             bail!("--ensemble is {tolerance}; it must be between 0 and 1");
         }
-        return Ok(ensemble_table(&ensemble_throughput(MEMBERS, tolerance, REPEATS)?));
+        return Ok(ensemble_text(&ensemble_throughput(MEMBERS, tolerance, REPEATS)?));
     }
     let effort = Effort { seconds: arguments.seconds, ..Effort::default() };
     let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let given: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
     let names: Vec<&str> = if given.is_empty() { all() } else { given };
-    let benches = bench_all(&names, &arguments.overrides, &effort, arguments.quiet)?;
-    if let Some(folder) = &arguments.out {
-        write_all(folder, &bench_files(&benches, &[])?)?;
-    }
-    Ok(match arguments.format {
-        TextOrJson::Text => bench_table(&benches),
-        TextOrJson::Json => serde_json::to_string_pretty(&bench_json(&benches))? + "\n",
-    })
+    let benches = bench_all(&names, &arguments.set.overrides, &effort, arguments.output.quiet)?;
+    arguments.output.answer(|| bench_files(&benches, &[]), || bench_table(&benches), || bench_json(&benches))
+}
+
+/// Measures how cost grows with the length of a train of trailers.
+///
+/// # Errors
+/// Where a train has no equations, or the page cannot be written.
+pub fn scaling(arguments: &ScalingArguments) -> Result<String> {
+    let limits = Limits { trailers: arguments.longest, seconds: arguments.seconds, repeats: arguments.repeats.into() };
+    let bar = parallel::progress(FORMULATIONS.len() * TRAILERS.len(), arguments.output.quiet);
+    let lines = measure(&limits, &mut |name, trailers| {
+        bar.set_message(format!("{name}, n = {trailers}"));
+        bar.inc(1);
+    })?;
+    bar.finish_and_clear();
+    arguments.output.answer(|| scaling_files(&lines), || scaling_text(&lines), || json!({ "lines": lines }))
 }

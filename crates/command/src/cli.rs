@@ -9,6 +9,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub use ensemble::{EnsembleArguments, MOST_MEMBERS, MotionArguments, Range};
 use random::Kind;
+use scene::Scene;
+use validation::catalogue::{self, NotFound};
+use validation::stability::Stepping;
 
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
 #[derive(Parser, Debug)]
@@ -25,12 +28,13 @@ pub struct Cli {
 /// Options of the main job.
 #[derive(Args, Debug)]
 pub struct JobArguments {
-    /// Folder that the reports are written to.
-    #[arg(long, default_value = "reports")]
-    pub out: PathBuf,
-    /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is the committed one.
-    #[arg(long, default_value = "target/measured")]
-    pub measured: PathBuf,
+    /// Folder that the reports are written to; `reports` of the project's sources if left out.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is the committed one, `target/measured`
+    /// that of the sources if left out.
+    #[arg(long, value_name = "DIR")]
+    pub measured: Option<PathBuf>,
     /// Sections to run, all if left out. The overview is written only when all of them run.
     #[arg(long, value_enum, value_name = "NAME,…", value_delimiter = ',')]
     pub sections: Vec<Section>,
@@ -89,105 +93,39 @@ pub enum Command {
     Reports(ReportsArguments),
 }
 
-/// `deltaq show`.
+/// A scene with changes.
 #[derive(Args, Debug)]
-pub struct ShowArguments {
+pub struct SceneArguments {
     /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
     pub scene: String,
-    /// Replace a parameter or a start value.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
-    pub overrides: Vec<(String, f64)>,
-    /// Formulas in LaTeX.
-    #[arg(long)]
-    pub latex: bool,
+    #[command(flatten)]
+    pub set: Overrides,
 }
 
-/// `deltaq solve`.
+impl SceneArguments {
+    /// The scene.
+    ///
+    /// # Errors
+    /// [`NotFound`], with the place in the file where there is one.
+    pub fn find(&self) -> Result<Scene, NotFound> {
+        catalogue::find(&self.scene, &self.set.overrides)
+    }
+}
+
+/// What is changed in a scene.
 #[derive(Args, Debug)]
-pub struct SolveArguments {
-    /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
-    pub scene: String,
-    /// Which motion of it.
-    #[command(flatten)]
-    pub motion: MotionArguments,
-    /// Time-stepping method.
-    #[arg(long, value_enum, default_value_t = MethodName::Dop853)]
-    pub method: MethodName,
-    /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
-    #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
-    pub tolerance: f64,
-    /// Longest step of `--method leapfrog`. A second run has steps twice as long; the difference is the error estimate.
-    #[arg(long, value_name = "H", allow_negative_numbers = true)]
-    pub step: Option<f64>,
-    /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
-    #[arg(long, value_parser = ["2", "4", "6", "8"])]
-    pub order: Option<String>,
-    /// Times to print: `a,b,c` or `from:to:count`. 101 equidistant ones if left out.
-    #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
-    pub times: Option<String>,
+pub struct Overrides {
     /// Replace a parameter (`g=1.6`), a start value (`x=1`, `x'=2`) or `duration`.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub overrides: Vec<(String, f64)>,
-    /// No projection onto the constraint.
-    #[arg(long)]
-    pub no_projection: bool,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = Format::Csv)]
-    pub format: Format,
 }
 
-/// `deltaq compare`.
+/// What a command with tables answers with.
 #[derive(Args, Debug)]
-pub struct CompareArguments {
-    /// Built-in names or paths of scene files.
-    #[arg(required = true)]
-    pub scenes: Vec<String>,
-    /// Folder for the pages and pictures; to the terminal if left out.
+pub struct Output {
+    /// Folder for the page and its pictures, or for scene files.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Replace a parameter or a start value.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
-    pub overrides: Vec<(String, f64)>,
-    /// Tolerance of the looser of the two runs of every motion.
-    #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
-    pub tolerance: f64,
-}
-
-/// `deltaq random`.
-#[derive(Args, Debug)]
-pub struct RandomArguments {
-    /// Number of systems.
-    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
-    pub count: u64,
-    /// Seed. A system is a function of seed and index (and of the kind, where one is chosen).
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Systems of one kind only; all kinds in turn if left out.
-    #[arg(long, value_parser = kinds())]
-    pub kind: Option<Kind>,
-    /// One system only: what is claimed of it, claim by claim, and what was found.
-    #[arg(long, conflicts_with = "count")]
-    pub index: Option<u64>,
-    /// File that every finished system is added to, and that a run which was cut off goes on from.
-    #[arg(long, value_name = "FILE", conflicts_with = "index")]
-    pub log: Option<PathBuf>,
-    /// Folder for scene files: the system of --index, and a shrunk counterexample of every claim that fails.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub format: TextOrJson,
-    /// No progress bar.
-    #[arg(long)]
-    pub quiet: bool,
-}
-
-/// `deltaq stability`.
-#[derive(Args, Debug)]
-pub struct StabilityArguments {
-    /// Cases to run, all if left out.
-    #[arg(long = "case", value_name = "NAME,…", value_delimiter = ',')]
-    pub cases: Vec<String>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
@@ -205,6 +143,83 @@ pub enum TextOrJson {
     Json,
 }
 
+/// `deltaq show`.
+#[derive(Args, Debug)]
+pub struct ShowArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Formulas in LaTeX.
+    #[arg(long)]
+    pub latex: bool,
+}
+
+/// `deltaq solve`.
+#[derive(Args, Debug)]
+pub struct SolveArguments {
+    #[command(flatten)]
+    pub motion: MotionArguments,
+    /// Time-stepping method: Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of order 8 (dop853) or 5 (tsit45);
+    /// for stiff systems implicit Runge–Kutta of order 5 (radau5), 4 (esdirk34) or 2 (tr-bdf2) and backward differentiation formulas (bdf);
+    /// leapfrog, a discrete variational principle in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the
+    /// symplectic form.
+    #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "dop853")]
+    pub method: Stepping,
+    /// Longest step of `--method leapfrog`. A second run has steps twice as long; the difference is the error estimate.
+    #[arg(long, value_name = "H", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
+    #[arg(long, value_parser = ["2", "4", "6", "8"])]
+    pub order: Option<String>,
+}
+
+/// `deltaq compare`.
+#[derive(Args, Debug)]
+pub struct CompareArguments {
+    /// Built-in names or paths of scene files.
+    #[arg(required = true)]
+    pub scenes: Vec<String>,
+    /// Folder for the pages and pictures; to the terminal if left out.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub set: Overrides,
+    /// Tolerance of the looser of the two runs of every motion.
+    #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
+    pub tolerance: f64,
+}
+
+/// `deltaq random`.
+#[derive(Args, Debug)]
+pub struct RandomArguments {
+    /// Number of systems.
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub count: u64,
+    /// Seed. A system is a function of seed and index (and of the kind, where one is chosen).
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Systems of one kind only; all kinds in turn if left out.
+    #[arg(long, value_parser = by_name(Kind::ALL, Kind::name, Some(Kind::about)))]
+    pub kind: Option<Kind>,
+    /// One system only: what is claimed of it, claim by claim, and what was found.
+    #[arg(long, conflicts_with = "count")]
+    pub index: Option<u64>,
+    /// File that every finished system is added to, and that a run which was cut off goes on from.
+    #[arg(long, value_name = "FILE", conflicts_with = "index")]
+    pub log: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: Output,
+}
+
+/// `deltaq stability`.
+#[derive(Args, Debug)]
+pub struct StabilityArguments {
+    /// Cases to run, all if left out.
+    #[arg(long = "case", value_name = "NAME,…", value_delimiter = ',')]
+    pub cases: Vec<String>,
+    #[command(flatten)]
+    pub output: Output,
+}
+
 /// `deltaq bench`.
 #[derive(Args, Debug)]
 pub struct BenchArguments {
@@ -213,21 +228,13 @@ pub struct BenchArguments {
     /// Seconds over which the runs of one setting are repeated; the least time counts.
     #[arg(long, default_value_t = 0.05)]
     pub seconds: f64,
-    /// Replace a parameter or a start value.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
-    pub overrides: Vec<(String, f64)>,
-    /// Folder for the page and its pictures.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub format: TextOrJson,
+    #[command(flatten)]
+    pub set: Overrides,
     /// Measure the throughput of ensembles of sledges instead, at this tolerance: one by one, in lanes, and over all cores.
     #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out", "format"])]
     pub ensemble: Option<f64>,
-    /// No progress bar.
-    #[arg(long)]
-    pub quiet: bool,
+    #[command(flatten)]
+    pub output: Output,
 }
 
 /// `deltaq scaling`.
@@ -242,15 +249,8 @@ pub struct ScalingArguments {
     /// Repeats of everything that is timed; the shortest time counts.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub repeats: u16,
-    /// Folder for the page `scaling.md` and its pictures.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub format: TextOrJson,
-    /// No progress bar.
-    #[arg(long)]
-    pub quiet: bool,
+    #[command(flatten)]
+    pub output: Output,
 }
 
 /// `deltaq reports`.
@@ -264,43 +264,6 @@ pub struct ReportsArguments {
     pub out: PathBuf,
 }
 
-/// Names of the methods.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MethodName {
-    /// Taylor series, of the order that the tolerance asks for.
-    Taylor,
-    /// Explicit Runge–Kutta, order 8.
-    Dop853,
-    /// Explicit Runge–Kutta, order 5.
-    Tsit45,
-    /// Backward differentiation formulas.
-    Bdf,
-    /// Implicit, order 2.
-    TrBdf2,
-    /// Implicit Runge–Kutta, order 4.
-    Esdirk34,
-    /// Implicit Runge–Kutta, Radau IIA of order 5.
-    Radau5,
-    /// Discrete variational principle in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
-    Leapfrog,
-}
-
-impl MethodName {
-    /// The method of the time loop; none for the one that has no time loop.
-    pub fn of_time_loop(self) -> Option<integrate::Method> {
-        Some(match self {
-            MethodName::Taylor => integrate::Method::Taylor,
-            MethodName::Dop853 => integrate::Method::Dop853,
-            MethodName::Tsit45 => integrate::Method::Tsit45,
-            MethodName::Bdf => integrate::Method::Bdf,
-            MethodName::TrBdf2 => integrate::Method::TrBdf2,
-            MethodName::Esdirk34 => integrate::Method::Esdirk34,
-            MethodName::Radau5 => integrate::Method::Radau5,
-            MethodName::Leapfrog => return None,
-        })
-    }
-}
-
 /// Output formats.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -310,10 +273,22 @@ pub enum Format {
     Json,
 }
 
-/// Reads a kind of random systems by its name.
-fn kinds() -> impl TypedValueParser<Value = Kind> {
-    PossibleValuesParser::new(Kind::ALL.map(|kind| PossibleValue::new(kind.name()).help(kind.about())))
-        .try_map(|name| Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or("no such kind"))
+/// One of `all`, by its name; with a word on it in the help where there is one.
+fn by_name<T: Copy + Send + Sync + 'static>(
+    all: impl IntoIterator<Item = T>,
+    name: fn(T) -> &'static str,
+    help: Option<fn(T) -> &'static str>,
+) -> impl TypedValueParser<Value = T> {
+    let all: Vec<T> = all.into_iter().collect();
+    let possible: Vec<PossibleValue> = all
+        .iter()
+        .map(|&one| {
+            let value = PossibleValue::new(name(one));
+            help.map_or(value.clone(), |help| value.help(help(one)))
+        })
+        .collect();
+    PossibleValuesParser::new(possible)
+        .try_map(move |given| all.iter().copied().find(|&one| name(one) == given).ok_or("unknown"))
 }
 
 fn assignment(text: &str) -> Result<(String, f64), String> {

@@ -18,7 +18,7 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
     let settings = Settings { tolerance: arguments.tolerance, ..protocol() };
     let mut all = Vec::new();
     for name in &arguments.scenes {
-        let scene = catalogue::find(name, &arguments.overrides)?;
+        let scene = catalogue::find(name, &arguments.set.overrides)?;
         all.extend(scene_files(scene, &settings)?.files);
     }
     match &arguments.out {

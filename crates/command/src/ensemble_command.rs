@@ -8,11 +8,12 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{Choice, Ensemble, EnsembleOptions, EnsembleStart, Settings, constants_of, formulation, setting};
-use integrate::{Method, Projection};
+use integrate::Method;
 use scene::{Scene, SceneErrorKind};
 
+use crate::answer::Answer;
 use crate::cli::EnsembleArguments;
-use crate::solve_command::{Answer, check_tolerance, choice, times};
+use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
 use random::parallel;
@@ -27,15 +28,16 @@ const CHUNK: usize = 4096;
 /// # Errors
 /// Bad input: the scene, what varies, the formulation, the times; no member that can be started.
 pub fn run(arguments: &EnsembleArguments) -> Result<Answer> {
-    check_tolerance(arguments.tolerance)?;
-    let base = catalogue::find(&arguments.scene, &arguments.overrides)?;
+    let settings = Settings { method: Method::Taylor, ..settings(&arguments.motion)? };
+    let base = arguments.motion.scene.find()?;
     let members = Members::of(arguments, &base)?;
     let choice = choice(&base, &arguments.motion)?;
     check_multipliers(&members, &choice, arguments)?;
     let end = setting(&base).end;
-    let times = arguments.times.as_deref().map_or(Ok(vec![end]), |text| times(text, &base))?;
+    let asked = arguments.motion.times.as_deref();
+    let times = asked.map_or(Ok(vec![end]), |text| times(text, &base))?;
     if times.windows(2).any(|pair| pair[1] < pair[0]) {
-        bail!("--times {} has to be in ascending order", arguments.times.as_deref().unwrap_or_default());
+        bail!("--times {} has to be in ascending order", asked.unwrap_or_default());
     }
 
     let clock = Instant::now();
@@ -47,18 +49,12 @@ pub fn run(arguments: &EnsembleArguments) -> Result<Answer> {
         bail!("none of {} members can be started; the first: {cause}", starts.len());
     }
     let clock = Instant::now();
-    let settings = Settings {
-        tolerance: arguments.tolerance,
-        method: Method::Taylor,
-        projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
-        ..Settings::default()
-    };
     let ensemble = Ensemble::new(&base, &choice, &parameters, &settings)?;
     let derive = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
     let options = EnsembleOptions { threads: arguments.threads.map_or(0, usize::from), estimate: true };
-    let mut answers = Answers::new(arguments.format, &base, &choice, ensemble.equations(), &members, &times);
+    let mut answers = Answers::new(arguments.motion.format, &base, &choice, ensemble.equations(), &members, &times);
     for chunk in starts.chunks(CHUNK) {
         for motion in ensemble.answers(chunk, &times, &options) {
             answers.add(Outcome::of(motion));
@@ -66,7 +62,7 @@ pub fn run(arguments: &EnsembleArguments) -> Result<Answer> {
     }
     let seconds = Seconds { derive, start, integrate: clock.elapsed().as_secs_f64() };
     let complaint = answers.complaint();
-    let text = answers.finish(seconds)?;
+    let text = answers.finish(seconds);
     let text = match &arguments.out {
         None => text,
         Some(path) => write(path, text, members.rows.len())?,
@@ -79,7 +75,15 @@ fn is_parameter(scene: &Scene, name: &str) -> bool {
 }
 
 fn overrides(arguments: &EnsembleArguments, members: &Members, row: &[f64]) -> Vec<(String, f64)> {
-    arguments.overrides.iter().cloned().chain(members.names.iter().cloned().zip(row.iter().copied())).collect()
+    arguments
+        .motion
+        .scene
+        .set
+        .overrides
+        .iter()
+        .cloned()
+        .chain(members.names.iter().cloned().zip(row.iter().copied()))
+        .collect()
 }
 
 /// Multipliers vary only where a motion starts from those of the scene.
@@ -104,19 +108,20 @@ fn starts(
     choice: &Choice,
 ) -> Result<Vec<Result<EnsembleStart, String>>> {
     let given = arguments.motion.mu0.is_some();
-    let start = |row: &Vec<f64>| match catalogue::find(&arguments.scene, &overrides(arguments, members, row)) {
-        Ok(scene) => {
-            let constants = if given { choice.constants.clone() } else { constants_of(choice, &scene) };
-            Ok(Ok(EnsembleStart::of(&scene, parameters, constants)))
-        }
-        Err(NotFound::Fault(fault)) => match &*fault.kind {
-            SceneErrorKind::UnknownName { name, .. } if fault.line == 0 => {
-                bail!("{}: {}", members.place(name), fault.kind)
+    let start =
+        |row: &Vec<f64>| match catalogue::find(&arguments.motion.scene.scene, &overrides(arguments, members, row)) {
+            Ok(scene) => {
+                let constants = if given { choice.constants.clone() } else { constants_of(choice, &scene) };
+                Ok(Ok(EnsembleStart::of(&scene, parameters, constants)))
             }
-            kind => Ok(Err(kind.to_string())),
-        },
-        Err(error) => Err(error.into()),
-    };
+            Err(NotFound::Fault(fault)) => match &*fault.kind {
+                SceneErrorKind::UnknownName { name, .. } if fault.line == 0 => {
+                    bail!("{}: {}", members.place(name), fault.kind)
+                }
+                kind => Ok(Err(kind.to_string())),
+            },
+            Err(error) => Err(error.into()),
+        };
     parallel::map(&members.rows, start).into_iter().collect()
 }
 

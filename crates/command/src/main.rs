@@ -1,53 +1,71 @@
-//! The `deltaq` command. Exit code 2 for bad input; `solve` ends with 0 only where its trajectory can be trusted, and with 3 where the
-//! integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members.
+//! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` ends with 0 only where its trajectory can be
+//! trusted, and with 3 where the integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members.
 
+mod answer;
 mod bench_command;
 mod cli;
+mod columns;
 mod compare_command;
 mod ensemble_command;
 mod main_job;
 mod random_command;
-mod scaling_command;
 mod show_command;
 mod solve_command;
 mod stability_command;
 
-use std::io::Write;
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Error, Result};
 use clap::Parser;
 
+use answer::Answer;
 use cli::{Cli, Command};
-use solve_command::Answer;
 
 // derivations allocate much: an eighth of the time of a thousand random systems
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
-    let answer = match run(Cli::parse()) {
-        Ok(answer) => answer,
-        Err(error) => {
-            let mut told = error.to_string();
-            for cause in error.chain().skip(1).map(ToString::to_string) {
-                if !told.contains(&cause) {
-                    told += &format!("\n  {cause}");
-                }
-            }
-            eprintln!("deltaq: {told}");
-            return ExitCode::from(2);
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        // the help that was asked for is an answer, too
+        Err(told) if !told.use_stderr() => {
+            let help = told.render();
+            let terminal = std::io::stdout().is_terminal();
+            return printed(&if terminal { help.ansi().to_string() } else { help.to_string() }.into());
         }
+        Err(error) => error.exit(),
     };
-    // a reader that has seen enough closes the pipe; that is no error
-    let _ = std::io::stdout().write_all(answer.text.as_bytes());
-    match answer.complaint {
+    match run(cli) {
+        Ok(answer) => printed(&answer),
+        Err(error) => failed(&error, 2),
+    }
+}
+
+fn printed(answer: &Answer) -> ExitCode {
+    if let Err(error) = answer.print() {
+        return failed(&error, 1);
+    }
+    match &answer.complaint {
         None => ExitCode::SUCCESS,
         Some(complaint) => {
             eprintln!("deltaq: {complaint}");
             ExitCode::from(3)
         }
     }
+}
+
+/// Says what went wrong, and why.
+fn failed(error: &Error, code: u8) -> ExitCode {
+    let mut told = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !told.contains(&cause) {
+            told += &format!("\n  {cause}");
+        }
+    }
+    eprintln!("deltaq: {told}");
+    ExitCode::from(code)
 }
 
 fn run(cli: Cli) -> Result<Answer> {
@@ -58,11 +76,11 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments)?,
-        Some(Command::Scaling(arguments)) => scaling_command::run(&arguments)?,
+        Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments)?,
         Some(Command::Random(arguments)) => return random_command::run(&arguments),
         Some(Command::Stability(arguments)) => return stability_command::run(&arguments),
         Some(Command::Ensemble(arguments)) => return ensemble_command::run(&arguments),
         Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
     };
-    Ok(Answer { text, complaint: None })
+    Ok(text.into())
 }

@@ -7,15 +7,14 @@ use std::thread::ScopedJoinHandle;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use clap::ValueEnum;
+use clap::{CommandFactory, ValueEnum};
 use deltaq::{Comparison, Settings, choices, compare};
 use scene::Scene;
 use serde_json::Value;
 
-use crate::cli::{JobArguments, ReportsArguments, Section};
-use random::{Batch, Kind, Record};
-use random::{parallel, substitution};
-use validation::bench::{self, Bench, Effort, Throughput};
+use crate::cli::{Cli, JobArguments, ReportsArguments, Section};
+use random::{Batch, Kind, parallel, substitution};
+use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
 use validation::catalogue;
 use validation::report::{
@@ -56,18 +55,23 @@ const RANDOM_SYSTEMS: u64 = 1_000;
 const ENSEMBLE_TOLERANCE: f64 = 1e-10;
 const ENSEMBLE_REPEATS: usize = 2;
 
+/// What a section besides the scenes has to say.
+struct Part {
+    page: &'static str,
+    headline: String,
+    /// For machines, under a name.
+    verdicts: Option<(&'static str, Value)>,
+    /// Its page and its pictures.
+    files: Vec<File>,
+}
+
 /// What the main job computed.
 struct Results {
     comparisons: Vec<Comparison>,
     scene_files: Vec<File>,
-    casadi: Option<Outcome>,
-    batch: Batch,
-    records: Vec<Record>,
-    realization: Option<RealizationReport>,
-    audit: Option<AuditReport>,
-    benches: Vec<Bench>,
-    ensembles: Vec<Throughput>,
-    stability: Option<StabilityReport>,
+    parts: Vec<Part>,
+    /// Times, which no two machines share.
+    measured: Option<Part>,
 }
 
 impl Results {
@@ -86,109 +90,87 @@ impl Results {
         names: &[&str],
         quiet: bool,
     ) -> Result<Results> {
-        let mut scenes = if sections.contains(&Section::Scenes) { compare_all(names, quiet)? } else { Vec::new() };
-        let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
-        let random = sections.contains(&Section::Random);
-        let records = if random { batch.run(RANDOM_SYSTEMS, None, quiet)? } else { Vec::new() };
-        let realization =
-            sections.contains(&Section::Realization).then(|| RealizationReport::new(quiet)).transpose()?;
-        let audit = sections.contains(&Section::PaperAudit).then(AuditReport::new).transpose()?;
-        let stability = sections.contains(&Section::Stability).then(|| StabilityReport::new(quiet)).transpose()?;
+        let asked = |section| sections.contains(&section);
+        let mut scenes = if asked(Section::Scenes) { compare_all(names, quiet)? } else { Vec::new() };
+        let mut parts = Vec::new();
+        if asked(Section::Random) {
+            let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
+            let records = batch.run(RANDOM_SYSTEMS, None, quiet)?;
+            let verdicts = Some(("random", random_verdicts(&batch, &records)));
+            let (headline, files) = (random_headline(&records), random_files(&batch, &records)?);
+            parts.push(Part { page: "random.md", headline, verdicts, files });
+        }
+        if asked(Section::Realization) {
+            let report = RealizationReport::new(quiet)?;
+            let (headline, verdicts) = (report.headline(), Some(("realization", report.verdicts())));
+            parts.push(Part { page: "realization.md", headline, verdicts, files: report.files()? });
+        }
+        if asked(Section::PaperAudit) {
+            let report = AuditReport::new()?;
+            let (headline, verdicts) = (report.headline(), Some(("paper audit", report.verdicts())));
+            parts.push(Part { page: "paper-audit.md", headline, verdicts, files: report.files() });
+        }
+        if asked(Section::Stability) {
+            let report = StabilityReport::new(|_| true, quiet)?;
+            let (headline, verdicts) = (report.headline(), Some(("stability", report.verdicts())));
+            parts.push(Part { page: "stability.md", headline, verdicts, files: report.files()? });
+        }
         let finished = |referee: ScopedJoinHandle<'_, _>| referee.join().unwrap_or_else(|panic| resume_unwind(panic));
         let casadi = referee.map(finished).transpose()?;
+        if let Some(outcome) = &casadi {
+            let headline = casadi_job::headline(outcome);
+            let headline = format!("Referees that share no derivation with this program: {headline}.");
+            let verdicts = casadi_job::verdict_words(outcome).map(|words| ("casadi", words));
+            parts.insert(0, Part { page: "scenes/sledge.md#referees", headline, verdicts, files: Vec::new() });
+        }
         let mut scene_files = Vec::new();
         for report in &mut scenes {
             let section = referees_section(&mut report.comparison, casadi.as_ref())?;
             if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
                 page.text += &section;
-                if sections.contains(&Section::ErrorVsTime) {
+                if asked(Section::ErrorVsTime) {
                     page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
                 }
             }
             scene_files.extend(report.files.clone());
         }
         // last, and one after the other: nothing else is to run beside what is timed
-        let (mut benches, mut ensembles) = (Vec::new(), Vec::new());
-        if sections.contains(&Section::ErrorVsTime) {
-            benches = bench_all(names, &[], &Effort::brief(), quiet)?;
+        let mut measured = None;
+        if asked(Section::ErrorVsTime) {
+            let benches = bench_all(names, &[], &Effort::brief(), quiet)?;
+            let mut ensembles = Vec::new();
             if names.contains(&bench::ENSEMBLE_SCENE) {
                 ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;
             }
+            let (headline, files) = (bench_headline(&benches), bench_files(&benches, &ensembles)?);
+            measured = Some(Part { page: "error-vs-time.md", headline, verdicts: None, files });
         }
         let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
-        Ok(Results {
-            comparisons,
-            scene_files,
-            casadi,
-            batch,
-            records,
-            realization,
-            audit,
-            stability,
-            benches,
-            ensembles,
-        })
+        Ok(Results { comparisons, scene_files, parts, measured })
     }
 
     fn verdicts(&self) -> Value {
         let mut verdicts = verdicts(&self.comparisons);
-        verdicts["random"] = random_verdicts(&self.batch, &self.records);
-        if let Some(realization) = &self.realization {
-            verdicts["realization"] = realization.verdicts();
-        }
-        if let Some(audit) = &self.audit {
-            verdicts["paper audit"] = audit.verdicts();
-        }
-        if let Some(stability) = &self.stability {
-            verdicts["stability"] = stability.verdicts();
-        }
-        if let Some(words) = self.casadi.as_ref().and_then(casadi_job::verdict_words) {
-            verdicts["casadi"] = words;
+        for (name, words) in self.parts.iter().filter_map(|part| part.verdicts.clone()) {
+            verdicts[name] = words;
         }
         verdicts
     }
 
-    /// What the other sections say in a line, each with its page.
-    fn further(&self) -> Vec<(String, &'static str)> {
-        let casadi = self.casadi.as_ref().map(|outcome| {
-            let line =
-                format!("Referees that share no derivation with this program: {}.", casadi_job::headline(outcome));
-            (line, "scenes/sledge.md#referees")
-        });
-        let random = (!self.records.is_empty()).then(|| (random_headline(&self.records), "random.md"));
-        let realization = self.realization.as_ref().map(|report| (report.headline(), "realization.md"));
-        let audit = self.audit.as_ref().map(|report| (report.headline(), "paper-audit.md"));
-        let stability = self.stability.as_ref().map(|report| (report.headline(), "stability.md"));
-        casadi.into_iter().chain(random).chain(realization).chain(audit).chain(stability).collect()
+    /// Pages and pictures of every section that ran, but for those of times.
+    fn files(&self) -> Vec<File> {
+        self.scene_files.iter().chain(self.parts.iter().flat_map(|part| &part.files)).cloned().collect()
     }
+}
 
-    /// Pages and pictures of every section that ran.
-    fn files(&self) -> Result<Vec<File>> {
-        let mut files = self.scene_files.clone();
-        if !self.records.is_empty() {
-            files.extend(random_files(&self.batch, &self.records)?);
-        }
-        if let Some(realization) = &self.realization {
-            files.extend(realization.files()?);
-        }
-        files.extend(self.audit.iter().flat_map(AuditReport::files));
-        if let Some(stability) = &self.stability {
-            files.extend(stability.files()?);
-        }
-        Ok(files)
-    }
+/// What is said to somebody who starts the program somewhere without saying what to do.
+const ELSEWHERE: &str = "say what to do: without a command the main job runs, which writes every report of the project, \
+    and this folder does not belong to its sources; --out DIR runs it here";
 
-    /// Pages and pictures of times, which no two machines share, with what says whose they are.
-    fn measured(&self, provenance: &str) -> Result<Vec<File>> {
-        if self.benches.is_empty() {
-            return Ok(Vec::new());
-        }
-        let mut files = bench_files(&self.benches, &self.ensembles)?;
-        for page in files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md")) {
-            page.text += provenance;
-        }
-        Ok(files)
-    }
+/// Whether the current folder belongs to the sources of this program.
+fn in_the_sources() -> bool {
+    let here = std::env::current_dir().unwrap_or_default();
+    here.ancestors().any(|folder| folder.join("validation/scenes").is_dir() && folder.join("crates/command").is_dir())
 }
 
 /// Runs the main job and returns what to tell the user.
@@ -197,6 +179,11 @@ impl Results {
 /// Where a scene is unknown or cannot be compared, or a report cannot be written. Nothing is written then.
 pub fn run(arguments: &JobArguments) -> Result<String> {
     let clock = Instant::now();
+    let out = match &arguments.out {
+        Some(folder) => folder.clone(),
+        None if in_the_sources() => "reports".into(),
+        None => bail!("{ELSEWHERE}\n\n{}", Cli::command().render_help()),
+    };
     let known: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     if let Some(unknown) = arguments.scenes.iter().find(|s| !known.contains(&s.as_str())) {
         bail!("unknown scene `{unknown}`; known: {}", known.join(", "));
@@ -213,31 +200,40 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
     let results = Results::of(sections, &names, arguments.quiet)?;
-    let mut files = results.files()?;
+    let mut files = results.files();
+    let further: Vec<(&str, &str)> = results.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
     if complete {
-        let text = overview(&results.comparisons, &results.further());
+        let text = overview(&results.comparisons, &further);
         files.push(File { path: "README.md".into(), text });
         let text = serde_json::to_string_pretty(&results.verdicts())? + "\n";
         files.push(File { path: "verdicts.json".into(), text });
     }
-    write_all(&arguments.out, &files)?;
-    let measured = results.measured(&provenance(clock.elapsed().as_secs_f64()))?;
-    write_all(&arguments.measured, &measured)?;
+    write_all(&out, &files)?;
+    let folder = match &arguments.measured {
+        Some(folder) => folder.clone(),
+        None if in_the_sources() => "target/measured".into(),
+        None => out.join("measured"),
+    };
+    let mut measured = results.measured;
+    if let Some(part) = &mut measured {
+        let pages = part.files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
+        pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
+        write_all(&folder, &part.files)?;
+    }
     let mut told = String::new();
     for comparison in &results.comparisons {
         let answer = answer(comparison);
         let first = answer.split_inclusive(". ").next().unwrap_or_default();
         let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
     }
-    for (line, page) in results.further() {
+    for (line, page) in further {
         let _ = writeln!(told, "{page:<24} {line}");
     }
-    if !measured.is_empty() {
-        let page = arguments.measured.join("error-vs-time.md");
-        let _ = writeln!(told, "{:<24} {}", page.display(), bench_headline(&results.benches));
+    if let Some(part) = measured {
+        let _ = writeln!(told, "{:<24} {}", folder.join(part.page).display(), part.headline);
     }
     let seconds = clock.elapsed().as_secs_f64();
-    let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), arguments.out.display());
+    let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), out.display());
     Ok(told)
 }
 
@@ -254,7 +250,7 @@ pub fn check(arguments: &ReportsArguments) -> Result<String> {
     let sections: Vec<Section> =
         Section::value_variants().iter().copied().filter(|s| *s != Section::ErrorVsTime).collect();
     let results = Results::of(&sections, &names, true)?;
-    for file in results.files()? {
+    for file in results.files() {
         let path = arguments.out.join(&file.path);
         if !path.exists() {
             bail!("{} is missing; {MEND}", path.display());
@@ -282,17 +278,8 @@ pub(crate) fn protocol() -> Settings {
 
 /// All scenes, over all processors, in the order of `names`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
-    let bar = parallel::progress(names.len(), quiet);
     let settings = protocol();
-    let results = parallel::map(names, |name| {
-        bar.set_message(name.to_string());
-        let scene = catalogue::find(name, &[]).map_err(anyhow::Error::from);
-        let result = scene.and_then(|scene| scene_files(scene, &settings));
-        bar.inc(1);
-        result
-    });
-    bar.finish_and_clear();
-    results.into_iter().collect()
+    parallel::try_map(names, quiet, ToString::to_string, |name| scene_files(catalogue::find(name, &[])?, &settings))
 }
 
 /// References of all scenes over all processors, then measurements one after the other.
@@ -300,15 +287,10 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
 /// # Errors
 /// Where a scene cannot be read.
 pub fn bench_all(names: &[&str], overrides: &[(String, f64)], effort: &Effort, quiet: bool) -> Result<Vec<Bench>> {
-    let bar = parallel::progress(2 * names.len(), quiet);
-    bar.set_message("references");
-    let prepared = parallel::map(names, |name| {
-        let prepared = bench::prepare(name, overrides);
-        bar.inc(1);
-        prepared
-    });
+    let prepared = parallel::try_map(names, quiet, |_| "references".into(), |name| bench::prepare(name, overrides))?;
+    let bar = parallel::progress(names.len(), quiet);
     let benches = prepared.into_iter().map(|prepared| {
-        let measured = bench::measure(prepared?, effort, |words| bar.set_message(words.to_string()));
+        let measured = bench::measure(prepared, effort, |words| bar.set_message(words.to_string()));
         bar.inc(1);
         measured
     });
@@ -319,10 +301,10 @@ pub fn bench_all(names: &[&str], overrides: &[(String, f64)], effort: &Effort, q
 
 /// Version and commit of the program, the machine, and how long the job took until then.
 fn provenance(seconds: f64) -> String {
-    let commit = Command::new("git")
-        .args(["describe", "--always", "--dirty"])
-        .output()
-        .ok()
+    let describe = || Command::new("git").args(["describe", "--always", "--dirty"]).output().ok();
+    let commit = in_the_sources()
+        .then(describe)
+        .flatten()
         .filter(|output| output.status.success())
         .map(|output| String::from_utf8_lossy(&output.stdout).trim().to_string());
     let commit = commit.map_or(String::new(), |c| format!(" at commit {c}"));

@@ -1,16 +1,16 @@
 //! `deltaq random`.
 
 use std::fmt::Write;
-use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Result;
+use scene::Scene;
 use serde_json::json;
 
-use crate::cli::{RandomArguments, TextOrJson};
-use crate::solve_command::Answer;
+use crate::answer::Answer;
+use crate::cli::RandomArguments;
 use random::{Batch, Count, Kind, Record, Summary, milliseconds, theorem_title};
-use validation::report::{File, write_all};
+use validation::report::File;
 
 /// Counterexamples that are shrunk and written; more failures than these have the same causes.
 const COUNTEREXAMPLES: usize = 5;
@@ -30,33 +30,29 @@ pub fn run(arguments: &RandomArguments) -> Result<Answer> {
 
 fn many(batch: &Batch, arguments: &RandomArguments) -> Result<Answer> {
     let clock = Instant::now();
-    let records = batch.run(arguments.count, arguments.log.as_deref(), arguments.quiet)?;
+    let records = batch.run(arguments.count, arguments.log.as_deref(), arguments.output.quiet)?;
     let seconds = clock.elapsed().as_secs_f64();
     let summary = Summary::of(&records);
-    let files = match &arguments.out {
-        Some(folder) => write_counterexamples(batch, &records, folder)?,
-        None => Vec::new(),
-    };
+    let folder = arguments.output.out.as_deref();
+    let files = folder.map_or(Vec::new(), |_| counterexamples(batch, &records));
+    let paths: Vec<String> =
+        files.iter().filter_map(|file| Some(folder?.join(&file.path).display().to_string())).collect();
     let open: Vec<&Record> = records.iter().filter(|record| !record.open.is_empty()).collect();
-    let text = match arguments.format {
-        TextOrJson::Json => {
-            let value = json!({ "batch": batch, "summary": summary, "open": open, "counterexamples": files });
-            serde_json::to_string_pretty(&value)? + "\n"
+    let text = || {
+        let mut text = tables(&summary);
+        for record in &open {
+            text += &opened(&batch.name(record.index), record);
         }
-        TextOrJson::Text => {
-            let mut text = tables(&summary);
-            for record in &open {
-                text += &opened(&batch.name(record.index), record);
-            }
-            let rate = records.len() as f64 / seconds;
-            let _ = writeln!(text, "\n{} systems in {seconds:.1} s, {rate:.0} a second", records.len());
-            text += &work(&records);
-            for file in &files {
-                let _ = writeln!(text, "counterexample: {file}");
-            }
-            text
+        let rate = records.len() as f64 / seconds;
+        let _ = writeln!(text, "\n{} systems in {seconds:.1} s, {rate:.0} a second", records.len());
+        text += &work(&records);
+        for path in &paths {
+            let _ = writeln!(text, "counterexample: {path}");
         }
+        text
     };
+    let json = || json!({ "batch": batch, "summary": summary, "open": open, "counterexamples": paths });
+    let text = arguments.output.answer(|| Ok(files), text, json)?;
     Ok(Answer { text, complaint: complaint(summary.total()) })
 }
 
@@ -73,22 +69,16 @@ fn work(records: &[Record]) -> String {
 fn one(batch: &Batch, index: u64, arguments: &RandomArguments) -> Result<Answer> {
     let record = batch.record(index);
     let scene = batch.scene(index);
-    if let Some(folder) = &arguments.out {
-        write_all(folder, &[File { path: format!("{}.toml", scene.name).into(), text: scene.to_toml() }])?;
-    }
     let summary = Summary::of(std::slice::from_ref(&record));
-    let text = match arguments.format {
-        TextOrJson::Json => {
-            serde_json::to_string_pretty(&json!({ "batch": batch, "record": record, "scene": scene.to_toml() }))? + "\n"
+    let text = || {
+        let mut text = format!("{}: {}\n\n{}\n", scene.name, scene.title, scene.to_toml());
+        for (theorem, claim, times) in &record.held {
+            let _ = writeln!(text, "{:<4} holds {times} times  {claim}", label(*theorem));
         }
-        TextOrJson::Text => {
-            let mut text = format!("{}: {}\n\n{}\n", scene.name, scene.title, scene.to_toml());
-            for (theorem, claim, times) in &record.held {
-                let _ = writeln!(text, "{:<4} holds {times} times  {claim}", label(*theorem));
-            }
-            text + &opened(&scene.name, &record)
-        }
+        text + &opened(&scene.name, &record)
     };
+    let json = || json!({ "batch": batch, "record": record, "scene": scene.to_toml() });
+    let text = arguments.output.answer(|| Ok(vec![file(&scene)]), text, json)?;
     Ok(Answer { text, complaint: complaint(summary.total()) })
 }
 
@@ -123,16 +113,13 @@ fn opened(name: &str, record: &Record) -> String {
     text
 }
 
-/// Shrinks and writes the first failures; their paths.
-fn write_counterexamples(batch: &Batch, records: &[Record], folder: &Path) -> Result<Vec<String>> {
+fn file(scene: &Scene) -> File {
+    File { path: format!("{}.toml", scene.name).into(), text: scene.to_toml() }
+}
+
+/// The first failures, shrunk.
+fn counterexamples(batch: &Batch, records: &[Record]) -> Vec<File> {
     let failures = records.iter().flat_map(|record| record.failures().into_iter().map(|t| (record.index, t)));
-    let mut written = Vec::new();
-    for (index, theorem) in failures.take(COUNTEREXAMPLES) {
-        if let Some(scene) = batch.counterexample(index, theorem) {
-            let path = format!("{}.toml", scene.name);
-            write_all(folder, &[File { path: path.clone().into(), text: scene.to_toml() }])?;
-            written.push(folder.join(path).display().to_string());
-        }
-    }
-    Ok(written)
+    let shrunk = failures.take(COUNTEREXAMPLES).filter_map(|(index, theorem)| batch.counterexample(index, theorem));
+    shrunk.map(|scene| file(&scene)).collect()
 }

@@ -25,7 +25,7 @@ pub fn list() -> String {
 /// # Errors
 /// Bad input, with its place.
 pub fn run(arguments: &ShowArguments) -> Result<String> {
-    let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
+    let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
     let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
     let mut text = format!("{}\n{source}\n", scene.title);

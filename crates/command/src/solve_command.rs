@@ -11,36 +11,26 @@ use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-use crate::cli::{Format, MethodName, MotionArguments, SolveArguments};
-use validation::catalogue;
+use crate::answer::{Answer, pretty};
+use crate::cli::{Format, MotionArguments, SolveArguments};
+use crate::columns::{Columns, row};
+use validation::stability::Stepping;
 
 /// Times at which invariants are sampled.
 const SAMPLES: usize = 200;
-
-/// How the command ended: the text to print, and whether the trajectory can be trusted.
-pub struct Answer {
-    /// For standard output.
-    pub text: String,
-    /// Why the trajectory cannot be trusted to the end, for standard error.
-    pub complaint: Option<String>,
-}
 
 /// Runs the command.
 ///
 /// # Errors
 /// Bad input: the scene, the formulation, the removal, the constants, the times.
 pub fn run(arguments: &SolveArguments) -> Result<Answer> {
-    check_tolerance(arguments.tolerance)?;
-    let scene = catalogue::find(&arguments.scene, &arguments.overrides)?;
+    let mut settings = settings(&arguments.motion)?;
+    if let Stepping::Adaptive(method) = arguments.method {
+        settings.method = method;
+    }
+    let scene = arguments.motion.scene.find()?;
     let choice = choice(&scene, &arguments.motion)?;
-    let defaults = Settings::default();
-    let settings = Settings {
-        tolerance: arguments.tolerance,
-        method: arguments.method.of_time_loop().unwrap_or(defaults.method),
-        projection: if arguments.no_projection { Projection::Off } else { Projection::EveryStep },
-        ..defaults
-    };
-    let wanted = match &arguments.times {
+    let wanted = match &arguments.motion.times {
         Some(text) => times(text, &scene)?,
         None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
     };
@@ -61,16 +51,26 @@ pub fn run(arguments: &SolveArguments) -> Result<Answer> {
         }
     };
     let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();
-    let text = match arguments.format {
-        Format::Csv => csv(&scene, &mut motion, &reached)?,
-        Format::Json => json_text(&scene, &choice, &mut motion, &reached, estimate.absolute, complaint.as_deref())?,
+    let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
+    let columns = Columns::of(&scene, &motion.equations);
+    let text = match arguments.motion.format {
+        Format::Csv => {
+            let rows = rows.iter().zip(&reached).map(|(now, &t)| row(t, now) + "\n");
+            columns.names().join(",") + "\n" + &rows.collect::<String>()
+        }
+        Format::Json => {
+            let mut value = json_of(&scene, &choice, &mut motion, complaint.as_deref())?;
+            (value["times"], value["error_estimate"]) = (json!(reached), json!(estimate.absolute));
+            columns.write(&mut value, &rows);
+            pretty(&value)
+        }
     };
     Ok(Answer { text, complaint })
 }
 
 /// The steps of the method that has no time loop; none for the others.
 fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
-    if arguments.method != MethodName::Leapfrog {
+    if arguments.method != Stepping::Leapfrog {
         if arguments.step.is_some() || arguments.order.is_some() {
             bail!(
                 "--step and --order belong to --method leapfrog; the other methods choose their steps by --tolerance"
@@ -78,13 +78,20 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
         }
         return Ok(None);
     }
-    if arguments.no_projection {
+    if arguments.motion.no_projection {
         bail!("--no-projection is for the other methods: every step of leapfrog ends on the constraint");
     }
     let step = arguments.step.context("--method leapfrog takes equal steps: say how long with --step")?;
     let order = arguments.order.as_deref().unwrap_or("2");
     let composition = order.parse().ok().and_then(Composition::of_order);
     Ok(Some(Steps { step, composition: composition.with_context(|| format!("there is no order {order}"))? }))
+}
+
+/// Tolerance and projection that were asked for.
+pub(crate) fn settings(arguments: &MotionArguments) -> Result<Settings> {
+    check_tolerance(arguments.tolerance)?;
+    let projection = if arguments.no_projection { Projection::Off } else { Projection::EveryStep };
+    Ok(Settings { tolerance: arguments.tolerance, projection, ..Settings::default() })
 }
 
 /// Tolerances that make sense.
@@ -168,38 +175,8 @@ pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
     Ok(times)
 }
 
-fn csv(scene: &Scene, motion: &mut Motion, times: &[f64]) -> Result<String> {
-    let mut columns = vec!["t".to_string()];
-    columns.extend(scene.system.coordinates.iter().map(|c| c.name.clone()));
-    columns.extend(scene.system.coordinates.iter().map(|c| format!("{}'", c.name)));
-    columns.extend(motion.equations.multipliers.iter().map(|m| m.name.clone()));
-    let mut text = columns.join(",") + "\n";
-    for &t in times {
-        let now = motion.at(t)?;
-        let numbers = [vec![t], now.coordinates, now.velocities, now.multipliers].concat();
-        text += &(numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",") + "\n");
-    }
-    Ok(text)
-}
-
-fn json_text(
-    scene: &Scene,
-    choice: &Choice,
-    motion: &mut Motion,
-    times: &[f64],
-    error_estimate: f64,
-    complaint: Option<&str>,
-) -> Result<String> {
-    let mut rows = Vec::new();
-    for &t in times {
-        rows.push(motion.at(t)?);
-    }
-    let names: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
-    let columns = |names: &[String], row: &dyn Fn(&equations::Outputs) -> Vec<f64>| -> Value {
-        let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
-        names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
-    };
-    let multipliers: Vec<String> = motion.equations.multipliers.iter().map(|m| m.name.clone()).collect();
+/// Everything about a motion but where it was.
+fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, complaint: Option<&str>) -> Result<Value> {
     let invariants: Map<String, Value> = motion
         .invariant_drift(&motion.grid(SAMPLES))?
         .into_iter()
@@ -207,7 +184,7 @@ fn json_text(
         .collect();
     let constants: Map<String, Value> =
         deltaq::constant_names(&motion.equations).into_iter().zip(motion.constants.iter().map(|&c| json!(c))).collect();
-    let value = json!({
+    Ok(json!({
         "scene": scene.name,
         "formulation": choice.formulation,
         "removal": choice.removal.as_ref().map(|r| &r.name),
@@ -215,11 +192,6 @@ fn json_text(
         "cause": complaint,
         "end": motion.end(),
         "free_constants": constants,
-        "times": times,
-        "coordinates": columns(&names, &|r| r.coordinates.clone()),
-        "velocities": columns(&names, &|r| r.velocities.clone()),
-        "multipliers": columns(&multipliers, &|r| r.multipliers.clone()),
-        "error_estimate": error_estimate,
         "invariants": invariants,
         "projection": { "count": motion.projection.projections, "largest": motion.projection.largest },
         "work": {
@@ -230,6 +202,5 @@ fn json_text(
         "seconds": {
             "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
         },
-    });
-    Ok(serde_json::to_string_pretty(&value)? + "\n")
+    }))
 }

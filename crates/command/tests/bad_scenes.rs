@@ -1,8 +1,10 @@
 //! Scene files that are wrong, through the command: a clear error with its place, exit code 2, and nothing on standard output.
 
 use std::io::Write;
-use std::process::{Command, Output};
+use std::process::Output;
 use std::time::Instant;
+
+use crate::support::{self, deltaq};
 
 const GOOD: &str = r#"title = "Particle on a twisted plane field"
 
@@ -44,7 +46,7 @@ fn solve(bytes: &[u8]) -> Answer {
     let path = file.path().to_str().expect("UTF-8").to_string();
     let clock = Instant::now();
     let arguments = ["solve", &path, "-f", "chetaev"];
-    let output = Command::new(env!("CARGO_BIN_EXE_deltaq")).args(arguments).output().expect("the command runs");
+    let output = deltaq(&arguments);
     Answer { output, path, seconds: clock.elapsed().as_secs_f64() }
 }
 
@@ -215,9 +217,5 @@ fn a_long_flat_sum_is_no_nesting() {
 
 #[test]
 fn a_file_that_is_not_there_is_named() {
-    let arguments = ["solve", "/no/such/scene.toml", "-f", "chetaev"];
-    let output = Command::new(env!("CARGO_BIN_EXE_deltaq")).args(arguments).output().expect("the command runs");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{stderr}");
-    assert!(stderr.contains("/no/such/scene.toml"), "{stderr}");
+    support::refused(&["solve", "/no/such/scene.toml", "-f", "chetaev"], &["/no/such/scene.toml"]);
 }

@@ -1,17 +1,11 @@
 //! The command line, run as a user runs it: fields, options, exit codes, files whole or not at all.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
-fn deltaq(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_deltaq")).args(arguments).output().expect("the command runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("UTF-8")
-}
+use crate::support::{deltaq, refused, text};
 
 #[track_caller]
 fn exit(output: &Output, code: i32) {
@@ -35,19 +29,6 @@ fn column(value: &Value, group: &str, name: &str) -> Vec<f64> {
 
 fn keys(value: &Value) -> Vec<&str> {
     value.as_object().expect("an object").keys().map(String::as_str).collect()
-}
-
-#[track_caller]
-fn refused(arguments: &[&str], words: &[&str]) {
-    let output = deltaq(arguments);
-    let stderr = text(&output.stderr);
-    println!("{arguments:?}\n    {}", stderr.trim().replace('\n', "\n    "));
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
-    assert!(!stderr.contains("panicked"), "{arguments:?}: {stderr}");
-    assert!(output.stdout.is_empty(), "{arguments:?}: a partial answer: {}", text(&output.stdout));
-    for word in words {
-        assert!(stderr.contains(word), "{arguments:?}: `{word}` is not in {stderr}");
-    }
 }
 
 #[test]

@@ -1,31 +1,19 @@
 //! `deltaq ensemble`, run as a user runs it: members are single motions, none is dropped, faults have their place.
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn deltaq(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_deltaq")).args(arguments).output().expect("the command runs")
-}
+use crate::support::{self, deltaq};
 
 #[track_caller]
 fn answer(arguments: &[&str], code: i32) -> (String, String) {
-    let output = deltaq(&[&["ensemble"], arguments].concat());
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).expect("UTF-8");
-    let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
-    assert!(!stderr.contains("panicked"), "{stderr}");
-    (stdout, stderr)
+    support::answer(&[&["ensemble"], arguments].concat(), code)
 }
 
 #[track_caller]
 fn refused(arguments: &[&str], words: &[&str]) {
-    let (stdout, stderr) = answer(arguments, 2);
-    assert!(stdout.is_empty(), "{arguments:?}: a partial answer: {stdout}");
-    for word in words {
-        assert!(stderr.contains(word), "{arguments:?}: `{word}` is not in {stderr}");
-    }
+    support::refused(&[&["ensemble"], arguments].concat(), words);
 }
 
 /// Names of the columns and the cells of every row; causes, which are quoted, stand last.

@@ -3,4 +3,6 @@
 mod bad_scenes;
 mod commands;
 mod ensemble_command;
+mod output;
 mod random_command;
+mod support;

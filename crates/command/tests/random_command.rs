@@ -1,27 +1,19 @@
 //! `deltaq random`, run as a user runs it.
 
 use std::fs;
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn random(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_deltaq"));
-    command.arg("random").args(arguments).output().expect("the command runs")
-}
+use crate::support::{answer, refused};
 
 #[track_caller]
-fn text(output: &Output, code: i32) -> String {
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{stderr}");
-    assert!(!stderr.contains("panicked"), "{stderr}");
-    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+fn random(arguments: &[&str], code: i32) -> (String, String) {
+    answer(&[&["random"], arguments].concat(), code)
 }
 
 #[track_caller]
 fn json(arguments: &[&str]) -> Value {
-    let output = random(&[arguments, &["--format", "json"]].concat());
-    serde_json::from_str(&text(&output, 0)).expect("JSON")
+    serde_json::from_str(&random(&[arguments, &["--format", "json"]].concat(), 0).0).expect("JSON")
 }
 
 #[test]
@@ -34,7 +26,7 @@ fn verdicts_are_counted_by_theorem() {
         assert!(count["holds"].as_u64() >= Some(6), "T{theorem}: {count}");
         assert_eq!(count["fails"], 0, "T{theorem}: {count}");
     }
-    let shown = text(&random(&["--count", "10"]), 0);
+    let (shown, _) = random(&["--count", "10"], 0);
     assert!(shown.contains("T11") && shown.contains("a second"), "{shown}");
 }
 
@@ -67,9 +59,7 @@ fn a_log_of_something_else_is_refused_and_left_alone() {
         ("{\"seed\":7,\"kinds\":[\"free\"]}\n", "is of seed 7"),
     ] {
         fs::write(&log, content).expect("written");
-        let output = random(&["--count", "3", "--log", &path]);
-        assert_eq!(text(&output, 2), "");
-        assert!(String::from_utf8_lossy(&output.stderr).contains(words), "{output:?}");
+        refused(&["random", "--count", "3", "--log", &path], &[words]);
         assert_eq!(fs::read_to_string(&log).expect("a log"), content);
     }
 }
@@ -78,14 +68,11 @@ fn a_log_of_something_else_is_refused_and_left_alone() {
 fn one_system_is_shown_and_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().display().to_string();
-    let shown = text(&random(&["--seed", "3", "--index", "15", "--out", &path]), 0);
+    let (shown, _) = random(&["--seed", "3", "--index", "15", "--out", &path], 0);
     assert!(shown.contains("random-3-15: Random system, linear") && shown.contains("T12"), "{shown}");
     let scene = folder.path().join("random-3-15.toml");
-    let solved = Command::new(env!("CARGO_BIN_EXE_deltaq"))
-        .args(["compare", &scene.display().to_string()])
-        .output()
-        .expect("the command runs");
-    assert!(text(&solved, 0).contains("Chetaev"), "{solved:?}");
+    let (solved, _) = answer(&["compare", &scene.display().to_string()], 0);
+    assert!(solved.contains("Chetaev"), "{solved}");
     // the same as in a bulk run
     let one = json(&["--seed", "3", "--index", "15"]);
     let bulk = json(&["--seed", "3", "--count", "16"]);
@@ -98,10 +85,7 @@ fn one_system_is_shown_and_written() {
 fn bad_options_are_bad_input() {
     for arguments in [&["--count", "0"][..], &["--kind", "cubic"], &["--index", "1", "--count", "3"], &["--seed", "-1"]]
     {
-        let output = random(arguments);
-        assert_eq!(text(&output, 2), "", "{arguments:?}");
+        refused(&[&["random"], arguments].concat(), &[]);
     }
-    let output = random(&["--count", "2", "--log", "no/such/folder/log"]);
-    assert_eq!(text(&output, 2), "");
-    assert!(String::from_utf8_lossy(&output.stderr).contains("no/such/folder/log"), "{output:?}");
+    refused(&["random", "--count", "2", "--log", "no/such/folder/log"], &["no/such/folder/log"]);
 }

@@ -3,31 +3,14 @@
 use super::axis::TICK_SIZE;
 use super::frame::{Frame, Framed, LEGEND_ROW, TITLE_SIZE};
 use super::layout::{self, Entry, LABEL_SIZE, Measured, SWATCH, WIDTH};
+use super::plots::Plots;
 use super::style::{Cap, INK, INKS, Stroke, Style};
 use super::text::{escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
-use super::{Aspect, Axis, Curve, PictureError};
+use super::{Curve, PictureError};
 
 /// What a file should not pass, in bytes.
 const BUDGET: usize = 60_000;
-
-/// Everything a document shows.
-pub(super) struct Plots<'a> {
-    pub(super) title: &'a str,
-    pub(super) x: &'a Axis,
-    pub(super) panels: Vec<Plot<'a>>,
-    /// At least 1.
-    pub(super) columns: usize,
-    /// Height of each plot in pixels, with [`Aspect::Fill`].
-    pub(super) height: f64,
-    pub(super) aspect: Aspect,
-}
-
-/// One plot of the document.
-pub(super) struct Plot<'a> {
-    pub(super) y: &'a Axis,
-    pub(super) curves: &'a [Curve],
-}
 
 pub(super) fn document(plots: &Plots) -> Result<String, PictureError> {
     let measured: Vec<Vec<Measured>> = plots

@@ -1,8 +1,8 @@
 //! Sizes: where each plot of a document stands, and its ranges and ticks.
 
 use super::axis::{self, Direction, Interval, TICK_SIZE, Ticks};
-use super::draw::{Plot, Plots};
 use super::layout::{self, Entry, Measured, WIDTH};
+use super::plots::{Plot, Plots};
 use super::style::Style;
 use super::text::{width, wrap};
 use super::trace::{Extent, Place};

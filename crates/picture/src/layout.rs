@@ -1,7 +1,7 @@
 //! Where things stand: points in the measures of their axes, ranges, legend.
 
 use super::axis::{self, Interval, LeftOut};
-use super::draw::Plots;
+use super::plots::Plots;
 use super::style::{Mark, Style};
 use super::text::{fit, width};
 use super::{Aspect, Axis, Curve, PictureError};

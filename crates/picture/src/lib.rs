@@ -23,12 +23,14 @@ mod axis;
 mod draw;
 mod frame;
 mod layout;
+mod plots;
 mod style;
 #[cfg(test)]
 mod tests;
 mod text;
 mod trace;
 
+use plots::{Plot, Plots};
 pub use style::Style;
 
 /// One line of a picture.
@@ -201,6 +203,11 @@ pub enum PictureError {
 }
 
 impl Picture {
+    /// A picture in which each axis fills its side.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
+        Picture { title: title.into(), x, y, curves, aspect: Aspect::Fill }
+    }
+
     /// The picture as a complete SVG document.
     ///
     /// # Errors
@@ -211,10 +218,10 @@ impl Picture {
         {
             return Err(PictureError::EqualAspectOnLog { axis: axis.label.clone() });
         }
-        draw::document(&draw::Plots {
+        draw::document(&Plots {
             title: &self.title,
             x: &self.x,
-            panels: vec![draw::Plot { y: &self.y, curves: &self.curves }],
+            panels: vec![Plot { y: &self.y, curves: &self.curves }],
             columns: 1,
             height: 340.0,
             aspect: self.aspect,
@@ -231,10 +238,10 @@ impl SmallMultiples {
         if self.panels.is_empty() {
             return Err(PictureError::NoPanels { title: self.title.clone() });
         }
-        draw::document(&draw::Plots {
+        draw::document(&Plots {
             title: &self.title,
             x: &self.x,
-            panels: self.panels.iter().map(|panel| draw::Plot { y: &panel.y, curves: &panel.curves }).collect(),
+            panels: self.panels.iter().map(|panel| Plot { y: &panel.y, curves: &panel.curves }).collect(),
             columns: self.columns.clamp(1, self.panels.len()),
             height: 150.0,
             aspect: Aspect::Fill,

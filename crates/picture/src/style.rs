@@ -71,6 +71,22 @@ const fn stroke(colour: &'static str, width: f64, dash: &'static str) -> Stroke 
 }
 
 impl Style {
+    /// The style of a formulation, the same in every picture; none for a name that is no formulation's.
+    ///
+    /// ```
+    /// use picture::Style;
+    /// assert_eq!(Style::of_formulation("vakonomic-costate"), Some(Style::Vakonomic));
+    /// ```
+    pub fn of_formulation(name: &str) -> Option<Style> {
+        let styles = [
+            ("chetaev", Style::Chetaev),
+            ("vakonomic", Style::Vakonomic),
+            ("removed-constraint", Style::RemovedConstraint),
+            ("substitution", Style::Substituted),
+        ];
+        styles.into_iter().find(|(start, _)| name.starts_with(start)).map(|(_, style)| style)
+    }
+
     /// The passes of the pen, lowest first.
     pub(super) fn strokes(self) -> Vec<Stroke> {
         match self {

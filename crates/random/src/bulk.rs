@@ -70,22 +70,17 @@ impl Batch {
         records.retain(|record| record.index < count);
         let known: std::collections::BTreeSet<u64> = records.iter().map(|record| record.index).collect();
         let indices: Vec<u64> = (0..count).filter(|index| !known.contains(index)).collect();
-        let bar = parallel::progress(indices.len(), quiet);
-        let new: Vec<Result<Record>> = parallel::map(&indices, |&index| {
+        let name = |&index: &u64| format!("random systems, {}", self.kinds[index as usize % self.kinds.len()]);
+        let new = parallel::try_map(&indices, quiet, name, |&index| -> Result<Record> {
             let record = self.record(index);
-            bar.set_message(format!("random systems, {}", record.kind));
-            bar.inc(1);
             if let Some(log) = &log {
                 let line = serde_json::to_string(&record)? + "\n";
                 let mut file = log.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                 file.write_all(line.as_bytes()).context("cannot write the log")?;
             }
             Ok(record)
-        });
-        bar.finish_and_clear();
-        for record in new {
-            records.push(record?);
-        }
+        })?;
+        records.extend(new);
         records.sort_by_key(|record| record.index);
         Ok(records)
     }

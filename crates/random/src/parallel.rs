@@ -14,3 +14,24 @@ pub fn progress(length: usize, quiet: bool) -> ProgressBar {
 pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
     deltaq::over_threads(0, items.len(), |index| work(&items[index]))
 }
+
+/// `work` of each item as [`map`] does it, with a progress bar that says what is worked on; the first failure, if there is one.
+///
+/// # Errors
+/// That of the first item whose work failed.
+pub fn try_map<I: Sync, T: Send, E: Send>(
+    items: &[I],
+    quiet: bool,
+    name: impl Fn(&I) -> String + Sync,
+    work: impl Fn(&I) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    let bar = progress(items.len(), quiet);
+    let results = map(items, |item| {
+        bar.set_message(name(item));
+        let result = work(item);
+        bar.inc(1);
+        result
+    });
+    bar.finish_and_clear();
+    results.into_iter().collect()
+}

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use picture::{Aspect, Axis, Curve, Picture, PictureError, Style};
+use picture::{Axis, Curve, Picture, PictureError, Style};
 use rapier3d_f64::VERSION;
-use validation::report::File;
+use validation::report::{File, Table};
 
 use crate::study::{FAR, Level, NEAR, ORDER, SAMPLES, Study};
 
@@ -44,8 +44,9 @@ fn page(studies: &[Study]) -> String {
          extrapolated distance to Chetaev at most {NEAR:.0e}, and every other formulation at least {FAR} times as far as Chetaev.\n",
         ORDER.0, ORDER.1
     );
-    page += "| hard contacts | order in dt | to Chetaev, smallest dt | floor, extrapolated | other formulations | holds | 1 MHz: floor, extrapolated | as shipped, smallest |\n\
-             |---|---:|---:|---|---:|---|---:|---:|\n";
+    let columns = ["hard contacts", ">order in dt", ">to Chetaev, smallest dt", "floor, extrapolated"];
+    let more = [">other formulations", "holds", ">1 MHz: floor, extrapolated", ">as shipped, smallest"];
+    let mut table = Table::new(columns.into_iter().chain(more));
     for study in studies {
         let finding = study.finding();
         let floor =
@@ -54,12 +55,12 @@ fn page(studies: &[Study]) -> String {
             1 => ("the same here".to_string(), "–"),
             _ => (format!("{:.1e} times as far", finding.others), if finding.holds() { "yes" } else { "**no**" }),
         };
-        let _ = writeln!(
-            page,
-            "| [{0}](#{0}) | {1:.2} | {2:.1e} | {floor} | {others} | {holds} | {3:.1e} | {4:.1e} |",
-            study.name, finding.order, finding.nearest, finding.yielding, finding.shipped
-        );
+        let (name, order) = (format!("[{0}](#{0})", study.name), format!("{:.2}", finding.order));
+        let [nearest, yielding, shipped] =
+            [finding.nearest, finding.yielding, finding.shipped].map(|distance| format!("{distance:.1e}"));
+        table.row(&[&name, &order, &nearest, &floor, &others, &holds, &yielding, &shipped]);
     }
+    page += &table.to_string();
     page += "\nA floor counts as met when the last halving of the step no longer halves the extrapolated distance. With contacts as shipped \
              the ball sinks into the surface, and over decades of the step its distance from Chetaev's motion follows that depth (last \
              columns below) and not the step.\n";
@@ -107,44 +108,30 @@ fn section(study: &Study) -> String {
     }
     let _ = writeln!(text, "\n\n![Distance over time step]({})\n", picture_name(study));
     if study.targets.len() > 1 {
-        text += "| formulation | distance from Chetaev | remark |\n|---|---:|---|\n";
+        let mut table = Table::new(["formulation", ">distance from Chetaev", "remark"]);
         for (target, apart) in study.targets.iter().zip(&study.apart) {
             let remark = target.remark.as_deref().unwrap_or("reaches the end");
             let apart = if *apart == 0.0 { "0".into() } else { short(*apart) };
-            let _ = writeln!(text, "| {} | {apart} | {remark} |", target.label);
+            table.row(&[&target.label, &apart, &remark]);
         }
-        text += "\n";
+        let _ = writeln!(text, "{table}");
     }
-    text += "| dt (s) |";
-    for target in &study.targets {
-        let _ = write!(text, " to {} |", target.label);
-    }
-    let _ = writeln!(
-        text,
-        " order | to {0}, extrapolated | the same, 1 MHz | as shipped, to {0} | off the surface, hard (m) | as shipped (m) |",
-        study.targets[0].label
-    );
-    let _ = writeln!(text, "|---:|{}", "---:|".repeat(study.targets.len() + 6));
+    let nearest = &study.targets[0].label;
+    let targets = study.targets.iter().map(|target| format!(">to {}", target.label));
+    let extrapolated = [">order".into(), format!(">to {nearest}, extrapolated"), ">the same, 1 MHz".into()];
+    let shipped = [format!(">as shipped, to {nearest}"), ">off the surface, hard (m)".into(), ">as shipped (m)".into()];
+    let mut table = Table::new([">dt (s)".to_string()].into_iter().chain(targets).chain(extrapolated).chain(shipped));
     let first = |distances: &Option<Vec<f64>>| distances.as_ref().map_or("–".into(), |distances| short(distances[0]));
     for (at, hard) in study.hard.iter().enumerate() {
         let (yielding, shipped) = (&study.yielding[at], &study.shipped[at]);
-        let _ = write!(text, "| {:.1e} |", hard.dt);
-        for distance in &hard.distances {
-            let _ = write!(text, " {} |", short(*distance));
-        }
         let order = at.checked_sub(1).map(|before| (study.hard[before].distances[0] / hard.distances[0]).log2());
         let order = order.map_or("–".into(), |order| format!("{order:.2}"));
-        let _ = writeln!(
-            text,
-            " {order} | {} | {} | {} | {} | {} |",
-            first(&hard.extrapolated),
-            first(&yielding.extrapolated),
-            short(shipped.distances[0]),
-            short(hard.off_surface),
-            short(shipped.off_surface)
-        );
+        let distances = hard.distances.iter().map(|distance| short(*distance));
+        let extrapolated = [order, first(&hard.extrapolated), first(&yielding.extrapolated)];
+        let shipped = [shipped.distances[0], hard.off_surface, shipped.off_surface].map(short);
+        table.cells([format!("{:.1e}", hard.dt)].into_iter().chain(distances).chain(extrapolated).chain(shipped));
     }
-    text
+    text + &table.to_string()
 }
 
 /// Two significant digits; a dash for what is not there, a bound for what is round-off.
@@ -159,11 +146,7 @@ fn short(x: f64) -> String {
 }
 
 fn picture(study: &Study) -> Result<String, PictureError> {
-    let style = |formulation: &str| match formulation {
-        "chetaev" => Style::Chetaev,
-        "vakonomic" => Style::Vakonomic,
-        _ => Style::RemovedConstraint,
-    };
+    let style = |formulation: &str| Style::of_formulation(formulation).unwrap_or(Style::RemovedConstraint);
     let curve = |label: String, style: Style, levels: &[Level], read: &dyn Fn(&Level) -> Option<f64>| Curve {
         label,
         style,
@@ -185,12 +168,6 @@ fn picture(study: &Study) -> Result<String, PictureError> {
     curves.push(curve(format!("to {first}, extrapolated"), Style::Chetaev, &study.hard, &extrapolated));
     curves.push(curve(format!("to {first}, extrapolated, 1 MHz"), Style::Chetaev, &study.yielding, &extrapolated));
     curves.push(curve(format!("to {first}, contacts as shipped"), Style::Chetaev, &study.shipped, &as_shipped));
-    Picture {
-        title: format!("{}: the engine's distance from each formulation", study.title),
-        x: Axis::log("dt (s)"),
-        y: Axis::log("relative distance"),
-        curves,
-        aspect: Aspect::Fill,
-    }
-    .to_svg()
+    let title = format!("{}: the engine's distance from each formulation", study.title);
+    Picture::new(title, Axis::log("dt (s)"), Axis::log("relative distance"), curves).to_svg()
 }

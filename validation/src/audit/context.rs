@@ -10,8 +10,6 @@ use anyhow::{Context as _, Result, anyhow, bail};
 use symbolic::{Expr, Graph, Symbol};
 use toml::{Table, Value};
 
-use super::geometry;
-
 /// Derivatives of a free function that are symbols.
 const ORDERS: usize = 9;
 
@@ -34,10 +32,10 @@ pub struct Context {
 }
 
 impl Context {
-    /// Reads a context: `constants`, `functions`, `integrals`, `definitions`, `partials`, and what code adds to it: `geometry`, `action`.
+    /// Reads a context: `constants`, `functions`, `integrals`, `definitions`, `partials`.
     ///
     /// # Errors
-    /// Where the data are not of that form, or an expression in `action` is faulty.
+    /// Where the data are not of that form.
     pub fn read(data: &Table) -> Result<Context> {
         let context = Context {
             graph: Graph::new(),
@@ -58,15 +56,12 @@ impl Context {
                 context.graph.symbol(&format!("{name}{primes}"));
             }
         }
-        if let Some(name) = data.get("geometry").and_then(Value::as_str) {
-            for (name, e) in geometry::definitions(name, &context)? {
-                context.found.borrow_mut().insert(name, e);
-            }
-        }
-        if let Some(action) = data.get("action").and_then(Value::as_table) {
-            context.add_kernels(action)?;
-        }
         Ok(context)
+    }
+
+    /// Adds what code knows: the expression that a name stands for.
+    pub fn add(&self, name: &str, e: Expr) {
+        self.found.borrow_mut().insert(name.into(), e);
     }
 
     /// Adds an integral from `t₀`, by its integrand.
@@ -96,20 +91,7 @@ impl Context {
     /// As [`Context::sides`].
     pub fn raw(&self, text: &str) -> Result<Expr> {
         let g = &self.graph;
-        let fault = RefCell::new(None);
-        let scope = |name: &str| match self.meaning(name, 0) {
-            Ok(Some(_)) => Some(g.variable(g.symbol(name))),
-            Ok(None) => None,
-            Err(error) => {
-                *fault.borrow_mut() = Some(error);
-                None
-            }
-        };
-        let parsed = g.parse(text, &scope, &self.names());
-        match fault.into_inner() {
-            Some(error) => Err(error),
-            None => parsed.map_err(|error| anyhow!("{error}")),
-        }
+        self.parse(text, |name| Ok(self.meaning(name, 0)?.map(|_| g.variable(g.symbol(name)))))
     }
 
     /// A raw expression with every name replaced by what it stands for.
@@ -236,15 +218,19 @@ impl Context {
     }
 
     fn parse_deep(&self, text: &str, depth: usize) -> Result<Expr> {
-        let g = &self.graph;
+        self.parse(text, |name| self.meaning(name, depth))
+    }
+
+    /// `text` with names as `meaning` has them; a fault of theirs comes before one of the text.
+    fn parse(&self, text: &str, meaning: impl Fn(&str) -> Result<Option<Expr>>) -> Result<Expr> {
         let fault = RefCell::new(None);
         let scope = |name: &str| {
-            self.meaning(name, depth).unwrap_or_else(|error| {
+            meaning(name).unwrap_or_else(|error| {
                 *fault.borrow_mut() = Some(error);
                 None
             })
         };
-        let parsed = g.parse(text, &scope, &self.names());
+        let parsed = self.graph.parse(text, &scope, &self.names());
         match fault.into_inner() {
             Some(error) => Err(error),
             None => parsed.map_err(|error| anyhow!("{error}")),
@@ -288,7 +274,10 @@ impl Context {
     /// ```text
     /// K_u = d²/dt² G_ü − d/dt G_u̇ + G_u ,      costate_w = Ṗ + G_w   (zero where P is the right one).
     /// ```
-    fn add_kernels(&self, action: &Table) -> Result<()> {
+    ///
+    /// # Errors
+    /// Where the data are not of that form, or an expression in them is faulty.
+    pub fn add_kernels(&self, action: &Table) -> Result<()> {
         let g = &self.graph;
         let name = action.get("lagrangian").and_then(Value::as_str).context("action: `lagrangian` is missing")?;
         let lagrangian = self.expression(name)?;
@@ -303,13 +292,13 @@ impl Context {
             let second = self.rate(self.rate(g.derivative(generating, second))?)?;
             let first = self.rate(g.derivative(generating, first))?;
             let kernel = g.sum(&[second, g.neg(first), g.derivative(generating, zeroth)]);
-            self.found.borrow_mut().insert(format!("K_{u}"), kernel);
+            self.add(&format!("K_{u}"), kernel);
         }
         for (w, p) in &costates {
             let residual = g.add(self.expression(&format!("{p}'"))?, g.derivative(generating, g.symbol(w)));
-            self.found.borrow_mut().insert(format!("costate_{w}"), residual);
+            self.add(&format!("costate_{w}"), residual);
         }
-        self.found.borrow_mut().insert("G".into(), generating);
+        self.add("G", generating);
         self.add_variations(&texts(action, "variation")?)
     }
 
@@ -333,7 +322,7 @@ impl Context {
         for function in &self.partials {
             let e = g.substitute(self.expression(function)?, &varied);
             let variation = g.substitute(g.derivative(e, step), &at_zero);
-            self.found.borrow_mut().insert(format!("delta_{function}"), variation);
+            self.add(&format!("delta_{function}"), variation);
         }
         Ok(())
     }

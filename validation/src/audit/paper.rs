@@ -8,6 +8,7 @@ use toml::{Table, Value};
 
 use super::along::along;
 use super::context::{Context, texts, words};
+use super::geometry;
 
 /// The formulas.
 const PAPER: &str = include_str!("../../audit/paper.toml");
@@ -113,6 +114,20 @@ pub enum Which {
     Corrected,
 }
 
+/// A context with what code adds to it: `geometry`, `action`.
+fn context(data: &Table) -> Result<Context> {
+    let context = Context::read(data)?;
+    if let Some(name) = data.get("geometry").and_then(Value::as_str) {
+        for (name, e) in geometry::definitions(name, &context)? {
+            context.add(&name, e);
+        }
+    }
+    if let Some(action) = data.get("action").and_then(Value::as_table) {
+        context.add_kernels(action)?;
+    }
+    Ok(context)
+}
+
 impl Paper {
     /// Reads the formulas.
     ///
@@ -123,7 +138,7 @@ impl Paper {
         let mut contexts = BTreeMap::new();
         for (name, value) in data.get("context").and_then(Value::as_table).context("no contexts")? {
             let table = value.as_table().with_context(|| format!("context `{name}` has to be a table"))?;
-            contexts.insert(name.clone(), Context::read(table).with_context(|| format!("context `{name}`"))?);
+            contexts.insert(name.clone(), context(table).with_context(|| format!("context `{name}`"))?);
         }
         Ok(Paper { contexts, equations: tables(&data, "equation")?, written: tables(&data, "written")? })
     }

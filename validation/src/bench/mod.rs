@@ -8,7 +8,7 @@ mod ensemble;
 mod measure;
 mod truth;
 
-pub use ensemble::{ENSEMBLE_SCENE, FEW_MEMBERS, MEMBERS, Throughput, Time, ensemble_table, ensemble_throughput};
+pub use ensemble::{ENSEMBLE_SCENE, FEW_MEMBERS, MEMBERS, Throughput, Time, ensemble_throughput};
 pub use measure::{Measured, Point, Series};
 pub use truth::Truth;
 

@@ -42,11 +42,19 @@ pub enum NotRun {
 /// Files that cargo writes into the folder that it builds into; the first one only where it made that folder itself.
 const MARKS: [&str; 2] = ["CACHEDIR.TAG", ".rustc_info.json"];
 
-/// The folder that cargo builds into, from the place of this program; `target` in the current folder where that cannot be found.
+/// Where what can be made again is kept: the folder that cargo built this program into, and for an installed program the user's cache.
 fn target() -> PathBuf {
     let program = std::env::current_exe().unwrap_or_default();
     let marked = |folder: &&Path| MARKS.iter().any(|mark| folder.join(mark).exists());
-    program.ancestors().find(marked).map_or_else(|| PathBuf::from("target"), Path::to_path_buf)
+    let built = program.ancestors().find(marked).map(Path::to_path_buf);
+    built.unwrap_or_else(|| cache(std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from), std::env::home_dir()))
+}
+
+/// The folder of this program in the user's cache, by the rules of the XDG base directories; among the temporary files for a user without a home.
+fn cache(named: Option<PathBuf>, home: Option<PathBuf>) -> PathBuf {
+    let named = named.filter(|folder| folder.is_absolute());
+    let folder = named.or(home.map(|home| home.join(".cache"))).unwrap_or_else(std::env::temp_dir);
+    folder.join("deltaq")
 }
 
 /// FNV-1a, 64 bits.
@@ -74,7 +82,7 @@ pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     if !version.is_ok_and(|output| output.status.success()) {
         return Err(NotRun::NoPython);
     }
-    std::fs::create_dir_all(&target).map_err(files("the target folder"))?;
+    std::fs::create_dir_all(&target).map_err(files("the folder of environments"))?;
     let building =
         tempfile::Builder::new().prefix("casadi-new-").tempdir_in(&target).map_err(files("an environment"))?;
     let folder = building.path().join("environment");
@@ -102,9 +110,20 @@ pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     #[test]
     fn the_target_folder_is_the_one_that_this_program_was_built_into() {
         let (program, target) = (std::env::current_exe().unwrap(), super::target());
         assert!(target.is_absolute() && program.starts_with(&target), "{} in {}", program.display(), target.display());
+    }
+
+    #[test]
+    fn an_installed_program_keeps_to_the_users_cache() {
+        let (named, home) = (|| Some("/var/cache/me".into()), || Some("/home/me".into()));
+        assert_eq!(super::cache(named(), home()), Path::new("/var/cache/me/deltaq"));
+        assert_eq!(super::cache(None, home()), Path::new("/home/me/.cache/deltaq"));
+        assert_eq!(super::cache(Some("relative".into()), home()), Path::new("/home/me/.cache/deltaq"), "not absolute");
+        assert!(super::cache(None, None).is_absolute());
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::{Outcome, Row, Word};
+use crate::report::Table;
 
 /// `< 1e-12`: the smallest power of ten above the difference.
 fn bound(row: &Row) -> String {
@@ -25,26 +26,18 @@ fn word(verdict: Word) -> &'static str {
 
 /// Comparisons as a table, in Markdown.
 pub fn referee_table(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "| who | what was compared | how many | largest relative difference | tolerance | verdict |\n|---|---|---|---|---|---|\n",
-    );
+    let columns = ["who", "what was compared", "how many", "largest relative difference", "tolerance", "verdict"];
+    let mut table = Table::new(columns);
     for row in rows {
         let verdict = match row.verdict {
             Word::Agrees => word(row.verdict).to_string(),
             _ => format!("**{}**", word(row.verdict)),
         };
         let note = if row.note.is_empty() { String::new() } else { format!("; {}", row.note) };
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {:.0e} | {verdict}{note} |",
-            row.who,
-            row.what,
-            row.count,
-            bound(row),
-            row.tolerance
-        );
+        let (tolerance, verdict) = (format!("{:.0e}", row.tolerance), verdict + &note);
+        table.row(&[&row.who, &row.what, &row.count, &bound(row), &tolerance, &verdict]);
     }
-    text
+    table.to_string()
 }
 
 /// One sentence about everything.

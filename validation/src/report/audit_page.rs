@@ -9,8 +9,8 @@ use symbolic::Vanishing;
 use crate::audit::{
     Constants, Example, Finding, Form, HORIZONS, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
-use crate::report::File;
 use crate::report::numbers::{enumerate, short};
+use crate::report::{File, Table};
 
 /// Below this `dI/dε` counts as zero: differences of the perturbed action are good to about 1e-9.
 const STATIONARY: f64 = 1e-8;
@@ -96,19 +96,14 @@ impl AuditReport {
                  Sections: [all verdicts](#all-verdicts), [what the constants of integration are](#what-the-constants-of-integration-are), \
                  [is the action stationary?](#is-the-action-stationary), [equation by equation](#equation-by-equation). Examples 2 and 3, whose motions the paper leaves to the reader, \
                  are written out in [paper-examples.md](paper-examples.md).\n\n";
-        page += "## All verdicts\n\n| equation | about | verdict | residual, printed | residual, corrected | checked |\n|---|---|---|---:|---:|---|\n";
+        let columns = ["equation", "about", "verdict", ">residual, printed", ">residual, corrected", "checked"];
+        let mut table = Table::new(columns);
         for f in &self.findings {
             let word = if f.verdict == Verdict::Holds { "holds".into() } else { format!("**{}**", f.verdict.word()) };
-            let _ = writeln!(
-                page,
-                "| {} | {} | {word} | {} | {} | {} |",
-                f.number,
-                f.title,
-                form_residual(&f.printed),
-                form_residual(&f.corrected),
-                checked(f)
-            );
+            let [printed, corrected] = [&f.printed, &f.corrected].map(form_residual);
+            table.row(&[&f.number, &f.title, &word, &printed, &corrected, &checked(f)]);
         }
+        let _ = write!(page, "## All verdicts\n\n{table}");
         page += &self.constants_section();
         page += &self.stationarity_section();
         page += "\n## Equation by equation\n";
@@ -169,17 +164,12 @@ impl AuditReport {
             short(c.gap),
             short(c.duration)
         );
-        text += "  | $t_1$, s | $C$ | best $\\mu_0$ | gap that is left |\n  |---:|---:|---:|---:|\n";
+        let mut table = Table::new([">$t_1$, s", ">$C$", ">best $\\mu_0$", ">gap that is left"]);
         for h in &c.horizons {
-            let _ = writeln!(
-                text,
-                "  | {} | {} | {} | {} |",
-                short(h.horizon),
-                short(h.constant),
-                short(h.multiplier),
-                short(h.gap)
-            );
+            table.cells([h.horizon, h.constant, h.multiplier, h.gap].map(short));
         }
+        // within the item of the list
+        text.extend(table.to_string().lines().map(|line| format!("  {line}\n")));
         let _ = writeln!(
             text,
             "\n- **Without any constraint they matter too.** `planar-body`, on which nothing is constrained, its velocities written along turning axes: with $P(t_0) = 0$ it is {} from Newton's motion and its rotation, on which no torque acts, is {} rad off at the end; \
@@ -196,24 +186,25 @@ impl AuditReport {
         let mut text = String::from("\n## Is the action stationary?\n\n");
         text += "A system with $\\ddot u$ in $\\beta$: $\\dot y = \\tfrac12\\dot x^2$, $L = \\tfrac12(\\dot x^2 + \\dot y^2 - x^2 - y^2)$, removed by $x = u + \\tfrac12\\dot u$, $\\lambda = y$, $\\beta = \\tfrac12\\dot x^2$. Each reading of (34) is solved for the highest derivative and integrated over $[0, 1]$ with the natural constant, \
                  $P(1) = 0$. Then the action itself, nested integral included, is perturbed along it, $u + \\varepsilon\\,\\delta u$, for four $\\delta u$ of size 1 that vanish at both ends with their first derivatives. No derivation is used in that.\n\n";
-        text +=
-            "| motion of | order in $u$ | $dI/d\\varepsilon$, four $\\delta u$ | stationary |\n|---|---:|---|---|\n";
+        let mut table =
+            Table::new(["motion of", ">order in $u$", "$dI/d\\varepsilon$, four $\\delta u$", "stationary"]);
         for r in &s.readings {
             let numbers: Vec<String> = r.derivatives.iter().map(|d| two_digits(*d)).collect();
             let word = if r.largest() < STATIONARY { "yes" } else { "**no**" };
-            let _ = writeln!(text, "| {} | {} | {} | {word} |", r.name, r.order, numbers.join(", "));
+            table.row(&[&r.name, &r.order, &numbers.join(", "), &word]);
         }
         let _ = writeln!(
             text,
-            "\n({STATEMENT}: $\\frac{{d^2}}{{dt^2}}G_{{\\ddot u}} - \\frac{{d}}{{dt}}G_{{\\dot u}} + G_u = 0$, $\\dot P = -G_w$. The motion that `removed-constraint` derives from the same start and constants differs by {}.)\n",
+            "{table}\n({STATEMENT}: $\\frac{{d^2}}{{dt^2}}G_{{\\ddot u}} - \\frac{{d}}{{dt}}G_{{\\dot u}} + G_u = 0$, $\\dot P = -G_w$. The motion that `removed-constraint` derives from the same start and constants differs by {}.)\n",
             short(s.gap)
         );
-        text += "The same for the $\\delta I$ of example 1, along a curve that is no motion; $u$ and $\\varphi$ are varied together:\n\n\
-                 | $dI/d\\varepsilon$ measured | from $\\delta I$ as printed | as corrected |\n|---:|---:|---:|\n";
-        for [measured, printed, corrected] in &s.sledge {
-            let _ = writeln!(text, "| {measured:.8} | {printed:.8} | {corrected:.8} |");
+        text += "The same for the $\\delta I$ of example 1, along a curve that is no motion; $u$ and $\\varphi$ are varied together:\n\n";
+        let columns = [">$dI/d\\varepsilon$ measured", ">from $\\delta I$ as printed", ">as corrected"];
+        let mut table = Table::new(columns);
+        for numbers in &s.sledge {
+            table.cells(numbers.map(|x| format!("{x:.8}")));
         }
-        text
+        text + &table.to_string()
     }
 
     fn examples(&self) -> String {
@@ -262,15 +253,14 @@ fn equation(f: &Finding) -> String {
         text += &blocks("As printed:", &f.printed);
         text += &blocks(corrected_words(f), &f.corrected);
     } else {
-        let _ =
-            writeln!(text, "| as printed | {} |\n|---|---|", corrected_words(f).trim_end_matches(':').to_lowercase());
-        for (one, two) in f.printed.lines.iter().zip(&f.corrected.lines) {
-            let _ = writeln!(text, "| ${}$ | ${}$ |", one.latex, two.latex);
+        let mut table = Table::new(["as printed", &corrected_words(f).trim_end_matches(':').to_lowercase()]);
+        let forms = [&f.printed, &f.corrected];
+        let [printed, corrected] = forms.map(|form| form.lines.iter().map(|l| &l.latex).chain(&form.integrals));
+        for (one, two) in printed.zip(corrected) {
+            table.cells([one, two].map(|latex| format!("${latex}$")));
         }
-        for (one, two) in f.printed.integrals.iter().zip(&f.corrected.integrals) {
-            let _ = writeln!(text, "| ${one}$ | ${two}$ |");
-        }
-        let _ = writeln!(text, "| residual {} | residual {} |", form_residual(&f.printed), form_residual(&f.corrected));
+        table.cells(forms.map(|form| format!("residual {}", form_residual(form))));
+        text += &table.to_string();
     }
     if let Some([printed, corrected]) = &f.along {
         let list = |numbers: &[f64]| numbers.iter().map(|x| two_digits(*x)).collect::<Vec<_>>().join(", ");
@@ -282,11 +272,12 @@ fn equation(f: &Finding) -> String {
         );
     }
     if !f.variants.is_empty() {
-        text += "\n| also tried | holds | residual |\n|---|---|---:|\n";
+        let mut table = Table::new(["also tried", "holds", ">residual"]);
         for v in &f.variants {
             let word = if v.form.holds() { "yes" } else { "no" };
-            let _ = writeln!(text, "| {} | {word} | {} |", v.words, form_residual(&v.form));
+            table.row(&[&v.words, &word, &form_residual(&v.form)]);
         }
+        let _ = write!(text, "\n{table}");
     }
     text
 }

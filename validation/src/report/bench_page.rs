@@ -6,8 +6,8 @@ use anyhow::Result;
 use serde_json::{Value, json};
 
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
-use crate::report::File;
 use crate::report::numbers::{enumerate, short};
+use crate::report::{File, Table};
 use picture::{Axis, Curve, Panel, PictureError, SmallMultiples, Style};
 
 /// The error at which formulations are compared in the headline.
@@ -68,30 +68,25 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
 
 /// The fastest setting for every error, scene by scene.
 pub fn bench_table(benches: &[Bench]) -> String {
-    let mut table = String::from("| scene | formulation | read, derive, compile (ms) |");
-    for target in TARGETS {
-        let _ = write!(table, " error ≤ {target:.0e} |");
-    }
-    table += "\n|---|---|---:|---|---|---|---|\n";
+    let columns = ["scene", "formulation", ">read, derive, compile (ms)"].map(String::from);
+    let mut table = Table::new(columns.into_iter().chain(TARGETS.map(|target| format!("error ≤ {target:.0e}"))));
     for bench in benches {
         for entry in &bench.entries {
-            let _ = write!(table, "| {} | {} |", bench.scene, entry.label);
-            match &entry.outcome {
+            let (setup, found) = match &entry.outcome {
                 Ok(m) => {
                     let setup = [bench.parse, m.derive, m.compile].map(|s| short(1e3 * s)).join(", ");
-                    let _ = write!(table, " {setup} |");
-                    for target in TARGETS {
-                        let _ = write!(table, " {} |", fastest(m.fastest(target, None)));
-                    }
+                    (setup, TARGETS.map(|target| fastest(m.fastest(target, None))))
                 }
                 Err(reason) => {
-                    let _ = write!(table, " – | not measured: {reason} | | | |");
+                    let mut found = [""; TARGETS.len()].map(String::from);
+                    found[0] = format!("not measured: {reason}");
+                    ("–".into(), found)
                 }
-            }
-            table += "\n";
+            };
+            table.cells([bench.scene.clone(), entry.label.clone(), setup].into_iter().chain(found));
         }
     }
-    table
+    table.to_string()
 }
 
 fn fastest(found: Option<Fastest>) -> String {
@@ -100,36 +95,49 @@ fn fastest(found: Option<Fastest>) -> String {
     })
 }
 
-/// Throughput of ensembles.
+/// The section on ensembles, where any were measured.
 fn ensemble_section(measured: &[Throughput]) -> String {
+    if measured.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\n## Many motions at once\n\n{}\nSo few members are for a look: `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n",
+        ensemble_text(measured)
+    )
+}
+
+/// Throughput of ensembles: what was measured, and how.
+pub fn ensemble_text(measured: &[Throughput]) -> String {
     let Some(first) = measured.first() else { return String::new() };
     let mut text = format!(
-        "\n## Many motions at once\n\nSledges with random starts, {} of each formulation, by `taylor` at {:.0e} over the time of the scene: one by one, eight at a time in the lanes of \
-         the processor's vectors, and in lanes over {} cores. Compiled once, states at the end only. *Lanes* is the throughput in lanes over that one by one, *cores* that over all cores \
+        "Sledges with random starts, {} of each formulation, by `taylor` at {:.0e} over the time of the scene: one by one, eight at a time in the lanes of \
+         the processor's vectors, and in lanes over {} cores. Compiled once, states at the end only. *Start* is the time to find what a member starts from, in no other column. \
+         *Lanes* is the throughput in lanes over that one by one, *cores* that over all cores \
          over that on one. *Processor time* is that spent in lanes on one core over that spent together on all: 1 where dividing the work costs nothing, whatever else runs on \
-         the machine. *Difference* is the largest of a state at the end, one by one and in lanes; over the cores there is none, to the last bit{}. So few members are for a look: \
-         `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n\n\
-         | formulation | members | steps of one | one by one (µs each) | lanes (µs each) | all cores (µs each) | lanes | cores | processor time | difference | alone |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
+         the machine. *Difference* is the largest of a state at the end, one by one and in lanes; over the cores there is none, to the last bit{}.\n\n",
         first.members,
         first.tolerance,
         first.threads,
         if measured.iter().all(|m| m.over_cores == 0.0) { "" } else { " (**not so here**)" },
     );
+    let columns =
+        ["formulation", ">members", ">steps, one by one and in lanes", ">start (µs each)", ">one by one (µs each)"];
+    let more =
+        [">lanes (µs each)", ">all cores (µs each)", ">lanes", ">cores", ">processor time", ">difference", ">alone"];
+    let mut table = Table::new(columns.into_iter().chain(more));
     for m in measured {
-        let [single, lanes, cores] = m.microseconds().map(short);
+        let head =
+            [m.label.clone(), m.members.to_string(), m.mean_steps().map(|steps| format!("{steps:.1}")).join(", ")];
+        let [single, lanes, cores] = m.microseconds();
+        let times = [1e6 * m.prepare / m.members as f64, single, lanes, cores].map(short);
+        let ratios = [m.over_single(), m.over_one_core()].map(|ratio| format!("{ratio:.2}"));
         let efficiency = m.efficiency().map_or("–".into(), |e| format!("{e:.2}"));
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.0} | {single} | {lanes} | {cores} | {:.2} | {:.2} | {efficiency} | {:.1e} | {} |",
-            m.label,
-            m.members,
-            m.mean_steps()[1],
-            m.over_single(),
-            m.over_one_core(),
-            m.difference,
-            m.alone.0,
-        );
+        let tail = [efficiency, format!("{:.1e}", m.difference), m.alone.0.to_string()];
+        table.cells(head.into_iter().chain(times).chain(ratios).chain(tail));
+    }
+    text += &table.to_string();
+    for (label, why) in measured.iter().filter_map(|m| Some((&m.label, m.alone.1.as_ref()?))) {
+        let _ = writeln!(text, "\n{label}, the first that went alone: {why}.");
     }
     text
 }
@@ -150,24 +158,18 @@ fn section(entry: &Entry) -> String {
         m.reference,
         m.reference_error
     );
-    text += "| method |";
-    for target in TARGETS {
-        let _ = write!(text, " ms to {target:.0e} | evaluations |");
-    }
-    text += " least error |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+    let targets = TARGETS.into_iter().flat_map(|target| [format!(">ms to {target:.0e}"), ">evaluations".into()]);
+    let mut table = Table::new(["method".to_string()].into_iter().chain(targets).chain([">least error".to_string()]));
     for series in &m.series {
-        let _ = write!(text, "| {} |", series.method.name());
-        for target in TARGETS {
-            match m.fastest(target, Some(series.method)) {
-                Some(f) => {
-                    let _ = write!(text, " {} | {} |", short(1e3 * f.seconds), f.work.evaluations);
-                }
-                None => text += " – | – |",
-            }
-        }
+        let found = TARGETS.into_iter().flat_map(|target| match m.fastest(target, Some(series.method)) {
+            Some(f) => [short(1e3 * f.seconds), f.work.evaluations.to_string()],
+            None => ["–", "–"].map(String::from),
+        });
         let least = series.points.iter().filter_map(|p| Some(p.outcome.as_ref().ok()?.error)).reduce(f64::min);
-        let _ = writeln!(text, " {} |", least.map_or("–".into(), |e| format!("{e:.1e}")));
+        let least = least.map_or("–".into(), |e| format!("{e:.1e}"));
+        table.cells([series.method.name().to_string()].into_iter().chain(found).chain([least]));
     }
+    text += &table.to_string();
     let failures = m.series.iter().flat_map(failures).collect::<Vec<_>>();
     if !failures.is_empty() {
         let _ = writeln!(text, "\nFailed: {}.", failures.join("; "));

@@ -4,14 +4,15 @@ use std::fmt::Write;
 
 use deltaq::{Comparison, Fit, Verdict};
 
+use crate::report::Table;
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
 use random::substitution;
 
 /// One page: the verdict matrix, the findings, what further pages say (`further`: a line and a path), how to regenerate.
-pub fn overview(comparisons: &[Comparison], further: &[(String, &str)]) -> String {
+pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {
     let mut page = format!("# Do the formulations give the same motion?\n\n**{}**\n\n", headline(comparisons));
-    page += &matrix(comparisons);
+    page += &matrix(comparisons).to_string();
     page += "\nTimes are those at which the gap in the kinetic metric passes 1e-6. *After best fit*: what the free constants $\\mu_0$ that suit the \
              Chetaev motion best leave of the gap. *Control*: the deliberately wrong fourth formulation, which puts the constraint into $L$; \
              the harness has to flag it wherever it is wrong.\n";
@@ -59,11 +60,9 @@ fn fit_of<'a>(comparison: &'a Comparison, run: &str, target: &str) -> Option<&'a
     comparison.fits.iter().find(|f| f.run == run && f.target == target)
 }
 
-fn matrix(comparisons: &[Comparison]) -> String {
-    let mut text = String::from(
-        "| scene | constraint | Chetaev – vakonomic | after best fit | Chetaev – removed | vakonomic – removed | control |\n\
-         |---|---|---|---|---|---|---|\n",
-    );
+fn matrix(comparisons: &[Comparison]) -> Table {
+    let columns = ["scene", "constraint", "Chetaev – vakonomic", "after best fit", "Chetaev – removed"];
+    let mut table = Table::new(columns.into_iter().chain(["vakonomic – removed", "control"]));
     for c in comparisons {
         let after = match fit_of(c, "vakonomic", "chetaev").map(|f| &f.fitted) {
             None => "–".into(),
@@ -79,16 +78,12 @@ fn matrix(comparisons: &[Comparison]) -> String {
         };
         let constraint = c.integrability.to_string();
         let constraint = constraint.split([':', '(']).next().unwrap_or("").trim();
-        let _ = writeln!(
-            text,
-            "| [{name}](scenes/{name}.md) | {constraint} | {} | {after} | {} | {} | {control} |",
-            gap_words(c, "chetaev", "vakonomic"),
-            gap_words(c, "chetaev", "removed-constraint"),
-            gap_words(c, "vakonomic", "removed-constraint"),
-            name = c.scene.name
-        );
+        let pairs = [("chetaev", "vakonomic"), ("chetaev", "removed-constraint"), ("vakonomic", "removed-constraint")];
+        let [first, second, third] = pairs.map(|(a, b)| gap_words(c, a, b));
+        let name = format!("[{0}](scenes/{0}.md)", c.scene.name);
+        table.row(&[&name, &constraint, &first, &after, &second, &third, &control]);
     }
-    text
+    table
 }
 
 fn all_same(c: &Comparison) -> bool {

@@ -14,12 +14,7 @@ const INSTANTS: usize = 400;
 
 /// The colour and dash of a formulation, the same in every picture.
 fn style(run: &Run) -> Style {
-    match run.choice.formulation {
-        "chetaev" => Style::Chetaev,
-        "removed-constraint" => Style::RemovedConstraint,
-        substitution::NAME => Style::Substituted,
-        _ => Style::Vakonomic,
-    }
+    Style::of_formulation(run.choice.formulation).unwrap_or(Style::Vakonomic)
 }
 
 /// The runs that are drawn: the first of each formulation, the costate form left out (it is the vakonomic motion again).
@@ -73,14 +68,9 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
     }
     let gaps = gap_curves(comparison);
     if !gaps.is_empty() {
-        let picture = Picture {
-            title: format!("{}: gap to the Chetaev motion", comparison.scene.title),
-            x: Axis::log("t − t₀ (s)"),
-            y: Axis::log("gap, kinetic metric"),
-            curves: gaps,
-            aspect: Aspect::Fill,
-        };
-        add("gap", picture.to_svg()?);
+        let title = format!("{}: gap to the Chetaev motion", comparison.scene.title);
+        let (x, y) = (Axis::log("t − t₀ (s)"), Axis::log("gap, kinetic metric"));
+        add("gap", Picture::new(title, x, y, gaps).to_svg()?);
     }
     Ok(files)
 }

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
-use crate::report::File;
-use crate::report::numbers::{enumerate, short};
-use picture::{Aspect, Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
+use crate::report::numbers::{enumerate, or_dash, short};
+use crate::report::{File, Table};
+use picture::{Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
 use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.
@@ -96,30 +96,33 @@ fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &
     let mut page = format!("# Systems that nobody chose\n\n**{}**\n\n", headline(summary));
     page += "How many systems a claim was put to the test on, and what became of it. A claim holds where every motion, energy or coefficient \
              compared agrees within ten times the error estimates; it fails where one does not; it is undecided where the estimates are too large.\n\n";
-    page += "| | claim | holds | fails | undecided |\n|---|---|---:|---:|---:|\n";
+    let mut table = Table::new(["", "claim", ">holds", ">fails", ">undecided"]);
     for (theorem, Count { holds, fails, undecided }) in &summary.theorems {
-        let _ =
-            writeln!(page, "| {} | {} | {holds} | {fails} | {undecided} |", label(*theorem), theorem_title(*theorem));
+        table.row(&[&label(*theorem), &theorem_title(*theorem), holds, fails, undecided]);
     }
+    page += &table.to_string();
     page += &control_words(summary);
     page += "\n## When the motions part\n\n";
     page += "Of the systems whose constraints are not integrable, the part on which the gap in the kinetic metric has passed 1e-3 by time $t$:\n\n\
              ![Distribution of the time at which the gap passes 1e-3](random-times.svg)\n\n";
-    page += "| pair | differ | of | median $\\tau(10^{-3})$ | passed by the end |\n|---|---:|---:|---:|---:|\n";
+    let mut table = Table::new(["pair", ">differ", ">of", ">median $\\tau(10^{-3})$", ">passed by the end"]);
     for names in &DIVERGES {
         let (differ, of) = counted(summary, names.differs);
         let times = observed(summary, names.passes);
-        let median = times.get(times.len() / 2).map_or("–".into(), |t| short(*t));
+        let median = or_dash(times.get(times.len() / 2).copied());
         let pair = names.passes.trim_start_matches("tau(1e-3), ");
-        let _ = writeln!(page, "| {pair} | {differ} | {of} | {median} | {} |", times.len());
+        table.row(&[&pair, &differ, &of, &median, &times.len()]);
     }
+    page += &table.to_string();
     page += "\nHow the gap begins, as a power of $t$, where the exponent is certain to 0.1:\n\n![Distribution of growth exponents](random-exponents.svg)\n\n";
     page += &exponent_words(summary);
-    page += "\n## What else was counted\n\nNo claim forbids these; they are findings.\n\n| | what | so on | of |\n|---|---|---:|---:|\n";
+    page += "\n## What else was counted\n\nNo claim forbids these; they are findings.\n\n";
+    let mut table = Table::new(["", "what", ">so on", ">of"]);
     for (theorem, what, values) in counts(summary) {
         let so = values.iter().filter(|x| **x == 1.0).count();
-        let _ = writeln!(page, "| T{theorem} | {what} | {so} | {} |", values.len());
+        table.row(&[&label(theorem), &what, &so, &values.len()]);
     }
+    page += &table.to_string();
     page += &measured(summary);
     page += &open_words(batch, records, counterexamples);
     page += &systems_words(batch, summary);
@@ -171,22 +174,14 @@ fn exponent_words(summary: &Summary) -> String {
 
 /// Figures that are neither counts nor shown in a picture.
 fn measured(summary: &Summary) -> String {
-    let mut text = String::from("\n| | what | least | median | largest | of |\n|---|---|---:|---:|---:|---:|\n");
+    let mut table = Table::new(["", "what", ">least", ">median", ">largest", ">of"]);
     for (theorem, by) in summary.observed.iter().filter(|(theorem, _)| **theorem == 8 || **theorem == 9) {
         for (what, values) in by.iter().filter(|(_, values)| values.iter().any(|x| *x != 0.0 && *x != 1.0)) {
-            let (least, most) = (values[0], values[values.len() - 1]);
-            let median = values[values.len() / 2];
-            let _ = writeln!(
-                text,
-                "| T{theorem} | {what} | {} | {} | {} | {} |",
-                short(least),
-                short(median),
-                short(most),
-                values.len()
-            );
+            let [least, median, most] = [0, values.len() / 2, values.len() - 1].map(|i| short(values[i]));
+            table.row(&[&label(*theorem), what, &least, &median, &most, &values.len()]);
         }
     }
-    text
+    format!("\n{table}")
 }
 
 fn open_words(batch: &Batch, records: &[Record], counterexamples: &[(u8, String)]) -> String {
@@ -231,18 +226,18 @@ fn systems_words(batch: &Batch, summary: &Summary) -> String {
         enumerate(&kinds),
         summary.shortened
     );
-    text += "Systems by number of coordinates $n$ and constraints $h$:\n\n| | $h = 0$ | 1 | 2 | 3 | 4 | 5 |\n|---|---:|---:|---:|---:|---:|---:|\n";
+    text += "Systems by number of coordinates $n$ and constraints $h$:\n\n";
+    let mut table = Table::new(["", ">$h = 0$", ">1", ">2", ">3", ">4", ">5"]);
     for n in 2..=6 {
         let cell = |h: usize| match summary.sizes.get(&format!("{n}, {h}")) {
             Some(count) => count.to_string(),
             None => "–".into(),
         };
-        let cells: Vec<String> = (0..6).map(cell).collect();
-        let _ = writeln!(text, "| $n = {n}$ | {} |", cells.join(" | "));
+        table.cells([format!("$n = {n}$")].into_iter().chain((0..6).map(cell)));
     }
     let _ = writeln!(
         text,
-        "\n`deltaq random --seed {seed} --index I` shows one of them, claim by claim; `--out DIR` writes it as a scene file. `deltaq random --count N \
+        "{table}\n`deltaq random --seed {seed} --index I` shows one of them, claim by claim; `--out DIR` writes it as a scene file. `deltaq random --count N \
          --seed S` draws others.",
         seed = batch.seed
     );
@@ -266,14 +261,10 @@ fn times(summary: &Summary) -> Result<String> {
         points.push((DURATION, part));
         Curve { label: names.passes.trim_start_matches("tau(1e-3), ").into(), style, points }
     });
-    let picture = Picture {
-        title: "Nonintegrable random systems: when the gap passes 1e-3".into(),
-        x: Axis { range: Some((0.0, DURATION)), ..Axis::linear("t") },
-        y: Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") },
-        curves: curves.collect(),
-        aspect: Aspect::Fill,
-    };
-    Ok(picture.to_svg()?)
+    let x = Axis { range: Some((0.0, DURATION)), ..Axis::linear("t") };
+    let y = Axis { range: Some((0.0, 1.0)), ..Axis::linear("part of the systems") };
+    let title = "Nonintegrable random systems: when the gap passes 1e-3";
+    Ok(Picture::new(title, x, y, curves.collect()).to_svg()?)
 }
 
 /// Histograms of the growth exponents, as outlines.

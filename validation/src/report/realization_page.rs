@@ -9,9 +9,9 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
-use crate::report::File;
 use crate::report::numbers::short;
-use picture::{Aspect, Axis, Curve, Picture, Style};
+use crate::report::{File, Table};
+use picture::{Axis, Curve, Picture, Style};
 use random::parallel;
 use random::realization::{Realization, distance, realize, realize_removal};
 use random::{Case, Kind, draw_recipe, free_constants};
@@ -70,24 +70,15 @@ impl RealizationReport {
     /// # Errors
     /// Where a motion cannot be had.
     pub fn new(quiet: bool) -> Result<RealizationReport> {
-        let bar = parallel::progress(SCENES.len() + COUNT as usize, quiet);
-        bar.set_message("realizations");
-        let scenes = parallel::map(&SCENES, |(name, duration)| {
-            let approaches = of_scene(name, *duration).with_context(|| format!("realizations of `{name}`"));
-            bar.inc(1);
-            approaches.map(|approaches| (name.to_string(), approaches))
-        });
+        let scene = |(name, _): &(&str, f64)| format!("realizations of `{name}`");
+        let scenes = parallel::try_map(&SCENES, quiet, scene, |asked| -> Result<_> {
+            Ok((asked.0.to_string(), of_scene(asked.0, asked.1).with_context(|| scene(asked))?))
+        })?;
         let indices: Vec<u64> = (0..COUNT).collect();
-        let random = parallel::map(&indices, |&index| {
-            let approaches = of_random(index).with_context(|| format!("realizations of random system {index}"));
-            bar.inc(1);
-            approaches
-        });
-        bar.finish_and_clear();
-        Ok(RealizationReport {
-            scenes: scenes.into_iter().collect::<Result<_>>()?,
-            random: random.into_iter().collect::<Result<_>>()?,
-        })
+        let system = |index: &u64| format!("realizations of random system {index}");
+        let random =
+            parallel::try_map(&indices, quiet, system, |index| of_random(*index).with_context(|| system(index)))?;
+        Ok(RealizationReport { scenes, random })
     }
 
     /// Rates of one realization on the random systems, sorted; and how many cannot be told.
@@ -157,34 +148,28 @@ impl RealizationReport {
                  else in these reports; the realizations are Newton's equations of an unconstrained system, those with friction by an implicit method.\n";
         for (name, approaches) in &self.scenes {
             let _ = writeln!(page, "\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n");
-            page += "| realization | $N = 10^2$ | $10^3$ | $10^4$ | $10^5$ | rate |\n|---|---:|---:|---:|---:|---:|\n";
+            let mut table = Table::new(["realization", ">$N = 10^2$", ">$10^3$", ">$10^4$", ">$10^5$", ">rate"]);
             for a in approaches {
-                let cells: Vec<String> =
-                    a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) }).collect();
+                let cells = a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) });
                 let rate = a.rate().map_or("too close to tell".into(), short);
-                let _ = writeln!(page, "| {} | {} | {rate} |", a.name, cells.join(" | "));
+                table.cells([a.name.to_string()].into_iter().chain(cells).chain([rate]));
             }
+            page += &table.to_string();
         }
         let _ = writeln!(
             page,
             "\n## Random systems\n\n{COUNT} systems of seed {SEED}, constraints linear or affine and not integrable:\n"
         );
-        page += "| realization | least rate | median | largest | systems | too close to tell |\n|---|---:|---:|---:|---:|---:|\n";
+        let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell"];
+        let mut table = Table::new(columns);
         for name in [FRICTION, ADDED_MASS, AUGMENTED] {
             let (rates, open) = self.random_rates(name);
             if let (Some(least), Some(most)) = (rates.first(), rates.last()) {
-                let median = rates[rates.len() / 2];
-                let _ = writeln!(
-                    page,
-                    "| {name} | {} | {} | {} | {} | {open} |",
-                    short(*least),
-                    short(median),
-                    short(*most),
-                    rates.len()
-                );
+                let [least, median, most] = [*least, rates[rates.len() / 2], *most].map(short);
+                table.row(&[&name, &least, &median, &most, &rates.len(), &open]);
             }
         }
-        page
+        page + &table.to_string()
     }
 }
 
@@ -264,12 +249,7 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
         style: a.style,
         points: STRENGTHS.iter().copied().zip(a.distances.iter().copied()).collect(),
     };
-    let picture = Picture {
-        title: format!("{name}: realizations"),
-        x: Axis::log("strength N"),
-        y: Axis::log("distance in the kinetic metric"),
-        curves: approaches.iter().map(curve).collect(),
-        aspect: Aspect::Fill,
-    };
-    Ok(picture.to_svg()?)
+    let (x, y) = (Axis::log("strength N"), Axis::log("distance in the kinetic metric"));
+    let curves = approaches.iter().map(curve).collect();
+    Ok(Picture::new(format!("{name}: realizations"), x, y, curves).to_svg()?)
 }

@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use anyhow::Result;
 
-use crate::report::File;
-use crate::report::numbers::short;
+use crate::report::numbers::{or_dash, short};
+use crate::report::{File, Table};
 use crate::scaling::{Cost, Exponent, FROM, Line, Point};
-use picture::{Aspect, Axis, Curve, Picture, Style};
+use picture::{Axis, Curve, Picture, Style};
 
 /// Largest exponents that are asked for: of one right-hand side, and of the derivation.
 const RIGHT_HAND_SIDE: f64 = 1.2;
@@ -57,38 +57,28 @@ fn answer(lines: &[Line]) -> String {
 pub fn scaling_text(lines: &[Line]) -> String {
     let mut text = format!(
         "## Exponents from n = {FROM}\n\nCost ∝ nᵖ, fitted to logarithms, with the standard error of p. Asked for: at most \
-         {RIGHT_HAND_SIDE} for a right-hand side, at most {DERIVATION} for the derivation.\n\n\
-         | formulation | to n | derivation, s | expressions | right-hand side, s | operations | solve, s |\n|---|--:|--:|--:|--:|--:|--:|\n"
+         {RIGHT_HAND_SIDE} for a right-hand side, at most {DERIVATION} for the derivation.\n\n"
     );
+    let columns = ["formulation", ">to n", ">derivation, s", ">expressions", ">right-hand side, s", ">operations"];
+    let mut table = Table::new(columns.into_iter().chain([">solve, s"]));
     for line in lines {
         let longest = line.points.last().map_or(0, |p| p.trailers);
-        let _ = write!(text, "| {} | {longest} |", line.formulation);
-        for cost in [Cost::Derivation, Cost::Expressions, Cost::RightHandSide, Cost::Operations, Cost::Solve] {
-            let _ = write!(text, " {} |", line.exponent(cost).map_or("–".into(), fitted));
-        }
-        text += "\n";
+        let costs = [Cost::Derivation, Cost::Expressions, Cost::RightHandSide, Cost::Operations, Cost::Solve];
+        let costs = costs.map(|cost| line.exponent(cost).map_or("–".into(), fitted));
+        table.cells([line.formulation.to_string(), longest.to_string()].into_iter().chain(costs));
     }
+    text += &table.to_string();
     for line in lines {
-        let _ = write!(
-            text,
-            "\n## {}\n\n| n | states | expressions | derivation, ms | operations | right-hand side, µs | evaluations | solve, ms |\n\
-             |--:|--:|--:|--:|--:|--:|--:|--:|\n",
-            line.formulation
-        );
+        let columns = [">n", ">states", ">expressions", ">derivation, ms", ">operations", ">right-hand side, µs"];
+        let mut table = Table::new(columns.into_iter().chain([">evaluations", ">solve, ms"]));
         for p in &line.points {
             let evaluations = p.evaluations.map_or("–".into(), |n| n.to_string());
-            let solve = p.solve.map_or("–".into(), |s| short(1e3 * s));
-            let _ = writeln!(
-                text,
-                "| {} | {} | {} | {} | {} | {} | {evaluations} | {solve} |",
-                p.trailers,
-                p.states,
-                p.expressions,
-                short(1e3 * p.derivation),
-                p.operations,
-                short(1e6 * p.right_hand_side),
-            );
+            let solve = or_dash(p.solve.map(|s| 1e3 * s));
+            let (derivation, side) = (short(1e3 * p.derivation), short(1e6 * p.right_hand_side));
+            let counts = [&p.trailers, &p.states, &p.expressions, &p.operations];
+            table.row(&[counts[0], counts[1], counts[2], &derivation, counts[3], &side, &evaluations, &solve]);
         }
+        let _ = write!(text, "\n## {}\n\n{table}", line.formulation);
         if let Some(reason) = &line.ended {
             let _ = writeln!(text, "\nEnds here: {reason}.");
         }
@@ -104,22 +94,11 @@ fn fitted(exponent: Exponent) -> String {
 }
 
 fn picture(lines: &[Line], title: &str, label: &str, cost: impl Fn(&Point) -> Option<f64>) -> Result<String> {
-    let style = |name: &str| match name {
-        name if name.starts_with("chetaev") => Style::Chetaev,
-        name if name.starts_with("vakonomic") => Style::Vakonomic,
-        _ => Style::RemovedConstraint,
-    };
     let curve = |line: &Line| Curve {
         label: line.formulation.into(),
-        style: style(line.formulation),
+        style: Style::of_formulation(line.formulation).unwrap_or(Style::RemovedConstraint),
         points: line.points.iter().filter_map(|p| Some((p.trailers as f64, cost(p)?))).collect(),
     };
-    let picture = Picture {
-        title: format!("{title} of a car with n trailers"),
-        x: Axis::log("n"),
-        y: Axis::log(label),
-        aspect: Aspect::Fill,
-        curves: lines.iter().map(curve).collect(),
-    };
-    Ok(picture.to_svg()?)
+    let curves = lines.iter().map(curve).collect();
+    Ok(Picture::new(format!("{title} of a car with n trailers"), Axis::log("n"), Axis::log(label), curves).to_svg()?)
 }

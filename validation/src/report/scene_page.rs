@@ -5,6 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 use deltaq::{Comparison, EquationStyle, Pair, Verdict, equations_text};
 
+use crate::report::Table;
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables;
 use random::substitution;
@@ -103,19 +104,14 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
     }
     page += &system(comparison);
     page += "\n## Start and constants\n\n";
-    let start: Vec<String> = (0..scene.system.dimension())
-        .map(|i| {
-            let c = &scene.system.coordinates[i];
-            let g = &scene.system.graph;
-            let (q, v) = (g.latex_symbol(c.position), g.latex_symbol(c.velocity));
-            format!("| ${q}$ | {} | {} | ${v}$ | {} |", c.unit, precise(scene.start.q[i]), precise(scene.start.v[i]))
-        })
-        .collect();
-    let _ =
-        writeln!(page, "| coordinate | unit | start | velocity | start |\n|---|---|---|---|---|\n{}", start.join("\n"));
+    let mut start = Table::new(["coordinate", "unit", "start", "velocity", "start"]);
+    for (i, c) in scene.system.coordinates.iter().enumerate() {
+        let [q, v] = [c.position, c.velocity].map(|s| format!("${}$", scene.system.graph.latex_symbol(s)));
+        start.row(&[&q, &c.unit, &precise(scene.start.q[i]), &v, &precise(scene.start.v[i])]);
+    }
     let _ = writeln!(
         page,
-        "\nGiven: {}. Supplied by the constraints: {}.{}\n",
+        "{start}\nGiven: {}. Supplied by the constraints: {}.{}\n",
         list(&scene.completion.given),
         list(&scene.completion.supplied),
         scene
@@ -123,7 +119,7 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
             .projected
             .map_or(String::new(), |d| format!(" Projection moved the velocity by {}.", short(d)))
     );
-    page += &tables::runs(comparison);
+    page += &tables::runs(comparison).to_string();
     page +=
         "\nError estimate: largest difference, in the kinetic metric, to a run at a hundred times larger tolerance.\n";
     page += "\n## Motions\n";

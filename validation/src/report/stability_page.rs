@@ -7,10 +7,10 @@ use anyhow::Result;
 use integrate::Method;
 use serde_json::{Map, Value, json};
 
-use crate::report::File;
 use crate::report::numbers::short;
-use crate::stability::{CASES, Case, Cell, LongRun, MAX_STEPS, MILLION, Verdict, long_runs, run, tolerance};
-use picture::{Aspect, Axis, Curve, Picture, Style};
+use crate::report::{File, Table};
+use crate::stability::{CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Verdict, long_runs, run, tolerance};
+use picture::{Axis, Curve, Picture, Style};
 
 /// Lines of the pictures, method by method.
 const STYLES: [Style; 4] = [Style::Chetaev, Style::Vakonomic, Style::RemovedConstraint, Style::Substituted];
@@ -18,31 +18,67 @@ const STYLES: [Style; 4] = [Style::Chetaev, Style::Vakonomic, Style::RemovedCons
 /// Cases that are drawn, with the formulation that is.
 const DRAWN: [(&str, &str); 2] = [("viscous", "Newton, with friction"), ("added-mass", "Newton, with added mass")];
 
-/// Every method on every case.
+/// Every method on some cases.
 pub struct StabilityReport {
     cells: Vec<Cell>,
     runs: Vec<LongRun>,
 }
 
 impl StabilityReport {
-    /// Runs all cases.
+    /// Runs the cases that are chosen by name, [`LONG_RUNS`] among them.
     ///
     /// # Errors
     /// Where a reference cannot be had.
-    pub fn new(quiet: bool) -> Result<StabilityReport> {
-        Ok(StabilityReport { cells: run(&CASES.iter().collect::<Vec<_>>(), quiet)?, runs: long_runs(quiet)? })
+    pub fn new(chosen: impl Fn(&str) -> bool, quiet: bool) -> Result<StabilityReport> {
+        let cases: Vec<&Case> = CASES.iter().filter(|case| chosen(case.name)).collect();
+        let cells = run(&cases, quiet)?;
+        Ok(StabilityReport { cells, runs: if chosen(LONG_RUNS) { long_runs(quiet)? } else { Vec::new() } })
     }
 
-    fn count(&self, word: &str) -> usize {
+    /// Number of answers.
+    pub fn answers(&self) -> usize {
+        self.cells.len() + self.runs.len()
+    }
+
+    /// Number of answers with that verdict.
+    pub fn count(&self, word: &str) -> usize {
         let verdicts = self.cells.iter().map(|cell| &cell.verdict).chain(self.runs.iter().map(|run| &run.verdict));
         verdicts.filter(|verdict| verdict.word() == word).count()
+    }
+
+    /// Every answer with its figures, a line each.
+    pub fn text(&self) -> String {
+        let line = |place: &str, point: f64, formulation: &str, method: &str, verdict: &Verdict| {
+            let figures = figures(verdict);
+            format!("{place:<15} {point:>9.2e} {formulation:<24} {method:<9} {:<9}{figures}", verdict.word())
+        };
+        let cells = self
+            .cells
+            .iter()
+            .map(|cell| line(cell.case, cell.point, &cell.formulation, cell.method.name(), &cell.verdict) + "\n");
+        let runs = self.runs.iter().map(|run| {
+            let line = line(run.scene, run.duration, &run.formulation, run.stepping.name(), &run.verdict);
+            let LongRun { steps, energy, trend, constraint, .. } = run;
+            format!("{line}; {steps} steps, energy {energy:.1e}, its trend {trend:.1e}, constraint {constraint:.1e}\n")
+        });
+        cells.chain(runs).collect()
+    }
+
+    /// Every answer with its figures, for machines.
+    pub fn json(&self) -> Value {
+        let runs = self.runs.iter().map(|run| {
+            let mut value = json!(run);
+            value["case"] = LONG_RUNS.into();
+            value
+        });
+        self.cells.iter().map(|cell| json!(cell)).chain(runs).collect()
     }
 
     /// The first line of the page.
     pub fn headline(&self) -> String {
         format!(
             "Stiff and extreme cases, {} answers of {} methods and of structure-preserving steps: {} accurate, {} inaccurate and said so, {} refused with time and cause, {} wrong.",
-            self.cells.len() + self.runs.len(),
+            self.answers(),
             Method::ALL.len(),
             self.count("accurate"),
             self.count("admitted"),
@@ -73,7 +109,7 @@ impl StabilityReport {
     /// Where a picture cannot be drawn.
     pub fn files(&self) -> Result<Vec<File>> {
         let mut files = vec![File { path: "stability.md".into(), text: self.page() }];
-        for (name, formulation) in DRAWN {
+        for (name, formulation) in DRAWN.into_iter().filter(|(name, _)| self.has(name)) {
             files.push(File { path: picture_name(name).into(), text: self.picture(name, formulation)? });
         }
         Ok(files)
@@ -96,11 +132,17 @@ impl StabilityReport {
              runs: {}. Errors are distances in the kinetic metric. `deltaq stability --case NAME` prints every answer with its cause.",
             tolerances.join(", ")
         );
-        for case in CASES {
+        for case in CASES.iter().filter(|case| self.has(case.name)) {
             self.section(&mut page, case);
         }
-        self.long_runs(&mut page);
+        if !self.runs.is_empty() {
+            self.long_runs(&mut page);
+        }
         page
+    }
+
+    fn has(&self, case: &str) -> bool {
+        self.cells.iter().any(|cell| cell.case == case)
     }
 
     fn long_runs(&self, page: &mut String) {
@@ -112,9 +154,10 @@ impl StabilityReport {
              *Energy*: largest |E − E₀|, in parts of the largest v·Mv. *Trend*: how far the mean energies of ten parts of the run are apart; what is left of the energy error is \
              an oscillation. *Constraint*: largest |f|/(|∂f/∂v||v|). All read off at 20001 times, where the other methods have polynomials that no projection was applied to. *Places* have a verdict as above for the \
              sledge, whose *reference* is that of `sledge-long`. None reaches as far for the vakonomic disc: there the verdict is on *energy and constraint*, whose error has to be under ten times \
-             the difference of the two runs' energies (or under 1e-7).\n\n\
-             | scene | formulation | duration | method | steps | energy | trend | constraint | judged | error | estimate |\n|---|---|---:|---|---:|---:|---:|---:|---|---:|---:|"
+             the difference of the two runs' energies (or under 1e-7).\n"
         );
+        let columns = ["scene", "formulation", ">duration", "method", ">steps", ">energy", ">trend", ">constraint"];
+        let mut table = Table::new(columns.into_iter().chain(["judged", ">error", ">estimate"]));
         for run in &self.runs {
             let estimate = match run.verdict {
                 Verdict::Accurate { estimate, .. }
@@ -122,21 +165,13 @@ impl StabilityReport {
                 | Verdict::Wrong { estimate, .. } => short(estimate),
                 Verdict::Refused { .. } => String::new(),
             };
-            let _ = writeln!(
-                page,
-                "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {estimate} |",
-                run.scene,
-                run.formulation,
-                short(run.duration),
-                run.stepping.name(),
-                run.steps,
-                short(run.energy),
-                short(run.trend),
-                short(run.constraint),
-                if run.by_place { "places" } else { "energy, constraint" },
-                words(&run.verdict)
-            );
+            let run_of = [run.scene.into(), run.formulation.clone(), short(run.duration), run.stepping.name().into()];
+            let lost = [run.energy, run.trend, run.constraint].map(short);
+            let judged = if run.by_place { "places" } else { "energy, constraint" };
+            let judgement = [judged.into(), words(&run.verdict), estimate];
+            table.cells(run_of.into_iter().chain([run.steps.to_string()]).chain(lost).chain(judgement));
         }
+        *page += &table.to_string();
     }
 
     fn section(&self, page: &mut String, case: &Case) {
@@ -145,13 +180,13 @@ impl StabilityReport {
         if DRAWN.iter().any(|(name, _)| *name == case.name) {
             let _ = writeln!(page, "![Error over {}]({})\n", case.variable, picture_name(case.name));
         }
-        let methods: Vec<String> = Method::ALL.iter().map(|method| method.name().into()).collect();
-        let _ = writeln!(page, "| {} | formulation | {} |", case.variable, methods.join(" | "));
-        let _ = writeln!(page, "|---:|---|{}", "---:|".repeat(methods.len()));
-        for line in cells.chunks(methods.len()) {
-            let words: Vec<String> = line.iter().map(|cell| words(&cell.verdict)).collect();
-            let _ = writeln!(page, "| {} | {} | {} |", short(line[0].point), line[0].formulation, words.join(" | "));
+        let methods = Method::ALL.iter().map(|method| format!(">{}", method.name()));
+        let mut table = Table::new([format!(">{}", case.variable), "formulation".into()].into_iter().chain(methods));
+        for line in cells.chunks(Method::ALL.len()) {
+            let words = line.iter().map(|cell| words(&cell.verdict));
+            table.cells([short(line[0].point), line[0].formulation.clone()].into_iter().chain(words));
         }
+        *page += &table.to_string();
         let mut causes: BTreeMap<String, usize> = BTreeMap::new();
         for cell in &cells {
             if let Verdict::Refused { cause, .. } = &cell.verdict {
@@ -176,14 +211,10 @@ impl StabilityReport {
             });
             Curve { label: method.name().into(), style: STYLES[i % STYLES.len()], points: points.collect() }
         };
-        let picture = Picture {
-            title: format!("{name}: true error of what is not refused"),
-            x: Axis::log(variable(name)),
-            y: Axis::log("error over distance"),
-            curves: Method::ALL.iter().enumerate().map(curve).collect(),
-            aspect: Aspect::Fill,
-        };
-        Ok(picture.to_svg()?)
+        let title = format!("{name}: true error of what is not refused");
+        let (x, y) = (Axis::log(variable(name)), Axis::log("error over distance"));
+        let curves = Method::ALL.iter().enumerate().map(curve).collect();
+        Ok(Picture::new(title, x, y, curves).to_svg()?)
     }
 }
 
@@ -204,6 +235,17 @@ fn words(verdict: &Verdict) -> String {
         Verdict::Wrong { error, estimate, .. } => {
             format!("**wrong**: {}, estimate {}", short(*error), short(*estimate))
         }
+    }
+}
+
+fn figures(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::Accurate { error, estimate } | Verdict::Admitted { error, estimate } => {
+            format!("error {error:.1e}, estimate {estimate:.1e}")
+        }
+        Verdict::Refused { t: None, cause } => cause.clone(),
+        Verdict::Refused { t: Some(t), cause } => format!("at t = {t:.6e}: {cause}"),
+        Verdict::Wrong { error, estimate, t } => format!("at t = {t:.3e}: error {error:.1e}, estimate {estimate:.1e}"),
     }
 }
 

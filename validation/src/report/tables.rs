@@ -1,10 +1,9 @@
 //! The tables of a scene page.
 
-use std::fmt::Write;
-
 use anyhow::Result;
 use deltaq::{Comparison, Ending, Pair, Verdict};
 
+use crate::report::Table;
 use crate::report::numbers::{enumerate, or_dash, precise, short};
 
 /// Times at which invariants and residuals are sampled.
@@ -12,11 +11,6 @@ const SAMPLES: usize = 400;
 
 /// Part of a motion that stopped early over which invariants are looked at.
 const BEFORE_A_STOP: f64 = 0.95;
-
-/// Escapes what Markdown tables cannot hold.
-pub(crate) fn cell(text: &str) -> String {
-    text.replace('|', "\\|").replace('\n', " ")
-}
 
 /// The word on a pair, with the time from which it holds.
 pub(crate) fn verdict_words(gap: &deltaq::Gap) -> String {
@@ -31,13 +25,11 @@ pub(crate) fn verdict_words(gap: &deltaq::Gap) -> String {
 }
 
 /// One line a run: how it was started and how it ended.
-pub(crate) fn runs(comparison: &Comparison) -> String {
-    let mut text = String::from(
-        "| motion | free constants | ended | error estimate | steps | evaluations |\n|---|---|---|---|---|---|\n",
-    );
+pub(crate) fn runs(comparison: &Comparison) -> Table {
+    let mut table = Table::new(["motion", "free constants", "ended", "error estimate", "steps", "evaluations"]);
     for (i, run) in comparison.runs.iter().enumerate() {
-        let _ = match &run.outcome {
-            Err(error) => writeln!(text, "| {} | | refused: {} | | | |", run.choice.label, cell(&error.to_string())),
+        match &run.outcome {
+            Err(error) => table.row(&[&run.choice.label, &"", &format!("refused: {error}"), &"", &"", &""]),
             Ok(motion) => {
                 let names = deltaq::constant_names(&motion.equations);
                 let symbol = |name: &String| {
@@ -57,7 +49,7 @@ pub(crate) fn runs(comparison: &Comparison) -> String {
                 };
                 let ended = match &motion.ending {
                     Ending::Completed => format!("{} s", short(motion.end())),
-                    Ending::Stopped { t, cause } => format!("stopped at {} s: {}", precise(*t), cell(cause)),
+                    Ending::Stopped { t, cause } => format!("stopped at {} s: {cause}", precise(*t)),
                 };
                 let estimate = comparison
                     .pairs
@@ -65,29 +57,20 @@ pub(crate) fn runs(comparison: &Comparison) -> String {
                     .filter(|p| p.first == i || p.second == i)
                     .map(|p| if p.first == i { p.gap.estimates[0] } else { p.gap.estimates[1] })
                     .fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| a.max(b))));
-                writeln!(
-                    text,
-                    "| {} | {}{} | {} | {} | {} | {} |",
-                    run.choice.label,
-                    if constants.is_empty() { "none".into() } else { constants.join(", ") },
-                    rule,
-                    ended,
-                    or_dash(estimate),
-                    motion.work.steps,
-                    motion.work.evaluations
-                )
+                let constants = if constants.is_empty() { "none".into() } else { constants.join(", ") };
+                let (estimate, work) = (or_dash(estimate), &motion.work);
+                let constants = constants + &rule;
+                table.row(&[&run.choice.label, &constants, &ended, &estimate, &work.steps, &work.evaluations]);
             }
-        };
+        }
     }
-    text
+    table
 }
 
 /// One line a pair: the verdict, when thresholds are passed, and how sure it is.
-pub(crate) fn pairs(comparison: &Comparison) -> String {
-    let mut text = String::from(
-        "| pair | verdict | τ(1e-6) | τ(1e-3) | τ(0.1) | largest gap | errors, both | largest difference by coordinate |\n\
-         |---|---|---|---|---|---|---|---|\n",
-    );
+pub(crate) fn pairs(comparison: &Comparison) -> Table {
+    let columns = ["pair", "verdict", "τ(1e-6)", "τ(1e-3)", "τ(0.1)", "largest gap", "errors, both"];
+    let mut table = Table::new(columns.into_iter().chain(["largest difference by coordinate"]));
     for pair in &comparison.pairs {
         let coordinates: Vec<String> = comparison
             .scene
@@ -101,18 +84,13 @@ pub(crate) fn pairs(comparison: &Comparison) -> String {
         let verdict = match &pair.gap.verdict {
             Verdict::Same => "same".to_string(),
             Verdict::Different => "**different**".to_string(),
-            Verdict::Undecided { because } => format!("undecided: {}", cell(because)),
+            Verdict::Undecided { because } => format!("undecided: {because}"),
         };
-        let _ = writeln!(
-            text,
-            "| {} | {verdict} | {a} | {b} | {c} | {} | {} | {} |",
-            names(comparison, pair),
-            short(pair.gap.largest),
-            short(pair.gap.estimates[0] + pair.gap.estimates[1]),
-            coordinates.join(", ")
-        );
+        let (largest, errors) = (short(pair.gap.largest), short(pair.gap.estimates[0] + pair.gap.estimates[1]));
+        let names = names(comparison, pair);
+        table.row(&[&names, &verdict, &a, &b, &c, &largest, &errors, &coordinates.join(", ")]);
     }
-    text
+    table
 }
 
 fn names(comparison: &Comparison, pair: &Pair) -> String {
@@ -120,41 +98,29 @@ fn names(comparison: &Comparison, pair: &Pair) -> String {
 }
 
 /// How gaps start: measured, and predicted where a prediction exists. Empty where nothing could be fitted.
-pub(crate) fn growth(comparison: &Comparison) -> String {
-    let mut text = String::new();
+pub(crate) fn growth(comparison: &Comparison) -> Table {
+    let columns = ["pair", "exponent", "leading coefficient", "fitted over", "predicted exponent"];
+    let mut table = Table::new(columns.into_iter().chain(["predicted coefficient", "off by"]));
     for pair in &comparison.pairs {
         let Some(growth) = &pair.growth else { continue };
-        if text.is_empty() {
-            text += "| pair | exponent | leading coefficient | fitted over | predicted exponent | predicted coefficient | off by |\n\
-                     |---|---|---|---|---|---|---|\n";
-        }
         let (exponent, length, off) = match &pair.predicted {
             None => ("–".into(), "–".into(), "–".into()),
             Some(p) => {
                 (p.exponent.to_string(), precise(p.length), format!("{} %", short(100.0 * growth.deviation_from(p))))
             }
         };
-        let _ = writeln!(
-            text,
-            "| {} | {:.3} | {} | {} … {} s | {exponent} | {length} | {off} |",
-            names(comparison, pair),
-            growth.exponent,
-            precise(growth.length),
-            short(growth.from),
-            short(growth.to)
-        );
+        let measured = [format!("{:.3}", growth.exponent), precise(growth.length)];
+        let over = format!("{} … {} s", short(growth.from), short(growth.to));
+        table.row(&[&names(comparison, pair), &measured[0], &measured[1], &over, &exponent, &length, &off]);
     }
-    text
+    table
 }
 
 /// What the best free constants leave of a gap.
-pub(crate) fn fits(comparison: &Comparison) -> String {
-    let mut text = String::new();
+pub(crate) fn fits(comparison: &Comparison) -> Table {
+    let columns = ["motion", "fitted to", "best free constants", "largest gap before", "largest gap left"];
+    let mut table = Table::new(columns.into_iter().chain(["verdict after the fit"]));
     for fit in &comparison.fits {
-        if text.is_empty() {
-            text += "| motion | fitted to | best free constants | largest gap before | largest gap left | verdict after the fit |\n\
-                     |---|---|---|---|---|---|\n";
-        }
         let label = |i: usize| comparison.runs[i].choice.label.clone();
         let before = comparison.pair(fit.run, fit.target).map(|p| p.gap.largest);
         let (constants, left, verdict) = match &fit.fitted {
@@ -165,28 +131,19 @@ pub(crate) fn fits(comparison: &Comparison) -> String {
                 (constants.join(", "), short(fitted.gap.largest), verdict_words(&fitted.gap))
             }
         };
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {left} | {} |",
-            label(fit.run),
-            label(fit.target),
-            cell(&constants),
-            or_dash(before),
-            cell(&verdict)
-        );
+        table.row(&[&label(fit.run), &label(fit.target), &constants, &or_dash(before), &left, &verdict]);
     }
-    text
+    table
 }
 
 /// Drift of what should be constant, and how far the constraint was left.
 ///
 /// # Errors
 /// Where a motion cannot be read off.
-pub(crate) fn invariants(comparison: &mut Comparison) -> Result<String> {
+pub(crate) fn invariants(comparison: &mut Comparison) -> Result<Table> {
     let mut metric = deltaq::Metric::new(&comparison.scene.system)?;
-    let mut text = String::from(
-        "| motion | largest constraint residual | constant by theory: largest deviation | largest projection |\n|---|---|---|---|\n",
-    );
+    let columns = ["motion", "largest constraint residual", "constant by theory: largest deviation"];
+    let mut table = Table::new(columns.into_iter().chain(["largest projection"]));
     for run in &mut comparison.runs {
         let Ok(motion) = &mut run.outcome else { continue };
         let mut residual = 0.0_f64;
@@ -205,14 +162,9 @@ pub(crate) fn invariants(comparison: &mut Comparison) -> Result<String> {
             .collect();
         let projection =
             if motion.projection.projections == 0 { "–".into() } else { short(motion.projection.largest) };
-        let _ = writeln!(
-            text,
-            "| {}{} | {} | {} | {projection} |",
-            run.choice.label,
-            if part < 1.0 { format!(", to {} s", short(until)) } else { String::new() },
-            short(residual),
-            if drifts.is_empty() { "nothing".into() } else { enumerate(&drifts) }
-        );
+        let until = if part < 1.0 { format!(", to {} s", short(until)) } else { String::new() };
+        let drifts = if drifts.is_empty() { "nothing".into() } else { enumerate(&drifts) };
+        table.row(&[&format!("{}{until}", run.choice.label), &short(residual), &drifts, &projection]);
     }
-    Ok(text)
+    Ok(table)
 }

@@ -1,6 +1,7 @@
 //! The word for a motion, given what it should have been.
 
 use deltaq::{Ending, Metric, Motion, SolveError, TRUSTED};
+use serde::Serialize;
 
 use super::Known;
 
@@ -17,7 +18,8 @@ const LAST_DIGITS: f64 = 16.0 * f64::EPSILON;
 const SAMPLES: usize = 200;
 
 /// What became of a cell. Errors and estimates are relative to the distance from the start.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "verdict", rename_all = "lowercase")]
 pub enum Verdict {
     /// Complete, right, and known to be.
     Accurate {
@@ -99,7 +101,7 @@ pub fn judge(
     let mut samples = Vec::with_capacity(SAMPLES + 1);
     for t in motion.grid(SAMPLES) {
         let (kept, looser) = motion.at_in_both_runs(t)?;
-        let Some((truth, second)) = known.at(t) else { continue };
+        let Some((truth, second)) = known(t) else { continue };
         let q = &kept.coordinates;
         let mut length = |a: &[f64], b: &[f64]| {
             let mut difference: Vec<f64> = a.iter().zip(b).take(allowance.compared).map(|(a, b)| a - b).collect();

@@ -7,6 +7,7 @@ use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
 use symbolic::Evaluator;
+use serde::{Serialize, Serializer};
 
 use super::cases::{choice, sledge_reference};
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
@@ -14,6 +15,9 @@ use super::question::tolerance;
 use super::reference::Reference;
 use crate::catalogue;
 use random::parallel;
+
+/// What the long runs are called, on the command line and in reports.
+pub const LONG_RUNS: &str = "million-steps";
 
 /// Steps of equal length, and the limit on those of the adaptive methods.
 pub const MILLION: usize = 1_000_000;
@@ -27,23 +31,34 @@ const PARTS: usize = 10;
 /// How a long run is stepped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// A million equal steps of order 2 that keep the structure of the motion.
+    /// Equal steps that keep the structure of the motion: in the long runs a million of them, of order 2.
     Leapfrog,
     /// As many as the tolerance asks for, with projection.
     Adaptive(Method),
 }
 
 impl Stepping {
+    /// Every way that there is.
+    pub fn all() -> impl Iterator<Item = Stepping> {
+        Method::ALL.into_iter().map(Stepping::Adaptive).chain([Stepping::Leapfrog])
+    }
+
     /// Those that are compared.
-    pub const ALL: [Stepping; 3] =
+    pub const COMPARED: [Stepping; 3] =
         [Stepping::Leapfrog, Stepping::Adaptive(Method::Taylor), Stepping::Adaptive(Method::Dop853)];
 
-    /// For the page.
+    /// Its name, as on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Stepping::Leapfrog => "leapfrog",
             Stepping::Adaptive(method) => method.name(),
         }
+    }
+}
+
+impl Serialize for Stepping {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 
@@ -89,7 +104,7 @@ pub const LONG: [Long; 4] = [
 ];
 
 /// What became of a long run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct LongRun {
     /// The scene.
     pub scene: &'static str,
@@ -98,6 +113,7 @@ pub struct LongRun {
     /// How long it was to be.
     pub duration: f64,
     /// How it was stepped.
+    #[serde(rename = "method")]
     pub stepping: Stepping,
     /// Steps of the kept run.
     pub steps: usize,
@@ -110,6 +126,7 @@ pub struct LongRun {
     /// Whether places are judged, by a reference; or else energy and constraint.
     pub by_place: bool,
     /// Accurate, admitted, refused or wrong.
+    #[serde(flatten)]
     pub verdict: Verdict,
 }
 
@@ -119,16 +136,9 @@ pub struct LongRun {
 /// Where a scene or a reference cannot be had.
 pub fn long_runs(quiet: bool) -> Result<Vec<LongRun>> {
     let asked: Vec<(&Long, Stepping)> =
-        LONG.iter().flat_map(|long| Stepping::ALL.into_iter().map(move |stepping| (long, stepping))).collect();
-    let bar = parallel::progress(asked.len(), quiet);
-    let runs = parallel::map(&asked, |(long, stepping)| {
-        bar.set_message(long.scene);
-        let run = long.run(*stepping).with_context(|| format!("{}, {}", long.scene, long.formulation));
-        bar.inc(1);
-        run
-    });
-    bar.finish_and_clear();
-    runs.into_iter().collect()
+        LONG.iter().flat_map(|long| Stepping::COMPARED.into_iter().map(move |stepping| (long, stepping))).collect();
+    let name = |(long, _): &(&Long, Stepping)| format!("{}, {}", long.scene, long.formulation);
+    parallel::try_map(&asked, quiet, name, |asked| asked.0.run(asked.1).with_context(|| name(asked)))
 }
 
 impl Long {

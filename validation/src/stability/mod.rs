@@ -24,6 +24,6 @@ mod reference;
 
 pub use cases::CASES;
 pub use judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
-pub use long_runs::{LONG, Long, LongRun, MILLION, Stepping, long_runs};
+pub use long_runs::{LONG, LONG_RUNS, Long, LongRun, MILLION, Stepping, long_runs};
 pub use question::{Case, Cell, MAX_STEPS, Question, Subject, run, tolerance};
 pub use reference::{Known, Reference};

@@ -5,6 +5,7 @@ use deltaq::{Metric, Motion, Setting, Settings, TIGHTER, solve};
 use equations::Equations;
 use integrate::Method;
 use mechanics::{ConstantsRule, State, System};
+use serde::{Serialize, Serializer};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::reference::{Known, Reference};
@@ -68,7 +69,7 @@ pub struct Question {
 }
 
 /// An answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Cell {
     /// Name of the case.
     pub case: &'static str,
@@ -77,11 +78,17 @@ pub struct Cell {
     /// Formulation.
     pub formulation: String,
     /// Method.
+    #[serde(serialize_with = "name")]
     pub method: Method,
     /// What came of it.
+    #[serde(flatten)]
     pub verdict: Verdict,
     /// Steps of the kept run.
     pub steps: usize,
+}
+
+fn name<S: Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(method.name())
 }
 
 /// Every method on every question of `cases`.
@@ -91,15 +98,9 @@ pub struct Cell {
 pub fn run(cases: &[&Case], quiet: bool) -> Result<Vec<Cell>> {
     let questions: Vec<(&'static str, Question)> =
         cases.iter().flat_map(|case| (case.questions)().into_iter().map(|q| (case.name, q))).collect();
-    let bar = parallel::progress(questions.len(), quiet);
-    let cells = parallel::map(&questions, |(case, question)| {
-        bar.set_message(*case);
-        let cells = question.cells(case);
-        bar.inc(1);
-        cells
-    });
-    bar.finish_and_clear();
-    Ok(cells.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+    let name = |(case, _): &(&str, Question)| case.to_string();
+    let cells = parallel::try_map(&questions, quiet, name, |(case, question)| question.cells(case))?;
+    Ok(cells.into_iter().flatten().collect())
 }
 
 impl Question {

@@ -55,31 +55,9 @@ const SAME_STOP: f64 = 1e-3;
 /// Length of a run that is needed only for its start.
 const SHORTEST: f64 = 1e-9;
 
-/// A reference, known up to some time.
-pub enum Known<'a> {
-    /// At any time.
-    Closed(&'a Road),
-    /// At the start only.
-    Start {
-        /// How the state is read.
-        read: &'a Reading,
-        /// The start.
-        t: f64,
-        /// The state there.
-        y: &'a [f64],
-    },
-    /// From two runs of Maggi's equations, the second one tighter.
-    Maggi(Box<[maggi::Motion; 2]>),
-    /// From the two runs of a motion.
-    Motion(Box<Motion>),
-    /// From two runs, the second one tighter.
-    Runs {
-        /// How the states are read.
-        read: &'a Reading,
-        /// The looser and the tighter run.
-        runs: Box<[DenseOutput; 2]>,
-    },
-}
+/// A reference, known up to some time: the coordinates at `t`, and those by a second run, whose distance is what they may be off by; `None` between
+/// where the reference stops and where a motion stops at the same singularity.
+pub type Known<'a> = Box<dyn FnMut(f64) -> Option<(Vec<f64>, Vec<f64>)> + 'a>;
 
 impl Reference {
     /// The reference from `start` (where the state is `y`) to `end`, or why it does not reach it.
@@ -87,39 +65,50 @@ impl Reference {
     /// # Errors
     /// The words of the integrator.
     pub fn up_to(&self, start: f64, end: f64) -> Result<Known<'_>, String> {
+        // an end is needed even where nothing is to be compared but the start
+        let later = if end == start { start + SHORTEST } else { end };
+        let same_stop = |t: f64| (later - t).abs() <= SAME_STOP * (later - start).abs();
         match self {
+            Reference::Closed(road) => Ok(Box::new(move |t| Some((road(t), road(t))))),
             Reference::Maggi(posed) => {
                 let (system, state) = posed()?;
                 let run = |tolerance: f64| -> Result<maggi::Motion, String> {
                     let mut maggi = Maggi::new(&system).map_err(|error| error.to_string())?;
-                    // an end is needed even where nothing is to be compared but the start
-                    let end = if end == start { start + SHORTEST } else { end };
-                    let motion =
-                        maggi.solve(&state, end, tolerance, Form::Accelerations).map_err(|error| error.to_string())?;
+                    let motion = maggi.solve(&state, later, tolerance, Form::Accelerations);
+                    let motion = motion.map_err(|error| error.to_string())?;
                     match motion.ending() {
                         maggi::Ending::Completed => Ok(motion),
-                        // at the same singularity
-                        maggi::Ending::Stopped { t, .. } if (end - t).abs() <= SAME_STOP * (end - start).abs() => {
-                            Ok(motion)
-                        }
+                        maggi::Ending::Stopped { t, .. } if same_stop(*t) => Ok(motion),
                         other => Err(format!("the reference stops: {other:?}")),
                     }
                 };
-                Ok(Known::Maggi(Box::new([run(MAGGI[0])?, run(MAGGI[1])?])))
+                let (mut looser, mut kept) = (run(MAGGI[0])?, run(MAGGI[1])?);
+                let size = system.dimension();
+                Ok(Box::new(move |t| {
+                    let read = |run: &mut maggi::Motion| run.state(t).map_or(vec![f64::NAN; size], |state| state.q);
+                    (t <= looser.end().min(kept.end())).then(|| (read(&mut kept), read(&mut looser)))
+                }))
             }
             Reference::Equivalent { posed, formulation } => {
                 let (system, start) = posed()?;
-                let end = if end == start.t { start.t + SHORTEST } else { end };
-                let motion = derived(&system, &start, end, formulation).map_err(|error| error.to_string())?;
-                match &motion.ending {
-                    Ending::Stopped { t, cause } if (end - t).abs() > SAME_STOP * (end - start.t).abs() => {
-                        Err(format!("the reference stops at {t}: {cause}"))
-                    }
-                    _ => Ok(Known::Motion(Box::new(motion))),
+                let mut motion = derived(&system, &start, later, formulation).map_err(|error| error.to_string())?;
+                if let Ending::Stopped { t, cause } = &motion.ending
+                    && !same_stop(*t)
+                {
+                    return Err(format!("the reference stops at {t}: {cause}"));
                 }
+                let unknown = vec![f64::NAN; system.dimension()];
+                Ok(Box::new(move |t| {
+                    if t > motion.end() {
+                        return None;
+                    }
+                    let both = motion.at_in_both_runs(t).map(|(a, b)| (a.coordinates, b.coordinates));
+                    Some(both.unwrap_or_else(|_| (unknown.clone(), unknown.clone())))
+                }))
             }
-            Reference::Ode { y, read, .. } if end == start => Ok(Known::Start { read, t: start, y }),
-            Reference::Closed(road) => Ok(Known::Closed(road)),
+            Reference::Ode { y, read, .. } if end == start => {
+                Ok(Box::new(move |_| Some((read(start, y), read(start, y)))))
+            }
             Reference::Ode { y, rates, read } => {
                 let run = |tolerance: f64| {
                     let mut field = Field { dimension: y.len(), rates };
@@ -131,52 +120,17 @@ impl Reference {
                         integrate::Status::Stopped { t, cause } => Err(format!("the reference stops at {t}: {cause}")),
                     }
                 };
-                Ok(Known::Runs { read, runs: Box::new([run(TOLERANCES[0])?, run(TOLERANCES[1])?]) })
+                let (looser, kept) = (run(TOLERANCES[0])?, run(TOLERANCES[1])?);
+                let mut y = vec![0.0; y.len()];
+                Ok(Box::new(move |t| {
+                    let mut at = |run: &DenseOutput| {
+                        run.evaluate(t, &mut y);
+                        read(t, &y)
+                    };
+                    Some((at(&kept), at(&looser)))
+                }))
             }
         }
-    }
-}
-
-impl Known<'_> {
-    /// The coordinates at `t`, and those by a second run, whose distance is what they may be off by; `None` between where the reference stops and where
-    /// a motion stops at the same singularity.
-    pub fn at(&mut self, t: f64) -> Option<(Vec<f64>, Vec<f64>)> {
-        Some(match self {
-            Known::Closed(road) => {
-                let q = road(t);
-                (q.clone(), q)
-            }
-            Known::Maggi(runs) => {
-                let [looser, kept] = &mut **runs;
-                if t > looser.end().min(kept.end()) {
-                    return None;
-                }
-                let read = |run: &mut maggi::Motion| {
-                    let size = run.solution.dense.dimension();
-                    run.state(t).map_or_else(|_| vec![f64::NAN; size], |state| state.q)
-                };
-                (read(kept), read(looser))
-            }
-            Known::Motion(motion) => {
-                if t > motion.end() {
-                    return None;
-                }
-                let size = motion.equations.coordinates.len();
-                motion.at_in_both_runs(t).map_or_else(
-                    |_| (vec![f64::NAN; size], vec![f64::NAN; size]),
-                    |(a, b)| (a.coordinates, b.coordinates),
-                )
-            }
-            Known::Start { read, t, y } => (read(*t, y), read(*t, y)),
-            Known::Runs { read, runs } => {
-                let mut y = vec![0.0; runs[0].dimension()];
-                let [looser, kept] = &**runs;
-                looser.evaluate(t, &mut y);
-                let second = read(t, &y);
-                kept.evaluate(t, &mut y);
-                (read(t, &y), second)
-            }
-        })
     }
 }
 

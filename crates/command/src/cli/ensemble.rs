@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Format, assignment};
+use super::{Format, SceneArguments};
 
 /// Members of an ensemble, at most.
 pub const MOST_MEMBERS: usize = 1_000_000;
 
-/// Formulation, removal and free constants.
+/// One motion of a scene, and how it is printed.
 #[derive(Args, Debug)]
 pub struct MotionArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
     /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced or removed-constraint.
     #[arg(long, short)]
     pub formulation: String,
@@ -25,40 +27,34 @@ pub struct MotionArguments {
     /// memory variables). Those of the removal if left out.
     #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
     pub constants: Option<String>,
+    /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
+    #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
+    pub tolerance: f64,
+    /// Times to print: `a,b,c` or `from:to:count`. If left out, 101 equidistant ones; of an ensemble the end.
+    #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// No projection onto the constraint.
+    #[arg(long)]
+    pub no_projection: bool,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    pub format: Format,
 }
 
 /// `deltaq ensemble`.
 #[derive(Args, Debug)]
 pub struct EnsembleArguments {
-    /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
-    pub scene: String,
+    #[command(flatten)]
+    pub motion: MotionArguments,
     /// File with one member a line: commas between numbers, the first line names what they replace (a parameter, a coordinate or a velocity at the start, mu1, …).
     #[arg(long, value_name = "FILE")]
     pub members: Option<PathBuf>,
     /// Equidistant values of one of these, both ends included; several are combined with each other and with the lines of the file.
     #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range, required_unless_present = "members")]
     pub vary: Vec<Range>,
-    /// Which motion of it.
-    #[command(flatten)]
-    pub motion: MotionArguments,
-    /// Tolerance. A second run of each member has a hundredth of it; the difference is the error estimate.
-    #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
-    pub tolerance: f64,
-    /// Times to print: `a,b,c` or `from:to:count`. The end if left out.
-    #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
-    pub times: Option<String>,
-    /// Replace a parameter, a start value or `duration` for all members.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
-    pub overrides: Vec<(String, f64)>,
-    /// No projection onto the constraint.
-    #[arg(long)]
-    pub no_projection: bool,
     /// Number of threads; one a processor if left out. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = Format::Csv)]
-    pub format: Format,
     /// File to write; to the terminal if left out.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

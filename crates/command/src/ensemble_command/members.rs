@@ -39,7 +39,7 @@ impl Members {
             if !known.contains(name) {
                 bail!("{place}: the scene has no `{name}` that could vary; it has {}", known.join(", "));
             }
-            if arguments.overrides.iter().any(|(set, _)| set == name) {
+            if arguments.motion.scene.set.overrides.iter().any(|(set, _)| set == name) {
                 bail!("{place}: `{name}` varies, and --set fixes it");
             }
         }

@@ -6,7 +6,9 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use super::members::Members;
+use crate::answer::pretty;
 use crate::cli::Format;
+use crate::columns::{Columns, print, row};
 
 /// Members that a complaint describes.
 const DESCRIBED: usize = 3;
@@ -52,8 +54,7 @@ pub(super) struct Answers<'a> {
     format: Format,
     scene: &'a Scene,
     choice: &'a Choice,
-    coordinates: Vec<String>,
-    multipliers: Vec<String>,
+    columns: Columns,
     members: &'a Members,
     times: &'a [f64],
     text: String,
@@ -74,23 +75,19 @@ impl<'a> Answers<'a> {
         members: &'a Members,
         times: &'a [f64],
     ) -> Self {
-        let coordinates: Vec<String> = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
-        let multipliers: Vec<String> = equations.multipliers.iter().map(|m| m.name.clone()).collect();
-        let velocities = coordinates.iter().map(|name| format!("{name}'"));
-        let mut columns = vec!["member".to_string()];
-        columns.extend(members.names.iter().map(|name| format!("set {name}")));
-        columns.push("t".into());
-        columns.extend(coordinates.iter().cloned().chain(velocities).chain(multipliers.iter().cloned()));
-        columns.extend(["error_estimate", "status", "cause"].map(String::from));
+        let columns = Columns::of(scene, equations);
+        let set = members.names.iter().map(|name| format!("set {name}"));
+        let end = ["error_estimate", "status", "cause"].map(String::from);
+        let names: Vec<String> =
+            std::iter::once("member".into()).chain(set).chain(columns.names()).chain(end).collect();
         Answers {
             format,
             scene,
             choice,
-            coordinates,
-            multipliers,
+            columns,
             members,
             times,
-            text: columns.join(",") + "\n",
+            text: names.join(",") + "\n",
             values: Vec::new(),
             done: 0,
             statuses: [0; STATUSES.len()],
@@ -119,41 +116,34 @@ impl<'a> Answers<'a> {
 
     /// One row a time; one without numbers where nothing was reached.
     fn add_rows(&mut self, outcome: &Outcome) {
-        let print = |numbers: &[f64]| numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>();
-        let member = [vec![(self.done + 1).to_string()], print(&self.members.rows[self.done])].concat().join(",");
+        let member = format!("{},{}", self.done + 1, print(&self.members.rows[self.done]));
         let cause = outcome.cause.as_ref().map_or(String::new(), |cause| format!("\"{}\"", cause.replace('"', "\"\"")));
         let estimate = outcome.error_estimate().map_or(String::new(), |e| format!("{e:?}"));
         let end = format!("{estimate},{},{}\n", outcome.status, cause.replace('\n', " "));
         for (&t, now) in self.times.iter().zip(outcome.outputs()) {
-            let numbers = [&[t], &now.coordinates[..], &now.velocities, &now.multipliers].concat();
-            self.text += &format!("{member},{},{end}", print(&numbers).join(","));
+            self.text += &format!("{member},{},{end}", row(t, now));
         }
         if outcome.outputs().is_empty() {
-            let empty = ",".repeat(2 * self.coordinates.len() + self.multipliers.len());
+            let empty = ",".repeat(self.columns.names().len() - 1);
             self.text += &format!("{member},{empty},{end}");
         }
     }
 
     fn object(&self, outcome: &Outcome) -> Value {
         let rows = outcome.outputs();
-        let columns = |names: &[String], row: fn(&Outputs) -> &[f64]| -> Value {
-            let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
-            names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
-        };
         let values = self.members.names.iter().cloned().zip(self.members.rows[self.done].iter().map(|&x| json!(x)));
         let run = outcome.motion.as_ref().map(|motion| &motion.run);
-        json!({
+        let mut value = json!({
             "set": values.collect::<Map<_, _>>(),
             "status": outcome.status,
             "cause": outcome.cause,
             "times": &self.times[..rows.len()],
-            "coordinates": columns(&self.coordinates, |r| &r.coordinates),
-            "velocities": columns(&self.coordinates, |r| &r.velocities),
-            "multipliers": columns(&self.multipliers, |r| &r.multipliers),
             "error_estimate": outcome.error_estimate(),
             "steps": run.map(|run| run.work.steps),
             "alone": run.and_then(|run| run.alone.as_ref()),
-        })
+        });
+        self.columns.write(&mut value, rows);
+        value
     }
 
     /// Which members are not to be trusted to the end.
@@ -172,9 +162,9 @@ impl<'a> Answers<'a> {
         Some(text)
     }
 
-    pub(super) fn finish(self, seconds: Seconds) -> serde_json::Result<String> {
+    pub(super) fn finish(self, seconds: Seconds) -> String {
         if self.format == Format::Csv {
-            return Ok(self.text);
+            return self.text;
         }
         let counts: Map<String, Value> =
             STATUSES.iter().zip(self.statuses).map(|(name, count)| (name.to_string(), json!(count))).collect();
@@ -186,6 +176,6 @@ impl<'a> Answers<'a> {
             "members": self.values,
             "seconds": { "start": seconds.start, "derive": seconds.derive, "integrate": seconds.integrate },
         });
-        Ok(serde_json::to_string_pretty(&value)? + "\n")
+        pretty(&value)
     }
 }

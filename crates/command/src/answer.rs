@@ -1,0 +1,63 @@
+//! What a command answers, and how the answer comes to the reader.
+
+use std::io::{ErrorKind, Write, stdout};
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+
+use crate::cli::{Output, TextOrJson};
+use validation::report::{File, write_all};
+
+/// How a command ended: the text to print, and whether it can be trusted.
+pub struct Answer {
+    /// For standard output.
+    pub text: String,
+    /// Why it cannot be trusted, for standard error.
+    pub complaint: Option<String>,
+}
+
+impl From<String> for Answer {
+    fn from(text: String) -> Answer {
+        Answer { text, complaint: None }
+    }
+}
+
+impl Answer {
+    /// Prints the text, all of it. A reader that has seen enough and closes the pipe is no error.
+    ///
+    /// # Errors
+    /// Whatever else keeps it from being written, for example a full disk.
+    pub fn print(&self) -> Result<()> {
+        let mut out = stdout().lock();
+        match out.write_all(self.text.as_bytes()).and_then(|()| out.flush()) {
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write the answer"),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Output {
+    /// Writes the files to the folder that was asked for, if one was; then what is to be printed.
+    ///
+    /// # Errors
+    /// Where files cannot be made or written.
+    pub fn answer(
+        &self,
+        files: impl FnOnce() -> Result<Vec<File>>,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> Value,
+    ) -> Result<String> {
+        if let Some(folder) = &self.out {
+            write_all(folder, &files()?)?;
+        }
+        Ok(match self.format {
+            TextOrJson::Text => text(),
+            TextOrJson::Json => pretty(&json()),
+        })
+    }
+}
+
+/// JSON for readers, with an end of line.
+pub fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
+}

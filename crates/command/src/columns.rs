@@ -1,0 +1,49 @@
+//! What is printed of a motion at some times: one column a coordinate, a velocity and a multiplier.
+
+use equations::{Equations, Outputs};
+use scene::Scene;
+use serde_json::{Map, Value, json};
+
+/// Names of the columns.
+pub struct Columns {
+    coordinates: Vec<String>,
+    multipliers: Vec<String>,
+}
+
+impl Columns {
+    /// Those of a scene in one formulation.
+    pub fn of(scene: &Scene, equations: &Equations) -> Columns {
+        Columns {
+            coordinates: scene.system.coordinates.iter().map(|c| c.name.clone()).collect(),
+            multipliers: equations.multipliers.iter().map(|m| m.name.clone()).collect(),
+        }
+    }
+
+    /// In the order of [`row`], the time first.
+    pub fn names(&self) -> Vec<String> {
+        let velocities = self.coordinates.iter().map(|name| format!("{name}'"));
+        let time = std::iter::once("t".to_string());
+        time.chain(self.coordinates.iter().cloned()).chain(velocities).chain(self.multipliers.iter().cloned()).collect()
+    }
+
+    /// Adds the columns to an object: a list of numbers a name.
+    pub fn write(&self, object: &mut Value, rows: &[Outputs]) {
+        let columns = |names: &[String], row: fn(&Outputs) -> &[f64]| -> Value {
+            let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
+            names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
+        };
+        object["coordinates"] = columns(&self.coordinates, |r| &r.coordinates);
+        object["velocities"] = columns(&self.coordinates, |r| &r.velocities);
+        object["multipliers"] = columns(&self.multipliers, |r| &r.multipliers);
+    }
+}
+
+/// The numbers at one time, between commas.
+pub fn row(t: f64, now: &Outputs) -> String {
+    print(&[&[t], &now.coordinates[..], &now.velocities, &now.multipliers].concat())
+}
+
+/// Numbers with all their digits, between commas.
+pub fn print(numbers: &[f64]) -> String {
+    numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",")
+}
