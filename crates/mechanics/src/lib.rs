@@ -29,19 +29,21 @@
 //! What it does not know: how a system is written in a file, what the equations of motion are, how time advances.
 
 mod automatic_removal;
-mod error;
+pub mod elimination;
 mod integrability;
 pub mod linear;
 pub mod newton;
 mod rank;
 mod removal;
+mod removal_error;
+mod solved_constraints;
 mod start;
 mod system;
 
-pub use error::RemovalError;
 pub use integrability::{Integrability, integrability};
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
+pub use removal_error::RemovalError;
 pub use start::{
     Completion, Quantity, Recombination, RemovalStart, StartData, StartError, check_regularity, complete_removal_start,
     complete_start, project_velocity,

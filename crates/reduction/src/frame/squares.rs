@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use mechanics::elimination::{Pivot, SparseMatrix};
 use symbolic::Expr;
 
 use super::builder::Builder;
@@ -33,36 +34,30 @@ impl Builder<'_> {
     /// Elimination with pivots on the diagonal, constant ones first, then those that fill least; `None` where one is no square.
     pub(super) fn squares(&self, mass: &[Sparse], tie: Tie) -> Option<Vec<Square>> {
         let g = self.g;
-        let mut rows = mass.to_vec();
-        let mut left: BTreeSet<usize> = (0..rows.len()).collect();
+        let mut matrix = SparseMatrix::new(mass.to_vec());
+        let mut left: BTreeSet<usize> = (0..mass.len()).collect();
         let mut squares = Vec::new();
         while !left.is_empty() {
             let score = |&k: &usize| {
-                let constant = rows[k].get(&k).is_some_and(|&e| self.is_constant(e));
-                (!constant, rows[k].len(), if tie == Tie::Latest { rows.len() - k } else { k })
+                let row = &matrix.rows()[k];
+                let constant = row.get(&k).is_some_and(|&e| self.is_constant(e));
+                (!constant, row.len(), if tie == Tie::Latest { mass.len() - k } else { k })
             };
             let pivot = *left.iter().min_by_key(|k| score(k))?;
             left.remove(&pivot);
-            let mut others = std::mem::take(&mut rows[pivot]);
-            let e = others.remove(&pivot)?;
+            let Pivot { entry: e, row: others, .. } = matrix.take(pivot, pivot)?;
             let (inertia, scale) = g.square(e, &|s| self.parameters.contains(&s))?;
             let (size, whole) = (self.number(e), self.number(mass[pivot][&pivot]));
             if !(self.number(inertia) > 0.0 && size >= CANCELLED * whole.abs() && size > 0.0) {
                 return None;
             }
-            let others: Vec<(usize, Expr)> = others.into_iter().collect();
             let factors: Vec<(usize, Expr)> =
-                others.iter().map(|&(j, entry)| (j, g.factored(g.div(entry, e)))).collect();
+                others.iter().map(|(&j, &entry)| (j, g.factored(g.div(entry, e)))).collect();
             for &(i, l) in &factors {
-                rows[i].remove(&pivot);
-                for &(j, entry) in &others {
-                    let before = rows[i].get(&j).copied().unwrap_or(g.zero());
+                for (&j, &entry) in &others {
+                    let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
                     let e = shortest(g, g.sub(before, g.mul(l, entry)));
-                    if g.is_zero(e) {
-                        rows[i].remove(&j);
-                    } else {
-                        rows[i].insert(j, e);
-                    }
+                    matrix.set(i, j, (!g.is_zero(e)).then_some(e));
                 }
             }
             squares.push(Square { coordinate: pivot, inertia, scale, others: factors });
