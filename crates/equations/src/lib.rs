@@ -26,26 +26,26 @@
 //!
 //! What it does not know: any formulation, any principle, how time advances.
 
+mod blocks;
 mod compiled;
 mod definitions;
-mod derivatives;
 mod equations;
 mod formulation;
-mod instant;
+mod jacobian;
 mod lanes;
 mod leave_out;
 mod plan;
+mod planned;
 mod projection;
 mod recombination;
 mod series;
-mod straight;
 
+pub use blocks::EvaluationFailure;
 pub use compiled::{Compiled, Cost, Outputs};
 pub use definitions::Definitions;
 pub use equations::{
     Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
 pub use formulation::{Derivation, DerivationError, Formulation, refuse_forces};
-pub use instant::EvaluationFailure;
 pub use lanes::LaneEquations;
 pub use plan::{Collected, Plan};

@@ -18,13 +18,14 @@
 //!
 //! What it does not know: constraints that are not linear in the velocities, the removed-constraint equations, how time advances.
 
-mod cheapest;
+mod cost;
+mod expressions;
 mod frame;
 mod quasi_velocities;
 mod reduced_chetaev;
 mod reduced_vakonomic;
 
-pub use cheapest::{cheapest, matrix_moves};
+pub use cost::{cheapest, matrix_moves};
 pub use frame::{Frame, FrameConstraint, FrameVelocity, Turning};
 pub use quasi_velocities::{Columns, DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
 pub use reduced_chetaev::{REDUCED_CHETAEV, derive_chetaev};

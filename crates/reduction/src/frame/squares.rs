@@ -1,12 +1,11 @@
 //! A mass matrix as a sum of squares.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use mechanics::elimination::{Pivot, SparseMatrix};
-use symbolic::Expr;
+use symbolic::{Expr, Graph, Symbol};
 
-use super::builder::Builder;
-use super::{Sparse, shortest};
+use crate::expressions::{Sparse, shortest};
 
 /// What cancels in a pivot may leave this part of the entry that was there, at the start.
 const CANCELLED: f64 = 1e-4;
@@ -30,7 +29,24 @@ pub(super) enum Tie {
     Latest,
 }
 
-impl Builder<'_> {
+/// What is known at the start.
+pub(super) struct Known<'a> {
+    pub(super) g: &'a Graph,
+    pub(super) parameters: HashSet<Symbol>,
+    /// Values of all symbols of the system.
+    pub(super) values: HashMap<Symbol, f64>,
+}
+
+impl Known<'_> {
+    pub(super) fn is_constant(&self, e: Expr) -> bool {
+        self.g.symbols_of(e).iter().all(|s| self.parameters.contains(s))
+    }
+
+    /// The value at the start; NaN where it is not finite.
+    fn number(&self, e: Expr) -> f64 {
+        self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
+    }
+
     /// Elimination with pivots on the diagonal, constant ones first, then those that fill least; `None` where one is no square.
     pub(super) fn squares(&self, mass: &[Sparse], tie: Tie) -> Option<Vec<Square>> {
         let g = self.g;

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Graph, Symbol};
 
-use super::{DependentVelocity, EliminatedConstraint, QuasiVelocity};
+use super::recursion::{DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
 use crate::Frame;
-use crate::frame::point;
+use crate::expressions::point;
 use equations::Definitions;
 use mechanics::elimination::{Candidate, LinearForms, SparseMatrix, choose_pivot};
 use mechanics::{Coordinate, RemovalError, State, System, fresh_symbol};
@@ -43,7 +43,27 @@ struct Couple {
     square: Expr,
 }
 
-pub(super) struct Elimination<'a> {
+impl QuasiVelocities {
+    /// Eliminates the constraints of `system`, from the velocities of `frame` or, without one, of the coordinates. Where a pivot has to be chosen by
+    /// its size, that at `start` counts; without a start, that at a point of no significance.
+    ///
+    /// # Errors
+    /// [`RemovalError::NotLinear`] where a constraint is not linear in `v`; [`RemovalError::Dependent`] where the rows of `A` are dependent.
+    pub fn new(system: &System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
+        let mut elimination = Elimination::new(system, frame, start)?;
+        let homogeneous = elimination.is_homogeneous();
+        while elimination.step()? {}
+        let steps = std::mem::take(&mut elimination.steps);
+        let dependent: Vec<DependentVelocity> = steps.into_iter().rev().flatten().collect();
+        let coefficients = std::mem::take(&mut elimination.coefficients);
+        let guards = std::mem::take(&mut elimination.guards);
+        let eliminated = std::mem::take(&mut elimination.eliminated);
+        let free = elimination.free(&dependent.iter().map(|d| d.symbol).collect::<HashSet<Symbol>>());
+        Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, homogeneous })
+    }
+}
+
+struct Elimination<'a> {
     g: &'a Graph,
     parameters: HashMap<Symbol, f64>,
     /// Parameters, start and coefficients.
@@ -54,15 +74,15 @@ pub(super) struct Elimination<'a> {
     rows: Vec<Row>,
     active: BTreeSet<usize>,
     queue: BTreeSet<ConstantPivot>,
-    pub(super) coefficients: Definitions,
+    coefficients: Definitions,
     /// What each step defined.
-    pub(super) steps: Vec<Vec<DependentVelocity>>,
-    pub(super) guards: Vec<Expr>,
-    pub(super) eliminated: Vec<EliminatedConstraint>,
+    steps: Vec<Vec<DependentVelocity>>,
+    guards: Vec<Expr>,
+    eliminated: Vec<EliminatedConstraint>,
 }
 
 impl<'a> Elimination<'a> {
-    pub(super) fn new(system: &'a System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
+    fn new(system: &'a System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
         let g = &system.graph;
         let velocities = match frame {
             Some(frame) => frame.velocities.iter().map(|u| (u.symbol, u.rate, u.start)).collect(),
@@ -105,17 +125,17 @@ impl<'a> Elimination<'a> {
         Ok(elimination)
     }
 
-    pub(super) fn is_homogeneous(&self) -> bool {
+    fn is_homogeneous(&self) -> bool {
         self.rows.iter().all(|row| self.g.is_zero(row.offset))
     }
 
     /// The velocities that were no pivots.
-    pub(super) fn free(self, dependent: &HashSet<Symbol>) -> Vec<QuasiVelocity> {
+    fn free(self, dependent: &HashSet<Symbol>) -> Vec<QuasiVelocity> {
         self.velocities.into_iter().filter(|w| !dependent.contains(&w.symbol)).collect()
     }
 
     /// Eliminates one constraint; `false` where none is left.
-    pub(super) fn step(&mut self) -> Result<bool, RemovalError> {
+    fn step(&mut self) -> Result<bool, RemovalError> {
         if self.active.is_empty() {
             return Ok(false);
         }
