@@ -8,8 +8,8 @@ use crate::equations::Equations;
 /// Definitions that take the place of blocks.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
-    /// Intermediate quantities and unknowns in the order in which they are computed, in `(t, y)`, free constants, unknowns of blocks that are
-    /// left, and earlier definitions.
+    /// Intermediate quantities and unknowns in the order in which they are computed, in `(t, y)`, free
+    /// constants, unknowns of blocks that are left, and earlier definitions.
     pub definitions: Vec<(Symbol, Expr)>,
     /// `κ(t, y)`: the definitions are accurate where `κ ≤` [`Plan::LIMIT`]; `None` where they are everywhere.
     pub condition: Option<Expr>,
@@ -31,7 +31,8 @@ pub struct Collected {
 }
 
 impl Plan {
-    /// Largest condition with which the definitions are used. A multiplier of 1000 takes three digits at most.
+    /// Largest condition with which the definitions are used. A multiplier of 1000 takes three digits at
+    /// most.
     pub const LIMIT: f64 = 1e6;
 
     /// The rates as they are evaluated.
@@ -51,7 +52,8 @@ impl Plan {
         [known, self.definitions.clone(), waiting].concat()
     }
 
-    /// Places in `(t, y, constants, z)` of what the definitions take: of `z` the unknowns of blocks that are left.
+    /// Places in `(t, y, constants, z)` of what the definitions take: of `z` the unknowns of blocks that are
+    /// left.
     pub(crate) fn places(&self, equations: &Equations) -> Vec<usize> {
         let mut first = equations.known_symbols().len();
         let mut places: Vec<usize> = (0..first).collect();

@@ -15,7 +15,8 @@ const HARMLESS: f64 = 1e4;
 #[derive(Clone, Default)]
 pub(crate) struct Eliminated {
     pub(crate) list: Vec<(Symbol, Expr)>,
-    /// Squares of multipliers (entries over their pivot, scaled as at the start) and of what cancelled in a pivot over that pivot.
+    /// Squares of multipliers (entries over their pivot, scaled as at the start) and of what cancelled in a
+    /// pivot over that pivot.
     pub(crate) watched: Vec<Expr>,
     /// Pivots of which something is watched.
     pub(crate) moving: usize,
@@ -50,7 +51,8 @@ impl<'a> Elimination<'a> {
         Elimination { graph, ranges, inline, names, named: HashMap::new(), found: Eliminated::default() }
     }
 
-    /// Eliminates in the given order; `symmetric` where pivots are on the diagonal of a matrix that is its own transpose. `scale`: of the rows.
+    /// Eliminates in the given order; `symmetric` where pivots are on the diagonal of a matrix that is its
+    /// own transpose. `scale`: of the rows.
     ///
     /// `None` where a pivot is identically zero.
     pub(crate) fn run(
@@ -158,8 +160,8 @@ impl<'a> Elimination<'a> {
         self.found.watched.extend(watched);
     }
 
-    /// Parts of a sum of which one at least is large against it where terms cancel. Terms of one sign count as one; and where one part is large
-    /// another is, so the longest may go.
+    /// Parts of a sum of which one at least is large against it where terms cancel. Terms of one sign count
+    /// as one; and where one part is large another is, so the longest may go.
     fn cancelling(&self, terms: &[Expr]) -> Vec<Expr> {
         let g = self.graph;
         let (mut parts, mut signed) = (Vec::new(), [Vec::new(), Vec::new()]);

@@ -1,11 +1,13 @@
-//! The order in which a sparse linear block is eliminated: few operations, and no pivot that is small where it was tried.
+//! The order in which a sparse linear block is eliminated: few operations, and no pivot that is small where
+//! it was tried.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use mechanics::elimination::{Pivot, SparseMatrix};
 
-/// Points at which pivots are tried: at the first ones none may be small, at the others it is better if none is.
+/// Points at which pivots are tried: at the first ones none may be small, at the others it is better if none
+/// is.
 pub(crate) const POINTS: usize = 10;
 pub(crate) const NEAR: usize = 2;
 
@@ -18,7 +20,8 @@ const SMALLEST: f64 = 1e-4;
 /// What a pivot that is no number costs beside its multiplications: a division and the watch on it.
 const MOVING: usize = 4;
 
-/// What it costs that it is small at a point far from the start. (On the diagonal of a mass matrix what is small against its column does no harm.)
+/// What it costs that it is small at a point far from the start. (On the diagonal of a mass matrix what is
+/// small against its column does no harm.)
 const SMALL: usize = 4;
 
 /// An entry in numbers.
@@ -58,7 +61,8 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// Scales columns, then rows, to a largest entry of 1, as the numerical solve does; `None` where that cannot be done near the start.
+    /// Scales columns, then rows, to a largest entry of 1, as the numerical solve does; `None` where that
+    /// cannot be done near the start.
     pub(crate) fn new(mut rows: Vec<BTreeMap<usize, Entry>>) -> Option<Self> {
         let mut row_scale = Vec::new();
         for point in 0..POINTS {

@@ -12,7 +12,8 @@ use super::pivots::{NEAR, Order, POINTS, Pattern, Strategy};
 use crate::definitions::{apart, symbols_behind};
 use crate::equations::{Block, Equations};
 
-/// Expressions up to these sizes stay inside others: long ones let terms meet that cancel, short ones keep products apart that are used more than once.
+/// Expressions up to these sizes stay inside others: long ones let terms meet that cancel, short ones keep
+/// products apart that are used more than once.
 const LONG_PARTS: usize = 12;
 const SHORT_PARTS: usize = 3;
 
@@ -22,12 +23,14 @@ const MOST: usize = 20_000;
 /// Multiplications over which only one way is tried.
 const LONG: usize = 400;
 
-/// Points around the start at which the condition of a plan is tried, and the one over which a point counts as bad.
+/// Points around the start at which the condition of a plan is tried, and the one over which a point counts
+/// as bad.
 const AROUND: usize = 32;
 const BAD: f64 = 1e3;
 
 impl Plan {
-    /// The cheapest plan that is safe near `(t, y, free constants)`, the point given; without one, near a point that stands for all.
+    /// The cheapest plan that is safe near `(t, y, free constants)`, the point given; without one, near a
+    /// point that stands for all.
     ///
     /// # Errors
     /// [`CompileError`] as [`crate::Compiled::new`].

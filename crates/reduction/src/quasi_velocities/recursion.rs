@@ -26,7 +26,8 @@ pub struct QuasiVelocity {
 pub struct DependentVelocity {
     /// Symbol of the velocity.
     pub symbol: Symbol,
-    /// Index of the coordinate whose velocity it is, or of the velocity of the frame; none for a quasi-velocity that turned out to be dependent.
+    /// Index of the coordinate whose velocity it is, or of the velocity of the frame; none for a
+    /// quasi-velocity that turned out to be dependent.
     pub coordinate: Option<usize>,
     /// Quasi-velocities and earlier dependent velocities, with their coefficients in `(q, t)`.
     pub terms: Vec<(Symbol, Expr)>,
@@ -34,9 +35,10 @@ pub struct DependentVelocity {
     pub offset: Expr,
 }
 
-/// How a constraint was eliminated, for multipliers. With `ρ` the value of its row at that moment, the velocities that it defined are
-/// `v_k = … + slope_k ρ`, and `added · ρ` went into the rows of constraints eliminated later. So where `δ(p·v − L) = μ·δf` along every `δv`, and
-/// `v̄_k` is the derivative of `p·v − L` by `v_k` by way of all velocities that contain it,
+/// How a constraint was eliminated, for multipliers. With `ρ` the value of its row at that moment, the
+/// velocities that it defined are `v_k = … + slope_k ρ`, and `added · ρ` went into the rows of constraints
+/// eliminated later. So where `δ(p·v − L) = μ·δf` along every `δv`, and `v̄_k` is the derivative of `p·v − L`
+/// by `v_k` by way of all velocities that contain it,
 ///
 /// ```text
 /// μ = Σ slope_k v̄_k + Σ added · μ of the later ones .
@@ -90,7 +92,8 @@ impl QuasiVelocities {
         self.dependent.iter().filter_map(multiple).collect()
     }
 
-    /// Hands the dependent velocities over, and those that a frame was made from: defined, and stated for the reader.
+    /// Hands the dependent velocities over, and those that a frame was made from: defined, and stated for the
+    /// reader.
     pub(crate) fn hand_over(
         &self,
         g: &Graph,
