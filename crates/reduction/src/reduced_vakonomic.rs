@@ -71,23 +71,11 @@ const WHOLE: usize = 200;
 /// linear in the velocities, or constraints are dependent.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", r#"
-/// # title = "Ice sledge on an incline"
-/// # [coordinates]
-/// # x   = { start = 0 }
-/// # y   = { start = 0 }
-/// # phi = { start = 0.3 }
-/// # [system]
-/// # lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + x"
-/// # constraints = ["y'*cos(phi) - x'*sin(phi)"]
-/// # [start.velocities]
-/// # "phi'" = 1
-/// # "x'" = 0.5
-/// # [run]
-/// # duration = 1
-/// # "#)?;
+/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = reduction::derive_vakonomic(&scene.system, &equations::Derivation::default())?;
+/// let equations = reduction::derive_vakonomic(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// // the speed along the blade is the momentum along it
 /// assert_eq!(line(3), "w_x - p_x*cos(phi) - p_y*sin(phi)");
