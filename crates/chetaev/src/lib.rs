@@ -54,9 +54,11 @@ pub const FORMULATION: Formulation =
 /// None: every system has Chetaev equations. Whether they are regular shows when they are solved.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = chetaev::derive(&scene.system, &equations::Derivation::default())?;
+/// let equations = chetaev::derive(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "x'' + lambda_1*sin(phi) - 1");
 /// assert_eq!(line(1), "y'' - lambda_1*cos(phi)");

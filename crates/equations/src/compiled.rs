@@ -2,13 +2,13 @@
 
 use symbolic::{CompileError, Evaluator, Expr};
 
-use crate::derivatives::Derivatives;
+use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::equations::Equations;
-use crate::instant::{CompiledBlock, EvaluationFailure};
+use crate::jacobian::Jacobian;
 use crate::plan::Plan;
+use crate::planned::Planned;
 use crate::projection::Projector;
 use crate::series::Series;
-use crate::straight::Straight;
 
 /// Compiled equations of motion `ẏ = F(t, y)`.
 ///
@@ -19,12 +19,12 @@ pub struct Compiled {
     rates: Evaluator<f64>,
     outputs: Evaluator<f64>,
     /// The chosen plan, where there is another than the plain one, and how often it was not to be trusted.
-    straight: Option<Straight>,
+    planned: Option<Planned>,
     left: Vec<usize>,
     fallbacks: usize,
     guards: Evaluator<f64>,
     projector: Option<Projector>,
-    derivatives: Option<Derivatives>,
+    jacobian: Option<Jacobian>,
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
     series: Option<Series>,
     plain_series: Option<Series>,
@@ -131,11 +131,11 @@ impl Compiled {
         let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
-        let straight = (plan.left.len() < blocks.len() || plan.collected.is_some())
-            .then(|| Straight::new(equations, plan, &all, &outputs))
+        let planned = (plan.left.len() < blocks.len() || plan.collected.is_some())
+            .then(|| Planned::new(equations, plan, &all, &outputs))
             .transpose()?;
         Ok(Compiled {
-            straight,
+            planned,
             left: plan.left.clone(),
             fallbacks: 0,
             equations_of_instant: blocks,
@@ -143,7 +143,7 @@ impl Compiled {
             outputs: equations.evaluator(&all, &outputs)?,
             guards: equations.evaluator(&known, &equations.guards)?,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
-            derivatives: None,
+            jacobian: None,
             series: None,
             plain_series: None,
             sizes: Sizes {
@@ -163,7 +163,7 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::new`].
     pub fn with_jacobian(mut self, equations: &Equations) -> Result<Self, CompileError> {
-        self.derivatives = Some(Derivatives::new(equations)?);
+        self.jacobian = Some(Jacobian::new(equations)?);
         Ok(self)
     }
 
@@ -181,7 +181,7 @@ impl Compiled {
 
     /// Whether [`Compiled::with_jacobian`] was called.
     pub fn has_jacobian(&self) -> bool {
-        self.derivatives.is_some()
+        self.jacobian.is_some()
     }
 
     /// Products of series, and linear terms, that an order of [`Compiled::taylor`] takes; `None` if [`Compiled::with_series`] was not called.
@@ -237,10 +237,10 @@ impl Compiled {
     /// # Errors
     /// [`EvaluationFailure`] where the equations of the instant cannot be solved.
     pub fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationFailure> {
-        if self.straight.is_some() {
+        if self.planned.is_some() {
             self.load(t, y);
             self.solve_blocks(Blocks::Left)?;
-            if let Some(values) = self.straight.as_mut().and_then(|s| s.rates(&self.inputs)) {
+            if let Some(values) = self.planned.as_mut().and_then(|s| s.rates(&self.inputs)) {
                 rates.copy_from_slice(values);
                 return Ok(());
             }
@@ -259,7 +259,7 @@ impl Compiled {
     /// What one evaluation of the rates costs, in the plain plan and in the chosen one.
     pub fn cost(&self) -> [Cost; 2] {
         let plain = self.cost_of(&|_| true, self.rates.tape().len());
-        let chosen = self.straight.as_ref().map(|s| self.cost_of(&|k| self.left.contains(&k), s.len()));
+        let chosen = self.planned.as_ref().map(|s| self.cost_of(&|k| self.left.contains(&k), s.len()));
         [plain, chosen.unwrap_or(plain)]
     }
 
@@ -278,10 +278,10 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn outputs(&mut self, t: f64, y: &[f64]) -> Result<Outputs, EvaluationFailure> {
-        if self.straight.is_some() {
+        if self.planned.is_some() {
             self.load(t, y);
             self.solve_blocks(Blocks::Left)?;
-            if let Some(values) = self.straight.as_mut().and_then(|s| s.outputs(&self.inputs)) {
+            if let Some(values) = self.planned.as_mut().and_then(|s| s.outputs(&self.inputs)) {
                 return Ok(self.sizes.outputs(values));
             }
         }
@@ -324,7 +324,7 @@ impl Compiled {
     /// If [`Compiled::with_jacobian`] was not called.
     pub fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.solve_instant(t, y)?;
-        let derivatives = self.derivatives.as_mut().expect("compiled with_jacobian");
+        let derivatives = self.jacobian.as_mut().expect("compiled with_jacobian");
         derivatives.write(&self.inputs, &mut self.equations_of_instant, jacobian);
         Ok(())
     }
@@ -342,7 +342,7 @@ impl Compiled {
     pub fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.load(t, y);
         self.solve_blocks(Blocks::Left)?;
-        let trusted = self.straight.as_mut().is_none_or(|s| s.is_trusted(&self.inputs));
+        let trusted = self.planned.as_mut().is_none_or(|s| s.is_trusted(&self.inputs));
         let series = if trusted {
             &mut self.series
         } else {

@@ -10,8 +10,8 @@ use crate::equations::{Block, Equations, LeftOut, Role};
 impl Equations {
     /// Leaves out what the motion does not need, and writes down what went.
     ///
-    /// Blocks fall apart into independent ones; an unknown with a constant coefficient and an equation of its own is
-    /// solved on the spot; unknowns and states on which no coordinate or velocity depends are dropped;
+    /// Blocks fall apart into independent ones; an unknown with a constant coefficient and an equation of its
+    /// own is solved on the spot; unknowns and states on which no coordinate or velocity depends are dropped;
     /// coordinates that nothing else depends on are named as quadratures.
     pub fn leave_out_unneeded(mut self) -> Self {
         self.split_blocks();

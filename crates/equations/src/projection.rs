@@ -2,8 +2,8 @@
 
 use symbolic::{CompileError, Evaluator, Symbol};
 
+use crate::blocks::EvaluationFailure;
 use crate::equations::{ConstraintProjection, Equations};
-use crate::instant::EvaluationFailure;
 use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
 
 /// Newton steps allowed; a step under this length relative to the velocity ends the iteration.

@@ -8,8 +8,8 @@ use symbolic::Matrix;
 use crate::equations::{Equations, LeftOut};
 
 impl Equations {
-    /// Equations of [`Recombination::system`] whose multipliers, handed out and given at the start, are those of the constraints as given:
-    /// `λ = Tᵀ λ'` where the constraints were replaced by `f' = T f`.
+    /// Equations of [`Recombination::system`] whose multipliers, handed out and given at the start, are those
+    /// of the constraints as given: `λ = Tᵀ λ'` where the constraints were replaced by `f' = T f`.
     pub fn with_multipliers_restored(mut self, recombination: &Recombination) -> Self {
         let g = &self.graph;
         let numbers = |m: &nalgebra::DMatrix<f64>| Matrix::from_fn(m.nrows(), m.ncols(), |i, j| g.number(m[(i, j)]));

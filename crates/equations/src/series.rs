@@ -2,8 +2,8 @@
 
 use symbolic::{CompileError, Expr, SeriesInput, SeriesTape, SeriesWorkspace, Symbol};
 
+use crate::blocks::CompiledBlock;
 use crate::equations::Equations;
-use crate::instant::CompiledBlock;
 use crate::plan::Plan;
 
 /// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan, blocks that are left in it included.

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Matrix, Symbol, Vanishing};
 
-use crate::automatic_removal::Split;
 use crate::rank::generic_rank;
+use crate::solved_constraints::SolvedConstraints;
 use crate::{RemovalError, State, System};
 
 /// Verdict of [`integrability`].
@@ -105,14 +105,14 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
         return Ok(Integrability::NonlinearInVelocity);
     }
     let g = &system.graph;
-    let split = Split::new(system, state)?;
-    let with_time =
-        split.offset.iter().any(|&e| !g.is_zero(e)) || system.constraints.iter().any(|&f| g.depends_on(f, system.time));
+    let solved = SolvedConstraints::new(system, state)?;
+    let with_time = solved.offset.iter().any(|&e| !g.is_zero(e))
+        || system.constraints.iter().any(|&f| g.depends_on(f, system.time));
     let mut space: Vec<Symbol> = system.positions();
     if with_time {
         space.push(system.time);
     }
-    let admissible = split.fields(system, with_time);
+    let admissible = solved.fields(system, with_time);
     let constants: HashMap<Symbol, f64> = system.parameter_values();
     let rank_of =
         |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &constants);

@@ -4,6 +4,9 @@ use std::collections::HashMap;
 
 use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, ParseError, Scalar, Symbol};
 
+use crate::RemovalError;
+use crate::elimination::LinearForms;
+
 /// One generalized coordinate `q`, with the symbols of its velocity and acceleration.
 #[derive(Clone, Debug)]
 pub struct Coordinate {
@@ -159,11 +162,18 @@ impl System {
         self.graph.jacobian(&self.graph.gradient(self.lagrangian, &v), &v)
     }
 
+    /// The constraints as `A(q, t) v + b(q, t)`.
+    ///
+    /// # Errors
+    /// [`RemovalError::NotLinear`] where one is not linear (or affine) in `v`.
+    pub fn linear_constraints(&self) -> Result<LinearForms, RemovalError> {
+        LinearForms::new(&self.graph, &self.constraints, &self.velocities())
+            .map_err(|i| RemovalError::NotLinear { constraint: i + 1, text: self.graph.plain(self.constraints[i]) })
+    }
+
     /// Whether every constraint is linear (or affine) in `v`, that is whether `A` is free of `v`.
     pub fn constraints_linear_in_velocity(&self) -> bool {
-        let a = self.constraint_jacobian();
-        let v = self.velocities();
-        !a.entries().iter().any(|&e| v.iter().any(|&s| self.graph.depends_on(e, s)))
+        self.linear_constraints().is_ok()
     }
 
     /// Whether neither `L` nor `f` nor `Q` contains time.

@@ -6,25 +6,29 @@
 //! v = S(q, t) w + s(q, t) ,      A S = 0 ,   A s + b = 0 ,
 //! ```
 //!
-//! with n − h quasi-velocities `w`. This crate states again in `(q, w)`, or `(q, p)`, what the crates of the formulations derive with multipliers:
-//! fewer unknowns, nothing to project, and for a chain of n bodies O(n) operations. The motions are the same; a test between crates
-//! holds each form against the first one of its formulation, and nothing but speed depends on this crate.
+//! with n − h quasi-velocities `w`. This crate states again in `(q, w)`, or `(q, p)`, what the crates of the
+//! formulations derive with multipliers: fewer unknowns, nothing to project, and for a chain of n bodies O(n)
+//! operations. The motions are the same; a test between crates holds each form against the first one of its
+//! formulation, and nothing but speed depends on this crate.
 //!
 //! - [`QuasiVelocities`]: `S` and `s` as a recursion, by sparse elimination of the constraints.
-//! - [`Frame`]: velocities `u = U(q) v` in which the kinetic energy is a sum of squares with constant coefficients, with `dω` of its forms.
+//! - [`Frame`]: velocities `u = U(q) v` in which the kinetic energy is a sum of squares with constant
+//!   coefficients, with `dω` of its forms.
 //! - [`REDUCED_CHETAEV`]: `Sᵀ (d/dt ∂L/∂v − ∂L/∂q − Q) = 0`.
 //! - [`REDUCED_VAKONOMIC`]: `Sᵀ (p − L_v) = 0`, `ṗ = L_q − (∂v/∂q)ᵀ (p − L_v)`.
 //! - [`cheapest`]: which of several ways to write the same motion takes the fewest operations.
 //!
-//! What it does not know: constraints that are not linear in the velocities, the removed-constraint equations, how time advances.
+//! What it does not know: constraints that are not linear in the velocities, the removed-constraint
+//! equations, how time advances.
 
-mod cheapest;
+mod cost;
+mod expressions;
 mod frame;
 mod quasi_velocities;
 mod reduced_chetaev;
 mod reduced_vakonomic;
 
-pub use cheapest::{cheapest, matrix_moves};
+pub use cost::{cheapest, matrix_moves};
 pub use frame::{Frame, FrameConstraint, FrameVelocity, Turning};
 pub use quasi_velocities::{Columns, DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
 pub use reduced_chetaev::{REDUCED_CHETAEV, derive_chetaev};

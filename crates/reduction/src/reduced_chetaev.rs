@@ -28,8 +28,9 @@
 //!
 //! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap};
 
+use crate::expressions::{SHORT, Sparse, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
@@ -46,12 +47,6 @@ pub const REDUCED_CHETAEV: Formulation = Formulation {
     derive: derive_chetaev,
 };
 
-/// Nodes of an expression that gets no name of its own.
-const SHORT: usize = 8;
-
-/// A sparse vector.
-type Sparse = BTreeMap<usize, Expr>;
-
 /// Derives the Chetaev equations with states `(q, w)` and unknowns `ẇ`. Multipliers are not computed: at a state of the motion
 /// they are an output of the equations with multipliers.
 ///
@@ -59,9 +54,11 @@ type Sparse = BTreeMap<usize, Expr>;
 /// [`DerivationError::Reduction`] where a constraint is not linear in the velocities, or constraints are dependent.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = reduction::derive_chetaev(&scene.system, &equations::Derivation::default())?;
+/// let equations = reduction::derive_chetaev(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].right);
 /// // the speed along the blade, and the turn; x' and y' follow
 /// assert_eq!(line(0), "w_x*cos(phi)");
@@ -89,15 +86,7 @@ fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) 
         .map_err(|error| DerivationError::Reduction { formulation: REDUCED_CHETAEV.name, error })?;
     let mut equations = Equations::new(REDUCED_CHETAEV.name, &system);
     let mut definitions = quasi.coefficients.clone();
-    let dependent = quasi.dependent.iter().map(|d| {
-        let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
-        (d.symbol, g.sum(&terms))
-    });
-    for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
-        definitions.define(symbol, velocity);
-        let left = g.variable(symbol);
-        equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
-    }
+    quasi.hand_over(g, frame.as_ref(), &mut equations, &mut definitions);
     let columns = quasi.columns(g, &mut definitions);
     let gamma = drift(&system, &quasi, &mut definitions);
     let momenta = g.gradient(system.lagrangian, &system.velocities());
@@ -174,7 +163,6 @@ struct Balance {
 fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut Definitions) -> Balance {
     let g = &system.graph;
     let (q, v) = (system.positions(), system.velocities());
-    let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
     let gradient = g.gradient(system.lagrangian, &q);
     let mut flow: Vec<(Symbol, Expr)> = q.iter().zip(&v).map(|(&q, &v)| (q, g.variable(v))).collect();
     flow.extend(v.iter().copied().zip(gamma.iter().copied()));
@@ -185,8 +173,7 @@ fn balance(system: &System, momenta: &[Expr], gamma: &[Expr], definitions: &mut 
         definitions.short(g, "r", SHORT, rest)
     });
     let force = force.collect();
-    let row = |row: Vec<(Symbol, Expr)>| row.into_iter().map(|(s, e)| (places[&s], e)).collect::<Sparse>();
-    let mass = g.sparse_jacobian(momenta, &v).into_iter().map(row).collect();
+    let mass = sparse_rows(g, momenta, &v);
     Balance { mass, force }
 }
 

@@ -31,9 +31,10 @@
 //!
 //! For a chain of n bodies that is O(n) in all. The multipliers follow by one more recursion ([`crate::EliminatedConstraint`]) where they are asked for.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
-use crate::{DependentVelocity, Frame, QuasiVelocities, cheapest, matrix_moves};
+use crate::expressions::{SHORT, Sparse, sparse_rows};
+use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
     refuse_forces,
@@ -55,8 +56,6 @@ pub const REDUCED_VAKONOMIC: Formulation = Formulation {
     derive: derive_vakonomic,
 };
 
-/// Nodes of an expression that gets no name of its own.
-const SHORT: usize = 8;
 /// Nodes of an expression that is not multiplied out.
 const LONG: usize = 100;
 /// Coordinates of a system in which velocities are put in, if that is shorter; and nodes of `L` and of `v` over which it is not tried.
@@ -72,9 +71,11 @@ const WHOLE: usize = 200;
 /// linear in the velocities, or constraints are dependent.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = reduction::derive_vakonomic(&scene.system, &equations::Derivation::default())?;
+/// let equations = reduction::derive_vakonomic(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// // the speed along the blade is the momentum along it
 /// assert_eq!(line(3), "w_x - p_x*cos(phi) - p_y*sin(phi)");
@@ -182,12 +183,7 @@ impl Problem {
             Some(given) => given.to_vec(),
             None => stationarity(g, quasi, (&own, p), &momenta, &mut definitions),
         };
-        let dependent = quasi.dependent.iter().map(|d| (d.symbol, velocity(g, d)));
-        for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
-            definitions.define(symbol, velocity);
-            let left = g.variable(symbol);
-            equations.statements.push(Statement { meaning: "velocity".into(), left, right: velocity });
-        }
+        quasi.hand_over(g, frame.as_ref(), &mut equations, &mut definitions);
         for (w, &residual) in quasi.free.iter().zip(&residuals) {
             let meaning = format!("stationary in {}", g.name(w.symbol));
             equations.statements.push(Statement { meaning, left: residual, right: g.zero() });
@@ -253,7 +249,7 @@ impl Problem {
             at.insert(symbol, g.substitute(e, &at));
         }
         for d in &self.quasi.dependent {
-            at.insert(d.symbol, g.substitute(velocity(g, d), &at));
+            at.insert(d.symbol, g.substitute(d.value(g), &at));
         }
         let v = g.substitute_all(&g.variables(&system.velocities()), &at);
         let lagrangian = g.substitute(system.lagrangian, &at);
@@ -274,11 +270,6 @@ fn at_rest(system: &System) -> HashMap<Symbol, Expr> {
     system.velocities().into_iter().map(|v| (v, system.graph.zero())).collect()
 }
 
-fn velocity(g: &Graph, d: &DependentVelocity) -> Expr {
-    let terms: Vec<Expr> = d.terms.iter().map(|&(s, e)| g.mul(e, g.variable(s))).chain([d.offset]).collect();
-    g.sum(&terms)
-}
-
 /// `Sᵀ (L_v − p)` in `(t, q, p, w)`, without what depends on `w` by way of definitions.
 fn stationarity(
     g: &Graph,
@@ -287,9 +278,8 @@ fn stationarity(
     momenta: &[Expr],
     definitions: &mut Definitions,
 ) -> Vec<Expr> {
-    let places: HashMap<Symbol, usize> = v.iter().enumerate().map(|(i, &s)| (s, i)).collect();
-    let mass = g.sparse_jacobian(momenta, v);
-    let quadratic = mass.iter().flatten().all(|(_, e)| g.symbols_of(*e).iter().all(|s| !places.contains_key(s)));
+    let mass = sparse_rows(g, momenta, v);
+    let quadratic = mass.iter().flat_map(Sparse::values).all(|&e| g.symbols_of(e).iter().all(|s| !v.contains(s)));
     let columns = quasi.columns(g, definitions);
     // v at w = 0 where L is quadratic, else v itself
     let mut at: HashMap<Symbol, Expr> = HashMap::new();
@@ -297,7 +287,7 @@ fn stationarity(
         at.extend(quasi.free.iter().map(|w| (w.symbol, g.zero())));
     }
     for d in &quasi.dependent {
-        let mut value = g.substitute(velocity(g, d), &at);
+        let mut value = g.substitute(d.value(g), &at);
         if quadratic {
             value = definitions.short(g, "s", SHORT, value);
         }
@@ -308,8 +298,6 @@ fn stationarity(
     if !quadratic {
         return columns.projected_whole(g, &rest);
     }
-    let row = |row: &Vec<(Symbol, Expr)>| row.iter().map(|&(s, e)| (places[&s], e)).collect::<BTreeMap<usize, Expr>>();
-    let mass: Vec<BTreeMap<usize, Expr>> = mass.iter().map(row).collect();
     let reduced = columns.reduced(g, &mass, definitions);
     let rest = columns.projected(g, &rest, definitions);
     let w: Vec<Expr> = quasi.free.iter().map(|w| g.variable(w.symbol)).collect();

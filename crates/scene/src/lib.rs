@@ -1,8 +1,10 @@
 //! # Scenes
 //!
-//! A system with velocity constraints, its start and its hand-written removals as data, one TOML file each. A file says `q`, `L(q, v, t)`,
-//! `f(q, v, t) = 0`, `Q(q, v, t)`, parameters, `(t₀, q₀)`, as many entries of `v₀` as the constraints leave open, and how long to run; reading it
-//! gives a [`Scene`]: a [`System`](mechanics::System), a [`State`](mechanics::State) with `f(q₀, v₀, t₀) = 0`, and removals that were verified.
+//! A system with velocity constraints, its start and its hand-written removals as data, one TOML file each. A
+//! file says `q`, `L(q, v, t)`, `f(q, v, t) = 0`, `Q(q, v, t)`, parameters, `(t₀, q₀)`, as many entries of
+//! `v₀` as the constraints leave open, and how long to run; reading it gives a [`Scene`]: a
+//! [`System`](mechanics::System), a [`State`](mechanics::State) with `f(q₀, v₀, t₀) = 0`, and removals that
+//! were verified.
 //!
 //! ```toml
 //! title = "Ice sledge on an incline"
@@ -34,8 +36,8 @@
 //! duration = 10
 //! ```
 //!
-//! Every fault is a [`SceneError`] with its place in the text and what was expected there; nothing panics, whatever the text.
-//! [`Scene::to_toml`] writes a file that reads back as the same scene.
+//! Every fault is a [`SceneError`] with its place in the text and what was expected there; nothing panics,
+//! whatever the text. [`Scene::to_toml`] writes a file that reads back as the same scene.
 //!
 //! What it does not know: any formulation, any equation of motion. All mathematics is that of `mechanics`.
 

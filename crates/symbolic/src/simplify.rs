@@ -1,8 +1,8 @@
 //! Canonical form: what the constructors of sums, products, powers and calls do.
 
 use crate::arena::{Arena, Node};
-use crate::content::{content, exact_power, sign_is_negative};
 use crate::number::{Number, Rational};
+use crate::sum_factor::{content, exact_power, sign_is_negative};
 use crate::{Expr, Function};
 use rustc_hash::FxHashMap;
 

@@ -107,9 +107,11 @@ impl Augmented {
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = vakonomic::derive(&scene.system, &equations::Derivation::default())?;
+/// let equations = vakonomic::derive(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "x'' - phi'*mu_1*cos(phi) - mu_1'*sin(phi) - 1");
 /// assert_eq!(line(2), "phi'' + mu_1*(x'*cos(phi) + y'*sin(phi))");
@@ -165,9 +167,11 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 ///
 /// ```
-/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
-/// let equations = vakonomic::derive_costate_form(&scene.system, &equations::Derivation::default())?;
+/// let equations = vakonomic::derive_costate_form(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "mu_1*sin(phi) - x' + p_x");
 /// // p_phi' = ∂𝓛/∂phi

@@ -1,27 +1,22 @@
 //! Elimination of a sparse linear block `J z = b` in expressions: what is left is a list of definitions.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 
+use mechanics::elimination::{Pivot, SparseMatrix};
 use symbolic::{Expr, Graph, Range, Symbol};
 
+use super::linear_block::LinearBlock;
 use super::pivots::Order;
 
 /// A part of the condition that is never over this need not be watched.
 const HARMLESS: f64 = 1e4;
 
-/// `J z = b`, row by row.
-#[derive(Clone)]
-pub(crate) struct LinearBlock {
-    pub(crate) unknowns: Vec<Symbol>,
-    pub(crate) rows: Vec<BTreeMap<usize, Expr>>,
-    pub(crate) right: Vec<Expr>,
-}
-
-/// Definitions of all unknowns, and what has to stay small for them to be accurate.
+/// Eliminated of all unknowns, and what has to stay small for them to be accurate.
 #[derive(Clone, Default)]
-pub(crate) struct Definitions {
+pub(crate) struct Eliminated {
     pub(crate) list: Vec<(Symbol, Expr)>,
-    /// Squares of multipliers (entries over their pivot, scaled as at the start) and of what cancelled in a pivot over that pivot.
+    /// Squares of multipliers (entries over their pivot, scaled as at the start) and of what cancelled in a
+    /// pivot over that pivot.
     pub(crate) watched: Vec<Expr>,
     /// Pivots of which something is watched.
     pub(crate) moving: usize,
@@ -47,16 +42,17 @@ pub(crate) struct Elimination<'a> {
     /// Number of names given so far.
     pub(crate) names: usize,
     named: HashMap<Expr, Expr>,
-    found: Definitions,
+    found: Eliminated,
 }
 
 impl<'a> Elimination<'a> {
     pub(crate) fn new(graph: &'a Graph, parameters: &HashMap<Symbol, f64>, inline: usize, names: usize) -> Self {
         let ranges = parameters.iter().map(|(&s, &x)| (s, Range::point(x))).collect();
-        Elimination { graph, ranges, inline, names, named: HashMap::new(), found: Definitions::default() }
+        Elimination { graph, ranges, inline, names, named: HashMap::new(), found: Eliminated::default() }
     }
 
-    /// Eliminates in the given order; `symmetric` where pivots are on the diagonal of a matrix that is its own transpose. `scale`: of the rows.
+    /// Eliminates in the given order; `symmetric` where pivots are on the diagonal of a matrix that is its
+    /// own transpose. `scale`: of the rows.
     ///
     /// `None` where a pivot is identically zero.
     pub(crate) fn run(
@@ -65,25 +61,15 @@ impl<'a> Elimination<'a> {
         order: &Order,
         symmetric: bool,
         scale: &[f64],
-    ) -> Option<Definitions> {
+    ) -> Option<Eliminated> {
         let g = self.graph;
         // entries and right-hand sides as terms that are yet to be added up
-        let mut rows: Vec<BTreeMap<usize, Vec<Expr>>> =
-            block.rows.iter().map(|row| row.iter().map(|(&j, &e)| (j, vec![e])).collect()).collect();
+        let terms = |row: &BTreeMap<usize, Expr>| row.iter().map(|(&j, &e)| (j, vec![e])).collect();
+        let mut matrix: SparseMatrix<Vec<Expr>> = SparseMatrix::new(block.rows.iter().map(terms).collect());
         let mut right: Vec<Vec<Expr>> = block.right.iter().map(|&b| vec![b]).collect();
-        let mut columns = vec![BTreeSet::new(); rows.len()];
-        for (i, row) in block.rows.iter().enumerate() {
-            row.keys().for_each(|&j| {
-                columns[j].insert(i);
-            });
-        }
         let mut solved = Vec::new();
         for &(p, c) in &order.pivots {
-            let mut row = std::mem::take(&mut rows[p]);
-            row.keys().for_each(|j| {
-                columns[*j].remove(&p);
-            });
-            let terms = row.remove(&c)?;
+            let Pivot { entry: terms, row, column } = matrix.take(p, c)?;
             let pivot = self.total(&terms);
             if g.is_zero(pivot) {
                 return None;
@@ -92,8 +78,7 @@ impl<'a> Elimination<'a> {
             let others: Vec<(usize, Expr)> = row.into_iter().map(|(j, t)| (j, self.total(&t))).collect();
             let b = self.total(&right[p]);
             let mut growth = Vec::new();
-            for i in std::mem::take(&mut columns[c]) {
-                let under = rows[i].remove(&c)?;
+            for (i, under) in column {
                 let factor = g.mul(self.total(&under), reciprocal);
                 let factor = self.bind(factor);
                 if g.is_zero(factor) {
@@ -103,11 +88,9 @@ impl<'a> Elimination<'a> {
                 right[i].push(g.neg(g.mul(factor, b)));
                 for &(j, other) in others.iter().filter(|(j, e)| !g.is_zero(*e) && (!symmetric || i <= *j)) {
                     let term = g.neg(g.mul(factor, other));
-                    rows[i].entry(j).or_default().push(term);
-                    columns[j].insert(i);
+                    matrix.entry(i, j, Vec::new()).push(term);
                     if symmetric && i != j {
-                        rows[j].entry(i).or_default().push(term);
-                        columns[i].insert(j);
+                        matrix.entry(j, i, Vec::new()).push(term);
                     }
                 }
             }
@@ -177,8 +160,8 @@ impl<'a> Elimination<'a> {
         self.found.watched.extend(watched);
     }
 
-    /// Parts of a sum of which one at least is large against it where terms cancel. Terms of one sign count as one; and where one part is large
-    /// another is, so the longest may go.
+    /// Parts of a sum of which one at least is large against it where terms cancel. Terms of one sign count
+    /// as one; and where one part is large another is, so the longest may go.
     fn cancelling(&self, terms: &[Expr]) -> Vec<Expr> {
         let g = self.graph;
         let (mut parts, mut signed) = (Vec::new(), [Vec::new(), Vec::new()]);

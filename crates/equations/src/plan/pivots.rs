@@ -1,9 +1,13 @@
-//! The order in which a sparse linear block is eliminated: few operations, and no pivot that is small where it was tried.
+//! The order in which a sparse linear block is eliminated: few operations, and no pivot that is small where
+//! it was tried.
 
 use std::cmp::Ordering;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-/// Points at which pivots are tried: at the first ones none may be small, at the others it is better if none is.
+use mechanics::elimination::{Pivot, SparseMatrix};
+
+/// Points at which pivots are tried: at the first ones none may be small, at the others it is better if none
+/// is.
 pub(crate) const POINTS: usize = 10;
 pub(crate) const NEAR: usize = 2;
 
@@ -16,7 +20,8 @@ const SMALLEST: f64 = 1e-4;
 /// What a pivot that is no number costs beside its multiplications: a division and the watch on it.
 const MOVING: usize = 4;
 
-/// What it costs that it is small at a point far from the start. (On the diagonal of a mass matrix what is small against its column does no harm.)
+/// What it costs that it is small at a point far from the start. (On the diagonal of a mass matrix what is
+/// small against its column does no harm.)
 const SMALL: usize = 4;
 
 /// An entry in numbers.
@@ -50,13 +55,14 @@ pub(crate) struct Order {
 /// A sparse matrix in numbers, scaled.
 #[derive(Clone, Debug)]
 pub(crate) struct Pattern {
-    rows: Vec<BTreeMap<usize, Entry>>,
+    matrix: SparseMatrix<Entry>,
     /// Scale of each row at the first point, columns scaled before.
     pub(crate) row_scale: Vec<f64>,
 }
 
 impl Pattern {
-    /// Scales columns, then rows, to a largest entry of 1, as the numerical solve does; `None` where that cannot be done near the start.
+    /// Scales columns, then rows, to a largest entry of 1, as the numerical solve does; `None` where that
+    /// cannot be done near the start.
     pub(crate) fn new(mut rows: Vec<BTreeMap<usize, Entry>>) -> Option<Self> {
         let mut row_scale = Vec::new();
         for point in 0..POINTS {
@@ -67,25 +73,19 @@ impl Pattern {
                 None => rows.iter_mut().flat_map(|row| row.values_mut()).for_each(|e| e.values[point] = e.values[0]),
             }
         }
-        Some(Pattern { rows, row_scale })
+        Some(Pattern { matrix: SparseMatrix::new(rows), row_scale })
     }
 
     /// Finds pivots one after the other by what they cost (Markowitz' count), among those that are not small.
     ///
     /// `None` where all that are left are small, or the elimination takes more than `most` operations.
     pub(crate) fn order(&self, strategy: Strategy, unneeded: &[bool], most: usize) -> Option<Order> {
-        let n = self.rows.len();
-        let mut rows: Vec<Option<BTreeMap<usize, Entry>>> = self.rows.iter().cloned().map(Some).collect();
-        let mut columns = vec![BTreeSet::new(); n];
-        for (i, row) in self.rows.iter().enumerate() {
-            row.keys().for_each(|&j| {
-                columns[j].insert(i);
-            });
-        }
+        let n = self.matrix.rows().len();
+        let mut matrix = self.matrix.clone();
         let mut order = Order { pivots: Vec::with_capacity(n), operations: 0 };
         for _ in 0..n {
             let mut largest = vec![[0.0_f64; POINTS]; n];
-            for (&j, e) in rows.iter().flatten().flatten() {
+            for (&j, e) in matrix.rows().iter().flatten() {
                 for (a, x) in largest[j].iter_mut().zip(e.values) {
                     *a = a.max(x.abs());
                 }
@@ -97,17 +97,15 @@ impl Pattern {
                     .is_none_or(Ordering::is_lt)
             };
             let mut best: Option<((bool, usize), (usize, usize))> = None;
-            for (i, row) in rows.iter().enumerate() {
-                let Some(row) = row else { continue };
+            for (i, row) in matrix.rows().iter().enumerate() {
                 for (&j, e) in row.iter().filter(|(j, _)| strategy != Strategy::Symmetric || **j == i) {
                     let late = strategy == Strategy::UnneededFirst && !unneeded[j];
-                    let score = (late, cost(strategy, row.len(), columns[j].len(), e.constant));
+                    let score = (late, cost(strategy, row.len(), matrix.rows_with(j).len(), e.constant));
                     if best.is_some_and(|(least, _)| score >= least) || (0..NEAR).any(|point| small(j, e, point)) {
                         continue;
                     }
                     let far = (NEAR..POINTS).filter(|&point| strategy != Strategy::Symmetric && small(j, e, point));
-                    let far = far.count();
-                    let score = (late, score.1 + SMALL * far);
+                    let score = (late, score.1 + SMALL * far.count());
                     if best.is_none_or(|(least, _)| score < least) {
                         best = Some((score, (i, j)));
                     }
@@ -119,7 +117,7 @@ impl Pattern {
             if order.operations > most {
                 return None;
             }
-            eliminate(&mut rows, &mut columns, p, c);
+            eliminate(&mut matrix, p, c);
         }
         Some(order)
     }
@@ -154,22 +152,15 @@ fn cost(strategy: Strategy, row: usize, column: usize, constant: bool) -> usize 
 }
 
 /// Takes row `p` and column `c` out, in numbers.
-fn eliminate(rows: &mut [Option<BTreeMap<usize, Entry>>], columns: &mut [BTreeSet<usize>], p: usize, c: usize) {
-    let Some(pivot_row) = rows[p].take() else { return };
-    for j in pivot_row.keys() {
-        columns[*j].remove(&p);
-    }
-    let pivot = pivot_row[&c];
-    for i in std::mem::take(&mut columns[c]) {
-        let Some(row) = rows[i].as_mut() else { continue };
-        let Some(under) = row.remove(&c) else { continue };
-        for (&j, right) in pivot_row.iter().filter(|(j, _)| **j != c) {
-            let entry = row.entry(j).or_insert(Entry { values: [0.0; POINTS], constant: true });
+fn eliminate(matrix: &mut SparseMatrix<Entry>, p: usize, c: usize) {
+    let Some(Pivot { entry: pivot, row, column }) = matrix.take(p, c) else { return };
+    for (i, under) in column {
+        for (&j, right) in &row {
+            let entry = matrix.entry(i, j, Entry { values: [0.0; POINTS], constant: true });
             for (k, x) in entry.values.iter_mut().enumerate() {
                 *x -= under.values[k] / pivot.values[k] * right.values[k];
             }
             entry.constant &= under.constant && right.constant && pivot.constant;
-            columns[j].insert(i);
         }
     }
 }

@@ -3,6 +3,7 @@
 use symbolic::CompileError;
 
 use crate::newton::NewtonError;
+use crate::{State, System};
 
 /// Something that is evaluated at the start.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -136,4 +137,13 @@ fn values(numbers: &[f64]) -> String {
         shown.push(format!("… {} in all", numbers.len()));
     }
     shown.join(", ")
+}
+
+/// Positions and velocities are as many as coordinates.
+pub(super) fn check_lengths(system: &System, state: &State) -> Result<(), StartError> {
+    let expected = system.dimension();
+    match [state.q.len(), state.v.len()].into_iter().find(|&found| found != expected) {
+        Some(found) => Err(StartError::WrongLength { found, expected }),
+        None => Ok(()),
+    }
 }

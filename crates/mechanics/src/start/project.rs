@@ -2,8 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::error::{StartError, check_lengths};
 use super::numeric::AtState;
-use super::{StartError, check_lengths};
+use super::regularity::check_constraints;
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, solve};
 use crate::{State, System};
 
@@ -18,7 +19,7 @@ use crate::{State, System};
 /// [`StartError::DependentConstraints`] as in [`check_regularity`](super::check_regularity); [`StartError::WrongLength`].
 pub fn project_velocity(system: &System, state: &State) -> Result<(State, f64), StartError> {
     check_lengths(system, state)?;
-    super::regularity::check_constraints(system, state)?;
+    check_constraints(system, state)?;
     let (n, h) = (system.dimension(), system.constraints.len());
     if h == 0 {
         return Ok((state.clone(), 0.0));

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use symbolic::Matrix;
 
-use super::StartError;
+use super::error::StartError;
 use super::regularity::scaled_constraint_jacobian;
 use crate::{State, System};
 

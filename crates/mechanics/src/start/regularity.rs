@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 use symbolic::Xorshift;
 
+use super::error::{Quantity, StartError, check_lengths};
 use super::numeric::AtState;
-use super::{Quantity, StartError};
 use crate::newton::decompose;
 use crate::{State, System};
 
@@ -24,7 +24,7 @@ const DISTANCE: f64 = 1e-2;
 /// # Errors
 /// [`StartError::NotFinite`], [`StartError::DependentConstraints`], [`StartError::SingularMassMatrix`].
 pub fn check_regularity(system: &System, state: &State) -> Result<(), StartError> {
-    super::check_lengths(system, state)?;
+    check_lengths(system, state)?;
     check_finite(system, state)?;
     let scaled = ScaledMatrices::new(system, state)?;
     scaled.check_constraints()?;

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Symbol};
 
+use super::error::{StartError, check_lengths};
 use super::numeric::{Problem, Solved};
-use super::{StartError, check_lengths};
 use crate::newton::NewtonOptions;
 use crate::{Removal, State, System};
 

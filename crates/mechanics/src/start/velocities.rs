@@ -2,8 +2,10 @@
 
 use symbolic::Expr;
 
+use super::data::StartData;
+use super::error::StartError;
 use super::numeric::{Problem, Solved};
-use super::{StartData, StartError, regularity};
+use super::regularity::check_constraints;
 use crate::newton::Root;
 use crate::{State, System};
 
@@ -76,7 +78,7 @@ fn check_determined(
     let (v, open) = problem.outputs(outputs, root)?;
     if open.contains(&true) {
         let state = State { t: data.time, q: data.positions.clone(), v };
-        regularity::check_constraints(problem.system, &state)?;
+        check_constraints(problem.system, &state)?;
         let names = (0..open.len()).filter(|&i| open[i]).map(|i| velocity_name(problem.system, i));
         return Err(StartError::Undetermined { velocities: names.collect() });
     }

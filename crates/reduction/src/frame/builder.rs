@@ -5,15 +5,15 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Graph, Symbol};
 
-use super::squares::Square;
-use super::{Frame, FrameConstraint, FrameVelocity, Sparse, Turning, shortest};
+use super::parts::{Frame, FrameConstraint, FrameVelocity, Turning};
+use super::squares::{Known, Square};
+use crate::expressions::{Sparse, products, shortest};
 use mechanics::System;
 
 pub(super) struct Builder<'a> {
     system: &'a System,
-    pub(super) g: &'a Graph,
-    pub(super) parameters: HashSet<Symbol>,
-    values: HashMap<Symbol, f64>,
+    g: &'a Graph,
+    pub(super) known: Known<'a>,
     /// Symbols made for frames that were tried.
     names: RefCell<HashSet<Symbol>>,
 }
@@ -41,17 +41,8 @@ impl Building {
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(system: &'a System, parameters: HashSet<Symbol>, values: HashMap<Symbol, f64>) -> Self {
-        Builder { system, g: &system.graph, parameters, values, names: RefCell::default() }
-    }
-
-    pub(super) fn is_constant(&self, e: Expr) -> bool {
-        self.g.symbols_of(e).iter().all(|s| self.parameters.contains(s))
-    }
-
-    /// The value at the start; NaN where it is not finite.
-    pub(super) fn number(&self, e: Expr) -> f64 {
-        self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
+    pub(super) fn new(system: &'a System, known: Known<'a>) -> Self {
+        Builder { system, g: &system.graph, known, names: RefCell::default() }
     }
 
     /// The frame of the squares, turned to the constraints; `None` where these contain what is singular in it.
@@ -63,7 +54,7 @@ impl<'a> Builder<'a> {
             let transformed: Sparse = transformed.filter(|(_, e)| !g.is_zero(*e)).collect();
             let known = g.denominators(&row.values().copied().collect::<Vec<Expr>>());
             let found = g.denominators(&transformed.values().copied().collect::<Vec<Expr>>());
-            if found.iter().any(|e| !known.contains(e) && !self.is_constant(*e)) {
+            if found.iter().any(|e| !known.contains(e) && !self.known.is_constant(*e)) {
                 return None;
             }
             building.constraints.push(transformed);
@@ -119,7 +110,7 @@ impl<'a> Builder<'a> {
             });
         }
         let inertia = squares.iter().map(|s| s.inertia).collect();
-        let ends = squares.iter().map(|s| s.scale).filter(|&e| !self.is_constant(e)).collect();
+        let ends = squares.iter().map(|s| s.scale).filter(|&e| !self.known.is_constant(e)).collect();
         Building { velocities, inertia, forms, vectors, constraints: Vec::new(), ends, recursion, quotients }
     }
 
@@ -146,7 +137,7 @@ impl<'a> Builder<'a> {
     }
 
     fn dot(&self, a: &Sparse, b: &Sparse) -> Expr {
-        let terms: Vec<Expr> = a.iter().filter_map(|(i, &x)| Some(self.g.mul(x, *b.get(i)?))).collect();
+        let terms = products(self.g, a, b);
         if terms.len() > 1 { shortest(self.g, self.g.sum(&terms)) } else { self.g.sum(&terms) }
     }
 
@@ -165,11 +156,11 @@ impl<'a> Builder<'a> {
     fn couple(&self, row: &Sparse, inertia: &[Expr]) -> Option<((usize, usize), (Expr, Expr))> {
         let g = self.g;
         let moving: Vec<(usize, Expr)> =
-            row.iter().map(|(&k, &e)| (k, e)).filter(|(_, e)| !self.is_constant(*e)).collect();
+            row.iter().map(|(&k, &e)| (k, e)).filter(|(_, e)| !self.known.is_constant(*e)).collect();
         for (i, &(first, a)) in moving.iter().enumerate() {
             for &(second, b) in &moving[i + 1..] {
                 let square = g.add(g.powi(a, 2), g.powi(b, 2));
-                if inertia[first] == inertia[second] && self.is_constant(square) {
+                if inertia[first] == inertia[second] && self.known.is_constant(square) {
                     let root = g.square(square, &|_| false).map(|(c, root)| g.mul(g.sqrt(c), root));
                     let length = root.unwrap_or_else(|| g.sqrt(square));
                     return Some(((first, second), (g.div(a, length), g.div(b, length))));

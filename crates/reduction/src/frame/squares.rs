@@ -1,11 +1,11 @@
 //! A mass matrix as a sum of squares.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
-use symbolic::Expr;
+use mechanics::elimination::{Pivot, SparseMatrix};
+use symbolic::{Expr, Graph, Symbol};
 
-use super::builder::Builder;
-use super::{Sparse, shortest};
+use crate::expressions::{Sparse, shortest};
 
 /// What cancels in a pivot may leave this part of the entry that was there, at the start.
 const CANCELLED: f64 = 1e-4;
@@ -29,40 +29,51 @@ pub(super) enum Tie {
     Latest,
 }
 
-impl Builder<'_> {
+/// What is known at the start.
+pub(super) struct Known<'a> {
+    pub(super) g: &'a Graph,
+    pub(super) parameters: HashSet<Symbol>,
+    /// Values of all symbols of the system.
+    pub(super) values: HashMap<Symbol, f64>,
+}
+
+impl Known<'_> {
+    pub(super) fn is_constant(&self, e: Expr) -> bool {
+        self.g.symbols_of(e).iter().all(|s| self.parameters.contains(s))
+    }
+
+    /// The value at the start; NaN where it is not finite.
+    fn number(&self, e: Expr) -> f64 {
+        self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
+    }
+
     /// Elimination with pivots on the diagonal, constant ones first, then those that fill least; `None` where one is no square.
     pub(super) fn squares(&self, mass: &[Sparse], tie: Tie) -> Option<Vec<Square>> {
         let g = self.g;
-        let mut rows = mass.to_vec();
-        let mut left: BTreeSet<usize> = (0..rows.len()).collect();
+        let mut matrix = SparseMatrix::new(mass.to_vec());
+        let mut left: BTreeSet<usize> = (0..mass.len()).collect();
         let mut squares = Vec::new();
         while !left.is_empty() {
             let score = |&k: &usize| {
-                let constant = rows[k].get(&k).is_some_and(|&e| self.is_constant(e));
-                (!constant, rows[k].len(), if tie == Tie::Latest { rows.len() - k } else { k })
+                let row = &matrix.rows()[k];
+                let constant = row.get(&k).is_some_and(|&e| self.is_constant(e));
+                (!constant, row.len(), if tie == Tie::Latest { mass.len() - k } else { k })
             };
             let pivot = *left.iter().min_by_key(|k| score(k))?;
             left.remove(&pivot);
-            let mut others = std::mem::take(&mut rows[pivot]);
-            let e = others.remove(&pivot)?;
+            let Pivot { entry: e, row: others, .. } = matrix.take(pivot, pivot)?;
             let (inertia, scale) = g.square(e, &|s| self.parameters.contains(&s))?;
             let (size, whole) = (self.number(e), self.number(mass[pivot][&pivot]));
             if !(self.number(inertia) > 0.0 && size >= CANCELLED * whole.abs() && size > 0.0) {
                 return None;
             }
-            let others: Vec<(usize, Expr)> = others.into_iter().collect();
             let factors: Vec<(usize, Expr)> =
-                others.iter().map(|&(j, entry)| (j, g.factored(g.div(entry, e)))).collect();
+                others.iter().map(|(&j, &entry)| (j, g.factored(g.div(entry, e)))).collect();
             for &(i, l) in &factors {
-                rows[i].remove(&pivot);
-                for &(j, entry) in &others {
-                    let before = rows[i].get(&j).copied().unwrap_or(g.zero());
+                for (&j, &entry) in &others {
+                    let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
                     let e = shortest(g, g.sub(before, g.mul(l, entry)));
-                    if g.is_zero(e) {
-                        rows[i].remove(&j);
-                    } else {
-                        rows[i].insert(j, e);
-                    }
+                    matrix.set(i, j, (!g.is_zero(e)).then_some(e));
                 }
             }
             squares.push(Square { coordinate: pivot, inertia, scale, others: factors });

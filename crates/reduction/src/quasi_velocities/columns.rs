@@ -4,16 +4,14 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use symbolic::{Expr, Graph, Symbol};
 
-use super::QuasiVelocities;
+use super::recursion::QuasiVelocities;
+use crate::expressions::{SHORT, Sparse, products};
 use equations::Definitions;
 
-/// Nodes of an expression that gets no name of its own.
-const SHORT: usize = 8;
-/// The same for the two sides of reduced equations.
+/// Nodes of a side of reduced equations that gets no name of its own.
 const SIDE: usize = 24;
-
-/// A sparse vector.
-type Sparse = BTreeMap<usize, Expr>;
+/// What is not over this is multiplied out: what the columns of `S` have in common with a force cancels.
+const LONG: usize = 4 * SIDE;
 
 /// `S(q, t)`, n×(n − h), sparse: one column a quasi-velocity, in which the entries stand by coordinate.
 #[derive(Clone, Debug)]
@@ -66,11 +64,10 @@ impl Columns {
             })
             .collect();
         let count = self.columns.len();
-        let multiplied_out = |e| g.expand_if_shorter(e, 4 * SIDE);
         let mut reduced = vec![vec![g.zero(); count]; count];
         for (i, column) in self.columns.iter().enumerate() {
             for (j, product) in products.iter().enumerate().take(i + 1) {
-                let entry = definitions.short(g, "m", SIDE, multiplied_out(dot(g, column, product)));
+                let entry = definitions.short(g, "m", SIDE, g.expand_if_shorter(dot(g, column, product), LONG));
                 (reduced[i][j], reduced[j][i]) = (entry, entry);
             }
         }
@@ -80,10 +77,10 @@ impl Columns {
     /// `Sᵀ force`, with an entry of `force` for each coordinate.
     pub fn projected(&self, g: &Graph, force: &[Expr], definitions: &mut Definitions) -> Vec<Expr> {
         let force: Sparse = force.iter().copied().enumerate().collect();
-        // what the columns of `S` have in common with a force cancels
-        let multiplied_out = |e| g.expand_if_shorter(e, 4 * SIDE);
         let columns = self.columns.iter();
-        columns.map(|column| definitions.short(g, "m", SIDE, multiplied_out(dot(g, column, &force)))).collect()
+        columns
+            .map(|column| definitions.short(g, "m", SIDE, g.expand_if_shorter(dot(g, column, &force), LONG)))
+            .collect()
     }
 
     /// The same without definitions for the results, for a force that contains unknowns.
@@ -112,6 +109,5 @@ fn reach(rows: &[Sparse], column: &Sparse) -> BTreeSet<usize> {
 
 /// `Σ aᵢ bᵢ`
 fn dot(g: &Graph, a: &Sparse, b: &Sparse) -> Expr {
-    let terms: Vec<Expr> = a.iter().filter_map(|(i, &x)| Some(g.mul(x, *b.get(i)?))).collect();
-    g.sum(&terms)
+    g.sum(&products(g, a, b))
 }

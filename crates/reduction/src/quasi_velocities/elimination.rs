@@ -5,18 +5,15 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use symbolic::{Expr, Graph, Symbol};
 
-use super::{DependentVelocity, EliminatedConstraint, QuasiVelocity};
+use super::recursion::{DependentVelocity, EliminatedConstraint, QuasiVelocities, QuasiVelocity};
 use crate::Frame;
-use crate::frame::point;
+use crate::expressions::point;
 use equations::Definitions;
+use mechanics::elimination::{Candidate, LinearForms, SparseMatrix, choose_pivot};
 use mechanics::{Coordinate, RemovalError, State, System, fresh_symbol};
 
-/// A pivot may be this much smaller than the largest one if it fills less.
-const PIVOT_CHOICE: f64 = 0.2;
 /// Constant pivots under this part of the row's largest coefficient are treated as those that are not constant.
 const CONSTANT_CHOICE: f64 = 1e-4;
-/// Pivots under this size, rows scaled to 1, are zero: the constraints are dependent.
-const PIVOT_LIMIT: f64 = 1e-10;
 /// What is left of a difference under this part of its terms is tested for being zero.
 const CANCELLED: f64 = 1e-9;
 /// Nodes of a coefficient that gets no name of its own.
@@ -25,26 +22,19 @@ const SHORT: usize = 24;
 /// The columns of a row with coefficients and their values at the start.
 type Terms = BTreeMap<usize, (Expr, f64)>;
 
-/// `Σ coefficient · velocity + offset = 0`.
+/// What is known of a row `Σ coefficient · velocity + offset = 0` beside its coefficients.
 struct Row {
-    terms: Terms,
     offset: Expr,
     /// The largest coefficient that it ever had.
     scale: f64,
     /// A row in which no pair was found is not searched again until it changes.
     searched: bool,
     /// Its constant pivots in the queue.
-    queued: Vec<Candidate>,
-}
-
-/// A velocity, and the rows that contain it.
-struct Column {
-    velocity: QuasiVelocity,
-    rows: BTreeSet<usize>,
+    queued: Vec<ConstantPivot>,
 }
 
 /// A constant pivot: what it may fill, then the latest column, then the first row.
-type Candidate = (usize, Reverse<usize>, usize);
+type ConstantPivot = (usize, Reverse<usize>, usize);
 
 /// Two coefficients `a, b` of a row with constant `a² + b²`.
 struct Couple {
@@ -53,24 +43,46 @@ struct Couple {
     square: Expr,
 }
 
-pub(super) struct Elimination<'a> {
+impl QuasiVelocities {
+    /// Eliminates the constraints of `system`, from the velocities of `frame` or, without one, of the coordinates. Where a pivot has to be chosen by
+    /// its size, that at `start` counts; without a start, that at a point of no significance.
+    ///
+    /// # Errors
+    /// [`RemovalError::NotLinear`] where a constraint is not linear in `v`; [`RemovalError::Dependent`] where the rows of `A` are dependent.
+    pub fn new(system: &System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
+        let mut elimination = Elimination::new(system, frame, start)?;
+        let homogeneous = elimination.is_homogeneous();
+        while elimination.step()? {}
+        let steps = std::mem::take(&mut elimination.steps);
+        let dependent: Vec<DependentVelocity> = steps.into_iter().rev().flatten().collect();
+        let coefficients = std::mem::take(&mut elimination.coefficients);
+        let guards = std::mem::take(&mut elimination.guards);
+        let eliminated = std::mem::take(&mut elimination.eliminated);
+        let free = elimination.free(&dependent.iter().map(|d| d.symbol).collect::<HashSet<Symbol>>());
+        Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, homogeneous })
+    }
+}
+
+struct Elimination<'a> {
     g: &'a Graph,
     parameters: HashMap<Symbol, f64>,
     /// Parameters, start and coefficients.
     values: HashMap<Symbol, f64>,
-    columns: Vec<Column>,
+    /// By column.
+    velocities: Vec<QuasiVelocity>,
+    matrix: SparseMatrix<(Expr, f64)>,
     rows: Vec<Row>,
     active: BTreeSet<usize>,
-    queue: BTreeSet<Candidate>,
-    pub(super) coefficients: Definitions,
+    queue: BTreeSet<ConstantPivot>,
+    coefficients: Definitions,
     /// What each step defined.
-    pub(super) steps: Vec<Vec<DependentVelocity>>,
-    pub(super) guards: Vec<Expr>,
-    pub(super) eliminated: Vec<EliminatedConstraint>,
+    steps: Vec<Vec<DependentVelocity>>,
+    guards: Vec<Expr>,
+    eliminated: Vec<EliminatedConstraint>,
 }
 
 impl<'a> Elimination<'a> {
-    pub(super) fn new(system: &'a System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
+    fn new(system: &'a System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
         let g = &system.graph;
         let velocities = match frame {
             Some(frame) => frame.velocities.iter().map(|u| (u.symbol, u.rate, u.start)).collect(),
@@ -79,15 +91,22 @@ impl<'a> Elimination<'a> {
                 system.coordinates.iter().map(own).collect::<Vec<(Symbol, Symbol, Expr)>>()
             }
         };
-        let columns = velocities.iter().enumerate().map(|(i, &(symbol, rate, start))| Column {
-            velocity: QuasiVelocity { symbol, rate, start, coordinate: Some(i) },
-            rows: BTreeSet::new(),
-        });
+        let velocities = velocities.into_iter().enumerate();
+        let velocities =
+            velocities.map(|(i, (symbol, rate, start))| QuasiVelocity { symbol, rate, start, coordinate: Some(i) });
+        let (rows, offsets) = match frame {
+            Some(frame) => frame.constraints.iter().map(|f| (f.terms.iter().copied().collect(), f.offset)).unzip(),
+            None => {
+                let LinearForms { rows, offsets } = system.linear_constraints()?;
+                (rows, offsets)
+            }
+        };
         let mut elimination = Elimination {
             g,
             parameters: system.parameter_values(),
             values: point(system, start),
-            columns: columns.collect(),
+            velocities: velocities.collect(),
+            matrix: SparseMatrix::new(Vec::new()),
             rows: Vec::new(),
             active: (0..system.constraints.len()).collect(),
             queue: BTreeSet::new(),
@@ -96,52 +115,27 @@ impl<'a> Elimination<'a> {
             guards: Vec::new(),
             eliminated: Vec::new(),
         };
-        match frame {
-            Some(frame) => frame.constraints.iter().for_each(|f| elimination.add_row(f.terms.clone(), f.offset)),
-            None => elimination.read(system)?,
-        }
+        let number = |(j, e): (usize, Expr)| (j, (e, elimination.number(e)));
+        let rows: Vec<Terms> =
+            rows.into_iter().map(|row: BTreeMap<usize, Expr>| row.into_iter().map(number).collect()).collect();
+        let known = |(terms, offset)| Row { offset, scale: largest(terms), searched: false, queued: Vec::new() };
+        elimination.rows = rows.iter().zip(offsets).map(known).collect();
+        elimination.matrix = SparseMatrix::new(rows);
         (0..elimination.rows.len()).for_each(|row| elimination.enqueue(row));
         Ok(elimination)
     }
 
-    /// The rows `A | b`.
-    fn read(&mut self, system: &System) -> Result<(), RemovalError> {
-        let g = self.g;
-        let velocities = system.velocities();
-        let places: HashMap<Symbol, usize> = velocities.iter().enumerate().map(|(i, &v)| (v, i)).collect();
-        let at_rest: HashMap<Symbol, Expr> = velocities.iter().map(|&v| (v, g.zero())).collect();
-        let jacobian = g.sparse_jacobian(&system.constraints, &velocities);
-        for (row, (&f, entries)) in system.constraints.iter().zip(jacobian).enumerate() {
-            if entries.iter().any(|(_, e)| g.symbols_of(*e).iter().any(|s| places.contains_key(s))) {
-                return Err(RemovalError::NotLinear { constraint: row + 1, text: g.plain(f) });
-            }
-            let terms = entries.into_iter().map(|(v, e)| (places[&v], e)).collect();
-            self.add_row(terms, g.substitute(f, &at_rest));
-        }
-        Ok(())
-    }
-
-    fn add_row(&mut self, terms: Vec<(usize, Expr)>, offset: Expr) {
-        let row = self.rows.len();
-        terms.iter().for_each(|(column, _)| {
-            self.columns[*column].rows.insert(row);
-        });
-        let terms: Terms = terms.into_iter().map(|(column, e)| (column, (e, self.number(e)))).collect();
-        let scale = largest(&terms);
-        self.rows.push(Row { terms, offset, scale, searched: false, queued: Vec::new() });
-    }
-
-    pub(super) fn is_homogeneous(&self) -> bool {
+    fn is_homogeneous(&self) -> bool {
         self.rows.iter().all(|row| self.g.is_zero(row.offset))
     }
 
     /// The velocities that were no pivots.
-    pub(super) fn free(self, dependent: &HashSet<Symbol>) -> Vec<QuasiVelocity> {
-        self.columns.into_iter().map(|c| c.velocity).filter(|w| !dependent.contains(&w.symbol)).collect()
+    fn free(self, dependent: &HashSet<Symbol>) -> Vec<QuasiVelocity> {
+        self.velocities.into_iter().filter(|w| !dependent.contains(&w.symbol)).collect()
     }
 
     /// Eliminates one constraint; `false` where none is left.
-    pub(super) fn step(&mut self) -> Result<bool, RemovalError> {
+    fn step(&mut self) -> Result<bool, RemovalError> {
         if self.active.is_empty() {
             return Ok(false);
         }
@@ -151,7 +145,7 @@ impl<'a> Elimination<'a> {
             self.by_couple(row, couple);
         } else {
             let (row, column) = self.largest_pivot()?;
-            self.guards.push(self.rows[row].terms[&column].0);
+            self.guards.push(self.matrix.rows()[row][&column].0);
             self.by_pivot(row, column);
         }
         Ok(true)
@@ -172,9 +166,9 @@ impl<'a> Elimination<'a> {
         let Couple { columns: (first, second), coefficients: (a, b), square } = couple;
         terms.remove(&first);
         terms.remove(&second);
-        let speeds = [first, second].map(|c| self.columns[c].velocity.start);
+        let speeds = [first, second].map(|c| self.velocities[c].start);
         let across = g.sub(g.mul(b, speeds[0]), g.mul(a, speeds[1]));
-        let name = g.name(self.columns[first].velocity.symbol);
+        let name = g.name(self.velocities[first].symbol);
         let name = format!("w_{}", name.trim_end_matches('\''));
         let symbol = fresh_symbol(g, &name);
         let velocity = QuasiVelocity {
@@ -183,8 +177,8 @@ impl<'a> Elimination<'a> {
             start: g.div(across, square),
             coordinate: None,
         };
-        self.columns.push(Column { velocity, rows: BTreeSet::new() });
-        let along = self.columns.len() - 1;
+        self.velocities.push(velocity);
+        let along = self.velocities.len() - 1;
         let minus = |e: Expr| g.neg(g.div(e, square));
         let mut step = Vec::new();
         for (column, part, scale) in [(first, b, minus(a)), (second, g.neg(a), minus(b))] {
@@ -202,12 +196,8 @@ impl<'a> Elimination<'a> {
         for candidate in std::mem::take(&mut self.rows[row].queued) {
             self.queue.remove(&candidate);
         }
-        let terms = std::mem::take(&mut self.rows[row].terms);
-        let mut neighbours = BTreeSet::new();
-        for column in terms.keys() {
-            self.columns[*column].rows.remove(&row);
-            neighbours.extend(&self.columns[*column].rows);
-        }
+        let terms = self.matrix.take_row(row);
+        let neighbours = terms.keys().flat_map(|&column| self.matrix.rows_with(column)).collect();
         (terms, self.rows[row].offset, neighbours)
     }
 
@@ -228,10 +218,9 @@ impl<'a> Elimination<'a> {
             parts.push((j, e));
         }
         let offset = self.named(g.mul(scale, offset));
-        let QuasiVelocity { symbol, coordinate, .. } = self.columns[column].velocity;
+        let QuasiVelocity { symbol, coordinate, .. } = self.velocities[column];
         let mut added = Vec::new();
-        for row in std::mem::take(&mut self.columns[column].rows) {
-            let Some((factor, _)) = self.rows[row].terms.remove(&column) else { continue };
+        for (row, (factor, _)) in self.matrix.take_column(column) {
             added.push((row, g.mul(factor, scale)));
             for &(j, e) in &parts {
                 self.add(row, j, g.mul(factor, e));
@@ -240,7 +229,7 @@ impl<'a> Elimination<'a> {
             self.rows[row].offset = self.named(rest);
             changed.insert(row);
         }
-        let terms = parts.into_iter().map(|(j, e)| (self.columns[j].velocity.symbol, e)).collect();
+        let terms = parts.into_iter().map(|(j, e)| (self.velocities[j].symbol, e)).collect();
         if let Some(eliminated) = self.eliminated.last_mut() {
             eliminated.slopes.push((symbol, g.neg(scale)));
             eliminated.added.extend(added);
@@ -251,21 +240,15 @@ impl<'a> Elimination<'a> {
     /// Adds to a coefficient. What cancels without simplifying is taken out: it would be taken for a pivot.
     fn add(&mut self, row: usize, column: usize, e: Expr) {
         let g = self.g;
-        let old = self.rows[row].terms.get(&column).copied();
+        let old = self.matrix.rows()[row].get(&column).copied();
         let sum = old.map_or(e, |(old, _)| g.add(old, e));
         let value = self.number(sum);
         let size = old.map_or(0.0, |old| old.1.abs());
         self.rows[row].scale = self.rows[row].scale.max(value.abs()).max(size);
         let cancels = g.is_zero(sum)
             || (old.is_some() && value.abs() <= CANCELLED * size && g.vanishes(sum, &self.parameters).is_zero());
-        if cancels {
-            self.rows[row].terms.remove(&column);
-            self.columns[column].rows.remove(&row);
-        } else {
-            let sum = self.named(sum);
-            self.rows[row].terms.insert(column, (sum, value));
-            self.columns[column].rows.insert(row);
-        }
+        let entry = if cancels { None } else { Some((self.named(sum), value)) };
+        self.matrix.set(row, column, entry);
     }
 
     /// Puts the constant pivots of a row into the queue anew.
@@ -276,9 +259,9 @@ impl<'a> Elimination<'a> {
         for candidate in std::mem::take(&mut self.rows[row].queued) {
             self.queue.remove(&candidate);
         }
-        let terms = &self.rows[row].terms;
+        let terms = &self.matrix.rows()[row];
         let largest = largest(terms);
-        let queued: Vec<Candidate> = terms
+        let queued: Vec<ConstantPivot> = terms
             .iter()
             .filter(|(_, (e, x))| x.abs() >= CONSTANT_CHOICE * largest && *x != 0.0 && self.is_constant(*e))
             .map(|(&column, _)| (self.fill(row, column), Reverse(column), row))
@@ -290,7 +273,7 @@ impl<'a> Elimination<'a> {
 
     /// What a pivot may fill in (Markowitz): the other entries of its row times those of its column.
     fn fill(&self, row: usize, column: usize) -> usize {
-        (self.rows[row].terms.len() - 1) * (self.columns[column].rows.len() - 1)
+        (self.matrix.rows()[row].len() - 1) * (self.matrix.rows_with(column).len() - 1)
     }
 
     /// The first row with two coefficients whose squares add up to a constant.
@@ -298,12 +281,12 @@ impl<'a> Elimination<'a> {
         let rows: Vec<usize> = self.active.iter().copied().filter(|&row| !self.rows[row].searched).collect();
         for row in rows {
             let terms: Vec<(usize, Expr, f64)> =
-                self.rows[row].terms.iter().map(|(&column, &(e, x))| (column, e, x)).collect();
+                self.matrix.rows()[row].iter().map(|(&column, &(e, x))| (column, e, x)).collect();
             for (i, &(first, a, x)) in terms.iter().enumerate() {
                 for &(second, b, y) in &terms[i + 1..] {
                     let square = self.g.add(self.g.powi(a, 2), self.g.powi(b, 2));
                     let length = x.hypot(y);
-                    if self.is_constant(square) && length > CONSTANT_CHOICE * largest(&self.rows[row].terms) {
+                    if self.is_constant(square) && length > CONSTANT_CHOICE * largest(&self.matrix.rows()[row]) {
                         return Some((row, Couple { columns: (first, second), coefficients: (a, b), square }));
                     }
                 }
@@ -315,23 +298,17 @@ impl<'a> Elimination<'a> {
 
     /// Among the pivots that are large at the start, the one that fills least.
     fn largest_pivot(&self) -> Result<(usize, usize), RemovalError> {
-        let mut candidates: Vec<(f64, usize, usize, usize)> = Vec::new();
+        let mut candidates = Vec::new();
         for &row in &self.active {
             let scale = self.rows[row].scale;
-            for (&column, &(_, x)) in &self.rows[row].terms {
+            for (&column, &(_, x)) in &self.matrix.rows()[row] {
                 let size = if scale > 0.0 { x.abs() / scale } else { 0.0 };
                 if size.is_finite() && size > 0.0 {
-                    candidates.push((size, self.fill(row, column), row, column));
+                    candidates.push(Candidate { size, cost: self.fill(row, column), place: (row, column) });
                 }
             }
         }
-        let largest = candidates.iter().fold(0.0_f64, |a, c| a.max(c.0));
-        if largest < PIVOT_LIMIT {
-            return Err(RemovalError::Dependent { pivot: largest, limit: PIVOT_LIMIT });
-        }
-        candidates.retain(|c| c.0 >= PIVOT_CHOICE * largest);
-        candidates.sort_by(|a, b| a.1.cmp(&b.1).then(b.0.total_cmp(&a.0)).then((a.2, a.3).cmp(&(b.2, b.3))));
-        Ok((candidates[0].2, candidates[0].3))
+        choose_pivot(candidates)
     }
 
     fn named(&mut self, e: Expr) -> Expr {

@@ -3,12 +3,11 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::QuasiVelocities;
+use crate::expressions::SHORT;
 use equations::Definitions;
 use mechanics::System;
 use symbolic::{Expr, Graph, Symbol};
 use vakonomic::Augmented;
-
-use super::{SHORT, velocity};
 
 /// `v̄_k` of the dependent velocities, from `seeds = p − L_v` by coordinate.
 pub(super) fn adjoints(
@@ -51,7 +50,7 @@ pub(super) fn by_positions(
         }
     };
     for d in quasi.dependent.iter().rev() {
-        add(&mut terms, velocity(g, d), adjoints[&d.symbol]);
+        add(&mut terms, d.value(g), adjoints[&d.symbol]);
     }
     for &(symbol, e) in coefficients.iter().rev() {
         let Some(own) = terms.remove(&symbol) else { continue };

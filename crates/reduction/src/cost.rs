@@ -1,4 +1,4 @@
-//! The cheapest of several ways to write the same motion.
+//! What ways to write the same motion cost, and the cheapest of them.
 
 use equations::{Compiled, Equations};
 

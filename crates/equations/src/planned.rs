@@ -7,7 +7,7 @@ use crate::plan::Plan;
 
 /// Compiled definitions: rates and outputs each by a tape of their own, so that neither computes what only the other needs.
 #[derive(Clone)]
-pub(crate) struct Straight {
+pub(crate) struct Planned {
     rates: Evaluator<f64>,
     outputs: Evaluator<f64>,
     watched: bool,
@@ -16,7 +16,7 @@ pub(crate) struct Straight {
     inputs: Vec<f64>,
 }
 
-impl Straight {
+impl Planned {
     /// `all`: symbols of `t, y`, the constants and the unknowns.
     pub(crate) fn new(
         equations: &Equations,
@@ -31,7 +31,7 @@ impl Straight {
             let condition = plan.condition.as_slice();
             equations.evaluator_by(&definitions, &inputs, &[wanted, condition].concat())
         };
-        Ok(Straight {
+        Ok(Planned {
             rates: program(&plan.rates(equations))?,
             outputs: program(outputs)?,
             watched: plan.condition.is_some(),
@@ -56,7 +56,7 @@ impl Straight {
         trusted(self.rates.evaluate(inputs), self.watched)
     }
 
-    /// As [`Straight::rates`].
+    /// As [`Planned::rates`].
     pub(crate) fn outputs(&mut self, values: &[f64]) -> Option<&[f64]> {
         let inputs = gather(&mut self.inputs, &self.places, values);
         trusted(self.outputs.evaluate(inputs), self.watched)

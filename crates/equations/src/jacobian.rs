@@ -2,13 +2,13 @@
 
 use symbolic::{CompileError, Evaluator, Expr};
 
+use crate::blocks::CompiledBlock;
 use crate::definitions::jacobian;
 use crate::equations::Equations;
-use crate::instant::CompiledBlock;
 
 /// `∂F/∂y` by the implicit function theorem, exact derivatives from the graph.
 #[derive(Clone)]
-pub(crate) struct Derivatives {
+pub(crate) struct Jacobian {
     /// ∂(rates)/∂y row-major, then ∂(rates)/∂z row-major, then ∂R/∂y row-major, block after block.
     program: Evaluator<f64>,
     states: usize,
@@ -16,7 +16,7 @@ pub(crate) struct Derivatives {
     column: Vec<f64>,
 }
 
-impl Derivatives {
+impl Jacobian {
     pub(crate) fn new(equations: &Equations) -> Result<Self, CompileError> {
         let g = &equations.graph;
         let (states, unknowns) = (equations.state_symbols(), equations.unknowns());
@@ -26,7 +26,7 @@ impl Derivatives {
             jacobian(g, &equations.definitions, &[(&rates, &states), (&rates, &unknowns), (&residuals, &states)]);
         let inputs = [&equations.known_symbols()[..], &unknowns].concat();
         let largest = equations.blocks.iter().map(|b| b.unknowns.len()).max().unwrap_or(0);
-        Ok(Derivatives {
+        Ok(Jacobian {
             program: equations.evaluator_by(&definitions, &inputs, &outputs)?,
             states: rates.len(),
             unknowns: unknowns.len(),

@@ -1,4 +1,4 @@
-//! The equations of one instant: `R(z; t, y) = 0`, solved for `z`.
+//! The blocks of one instant: `R(z; t, y) = 0`, solved for `z`.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,36 +1,19 @@
 //! Common factors drawn out of the definitions and rates of a plan: `a x + b x = (a + b) x`.
 //!
-//! Elimination leaves sums of products whose terms may meet and cancel; only when nothing more does are they written shorter. What is drawn out of
-//! one sum may have been shared with another, so that instructions are counted.
+//! Elimination leaves sums of products whose terms may meet and cancel; only when nothing more does are they
+//! written shorter. What is drawn out of one sum may have been shared with another, so that instructions are
+//! counted.
 
 use std::collections::HashSet;
 
 use symbolic::{CompileError, Expr, Symbol};
 
-use super::Plan;
+use super::chosen::{Collected, Plan};
 use crate::equations::Equations;
 
-/// One part in so many of the instructions has to be saved: under that it is as likely that Taylor series take more products.
+/// One part in so many of the instructions has to be saved: under that it is as likely that Taylor series
+/// take more products.
 const WORTH_WHILE: usize = 10;
-
-/// Definitions and rates of a plan, written shorter.
-#[derive(Clone, Debug)]
-pub struct Collected {
-    /// All definitions, those of the equations and those of the plan, each after what it contains.
-    pub definitions: Vec<(Symbol, Expr)>,
-    /// `ẏ`.
-    pub rates: Vec<Expr>,
-}
-
-impl Plan {
-    /// The rates as they are evaluated.
-    pub(crate) fn rates(&self, equations: &Equations) -> Vec<Expr> {
-        match &self.collected {
-            Some(collected) => collected.rates.clone(),
-            None => equations.states.iter().map(|y| y.rate).collect(),
-        }
-    }
-}
 
 /// What is shorter than `plan` as it is, if anything is.
 pub(crate) fn collected(equations: &Equations, plan: &Plan) -> Result<Option<Collected>, CompileError> {

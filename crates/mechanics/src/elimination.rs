@@ -1,0 +1,176 @@
+//! Elimination of sparse linear equations in expressions: what removals, quasi-velocities, sums of squares
+//! and plans have in common.
+//!
+//! With a pivot `a_pc`, taken out with its row and column ([`SparseMatrix::take`]), every row that contained
+//! the unknown `c` becomes
+//!
+//! ```text
+//! a_ij ← a_ij − a_ic a_pj / a_pc .
+//! ```
+//!
+//! How the quotient and the difference are written is that of the caller: at once, factored, by way of names,
+//! or as terms that are added up later. So is the order of pivots, but for the choice by size
+//! ([`choose_pivot`]).
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use symbolic::{Expr, Graph, Symbol};
+
+use crate::RemovalError;
+
+/// A pivot may be this much smaller than the largest one if it makes shorter expressions.
+const PIVOT_CHOICE: f64 = 0.2;
+
+/// Pivots under this size, rows scaled to 1, are zero: the equations are dependent.
+const PIVOT_LIMIT: f64 = 1e-10;
+
+/// A sparse matrix by rows that knows which rows contain a column. An entry is whatever stands for a
+/// coefficient.
+#[derive(Clone, Debug)]
+pub struct SparseMatrix<T> {
+    rows: Vec<BTreeMap<usize, T>>,
+    holders: Vec<BTreeSet<usize>>,
+}
+
+/// A pivot that was taken out.
+#[derive(Clone, Debug)]
+pub struct Pivot<T> {
+    /// `a_pc`.
+    pub entry: T,
+    /// The other entries of its row, `a_pj` by `j`.
+    pub row: BTreeMap<usize, T>,
+    /// The other entries of its column, `(i, a_ic)`.
+    pub column: Vec<(usize, T)>,
+}
+
+impl<T> SparseMatrix<T> {
+    /// The matrix of these rows, each by column.
+    pub fn new(rows: Vec<BTreeMap<usize, T>>) -> Self {
+        let mut matrix = SparseMatrix { rows: Vec::with_capacity(rows.len()), holders: Vec::new() };
+        for row in rows {
+            matrix.rows.push(BTreeMap::new());
+            matrix.put_row(matrix.rows.len() - 1, row);
+        }
+        matrix
+    }
+
+    /// All rows; those taken out are empty.
+    pub fn rows(&self) -> &[BTreeMap<usize, T>] {
+        &self.rows
+    }
+
+    /// The rows that contain a column.
+    pub fn rows_with(&self, column: usize) -> impl ExactSizeIterator<Item = usize> {
+        self.holders.get(column).unwrap_or(const { &BTreeSet::new() }).iter().copied()
+    }
+
+    /// Sets an entry, or takes it out.
+    pub fn set(&mut self, row: usize, column: usize, entry: Option<T>) {
+        match entry {
+            Some(entry) => {
+                self.rows[row].insert(column, entry);
+                self.holders_of(column).insert(row);
+            }
+            None => {
+                self.rows[row].remove(&column);
+                self.holders_of(column).remove(&row);
+            }
+        }
+    }
+
+    /// An entry to be changed, `absent` if nothing stood there.
+    pub fn entry(&mut self, row: usize, column: usize, absent: T) -> &mut T {
+        self.holders_of(column).insert(row);
+        self.rows[row].entry(column).or_insert(absent)
+    }
+
+    /// Sets all entries of a row that is empty.
+    pub fn put_row(&mut self, row: usize, entries: BTreeMap<usize, T>) {
+        for &column in entries.keys() {
+            self.holders_of(column).insert(row);
+        }
+        self.rows[row] = entries;
+    }
+
+    /// Takes a row out, which is empty afterwards.
+    pub fn take_row(&mut self, row: usize) -> BTreeMap<usize, T> {
+        let entries = std::mem::take(&mut self.rows[row]);
+        for &column in entries.keys() {
+            self.holders_of(column).remove(&row);
+        }
+        entries
+    }
+
+    /// Takes a column out.
+    pub fn take_column(&mut self, column: usize) -> Vec<(usize, T)> {
+        let rows = std::mem::take(self.holders_of(column));
+        rows.into_iter().filter_map(|i| Some((i, self.rows[i].remove(&column)?))).collect()
+    }
+
+    /// Takes a pivot out with its row and its column; `None` where nothing stands there.
+    pub fn take(&mut self, row: usize, column: usize) -> Option<Pivot<T>> {
+        let mut entries = self.take_row(row);
+        let entry = entries.remove(&column)?;
+        Some(Pivot { entry, row: entries, column: self.take_column(column) })
+    }
+
+    fn holders_of(&mut self, column: usize) -> &mut BTreeSet<usize> {
+        if self.holders.len() <= column {
+            self.holders.resize(column + 1, BTreeSet::new());
+        }
+        &mut self.holders[column]
+    }
+}
+
+/// A possible pivot.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// Its size at the start, in a row scaled to 1; positive.
+    pub size: f64,
+    /// What it costs to take it.
+    pub cost: usize,
+    /// Row and column.
+    pub place: (usize, usize),
+}
+
+/// Among the pivots that are large enough, the one that costs least; of equals the largest, then the first.
+///
+/// # Errors
+/// [`RemovalError::Dependent`] where none is.
+pub fn choose_pivot(mut candidates: Vec<Candidate>) -> Result<(usize, usize), RemovalError> {
+    let largest = candidates.iter().fold(0.0_f64, |a, c| a.max(c.size));
+    if largest < PIVOT_LIMIT {
+        return Err(RemovalError::Dependent { pivot: largest, limit: PIVOT_LIMIT });
+    }
+    candidates.retain(|c| c.size >= PIVOT_CHOICE * largest);
+    candidates.sort_by(|a, b| a.cost.cmp(&b.cost).then(b.size.total_cmp(&a.size)).then(a.place.cmp(&b.place)));
+    Ok(candidates[0].place)
+}
+
+/// `Σ_j a_ij x_j + b_i`, expression by expression.
+#[derive(Clone, Debug)]
+pub struct LinearForms {
+    /// `a_ij` by `j`, zeros left out.
+    pub rows: Vec<BTreeMap<usize, Expr>>,
+    /// `b_i`.
+    pub offsets: Vec<Expr>,
+}
+
+impl LinearForms {
+    /// The expressions as linear forms in `unknowns`.
+    ///
+    /// # Errors
+    /// The place of the first expression that is not linear.
+    pub fn new(g: &Graph, expressions: &[Expr], unknowns: &[Symbol]) -> Result<Self, usize> {
+        let places: HashMap<Symbol, usize> = unknowns.iter().enumerate().map(|(j, &x)| (x, j)).collect();
+        let mut rows = Vec::with_capacity(expressions.len());
+        for (i, entries) in g.sparse_jacobian(expressions, unknowns).into_iter().enumerate() {
+            if entries.iter().any(|(_, e)| g.symbols_of(*e).iter().any(|s| places.contains_key(s))) {
+                return Err(i);
+            }
+            rows.push(entries.into_iter().filter(|(_, e)| !g.is_zero(*e)).map(|(x, e)| (places[&x], e)).collect());
+        }
+        let at_zero = unknowns.iter().map(|&x| (x, g.zero())).collect();
+        Ok(LinearForms { rows, offsets: g.substitute_all(expressions, &at_zero) })
+    }
+}

@@ -1,0 +1,37 @@
+//! What is given of a start, and what was made of it.
+
+use std::collections::HashMap;
+
+use symbolic::Symbol;
+
+use crate::Removal;
+
+/// What a scene says about the start.
+#[derive(Clone, Debug, Default)]
+pub struct StartData<'a> {
+    /// `t₀`.
+    pub time: f64,
+    /// `q₀`, length n.
+    pub positions: Vec<f64>,
+    /// Given velocities, and given rates of the parameters of [`StartData::removal`].
+    pub given: HashMap<Symbol, f64>,
+    /// Where Newton's method starts for the others; chooses among several solutions.
+    pub guess: HashMap<Symbol, f64>,
+    /// Given velocities need not satisfy the constraints: they are projected as by [`project_velocity`](crate::project_velocity).
+    pub project: bool,
+    /// The parametrization whose rates are given.
+    pub removal: Option<&'a Removal>,
+}
+
+/// How the start velocities came about.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Completion {
+    /// Names of the velocities (and rates of parameters) that were given.
+    pub given: Vec<String>,
+    /// Names of the velocities that the constraints supplied.
+    pub supplied: Vec<String>,
+    /// Largest residual of a constraint, relative to the size of its terms.
+    pub residual: f64,
+    /// Length `√(δvᵀ M δv)` of the projection onto the constraint, where one was asked for.
+    pub projected: Option<f64>,
+}
