@@ -37,6 +37,8 @@ mod content;
 mod evaluate;
 mod expand;
 mod factor;
+#[doc(hidden)]
+pub mod faults;
 mod function;
 mod graph;
 mod identity;
