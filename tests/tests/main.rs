@@ -3,6 +3,7 @@
 mod acceptance;
 mod architecture;
 mod discrete;
+mod faults;
 mod properties;
 mod reference_motions;
 mod stability;

@@ -1,6 +1,7 @@
 //! Derivatives and substitution.
 
 use crate::arena::{Arena, Node};
+use crate::faults;
 use crate::number::{Number, Rational};
 use crate::{Expr, Function, Graph, Matrix, Symbol};
 use rustc_hash::FxHashMap;
@@ -16,17 +17,21 @@ impl Graph {
     /// let sine = g.call(Function::Sin, g.variable(s));
     /// assert_eq!(g.derivative(sine, s), g.call(Function::Cos, g.variable(s)));
     /// ```
+    #[track_caller]
     pub fn derivative(&self, e: Expr, symbol: Symbol) -> Expr {
-        self.arena.borrow_mut().derivative(e, symbol)
+        let derivative = self.arena.borrow_mut().derivative(e, symbol);
+        self.perhaps_spoiled(derivative)
     }
 
     /// (∂e/∂s for s in `symbols`)
     ///
     /// Of a sum, only the terms that contain a symbol are looked at for it.
+    #[track_caller]
     pub fn gradient(&self, e: Expr, symbols: &[Symbol]) -> Vec<Expr> {
         let mut gradient = vec![self.zero(); symbols.len()];
-        for (place, derivative) in self.arena.borrow_mut().gradient(e, &Places::new(symbols)) {
-            gradient[place] = derivative;
+        let found = self.arena.borrow_mut().gradient(e, &Places::new(symbols));
+        for (place, derivative) in found {
+            gradient[place] = self.perhaps_spoiled(derivative);
         }
         gradient
     }
@@ -39,27 +44,36 @@ impl Graph {
     /// let e = g.mul(g.integer(2), g.variable(symbols[2]));
     /// assert_eq!(g.sparse_gradient(e, &symbols), [(symbols[2], g.integer(2))]);
     /// ```
+    #[track_caller]
     pub fn sparse_gradient(&self, e: Expr, symbols: &[Symbol]) -> Vec<(Symbol, Expr)> {
-        let found = self.arena.borrow_mut().gradient(e, &Places::new(symbols));
-        found.into_iter().map(|(place, derivative)| (symbols[place], derivative)).collect()
+        self.sparse_jacobian(&[e], symbols).remove(0)
     }
 
     /// [`Graph::sparse_gradient`] of several expressions.
+    #[track_caller]
     pub fn sparse_jacobian(&self, es: &[Expr], symbols: &[Symbol]) -> Vec<Vec<(Symbol, Expr)>> {
         let places = Places::new(symbols);
-        let mut arena = self.arena.borrow_mut();
-        let row = |e: &Expr| arena.gradient(*e, &places).into_iter().map(|(place, d)| (symbols[place], d)).collect();
-        es.iter().map(row).collect()
+        let mut rows = Vec::with_capacity(es.len());
+        for e in es {
+            let found = self.arena.borrow_mut().gradient(*e, &places);
+            let mut row = Vec::with_capacity(found.len());
+            for (place, derivative) in found {
+                row.push((symbols[place], self.perhaps_spoiled(derivative)));
+            }
+            rows.push(row);
+        }
+        rows
     }
 
     /// The matrix ∂eᵢ/∂sⱼ: a row for each expression, a column for each symbol.
+    #[track_caller]
     pub fn jacobian(&self, es: &[Expr], symbols: &[Symbol]) -> Matrix {
         let places = Places::new(symbols);
         let mut entries = vec![self.zero(); es.len() * symbols.len()];
-        let mut arena = self.arena.borrow_mut();
         for (row, e) in es.iter().enumerate() {
-            for (place, derivative) in arena.gradient(*e, &places) {
-                entries[row * symbols.len() + place] = derivative;
+            let found = self.arena.borrow_mut().gradient(*e, &places);
+            for (place, derivative) in found {
+                entries[row * symbols.len() + place] = self.perhaps_spoiled(derivative);
             }
         }
         Matrix::new(es.len(), symbols.len(), entries)
@@ -75,23 +89,26 @@ impl Graph {
     /// let power = g.product(&[g.integer(2), g.variable(x), g.variable(v)]);
     /// assert_eq!(g.total_derivative(energy, &[(x, g.variable(v))]), power);
     /// ```
+    #[track_caller]
     pub fn total_derivative(&self, e: Expr, rates: &[(Symbol, Expr)]) -> Expr {
         self.total_derivatives(&[e], rates)[0]
     }
 
     /// [`Graph::total_derivative`] of several expressions: the work grows with what each contains, not with the number of rates.
+    #[track_caller]
     pub fn total_derivatives(&self, es: &[Expr], rates: &[(Symbol, Expr)]) -> Vec<Expr> {
         let symbols: Vec<Symbol> = rates.iter().map(|(s, _)| *s).collect();
         let places = Places::new(&symbols);
-        let along = |e: &Expr| {
+        let mut along = Vec::with_capacity(es.len());
+        for e in es {
             let occurring = places.within(self.arena.borrow().dependencies(*e));
-            let terms: Vec<Expr> = occurring
-                .into_iter()
-                .map(|place| self.mul(self.derivative(*e, symbols[place]), rates[place].1))
-                .collect();
-            self.sum(&terms)
-        };
-        es.iter().map(along).collect()
+            let mut terms = Vec::with_capacity(occurring.len());
+            for place in occurring {
+                terms.push(self.mul(self.derivative(*e, symbols[place]), rates[place].1));
+            }
+            along.push(self.sum(&terms));
+        }
+        along
     }
 
     /// `e` with every symbol of `map` replaced, all at once.
@@ -104,12 +121,25 @@ impl Graph {
     /// let difference = g.sub(g.variable(x), g.variable(y));
     /// assert_eq!(g.substitute(difference, &swap), g.neg(difference));
     /// ```
+    #[track_caller]
     pub fn substitute(&self, e: Expr, map: &HashMap<Symbol, Expr>) -> Expr {
         self.substitute_all(&[e], map)[0]
     }
 
     /// [`Graph::substitute`] for several expressions, sharing the work.
+    #[track_caller]
     pub fn substitute_all(&self, es: &[Expr], map: &HashMap<Symbol, Expr>) -> Vec<Expr> {
+        let mut substituted = self.substituted(es, map);
+        for (new, old) in substituted.iter_mut().zip(es) {
+            if new != old && faults::goes_wrong("substitution left out") {
+                *new = *old;
+            }
+        }
+        substituted
+    }
+
+    /// [`Graph::substitute_all`], never spoiled.
+    pub(crate) fn substituted(&self, es: &[Expr], map: &HashMap<Symbol, Expr>) -> Vec<Expr> {
         let mut arena = self.arena.borrow_mut();
         let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
         let touched = arena.reachable(es, |e| arena.dependencies(e).iter().any(|s| map.contains_key(s)));

@@ -138,7 +138,7 @@ impl Graph {
         let known: FxHashSet<Symbol> = inputs.iter().chain(&symbols).copied().collect();
         let mut values = self.as_numbers(constants);
         values.retain(|s, _| !known.contains(s));
-        let folded = self.substitute_all(&originals, &values);
+        let folded = self.substituted(&originals, &values);
         let mut bound: FxHashSet<Symbol> = inputs.iter().copied().collect();
         for (i, e) in folded[..symbols.len()].iter().enumerate() {
             self.check_bound(&[*e], |s| bound.contains(&s))?;

@@ -3,7 +3,7 @@
 use crate::arena::{Arena, Node};
 use crate::matrix::Matrix;
 use crate::number::{Number, Rational};
-use crate::{Expr, Function, Symbol};
+use crate::{Expr, Function, Symbol, faults};
 use std::cell::RefCell;
 
 /// The store of expressions. Building needs only `&Graph`; it is `Send`, not `Sync`, and a clone
@@ -57,13 +57,20 @@ impl Graph {
     }
 
     /// The symbol as an expression.
+    #[track_caller]
     pub fn variable(&self, symbol: Symbol) -> Expr {
-        self.arena.borrow_mut().intern(Node::Symbol(symbol))
+        let variable = self.arena.borrow_mut().intern(Node::Symbol(symbol));
+        self.perhaps_negative(variable)
     }
 
     /// Several symbols as expressions.
+    #[track_caller]
     pub fn variables(&self, symbols: &[Symbol]) -> Vec<Expr> {
-        symbols.iter().map(|s| self.variable(*s)).collect()
+        let mut variables = Vec::with_capacity(symbols.len());
+        for s in symbols {
+            variables.push(self.variable(*s));
+        }
+        variables
     }
 
     /// The symbol that `e` is, if it is one.
@@ -80,13 +87,16 @@ impl Graph {
     }
 
     /// 1
+    #[track_caller]
     pub fn one(&self) -> Expr {
-        Arena::ONE
+        self.perhaps_negative(Arena::ONE)
     }
 
     /// The integer n, exactly.
+    #[track_caller]
     pub fn integer(&self, n: i64) -> Expr {
-        self.arena.borrow_mut().number(Number::integer(n))
+        let number = self.arena.borrow_mut().number(Number::integer(n));
+        self.perhaps_negative(number)
     }
 
     /// The fraction numerator/denominator, exactly; not finite for a zero denominator.
@@ -113,34 +123,45 @@ impl Graph {
 
     /// Structurally the number 0 (see [`Graph::vanishes`] for the test that also expands and
     /// samples).
+    #[track_caller]
     pub fn is_zero(&self, e: Expr) -> bool {
-        e == Arena::ZERO
+        (e == Arena::ZERO) != faults::goes_wrong("answer turned")
     }
 
     /// a + b
+    #[track_caller]
     pub fn add(&self, a: Expr, b: Expr) -> Expr {
         self.sum(&[a, b])
     }
 
     /// a − b
+    #[track_caller]
     pub fn sub(&self, a: Expr, b: Expr) -> Expr {
-        let parts = vec![(a, Number::ONE), (b, Number::MINUS_ONE)];
+        let mut parts = vec![(a, Number::ONE), (b, Number::MINUS_ONE)];
+        faults::spoil_terms(&mut parts);
         self.arena.borrow_mut().linear(Number::ZERO, parts)
     }
 
     /// a · b
+    #[track_caller]
     pub fn mul(&self, a: Expr, b: Expr) -> Expr {
         self.product(&[a, b])
     }
 
     /// a / b; not finite for b = 0.
+    #[track_caller]
     pub fn div(&self, a: Expr, b: Expr) -> Expr {
-        let factors = vec![(a, Rational::ONE), (b, Rational::integer(-1))];
+        let mut factors = vec![(a, Rational::ONE), (b, Rational::integer(-1))];
+        faults::spoil_factors(&mut factors);
         self.arena.borrow_mut().power_product(Number::ONE, factors)
     }
 
     /// −a
+    #[track_caller]
     pub fn neg(&self, a: Expr) -> Expr {
+        if a != Arena::ZERO && faults::goes_wrong("sign left as it is") {
+            return a;
+        }
         self.arena.borrow_mut().scale(Number::MINUS_ONE, a)
     }
 
@@ -152,17 +173,21 @@ impl Graph {
     /// assert_eq!(g.pow(g.sqrt(x), g.integer(2)), x);
     /// assert_ne!(g.sqrt(g.powi(x, 2)), x); // it is |x|
     /// ```
+    #[track_caller]
     pub fn pow(&self, base: Expr, exponent: Expr) -> Expr {
         self.arena.borrow_mut().pow(base, exponent)
     }
 
     /// baseⁿ for an integer n
+    #[track_caller]
     pub fn powi(&self, base: Expr, exponent: i32) -> Expr {
-        let factors = vec![(base, Rational::integer(exponent.into()))];
+        let mut factors = vec![(base, Rational::integer(exponent.into()))];
+        faults::spoil_factors(&mut factors);
         self.arena.borrow_mut().power_product(Number::ONE, factors)
     }
 
     /// √a
+    #[track_caller]
     pub fn sqrt(&self, a: Expr) -> Expr {
         self.pow(a, self.ratio(1, 2))
     }
@@ -186,14 +211,18 @@ impl Graph {
     }
 
     /// Σ terms
+    #[track_caller]
     pub fn sum(&self, terms: &[Expr]) -> Expr {
-        let parts = terms.iter().map(|t| (*t, Number::ONE)).collect();
+        let mut parts = terms.iter().map(|t| (*t, Number::ONE)).collect();
+        faults::spoil_terms(&mut parts);
         self.arena.borrow_mut().linear(Number::ZERO, parts)
     }
 
     /// Π factors
+    #[track_caller]
     pub fn product(&self, factors: &[Expr]) -> Expr {
-        let factors = factors.iter().map(|f| (*f, Rational::ONE)).collect();
+        let mut factors = factors.iter().map(|f| (*f, Rational::ONE)).collect();
+        faults::spoil_factors(&mut factors);
         self.arena.borrow_mut().power_product(Number::ONE, factors)
     }
 
@@ -201,9 +230,13 @@ impl Graph {
     ///
     /// # Panics
     /// If the two differ in length.
+    #[track_caller]
     pub fn dot(&self, a: &[Expr], b: &[Expr]) -> Expr {
         assert_eq!(a.len(), b.len(), "the dot product needs two vectors of the same length");
-        let terms: Vec<Expr> = a.iter().zip(b).map(|(a, b)| self.mul(*a, *b)).collect();
+        let mut terms = Vec::with_capacity(a.len());
+        for (a, b) in a.iter().zip(b) {
+            terms.push(self.mul(*a, *b));
+        }
         self.sum(&terms)
     }
 
@@ -211,18 +244,28 @@ impl Graph {
     ///
     /// # Panics
     /// If `v` does not have as many entries as `m` has columns.
+    #[track_caller]
     pub fn mat_vec(&self, m: &Matrix, v: &[Expr]) -> Vec<Expr> {
         assert_eq!(m.columns(), v.len(), "a matrix times a vector of another length");
-        (0..m.rows()).map(|i| self.dot(m.row(i), v)).collect()
+        let mut product = Vec::with_capacity(m.rows());
+        for i in 0..m.rows() {
+            product.push(self.dot(m.row(i), v));
+        }
+        product
     }
 
     /// mᵀ v
     ///
     /// # Panics
     /// If `v` does not have as many entries as `m` has rows.
+    #[track_caller]
     pub fn transpose_vec(&self, m: &Matrix, v: &[Expr]) -> Vec<Expr> {
         assert_eq!(m.rows(), v.len(), "a transposed matrix times a vector of another length");
-        (0..m.columns()).map(|j| self.dot(&m.column(j), v)).collect()
+        let mut product = Vec::with_capacity(m.columns());
+        for j in 0..m.columns() {
+            product.push(self.dot(&m.column(j), v));
+        }
+        product
     }
 
     /// a b

@@ -1,6 +1,7 @@
 //! Is an expression identically zero?
 
-use crate::{Bounded, Evaluator, Expr, Graph, Scalar, SplitMix, Symbol};
+use crate::arena::Arena;
+use crate::{Bounded, Evaluator, Expr, Graph, Scalar, SplitMix, Symbol, faults};
 use std::collections::HashMap;
 
 /// Terms beyond which the exact test gives up.
@@ -59,10 +60,18 @@ impl Graph {
     /// let rest = g.sum(&[square, g.neg(g.powi(x, 2)), g.mul(g.integer(-2), x), g.integer(-1)]);
     /// assert_eq!(g.vanishes(rest, &HashMap::new()), Vanishing::Exactly);
     /// ```
+    #[track_caller]
     pub fn vanishes(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        let open = e;
-        let e = self.substitute(open, &self.as_numbers(constants));
-        if self.is_zero(e) {
+        match self.vanishes_in_truth(e, constants) {
+            answer if !faults::goes_wrong("answer turned") => answer,
+            answer if answer.is_zero() => Vanishing::No { value: 1.0, bound: 0.0 },
+            _ => Vanishing::Exactly,
+        }
+    }
+
+    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
+        let e = self.substituted(&[open], &self.as_numbers(constants))[0];
+        if e == Arena::ZERO {
             return Vanishing::Exactly;
         }
         let mut sampled = self.sample(e, &HashMap::new());
@@ -77,7 +86,7 @@ impl Graph {
             return sampled;
         }
         let normal = self.arena.borrow_mut().normal_numerator(e, TERM_LIMIT);
-        if normal.is_some_and(|n| self.is_zero(n)) { Vanishing::Exactly } else { sampled }
+        if normal == Some(Arena::ZERO) { Vanishing::Exactly } else { sampled }
     }
 
     /// The numerical test, at these values of the constants.

@@ -38,6 +38,8 @@ mod evaluator;
 mod excerpt;
 mod expand;
 mod factor;
+#[doc(hidden)]
+pub mod faults;
 mod function;
 mod graph;
 mod identity;

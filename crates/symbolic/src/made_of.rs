@@ -1,13 +1,14 @@
 //! What an expression is made of.
 
 use crate::arena::Node;
-use crate::{Expr, Function, Graph, Symbol};
+use crate::{Expr, Function, Graph, Symbol, faults};
 use std::collections::BTreeSet;
 
 impl Graph {
     /// Does `symbol` occur in `e`?
+    #[track_caller]
     pub fn depends_on(&self, e: Expr, symbol: Symbol) -> bool {
-        self.arena.borrow().depends_on(e, symbol)
+        self.arena.borrow().depends_on(e, symbol) != faults::goes_wrong("answer turned")
     }
 
     /// The symbols that occur in `e`.

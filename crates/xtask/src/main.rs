@@ -3,7 +3,6 @@
 mod checks;
 mod dependencies;
 mod lint;
-mod mutate;
 mod python;
 mod sources;
 
@@ -19,9 +18,6 @@ fn main() -> ExitCode {
     if let Err(error) = std::env::set_current_dir(root()) {
         eprintln!("{}: {error}", root().display());
         return ExitCode::FAILURE;
-    }
-    if let ["mutate", rest @ ..] = arguments.as_slice() {
-        return mutate::run(rest);
     }
     let checks = checks::all();
     if arguments == ["engine"] {
@@ -57,7 +53,6 @@ fn list(checks: &[checks::Check]) {
     for check in checks {
         println!("  {:<10} {}", check.name, check.about);
     }
-    println!("\n  {:<10} {}", "mutate", mutate::ABOUT);
     println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
     println!(
         "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look",
