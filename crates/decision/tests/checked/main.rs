@@ -1,0 +1,4 @@
+//! Decisions whose answers are known: of scenes, and of systems with closed forms.
+
+mod floating;
+mod questions;
