@@ -1,7 +1,8 @@
 //! Curves `q(t)`: given from outside, or integrated from the equations of a formulation.
 
+use equations::{Equations, Role};
 use integrate::EvaluationError;
-use mechanics::{Equations, Role, State, System};
+use mechanics::{State, System};
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use mechanics::{DisplacementParameter, Equations, Removal, Role, System};
+use equations::{Equations, Role};
+use mechanics::{DisplacementParameter, Removal, System};
 use symbolic::{Expr, Graph, Scalar, Symbol};
 
 use crate::DecisionError;

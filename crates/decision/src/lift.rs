@@ -1,6 +1,7 @@
 //! The parameters and memory variables of a removal along a curve `q(t)`, where they are no coordinates.
 
-use mechanics::{Equations, Removal, RemovalStart, State, System, complete_removal_start};
+use equations::Equations;
+use mechanics::{Removal, RemovalStart, State, System, complete_removal_start};
 use symbolic::{Expr, Symbol};
 
 use crate::family::inputs;

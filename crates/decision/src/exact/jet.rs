@@ -27,7 +27,7 @@ impl<C: Coefficient> Jet<C> {
     pub(crate) fn constant(value: C, exact: Option<Exact>) -> Self {
         let mut coefficients = [C::ZERO; ORDERS];
         coefficients[0] = value;
-        Jet { coefficients, known: ORDERS, terms: 1, exact, flaw: None }
+        Jet { coefficients, known: ORDERS, terms: 1, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
     }
 
     fn number(x: Result<C, Flaw>, exact: Option<Exact>) -> Self {
@@ -43,7 +43,7 @@ impl<C: Coefficient> Jet<C> {
 
     /// The decimal that `x` is written as.
     pub(crate) fn of(x: f64) -> Self {
-        match Exact::of(x) {
+        match Exact::of(x).filter(|_| C::FOLLOWED) {
             Some(exact) => Self::number(C::of(exact), Some(exact)),
             None => Self::number(C::of_float(x), None),
         }
@@ -54,7 +54,7 @@ impl<C: Coefficient> Jet<C> {
         let known = coefficients.len().min(ORDERS);
         let mut all = [C::ZERO; ORDERS];
         all[..known].copy_from_slice(&coefficients[..known]);
-        Jet { coefficients: all, known, terms: known, exact, flaw: None }
+        Jet { coefficients: all, known, terms: known, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
     }
 
     pub(crate) fn coefficient(&self, k: usize) -> C {
@@ -240,7 +240,12 @@ impl<C: Coefficient> Div for Jet<C> {
 
 impl<C: Coefficient> Scalar for Jet<C> {
     fn from_f64(x: f64) -> Self {
-        Self::of(x)
+        // the graph keeps what is no fraction of moderate size as a float, which may be rounded already
+        let exact = Exact::of(x).filter(|exact| exact.denominator == 1);
+        match exact {
+            None if C::FOLLOWED => Self::flawed(Flaw::Number),
+            _ => Self::of(x),
+        }
     }
 
     fn from_ratio(numerator: i64, denominator: i64) -> Self {
@@ -357,11 +362,11 @@ impl<C: Coefficient> Scalar for Jet<C> {
     }
 
     fn powf(self, exponent: Self) -> Self {
-        let constant = exponent.exact.filter(|x| x.is_rational() && exponent.terms == 1);
-        match constant {
-            Some(x) => self.to_power(self.coefficients[0].power(self.exact, x.to_f64()).map(|y| (y, None)), exponent),
-            None => (exponent * self.log()).exp(),
+        if exponent.terms > 1 || exponent.flaw().is_some() {
+            return (exponent * self.log()).exp();
         }
+        let first = self.coefficients[0].power(self.exact, exponent.coefficients[0]);
+        self.to_power(first.map(|y| (y, None)), exponent)
     }
 
     fn atan2(self, x: Self) -> Self {

@@ -47,6 +47,8 @@ pub(crate) trait Coefficient:
     + std::ops::Neg<Output = Self>
 {
     const ZERO: Self;
+    /// Whether functions of constants need these exactly.
+    const FOLLOWED: bool;
     fn of(x: Exact) -> Result<Self, Flaw>;
     fn of_float(x: f64) -> Result<Self, Flaw>;
     /// `None` for 0.
@@ -62,11 +64,12 @@ pub(crate) trait Coefficient:
     /// The value of a function whose value is known at few points only.
     fn inverse_function(self, function: symbolic::Function, exact: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw>;
     /// `self^exponent` where that is no integer.
-    fn power(self, exact: Option<Exact>, exponent: f64) -> Result<Self, Flaw>;
+    fn power(self, exact: Option<Exact>, exponent: Self) -> Result<Self, Flaw>;
 }
 
 impl Coefficient for Modular {
     const ZERO: Self = Modular::ZERO;
+    const FOLLOWED: bool = true;
 
     fn of(x: Exact) -> Result<Self, Flaw> {
         // a multiple of π stays outside of the value; it is known from the exact number
@@ -120,13 +123,14 @@ impl Coefficient for Modular {
         }
     }
 
-    fn power(self, exact: Option<Exact>, _: f64) -> Result<Self, Flaw> {
+    fn power(self, exact: Option<Exact>, _: Self) -> Result<Self, Flaw> {
         if exact.is_some_and(|x| Some(x) == Exact::ratio(1, 1)) { Ok(Modular::one()) } else { Err(Flaw::Root) }
     }
 }
 
 impl Coefficient for f64 {
     const ZERO: Self = 0.0;
+    const FOLLOWED: bool = false;
 
     fn of(x: Exact) -> Result<Self, Flaw> {
         Ok(x.to_f64())
@@ -164,7 +168,7 @@ impl Coefficient for f64 {
         Ok((function.apply(self), None))
     }
 
-    fn power(self, _: Option<Exact>, exponent: f64) -> Result<Self, Flaw> {
+    fn power(self, _: Option<Exact>, exponent: Self) -> Result<Self, Flaw> {
         Ok(self.powf(exponent))
     }
 }

@@ -67,6 +67,11 @@ impl Modular {
         Self::new(CIRCLE)
     }
 
+    /// The image of `e`.
+    pub(crate) fn neper() -> Self {
+        Self::new(NEPER)
+    }
+
     pub(crate) fn is_zero(self) -> bool {
         self.0 == 0
     }

@@ -1,0 +1,274 @@
+//! The proof over a finite field.
+
+use equations::Equations;
+use mechanics::System;
+
+use crate::curve::Dynamics;
+use crate::exact::{Coefficient, Jet, Modular, ORDER, ORDERS, PRIME, inverse};
+use crate::family::Family;
+use crate::series::{CurveSeries, MismatchSeries, NoSeries, SeriesStart};
+use crate::start::ExactStart;
+use crate::DecisionError;
+
+/// Seeds of the random starts: a rank that two of them agree on is the generic one, but for an accident.
+const SEEDS: [u64; 2] = [0x5eed_0001, 0x5eed_0002];
+
+/// What the jets of the mismatch say about a start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// No constants give this motion.
+    None(NoConstants),
+    /// Some do: the rank of `[O | o]` is that of `O` at every order, and grows no more.
+    Contained {
+        /// The rank of `O`: so many constants are fixed.
+        rank: usize,
+        /// The order from which on the ranks stay.
+        order: usize,
+    },
+    /// Up to this order some do, and nothing is known beyond.
+    ThroughOrder {
+        /// The rank of `O` there.
+        rank: usize,
+        /// The highest order that was looked at.
+        order: usize,
+    },
+    /// There is no proof of this kind, for this reason.
+    NotApplicable(String),
+}
+
+/// A proof that no constants give the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoConstants {
+    /// The order of the derivative of the mismatch at which the last choice is gone.
+    pub order: usize,
+    /// The minor that is not zero. There is none where `O` has less than full rank; then the proof rests on ranks modulo `p`, which are those of the
+    /// real numbers but for an accident of a probability of about 1e-17.
+    pub certificate: Option<Certificate>,
+}
+
+/// What somebody else needs to check a proof.
+///
+/// The images of `e^{i a}` and `e^a` are `circle^a` and `neper^a`, exponents modulo [`Certificate::root_order`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// `p`.
+    pub prime: u64,
+    /// `r`, a prime factor of `p − 1`.
+    pub root_order: u64,
+    /// Images of `e^i`, `e` and `√−1`.
+    pub circle: u64,
+    /// Image of `e`.
+    pub neper: u64,
+    /// Image of `√−1`.
+    pub imaginary: u64,
+    /// Images of `q₀`.
+    pub positions: Vec<u64>,
+    /// Images of `v₀`.
+    pub velocities: Vec<u64>,
+    /// The order that decides.
+    pub order: usize,
+    /// Rows of `[O | o]`, each as the order and the place among the accelerations of the family.
+    pub rows: Vec<(usize, usize)>,
+    /// The minor, row by row: coefficients of the constants, then `y₀`.
+    pub minor: Vec<Vec<u64>>,
+    /// Its determinant, not zero.
+    pub determinant: u64,
+    /// What was divided by, with its image, not zero.
+    pub divided_by: Vec<(String, u64)>,
+}
+
+/// What can be proved about one start and about almost every start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// About the start as it is written.
+    pub this_start: Finding,
+    /// About all starts on the constraint but a set of measure zero.
+    pub almost_every_start: Finding,
+    /// Velocities that were given as decimals and are solved from the constraints here, which their decimals miss by round-off.
+    pub completed: Vec<String>,
+}
+
+/// Ranks of `O` and `[O | o]` up to each order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Ranks {
+    by_order: Vec<(usize, usize)>,
+    rows: Vec<(usize, usize)>,
+}
+
+impl Ranks {
+    fn of(series: &MismatchSeries<Modular>) -> Ranks {
+        let (width, last) = (series.width, series.width - 1);
+        let mut echelon: Vec<(usize, Vec<Modular>)> = Vec::new();
+        let (mut by_order, mut rows) = (Vec::new(), Vec::new());
+        for (order, entries) in series.orders.iter().enumerate() {
+            for (place, row) in entries.chunks_exact(width).enumerate() {
+                let mut row = row.to_vec();
+                for (pivot, other) in &echelon {
+                    let factor = row[*pivot];
+                    if !factor.is_zero() {
+                        row.iter_mut().zip(other).for_each(|(x, &y)| *x = *x - factor * y);
+                    }
+                }
+                let pivot = row.iter().position(|x| !x.is_zero());
+                if let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) {
+                    row.iter_mut().for_each(|x| *x = *x * over);
+                    echelon.push((pivot, row));
+                    rows.push((order, place));
+                }
+            }
+            let whole = echelon.len();
+            by_order.push((whole - usize::from(echelon.iter().any(|(pivot, _)| *pivot == last)), whole));
+        }
+        Ranks { by_order, rows }
+    }
+
+    /// The order at which no constants are left.
+    fn refuted(&self) -> Option<usize> {
+        self.by_order.iter().position(|(of_constants, whole)| whole > of_constants)
+    }
+
+    /// The order from which on the ranks stay the same.
+    fn settled(&self) -> Option<usize> {
+        (1..self.by_order.len()).find(|&k| self.by_order[k] == self.by_order[k - 1])
+    }
+
+    fn last(&self) -> usize {
+        self.by_order.last().map_or(0, |(rank, _)| *rank)
+    }
+}
+
+/// Equations of a curve and a family of motions, ready for series.
+#[derive(Clone)]
+pub struct Question<'a> {
+    family: &'a Family,
+    dynamics: Dynamics,
+}
+
+impl<'a> Question<'a> {
+    /// Is the motion of `curve`, equations as derived for `system`, in `family`?
+    ///
+    /// # Errors
+    /// [`DecisionError::Unsuited`].
+    pub fn new(system: &System, curve: &Equations, family: &'a Family) -> Result<Self, DecisionError> {
+        if family.lift.is_some() {
+            let reason = "the removal has parameters that are no coordinates; the decision in floating point covers it".into();
+            return Err(DecisionError::Unsuited { formulation: family.formulation, reason });
+        }
+        Ok(Question { family, dynamics: Dynamics::new(system, curve)? })
+    }
+
+    pub(crate) fn family(&self) -> &Family {
+        self.family
+    }
+
+    /// Orders that are looked at: `2h + 4`, and a few more.
+    fn orders(&self) -> usize {
+        (2 * self.family.shape.constants + 7).min(ORDERS)
+    }
+
+    pub(crate) fn series<C: Coefficient>(
+        &self,
+        start: &SeriesStart<C>,
+        orders: usize,
+    ) -> Result<(CurveSeries<C>, MismatchSeries<C>), NoSeries>
+    where
+        Jet<C>: symbolic::Scalar,
+    {
+        let curve = self.dynamics.series(start, orders)?;
+        let mismatch = self.family.series(&curve, orders)?;
+        Ok((curve, mismatch))
+    }
+
+    /// Proves what can be proved about `start` and about almost every start.
+    pub fn prove(&self, start: &ExactStart) -> Proof {
+        let almost_every_start = self.generic(start);
+        let (this_start, completed) = match start.series() {
+            Ok((exact, completed)) => (self.particular(&exact, &almost_every_start), completed),
+            Err(fault) => (Finding::NotApplicable(fault.to_string()), Vec::new()),
+        };
+        Proof { this_start, almost_every_start, completed }
+    }
+
+    fn particular(&self, start: &SeriesStart<Modular>, generic: &Finding) -> Finding {
+        let orders = self.orders();
+        let (curve, series) = match self.series(start, orders) {
+            Ok(series) => series,
+            Err(fault) => return Finding::NotApplicable(fault.to_string()),
+        };
+        let ranks = Ranks::of(&series);
+        if let Some(order) = ranks.refuted() {
+            return Finding::None(NoConstants { order, certificate: certificate(start, &curve, &series, &ranks, order) });
+        }
+        // where the rank is the generic one it stays so nearby, and the jets obey one linear equation
+        match generic {
+            Finding::Contained { rank, order } if *rank == ranks.last() => Finding::Contained { rank: *rank, order: *order },
+            _ => Finding::ThroughOrder { rank: ranks.last(), order: orders - 1 },
+        }
+    }
+
+    fn generic(&self, start: &ExactStart) -> Finding {
+        let orders = self.orders();
+        let mut found: Vec<(SeriesStart<Modular>, CurveSeries<Modular>, MismatchSeries<Modular>, Ranks)> = Vec::new();
+        for seed in SEEDS {
+            let series = match start.random(seed) {
+                Ok(exact) => self.series(&exact, orders).map(|(curve, series)| (exact, curve, series)),
+                Err(fault) => return Finding::NotApplicable(fault.to_string()),
+            };
+            match series {
+                Ok((exact, curve, series)) => {
+                    let ranks = Ranks::of(&series);
+                    found.push((exact, curve, series, ranks));
+                }
+                Err(fault) => return Finding::NotApplicable(fault.to_string()),
+            }
+        }
+        for (exact, curve, series, ranks) in &found {
+            if let Some(order) = ranks.refuted() {
+                return Finding::None(NoConstants { order, certificate: certificate(exact, curve, series, ranks, order) });
+            }
+        }
+        let ranks = &found[0].3;
+        match ranks.settled() {
+            Some(order) if found.iter().all(|(.., other)| other.by_order == ranks.by_order) => {
+                Finding::Contained { rank: ranks.last(), order }
+            }
+            _ => Finding::ThroughOrder { rank: ranks.last(), order: orders - 1 },
+        }
+    }
+}
+
+/// The minor of full size, where there is one.
+fn certificate(
+    start: &SeriesStart<Modular>,
+    curve: &CurveSeries<Modular>,
+    series: &MismatchSeries<Modular>,
+    ranks: &Ranks,
+    order: usize,
+) -> Option<Certificate> {
+    let width = series.width;
+    let rows: Vec<(usize, usize)> = ranks.rows.iter().copied().filter(|(k, _)| *k <= order).collect();
+    if rows.len() < width {
+        return None;
+    }
+    let row = |&(k, place): &(usize, usize)| series.orders[k][place * width..(place + 1) * width].to_vec();
+    let minor: Vec<Vec<Modular>> = rows.iter().map(row).collect();
+    let (_, determinant) = inverse(&minor.concat(), width, Modular::one())?;
+    let values = |x: &[Jet<Modular>]| x.iter().map(|x| x.coefficient(0).value()).collect();
+    Some(Certificate {
+        prime: PRIME,
+        root_order: ORDER,
+        circle: Modular::circle().value(),
+        neper: Modular::neper().value(),
+        imaginary: Modular::imaginary().value(),
+        positions: values(&start.positions),
+        velocities: values(&start.velocities),
+        order,
+        rows,
+        minor: minor.iter().map(|row| row.iter().map(|x| x.value()).collect()).collect(),
+        determinant: determinant.value(),
+        divided_by: vec![
+            ("determinant of the equations of the curve at the start".into(), curve.determinant.value()),
+            ("determinant of the equations of the family at the start".into(), series.determinant.value()),
+        ],
+    })
+}
