@@ -14,7 +14,7 @@ struct Arrow {
 }
 
 /// What each member may be built on. A member that is not named here may be built on none.
-const ALLOWED: [(&str, &[&str]); 22] = [
+const ALLOWED: [(&str, &[&str]); 23] = [
     ("symbolic", &[]),
     ("mechanics", &["symbolic"]),
     // examples and tests of the rooms below are scenes
@@ -26,6 +26,11 @@ const ALLOWED: [(&str, &[&str]); 22] = [
     ("chetaev", &["symbolic", "mechanics", "scene", "equations"]),
     ("vakonomic", &["symbolic", "mechanics", "scene", "equations"]),
     ("removed-constraint", &["symbolic", "mechanics", "scene", "equations"]),
+    // it reads equations and decides; that it can tell one formulation from another, its tests say
+    (
+        "decision",
+        &["symbolic", "mechanics", "scene", "equations", "integrate", "chetaev", "vakonomic", "removed-constraint"],
+    ),
     // what only makes motions faster: no principle is built on it; its vakonomic form starts from the same augmented Lagrangian
     ("reduction", &["symbolic", "mechanics", "scene", "equations", "vakonomic"]),
     (

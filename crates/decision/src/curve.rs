@@ -95,12 +95,15 @@ impl Dynamics {
     pub(crate) fn new(system: &System, equations: &Equations) -> Result<Self, DecisionError> {
         let system = &System { graph: equations.graph.clone(), ..system.clone() };
         let g = &system.graph;
-        let unsuited = |reason: &str| DecisionError::Unsuited { formulation: equations.formulation, reason: reason.into() };
+        let unsuited =
+            |reason: &str| DecisionError::Unsuited { formulation: equations.formulation, reason: reason.into() };
         if !equations.definitions.is_empty() {
             return Err(unsuited("intermediate quantities stand in its equations; take the form as derived"));
         }
         if equations.states.iter().any(|y| matches!(y.role, Role::DisplacementParameter | Role::Memory)) {
-            return Err(unsuited("its start needs values for parameters of a removal; hand its motion over as a known curve"));
+            return Err(unsuited(
+                "its start needs values for parameters of a removal; hand its motion over as a known curve",
+            ));
         }
         let unknowns = equations.unknowns();
         let residuals: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();

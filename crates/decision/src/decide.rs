@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
 use crate::transport::Transport;
-use crate::DecisionError;
 
 /// Gauss nodes a panel, and the least number of panels: at least 256 nodes.
 const NODES: usize = 8;
@@ -14,7 +14,7 @@ const PANELS: usize = 32;
 const CERTAIN: f64 = 10.0;
 /// What round-off leaves of the rows at best, relative to their size.
 const ROUND_OFF: f64 = 1e-14;
-/// Noise over this part of the curve's own acceleration tells nothing: a mismatch below it could be a real one.
+/// Noise over this part of the terms that cancel tells nothing: a mismatch below it could be a real one.
 const TOO_LOUD: f64 = 1e-5;
 
 /// How the decision is computed.
@@ -177,10 +177,12 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, acceleration: f64, constants: 
         }
     }
     let least = (&matrix * &point - &goal).norm();
-    let noise = rows_noise * (1.0 + point.norm_squared()).sqrt();
+    let reach = (1.0 + point.norm_squared()).sqrt();
+    let noise = rows_noise * reach;
+    let scale = acceleration.max(triangle.norm() * reach);
     let verdict = if least > CERTAIN * noise {
         Verdict::NotContained
-    } else if CERTAIN * noise <= TOO_LOUD * acceleration.max(goal.norm()) {
+    } else if CERTAIN * noise <= TOO_LOUD * scale {
         Verdict::Contained
     } else {
         Verdict::Undecided

@@ -87,15 +87,13 @@ impl Family {
             None => None,
         };
         let costate = |role: Role| matches!(role, Role::Multiplier | Role::MemoryCostate | Role::ParameterMomentum);
-        let costates: Vec<Symbol> =
-            equations.states.iter().filter(|y| costate(y.role)).map(|y| y.symbol).collect();
+        let costates: Vec<Symbol> = equations.states.iter().filter(|y| costate(y.role)).map(|y| y.symbol).collect();
         if equations.states.iter().any(|y| y.role == Role::Costate) {
             return Err(unsuited("costates p stand in the place of velocities; take the form with multipliers".into()));
         }
         let unknowns = equations.unknowns();
         let mut residuals: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();
-        let mut rates: Vec<Expr> =
-            equations.states.iter().filter(|y| costate(y.role)).map(|y| y.rate).collect();
+        let mut rates: Vec<Expr> = equations.states.iter().filter(|y| costate(y.role)).map(|y| y.rate).collect();
         if !carries_forces && system.has_forces() {
             add_forces(system, equations.removal.as_ref(), &mut residuals, &mut rates).map_err(unsuited)?;
         }
@@ -118,7 +116,11 @@ impl Family {
         let slopes = g.jacobian(&[&residuals[..], &explicit].concat(), &costates);
         let by_rate: Vec<Symbol> = (0..unknowns.len()).filter(|&z| is_rate(z)).map(|z| unknowns[z]).collect();
         let by_rate = g.jacobian(&residuals, &by_rate);
-        let bent = slopes.entries().iter().chain(by_rate.entries()).any(|&e| g.symbols_of(e).iter().any(|s| zeros.contains_key(s)));
+        let bent = slopes
+            .entries()
+            .iter()
+            .chain(by_rate.entries())
+            .any(|&e| g.symbols_of(e).iter().any(|s| zeros.contains_key(s)));
         if bent {
             return Err(unsuited("its equations are not affine in the costates".into()));
         }
@@ -143,8 +145,7 @@ impl Family {
             return Err(unsuited(format!("a curve does not tell `{}`, which stands in its equations", g.name(s))));
         }
         let constants = equations.constant_symbols();
-        let starts: Vec<Expr> =
-            equations.states.iter().filter(|y| costate(y.role)).map(|y| y.start).collect();
+        let starts: Vec<Expr> = equations.states.iter().filter(|y| costate(y.role)).map(|y| y.start).collect();
         let start = start_program(g, &starts, &constants, &inputs).map_err(unsuited)??;
         Ok(Family {
             formulation: equations.formulation,
@@ -263,12 +264,7 @@ fn add_forces(
 type Started = Result<Program, symbolic::CompileError>;
 
 /// `∂η(t₀)/∂c` and `η(t₀)` at `c = 0`, row by row.
-fn start_program(
-    g: &Graph,
-    starts: &[Expr],
-    constants: &[Symbol],
-    inputs: &[Symbol],
-) -> Result<Started, String> {
+fn start_program(g: &Graph, starts: &[Expr], constants: &[Symbol], inputs: &[Symbol]) -> Result<Started, String> {
     let slopes = g.jacobian(starts, constants);
     if slopes.entries().iter().any(|&e| constants.iter().any(|&c| g.depends_on(e, c))) {
         return Err("its costates do not start at affine functions of the constants".into());

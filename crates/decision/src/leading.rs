@@ -19,13 +19,13 @@ pub struct LeadingDifference {
     pub exponent: usize,
     /// `y_k / ((k + 1)(k + 2))`, length n.
     pub coefficient: Vec<f64>,
-    /// Whether the exponent is proved: all lower coefficients have the image zero as exact numbers, and this one has not.
+    /// Whether the exponent is proved for the numbers as written: all lower coefficients have the image zero, and this one has not.
     pub exact: bool,
 }
 
 impl Question<'_> {
     /// The leading term for the motion of the family that starts at `state` with `constants`; `None` where no coefficient up to the twelfth
-    /// stands out. With an exact start the exponent is found in exact numbers, `constants` being the decimals that they are written as.
+    /// stands out. With an exact start the exponent is looked at in exact numbers, `constants` being the decimals that they are written as.
     pub fn leading_difference(
         &self,
         system: &System,
@@ -38,17 +38,15 @@ impl Question<'_> {
             time: Jet::of(state.t),
             positions: state.q.iter().map(|&x| Jet::of(x)).collect(),
             velocities: state.v.iter().map(|&x| Jet::of(x)).collect(),
-            constants: Vec::new(),
         };
         let (_, series) = self.series(&start, HIGHEST).ok()?;
         let proved = exact.and_then(|exact| self.proved_order(exact, constants));
-        let order = match proved {
-            Some(order) => order?,
-            None => (0..HIGHEST).find(|&k| stands_out(&series, k, constants))?,
-        };
+        let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants))?;
+        // decimals that stand for other numbers leave lower terms, of the size of round-off
+        let order = proved.flatten().map_or(seen, |order| order.max(seen));
         let over = ((order + 1) * (order + 2)) as f64;
         let coefficient = rows(&series, order).map(|row| value(row, constants).0 / over).collect();
-        Some(LeadingDifference { exponent: order + 2, coefficient, exact: proved.is_some() })
+        Some(LeadingDifference { exponent: order + 2, coefficient, exact: proved == Some(Some(order)) })
     }
 
     /// The first order that does not vanish, in exact numbers; `None` where these do not apply.

@@ -29,8 +29,8 @@
 //!
 //! **Decided in floating point** ([`decide`]). The rows `√w √M [O | y₀]` at 256 Gauss nodes or more go into one triangular matrix: the least of `∫ |y|²_M dt`
 //! is `ρ²`. The same from a looser run gives the noise: `‖difference of the rows‖ √(1 + |c*|²)`. `ρ` over ten times the noise: *not contained*. Otherwise
-//! *contained*, of the dimension of the directions in which the rows are noise; *undecided* where the noise is over 1e-6 of the curve's own
-//! `(∫ |a|²_M dt)^{1/2}`. The element of least norm is the first guess for whoever fits.
+//! *contained*, of the dimension of the directions in which the rows are noise; *undecided* where the noise is over 1e-6 of the
+//! terms that cancel in `y` and of the curve's own acceleration. The element of least norm is the first guess for whoever fits.
 //!
 //! **Proved over a finite field** ([`Question::prove`]). The Taylor coefficients `y_k = O_k c + y₀_k` at the start are algebraic in the numbers of the scene. With
 //! fractions for these, and sines, cosines and exponentials of fractions, they lie in `Q(i)(T, S)`, `T = e^{i/N}`, `S = e^{1/N}` independent

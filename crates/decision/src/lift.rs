@@ -4,9 +4,9 @@ use equations::Equations;
 use mechanics::{Removal, RemovalStart, State, System, complete_removal_start};
 use symbolic::{Expr, Symbol};
 
+use crate::DecisionError;
 use crate::family::inputs;
 use crate::program::Program;
-use crate::DecisionError;
 
 /// `u` and `w` that are no coordinates: integrated beside the curve, with `u̇` and `ü` from `q̇(u̇, u, w, t) = v` and its rate.
 #[derive(Clone)]

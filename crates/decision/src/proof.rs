@@ -3,12 +3,12 @@
 use equations::Equations;
 use mechanics::System;
 
+use crate::DecisionError;
 use crate::curve::Dynamics;
 use crate::exact::{Coefficient, Jet, Modular, ORDER, ORDERS, PRIME, inverse};
 use crate::family::Family;
 use crate::series::{CurveSeries, MismatchSeries, NoSeries, SeriesStart};
 use crate::start::ExactStart;
-use crate::DecisionError;
 
 /// Seeds of the random starts: a rank that two of them agree on is the generic one, but for an accident.
 const SEEDS: [u64; 2] = [0x5eed_0001, 0x5eed_0002];
@@ -142,19 +142,26 @@ impl Ranks {
 pub struct Question<'a> {
     family: &'a Family,
     dynamics: Dynamics,
+    constants: Vec<f64>,
 }
 
 impl<'a> Question<'a> {
-    /// Is the motion of `curve`, equations as derived for `system`, in `family`?
+    /// Is the motion of `curve`, equations as derived for `system` with `constants` for their own free constants, in `family`?
     ///
     /// # Errors
     /// [`DecisionError::Unsuited`].
-    pub fn new(system: &System, curve: &Equations, family: &'a Family) -> Result<Self, DecisionError> {
+    pub fn new(
+        system: &System,
+        curve: &Equations,
+        constants: &[f64],
+        family: &'a Family,
+    ) -> Result<Self, DecisionError> {
         if family.lift.is_some() {
-            let reason = "the removal has parameters that are no coordinates; the decision in floating point covers it".into();
+            let reason =
+                "the removal has parameters that are no coordinates; the decision in floating point covers it".into();
             return Err(DecisionError::Unsuited { formulation: family.formulation, reason });
         }
-        Ok(Question { family, dynamics: Dynamics::new(system, curve)? })
+        Ok(Question { family, dynamics: Dynamics::new(system, curve)?, constants: constants.to_vec() })
     }
 
     pub(crate) fn family(&self) -> &Family {
@@ -174,7 +181,8 @@ impl<'a> Question<'a> {
     where
         Jet<C>: symbolic::Scalar,
     {
-        let curve = self.dynamics.series(start, orders)?;
+        let constants: Vec<Jet<C>> = self.constants.iter().map(|&c| Jet::of(c)).collect();
+        let curve = self.dynamics.series(start, &constants, orders)?;
         let mismatch = self.family.series(&curve, orders)?;
         Ok((curve, mismatch))
     }
@@ -197,11 +205,16 @@ impl<'a> Question<'a> {
         };
         let ranks = Ranks::of(&series);
         if let Some(order) = ranks.refuted() {
-            return Finding::None(NoConstants { order, certificate: certificate(start, &curve, &series, &ranks, order) });
+            return Finding::None(NoConstants {
+                order,
+                certificate: certificate(start, &curve, &series, &ranks, order),
+            });
         }
         // where the rank is the generic one it stays so nearby, and the jets obey one linear equation
         match generic {
-            Finding::Contained { rank, order } if *rank == ranks.last() => Finding::Contained { rank: *rank, order: *order },
+            Finding::Contained { rank, order } if *rank == ranks.last() => {
+                Finding::Contained { rank: *rank, order: *order }
+            }
             _ => Finding::ThroughOrder { rank: ranks.last(), order: orders - 1 },
         }
     }
@@ -224,7 +237,10 @@ impl<'a> Question<'a> {
         }
         for (exact, curve, series, ranks) in &found {
             if let Some(order) = ranks.refuted() {
-                return Finding::None(NoConstants { order, certificate: certificate(exact, curve, series, ranks, order) });
+                return Finding::None(NoConstants {
+                    order,
+                    certificate: certificate(exact, curve, series, ranks, order),
+                });
             }
         }
         let ranks = &found[0].3;

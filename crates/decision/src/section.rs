@@ -67,7 +67,8 @@ impl Question<'_> {
         let (k, count) = (family.shape.constants, ansatz.functions.len());
         let mut values: HashMap<Symbol, f64> = system.parameter_values();
         values.extend(system.values_at(state));
-        let mut section = Section { constants: family.constants().to_vec(), expressions: Vec::new(), values: Vec::new() };
+        let mut section =
+            Section { constants: family.constants().to_vec(), expressions: Vec::new(), values: Vec::new() };
         for j in 0..k {
             let terms = ansatz.functions.iter().zip(&coefficients[j * count..(j + 1) * count]).map(|(&b, a)| {
                 let (n, d) = (i64::try_from(a.numerator).unwrap_or(0), i64::try_from(a.denominator).unwrap_or(1));

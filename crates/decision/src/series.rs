@@ -22,8 +22,6 @@ pub(crate) struct SeriesStart<C> {
     pub(crate) time: Jet<C>,
     pub(crate) positions: Vec<Jet<C>>,
     pub(crate) velocities: Vec<Jet<C>>,
-    /// Free constants of the curve.
-    pub(crate) constants: Vec<Jet<C>>,
 }
 
 /// `q, v, a` along a curve, up to `s^{orders − 1}`, and what was divided by.
@@ -90,20 +88,20 @@ impl<C: Coefficient> SeriesSolve<C> {
 }
 
 impl Dynamics {
-    /// The solution through `start`, with `orders` coefficients.
-    pub(crate) fn series<C: Coefficient>(&self, start: &SeriesStart<C>, orders: usize) -> Result<CurveSeries<C>, NoSeries>
+    /// The solution through `start` with these free constants, `orders` coefficients of it.
+    pub(crate) fn series<C: Coefficient>(
+        &self,
+        start: &SeriesStart<C>,
+        constants: &[Jet<C>],
+        orders: usize,
+    ) -> Result<CurveSeries<C>, NoSeries>
     where
         Jet<C>: Scalar,
     {
         let orders = orders.min(ORDERS);
-        let at_start = [
-            &start.parameters[..],
-            std::slice::from_ref(&start.time),
-            &start.positions,
-            &start.velocities,
-            &start.constants,
-        ]
-        .concat();
+        let at_start =
+            [&start.parameters[..], std::slice::from_ref(&start.time), &start.positions, &start.velocities, constants]
+                .concat();
         let first = self.start.evaluator::<Jet<C>>().run(&at_start).to_vec();
         let exact: Vec<Option<Exact>> = first.iter().map(Jet::exact).collect();
         if let Some(flaw) = first.iter().find_map(Jet::own_flaw) {
@@ -164,7 +162,11 @@ pub(crate) struct MismatchSeries<C> {
 
 impl Family {
     /// Its mismatch along `curve`, as many orders as that has.
-    pub(crate) fn series<C: Coefficient>(&self, curve: &CurveSeries<C>, orders: usize) -> Result<MismatchSeries<C>, NoSeries>
+    pub(crate) fn series<C: Coefficient>(
+        &self,
+        curve: &CurveSeries<C>,
+        orders: usize,
+    ) -> Result<MismatchSeries<C>, NoSeries>
     where
         Jet<C>: Scalar,
     {

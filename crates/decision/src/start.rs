@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use mechanics::{Completion, Removal, State, System};
 use symbolic::{Expr, Symbol};
 
+use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular, inverse, subtract_product};
 use crate::program::Program;
 use crate::series::SeriesStart;
-use crate::DecisionError;
 
 /// Random positions and velocities are integers up to this one.
 const LARGEST: u64 = 1 << 20;
@@ -121,7 +121,6 @@ impl ExactStart {
             time,
             positions: q.to_vec(),
             velocities: v,
-            constants: Vec::new(),
         };
         let solved = self.solved(&parameters, time, q, v, &self.supplied);
         match solved {
@@ -155,7 +154,7 @@ impl ExactStart {
         let choices = [&self.supplied, &self.spare];
         let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
         let velocities = self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare))?;
-        Ok(SeriesStart { parameters, time, positions: q, velocities, constants: Vec::new() })
+        Ok(SeriesStart { parameters, time, positions: q, velocities })
     }
 
     fn given(&self) -> (Vec<Jet<Modular>>, Jet<Modular>) {
@@ -184,7 +183,8 @@ impl ExactStart {
         let mut v = v.to_vec();
         if open.len() == h && h > 0 {
             let values = run(&v)?;
-            let matrix: Vec<Modular> = (0..h).flat_map(|i| open.iter().map(move |&j| (i, j))).map(|(i, j)| values[h + i * n + j]).collect();
+            let matrix: Vec<Modular> =
+                (0..h).flat_map(|i| open.iter().map(move |&j| (i, j))).map(|(i, j)| values[h + i * n + j]).collect();
             let (over, _) = inverse(&matrix, h, Modular::one()).ok_or(NoExactStart::Nonlinear)?;
             let mut change = vec![Modular::ZERO; h];
             subtract_product(&mut change, &over, &values[..h], h, 1);
@@ -198,11 +198,7 @@ impl ExactStart {
 }
 
 /// `q̇(ü, u̇, u, w, t)` with everything as written.
-fn by_removal(
-    system: &System,
-    removal: Option<&Removal>,
-    rates: &[(Symbol, Expr)],
-) -> Result<Vec<Expr>, NoExactStart> {
+fn by_removal(system: &System, removal: Option<&Removal>, rates: &[(Symbol, Expr)]) -> Result<Vec<Expr>, NoExactStart> {
     let g = &system.graph;
     let Some(removal) = removal else {
         return Err(NoExactStart::Removal { removal: "?".into(), what: "there is none".into() });
@@ -211,7 +207,9 @@ fn by_removal(
     let mut known: HashMap<Symbol, Expr> = removal.start.iter().map(|(&s, &e)| (s, e)).collect();
     known.extend(rates.iter().copied());
     let velocities = g.substitute_all(&removal.velocities(system), &known);
-    let told = |s: &Symbol| *s == system.time || system.positions().contains(s) || system.parameters.iter().any(|p| p.symbol == *s);
+    let told = |s: &Symbol| {
+        *s == system.time || system.positions().contains(s) || system.parameters.iter().any(|p| p.symbol == *s)
+    };
     match velocities.iter().flat_map(|&e| g.symbols_of(e)).find(|s| !told(s)) {
         Some(s) => Err(missing(format!("`{}` is not written", g.name(s)))),
         None => Ok(velocities),

@@ -4,11 +4,14 @@ use integrate::{Dense, DenseOutput, EvaluationError, Method, Options, Problem, S
 use mechanics::State;
 use nalgebra::{DMatrix, DVector};
 
+use crate::DecisionError;
 use crate::curve::{Curve, Point};
 use crate::family::{CostateRate, Family};
 use crate::lift::Lift;
 use crate::program::Evaluator;
-use crate::DecisionError;
+
+/// The smallest size that a state is held to have.
+const SMALLEST: f64 = 1e-3;
 
 /// What one instant says: the mismatch of accelerations `O c + y₀`, and how long it is.
 pub(crate) struct Mismatch {
@@ -106,7 +109,9 @@ impl<'a> Transport<'a> {
         let rest = DVector::from_column_slice(&values[coordinates * parameters..]);
         let slopes = slopes.svd(true, true);
         let least = |rest: &DVector<f64>| {
-            slopes.solve(rest, 1e-13).map_err(|_| broken(format!("the parameters of the removal are not determined at t = {t}")))
+            slopes
+                .solve(rest, 1e-13)
+                .map_err(|_| broken(format!("the parameters of the removal are not determined at t = {t}")))
         };
         let speeds = -least(&rest)?;
         self.inputs.extend(speeds.iter());
@@ -131,7 +136,8 @@ impl<'a> Transport<'a> {
             *r += rest;
         }
         let unknowns = matrix.lu().solve(&-right).filter(|z| z.iter().all(|x| x.is_finite()));
-        let singular = || broken(format!("the equations of the {} family are singular at t = {t}", self.family.formulation));
+        let singular =
+            || broken(format!("the equations of the {} family are singular at t = {t}", self.family.formulation));
         let unknowns = unknowns.ok_or_else(singular)?;
         let mut rates = DMatrix::zeros(k, last + 1);
         for (i, rate) in shape.rates.iter().enumerate() {
@@ -173,15 +179,12 @@ impl<'a> Transport<'a> {
         }
     }
 
-    /// The size of each state by its start and its rate there, where that is under 1.
+    /// The size of each state by its start and its rate there, where that is under 1; at least a thousandth: round-off is no size.
     fn sizes(&mut self, start: &Start, end: f64) -> Result<Vec<f64>, DecisionError> {
         let mut rates = vec![0.0; start.y.len()];
         self.rates(start.t, &start.y, &mut rates).map_err(|e| DecisionError::Curve { reason: e.reason })?;
         let way = (end - start.t).abs();
-        let size = |(y, rate): (&f64, &f64)| match y.abs() + rate.abs() * way {
-            0.0 => 1.0,
-            size => size.min(1.0),
-        };
+        let size = |(y, rate): (&f64, &f64)| (y.abs() + rate.abs() * way).clamp(SMALLEST, 1.0);
         Ok(start.y.iter().zip(&rates).map(size).collect())
     }
 

@@ -45,7 +45,10 @@ fn a_ball_on_a_turning_table() {
     ] {
         let scene = built_in("turntable", &[&overrides[..], &[("duration", 3.0)]].concat());
         let decision = is_vakonomic(&scene);
-        println!("{overrides:?}: {:?} {:.2e} {:.1e} {:?}", decision.verdict, decision.least, decision.noise, decision.set);
+        println!(
+            "{overrides:?}: {:?} {:.2e} {:.1e} {:?}",
+            decision.verdict, decision.least, decision.noise, decision.set
+        );
         assert_eq!(is_contained(&decision), contained, "{overrides:?}");
         if contained && scene.start.v[1] != 0.0 {
             // mu_0 = (2m/5) v_0
@@ -85,7 +88,10 @@ fn a_coin_on_an_incline() {
         (vec![("phi'", 0.7)], false),
     ] {
         let decision = is_vakonomic(&written(COIN, &overrides));
-        println!("{overrides:?}: {:?} {:.2e} {:.1e} {:?}", decision.verdict, decision.least, decision.noise, decision.set);
+        println!(
+            "{overrides:?}: {:?} {:.2e} {:.1e} {:?}",
+            decision.verdict, decision.least, decision.noise, decision.set
+        );
         assert_eq!(is_contained(&decision), contained, "{overrides:?}");
         assert!(!contained || decision.set.dimension() == 1);
     }

@@ -98,7 +98,7 @@ fn a_constraint_of_second_degree() {
 
 #[test]
 fn what_cannot_be_proved_says_why() {
-    let logarithm = NONLINEAR.replace("(x'^2 + y'^2 + z'^2)/2", "(x'^2 + y'^2 + z'^2)/2 - log(2 + x)");
+    let logarithm = NONLINEAR.replace("(x'^2 + y'^2 + z'^2)/2", "(x'^2 + y'^2 + z'^2)/2 - x*log(2 + x)");
     let (proof, _) = proved(&written(&logarithm, &[]));
     assert_eq!(proof.this_start, Finding::NotApplicable("a logarithm is taken at the start".into()));
     let pi = NONLINEAR.replace("(x'^2 + y'^2 + z'^2)/2", "(x'^2 + y'^2 + z'^2)/2 - pi*x^2");
@@ -114,13 +114,14 @@ fn leading_differences_for_any_multipliers() {
         let (exponent, coefficient, proved) = leading(&disc, &disc.start.v[..2], exact).expect("a difference");
         let length = coefficient.iter().zip([1.0, 1.0, 0.125, 0.0625]).map(|(c, m)| m * c * c).sum::<f64>().sqrt();
         println!("{exponent} {coefficient:?} {length} {proved}");
-        assert_eq!((exponent, proved), (3, exact));
+        // the decimals of v_0 are not quite on the constraint: exactly, there is a term of 1e-17 t² besides
+        assert_eq!((exponent, proved), (3, false));
         assert!((length - 0.9428).abs() < 1e-4, "{length}");
     }
     // sledge, mu_0 = 0: -(1/6) Π C λ_0 t³
     let sledge = built_in("sledge", &[]);
-    assert_eq!(leading(&sledge, &[0.0], true).map(|found| found.0), Some(3));
-    assert_eq!(leading(&sledge, &[0.5], true).map(|found| found.0), Some(2));
+    assert_eq!(leading(&sledge, &[0.0], true).map(|found| (found.0, found.2)), Some((3, true)));
+    assert_eq!(leading(&sledge, &[0.5], true).map(|found| (found.0, found.2)), Some((2, true)));
     // and none for the multipliers of the disc
     let right: Vec<f64> = disc.start.v[..2].iter().map(|v| -v).collect();
     assert_eq!(leading(&disc, &right, false), None);

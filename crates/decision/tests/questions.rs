@@ -68,7 +68,7 @@ fn exact_start(scene: &Scene) -> ExactStart {
 /// What is proved about it, and the section of the set over all starts.
 pub(crate) fn proved(scene: &Scene) -> (Proof, Option<Section>) {
     let family = vakonomic(scene);
-    let question = Question::new(&scene.system, &chetaev_equations(scene), &family).expect("a question");
+    let question = Question::new(&scene.system, &chetaev_equations(scene), &[], &family).expect("a question");
     let start = exact_start(scene);
     let section = question.section(&scene.system, &start, &scene.start).expect("a search");
     (question.prove(&start), section)
@@ -77,7 +77,7 @@ pub(crate) fn proved(scene: &Scene) -> (Proof, Option<Section>) {
 /// The exponent and the coefficient of the leading difference, and whether that is exact.
 pub(crate) fn leading(scene: &Scene, multipliers: &[f64], exact: bool) -> Option<(usize, Vec<f64>, bool)> {
     let family = vakonomic(scene);
-    let question = Question::new(&scene.system, &chetaev_equations(scene), &family).expect("a question");
+    let question = Question::new(&scene.system, &chetaev_equations(scene), &[], &family).expect("a question");
     let start = exact.then(|| exact_start(scene));
     let found = question.leading_difference(&scene.system, &scene.start, start.as_ref(), multipliers)?;
     Some((found.exponent, found.coefficient, found.exact))

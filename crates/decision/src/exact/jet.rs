@@ -89,7 +89,11 @@ impl<C: Coefficient> Jet<C> {
     }
 
     /// `y` with `y' = u' w` or the like: fills coefficients from 1 on, each from the earlier ones; `next(k, y)` is `k y_k`.
-    fn integrated(&self, first: Result<(C, Option<Exact>), Flaw>, next: impl Fn(usize, &[C; ORDERS]) -> Option<C>) -> Self {
+    fn integrated(
+        &self,
+        first: Result<(C, Option<Exact>), Flaw>,
+        next: impl Fn(usize, &[C; ORDERS]) -> Option<C>,
+    ) -> Self {
         let (value, exact) = match first {
             Ok(first) => first,
             Err(flaw) => return Jet { flaw: self.flaw.or(Some(flaw)), ..self.combined(self, 1, self.exact) },

@@ -44,7 +44,13 @@ pub(crate) fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Opti
 }
 
 /// `matrix · columns`, of sizes rows×inner and inner×width, added to `into` with a sign.
-pub(crate) fn subtract_product<C: Coefficient>(into: &mut [C], matrix: &[C], columns: &[C], inner: usize, width: usize) {
+pub(crate) fn subtract_product<C: Coefficient>(
+    into: &mut [C],
+    matrix: &[C],
+    columns: &[C],
+    inner: usize,
+    width: usize,
+) {
     for (row, into) in into.chunks_exact_mut(width).enumerate() {
         for j in 0..inner {
             let factor = matrix[row * inner + j];

@@ -5,8 +5,8 @@ mod linear;
 mod modular;
 mod rational;
 
-pub(crate) use linear::{inverse, subtract_product};
 pub(crate) use jet::{Jet, ORDERS};
+pub(crate) use linear::{inverse, subtract_product};
 pub(crate) use modular::{Modular, ORDER, PRIME};
 pub(crate) use rational::Exact;
 
@@ -62,7 +62,11 @@ pub(crate) trait Coefficient:
     /// The square root, and that exactly where it is rational.
     fn root(self, exact: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw>;
     /// The value of a function whose value is known at few points only.
-    fn inverse_function(self, function: symbolic::Function, exact: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw>;
+    fn inverse_function(
+        self,
+        function: symbolic::Function,
+        exact: Option<Exact>,
+    ) -> Result<(Self, Option<Exact>), Flaw>;
     /// `self^exponent` where that is no integer.
     fn power(self, exact: Option<Exact>, exponent: Self) -> Result<Self, Flaw>;
 }

@@ -42,7 +42,8 @@ impl Exact {
         let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
         let quarters = (x / FRAC_PI_2).round();
         let turned = quarters != 0.0 && quarters.abs() <= f64::from(TURNS);
-        if turned && whole.len() + fraction.len() >= LONG && (x - quarters * FRAC_PI_2).abs() <= f64::EPSILON * x.abs() {
+        if turned && whole.len() + fraction.len() >= LONG && (x - quarters * FRAC_PI_2).abs() <= f64::EPSILON * x.abs()
+        {
             return Some(Exact { quarters: quarters as i32, ..Exact::ZERO });
         }
         let digits: i128 = format!("{whole}{fraction}").parse().ok()?;
