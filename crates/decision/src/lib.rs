@@ -73,6 +73,6 @@ pub use error::DecisionError;
 pub use exact::Flaw;
 pub use family::Family;
 pub use leading::LeadingDifference;
-pub use proof::{Certificate, Finding, NoConstants, Proof, Question};
+pub use proof::{Certificate, Finding, NoConstants, Proof, Question, StartNumber};
 pub use section::Section;
 pub use start::{ExactStart, NoExactStart};

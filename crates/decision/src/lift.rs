@@ -2,11 +2,13 @@
 
 use equations::Equations;
 use mechanics::{Removal, RemovalStart, State, System, complete_removal_start};
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Scalar, Symbol};
 
 use crate::DecisionError;
+use crate::exact::{Coefficient, Exact, Jet};
 use crate::family::inputs;
 use crate::program::Program;
+use crate::series::{NoSeries, SeriesSolve, order, sound};
 
 /// `u` and `w` that are no coordinates: integrated beside the curve, with `u̇` and `ü` from `q̇(u̇, u, w, t) = v` and its rate.
 #[derive(Clone)]
@@ -21,6 +23,9 @@ pub(crate) struct Lift {
     pub(crate) velocities: Program,
     /// `q̈ − a` at `ü = 0`, then the rates of `w` at `ü = 0`.
     pub(crate) accelerations: Program,
+    /// Start values of the integrated `u` and `w` as they are written, from parameters, `t, q, v`; the first one that would be needed and is not.
+    written: Program,
+    missing: Option<String>,
     system: System,
     removal: Removal,
 }
@@ -65,7 +70,13 @@ impl Lift {
             then.push(g.sub(rate, g.variable(c.acceleration)));
         }
         then.extend(memory.iter().map(|w| w.rate));
+        let missing =
+            |s: &Symbol| !removal.start.contains_key(s) && removal.coordinates.iter().any(|&q| g.depends_on(q, *s));
         let mut symbols: Vec<Symbol> = own.iter().map(|u| u.symbol).chain(memory.iter().map(|w| w.symbol)).collect();
+        let starts: Vec<Expr> =
+            symbols.iter().map(|s| removal.start.get(s).copied().unwrap_or_else(|| g.zero())).collect();
+        let written = Program::new(g, &inputs(system, &[]), &starts)?;
+        let missing = symbols.iter().find(|s| missing(s)).map(|&s| g.name(s));
         let velocities = Program::new(g, &inputs(system, &symbols), &first)?;
         symbols.extend(&rates);
         let accelerations = Program::new(g, &inputs(system, &symbols), &then)?;
@@ -77,6 +88,8 @@ impl Lift {
             symbols,
             velocities,
             accelerations,
+            written,
+            missing,
             system: system.clone(),
             removal: removal.clone(),
         }))
@@ -88,4 +101,77 @@ impl Lift {
         let value = |s: &Symbol| parameters.get(s).or_else(|| memory.get(s)).copied().unwrap_or(0.0);
         Ok(self.symbols[..self.parameters + self.memory].iter().map(value).collect())
     }
+
+    /// Series of everything that the lift adds, along `curve`.
+    pub(crate) fn series<C: Coefficient>(&self, curve: &[Jet<C>], orders: usize) -> Result<Vec<Jet<C>>, NoSeries>
+    where
+        Jet<C>: Scalar,
+    {
+        if let Some(name) = &self.missing {
+            return Err(NoSeries::Unwritten { name: name.clone() });
+        }
+        let (n, m) = (self.coordinates, self.parameters);
+        let first = self.written.evaluator::<Jet<C>>().run(curve).to_vec();
+        sound(&first)?;
+        let exact: Vec<_> = first.iter().map(Jet::exact).collect();
+        let mut own: Vec<Vec<C>> = first.iter().map(|x| vec![x.coefficient(0)]).collect();
+        let mut velocities = self.velocities.evaluator::<Jet<C>>();
+        let mut accelerations = self.accelerations.evaluator::<Jet<C>>();
+        let mut solves: Option<(Vec<usize>, SeriesSolve<C>, SeriesSolve<C>)> = None;
+        for k in 1..=orders {
+            let mut inputs = curve.to_vec();
+            inputs.extend(own.iter().zip(&exact).map(|(x, exact)| Jet::series(x, *exact)));
+            let values = velocities.run(&inputs).to_vec();
+            sound(&values)?;
+            let (slopes, rest) = values.split_at(n * m);
+            if solves.is_none() {
+                let rows = independent_rows(&order(slopes, 0), m);
+                let square = |rows: &[usize]| -> Vec<Jet<C>> {
+                    rows.iter().flat_map(|&i| slopes[i * m..(i + 1) * m].to_vec()).collect()
+                };
+                let [one, two] = [(); 2].map(|()| SeriesSolve::new(&square(&rows), m, 1, "removal"));
+                solves = Some((rows, one?, two?));
+            }
+            let Some((rows, speeds, seconds)) = &mut solves else { continue };
+            let square: Vec<Jet<C>> = rows.iter().flat_map(|&i| slopes[i * m..(i + 1) * m].to_vec()).collect();
+            let picked = |rest: &[Jet<C>]| rows.iter().map(|&i| rest[i].coefficient(k - 1)).collect::<Vec<C>>();
+            speeds.next(&square, &picked(rest));
+            let of = |solve: &SeriesSolve<C>, i: usize| {
+                Jet::series(&solve.solved.iter().map(|z| z[i]).collect::<Vec<C>>(), None)
+            };
+            inputs.extend((0..m).map(|i| of(speeds, i)));
+            let values = accelerations.run(&inputs);
+            sound(values)?;
+            seconds.next(&square, &picked(values));
+            if k == orders {
+                let base = curve.len();
+                let mut lifted = inputs[base..].to_vec();
+                lifted.extend((0..m).map(|i| of(seconds, i)));
+                return Ok(lifted);
+            }
+            let over = C::of(Exact { numerator: 1, denominator: k as i128, quarters: 0 })?;
+            let rates: Vec<C> = speeds.solved[k - 1].iter().copied().chain(order(&values[n..], k - 1)).collect();
+            for (x, rate) in own.iter_mut().zip(rates) {
+                x.push(rate * over);
+            }
+        }
+        Ok(Vec::new())
+    }
+}
+
+/// Rows of a matrix of `columns` columns by which it has full rank; fewer where it has not.
+fn independent_rows<C: Coefficient>(matrix: &[C], columns: usize) -> Vec<usize> {
+    let mut rows: Vec<(usize, Vec<C>)> = matrix.chunks_exact(columns.max(1)).map(<[C]>::to_vec).enumerate().collect();
+    let mut picked = Vec::new();
+    for column in 0..columns {
+        let best = rows.iter().enumerate().max_by(|a, b| a.1.1[column].weight().total_cmp(&b.1.1[column].weight()));
+        let Some((at, over)) = best.and_then(|(at, row)| Some((at, row.1[column].inverse()?))) else { continue };
+        let (row, pivot) = rows.swap_remove(at);
+        for (_, other) in &mut rows {
+            let factor = other[column] * over;
+            other.iter_mut().zip(&pivot).for_each(|(x, &p)| *x = *x - factor * p);
+        }
+        picked.push(row);
+    }
+    picked
 }

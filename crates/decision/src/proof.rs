@@ -6,7 +6,8 @@ use mechanics::System;
 use crate::DecisionError;
 use crate::curve::Dynamics;
 use crate::exact::{Coefficient, Jet, Modular, ORDER, ORDERS, PRIME, inverse};
-use crate::family::Family;
+use crate::family::{Family, inputs};
+use crate::program::Program;
 use crate::series::{CurveSeries, MismatchSeries, NoSeries, SeriesStart};
 use crate::start::ExactStart;
 
@@ -61,10 +62,8 @@ pub struct Certificate {
     pub neper: u64,
     /// Image of `√−1`.
     pub imaginary: u64,
-    /// Images of `q₀`.
-    pub positions: Vec<u64>,
-    /// Images of `v₀`.
-    pub velocities: Vec<u64>,
+    /// `q₀`, then `v₀`.
+    pub start: Vec<StartNumber>,
     /// The order that decides.
     pub order: usize,
     /// Rows of `[O | o]`, each as the order and the place among the accelerations of the family.
@@ -75,6 +74,17 @@ pub struct Certificate {
     pub determinant: u64,
     /// What was divided by, with its image, not zero.
     pub divided_by: Vec<(String, u64)>,
+}
+
+/// A number of the start, with its image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StartNumber {
+    /// Name of the coordinate or velocity.
+    pub name: String,
+    /// The number, where it is rational or a multiple of π/2.
+    pub exact: Option<String>,
+    /// Its image; 0 for a multiple of π/2, which has one inside of sines and cosines only.
+    pub image: u64,
 }
 
 /// What can be proved about one start and about almost every start.
@@ -143,6 +153,10 @@ pub struct Question<'a> {
     family: &'a Family,
     dynamics: Dynamics,
     constants: Vec<f64>,
+    names: Vec<String>,
+    /// What `L`, `f` and `Q` divide by.
+    denominators: Program,
+    divisors: Vec<String>,
 }
 
 impl<'a> Question<'a> {
@@ -156,12 +170,17 @@ impl<'a> Question<'a> {
         constants: &[f64],
         family: &'a Family,
     ) -> Result<Self, DecisionError> {
-        if family.lift.is_some() {
-            let reason =
-                "the removal has parameters that are no coordinates; the decision in floating point covers it".into();
-            return Err(DecisionError::Unsuited { formulation: family.formulation, reason });
-        }
-        Ok(Question { family, dynamics: Dynamics::new(system, curve)?, constants: constants.to_vec() })
+        let g = &system.graph;
+        let all = [&[system.lagrangian][..], &system.constraints, &system.forces].concat();
+        let divisors = g.denominators(&all);
+        Ok(Question {
+            family,
+            dynamics: Dynamics::new(system, curve)?,
+            constants: constants.to_vec(),
+            names: system.positions().into_iter().chain(system.velocities()).map(|s| g.name(s)).collect(),
+            denominators: Program::new(g, &inputs(system, &[]), &divisors)?,
+            divisors: divisors.iter().map(|&e| g.plain(e)).collect(),
+        })
     }
 
     pub(crate) fn family(&self) -> &Family {
@@ -207,7 +226,7 @@ impl<'a> Question<'a> {
         if let Some(order) = ranks.refuted() {
             return Finding::None(NoConstants {
                 order,
-                certificate: certificate(start, &curve, &series, &ranks, order),
+                certificate: self.certificate(start, &curve, &series, &ranks, order),
             });
         }
         // where the rank is the generic one it stays so nearby, and the jets obey one linear equation
@@ -239,7 +258,7 @@ impl<'a> Question<'a> {
             if let Some(order) = ranks.refuted() {
                 return Finding::None(NoConstants {
                     order,
-                    certificate: certificate(exact, curve, series, ranks, order),
+                    certificate: self.certificate(exact, curve, series, ranks, order),
                 });
             }
         }
@@ -251,40 +270,50 @@ impl<'a> Question<'a> {
             _ => Finding::ThroughOrder { rank: ranks.last(), order: orders - 1 },
         }
     }
-}
 
-/// The minor of full size, where there is one.
-fn certificate(
-    start: &SeriesStart<Modular>,
-    curve: &CurveSeries<Modular>,
-    series: &MismatchSeries<Modular>,
-    ranks: &Ranks,
-    order: usize,
-) -> Option<Certificate> {
-    let width = series.width;
-    let rows: Vec<(usize, usize)> = ranks.rows.iter().copied().filter(|(k, _)| *k <= order).collect();
-    if rows.len() < width {
-        return None;
+    /// The minor of full size, where there is one.
+    fn certificate(
+        &self,
+        start: &SeriesStart<Modular>,
+        curve: &CurveSeries<Modular>,
+        series: &MismatchSeries<Modular>,
+        ranks: &Ranks,
+        order: usize,
+    ) -> Option<Certificate> {
+        let width = series.width;
+        let rows: Vec<(usize, usize)> = ranks.rows.iter().copied().filter(|(k, _)| *k <= order).collect();
+        if rows.len() < width {
+            return None;
+        }
+        let row = |&(k, place): &(usize, usize)| series.orders[k][place * width..(place + 1) * width].to_vec();
+        let minor: Vec<Vec<Modular>> = rows.iter().map(row).collect();
+        let (_, determinant) = inverse(&minor.concat(), width, Modular::one())?;
+        let numbers = start.positions.iter().chain(&start.velocities).zip(&self.names);
+        let divisors = self.denominators.evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
+        let mut divided_by = vec![
+            ("determinant of the equations of the curve at the start".to_owned(), curve.determinant.value()),
+            ("determinant of the equations of the family at the start".to_owned(), series.determinant.value()),
+        ];
+        let values = divisors.iter().map(|x| x.coefficient(0).value());
+        divided_by.extend(self.divisors.iter().cloned().zip(values));
+        Some(Certificate {
+            prime: PRIME,
+            root_order: ORDER,
+            circle: Modular::circle().value(),
+            neper: Modular::neper().value(),
+            imaginary: Modular::imaginary().value(),
+            start: numbers
+                .map(|(x, name)| StartNumber {
+                    name: name.clone(),
+                    exact: x.exact().map(|x| x.to_string()),
+                    image: x.coefficient(0).value(),
+                })
+                .collect(),
+            order,
+            rows,
+            minor: minor.iter().map(|row| row.iter().map(|x| x.value()).collect()).collect(),
+            determinant: determinant.value(),
+            divided_by,
+        })
     }
-    let row = |&(k, place): &(usize, usize)| series.orders[k][place * width..(place + 1) * width].to_vec();
-    let minor: Vec<Vec<Modular>> = rows.iter().map(row).collect();
-    let (_, determinant) = inverse(&minor.concat(), width, Modular::one())?;
-    let values = |x: &[Jet<Modular>]| x.iter().map(|x| x.coefficient(0).value()).collect();
-    Some(Certificate {
-        prime: PRIME,
-        root_order: ORDER,
-        circle: Modular::circle().value(),
-        neper: Modular::neper().value(),
-        imaginary: Modular::imaginary().value(),
-        positions: values(&start.positions),
-        velocities: values(&start.velocities),
-        order,
-        rows,
-        minor: minor.iter().map(|row| row.iter().map(|x| x.value()).collect()).collect(),
-        determinant: determinant.value(),
-        divided_by: vec![
-            ("determinant of the equations of the curve at the start".into(), curve.determinant.value()),
-            ("determinant of the equations of the family at the start".into(), series.determinant.value()),
-        ],
-    })
 }

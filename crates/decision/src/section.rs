@@ -54,7 +54,7 @@ impl Question<'_> {
         state: &State,
     ) -> Result<Option<Section>, DecisionError> {
         let family = self.family();
-        if family.shape.constants != family.shape.costates {
+        if family.shape.constants != family.shape.costates || family.lift.is_some() {
             return Ok(None);
         }
         let g = &system.graph;

@@ -13,6 +13,8 @@ pub(crate) enum NoSeries {
     Flaw(#[from] Flaw),
     #[error("the equations of the {of} are singular at the start")]
     Singular { of: &'static str },
+    #[error("the start of `{name}` is not written")]
+    Unwritten { name: String },
 }
 
 /// A start in numbers of one kind, with their exact values where they are followed.
@@ -33,7 +35,7 @@ pub(crate) struct CurveSeries<C> {
     pub(crate) determinant: C,
 }
 
-fn sound<C: Coefficient>(values: &[Jet<C>]) -> Result<(), NoSeries> {
+pub(crate) fn sound<C: Coefficient>(values: &[Jet<C>]) -> Result<(), NoSeries> {
     match values.iter().find_map(Jet::flaw) {
         Some(flaw) => Err(flaw.into()),
         None => Ok(()),
@@ -55,27 +57,27 @@ fn time<C: Coefficient>(start: &Jet<C>, orders: usize) -> Result<Jet<C>, Flaw> {
 }
 
 /// The order-k coefficients of a row of series.
-fn order<C: Coefficient>(values: &[Jet<C>], k: usize) -> Vec<C> {
+pub(crate) fn order<C: Coefficient>(values: &[Jet<C>], k: usize) -> Vec<C> {
     values.iter().map(|x| x.coefficient(k)).collect()
 }
 
 /// `J Z = −R` order by order: what is known of `J`, and `Z` so far.
-struct SeriesSolve<C> {
+pub(crate) struct SeriesSolve<C> {
     over: Vec<C>,
     determinant: C,
     size: usize,
     width: usize,
-    solved: Vec<Vec<C>>,
+    pub(crate) solved: Vec<Vec<C>>,
 }
 
 impl<C: Coefficient> SeriesSolve<C> {
-    fn new(matrix: &[Jet<C>], size: usize, width: usize, of: &'static str) -> Result<Self, NoSeries> {
+    pub(crate) fn new(matrix: &[Jet<C>], size: usize, width: usize, of: &'static str) -> Result<Self, NoSeries> {
         let (over, determinant) = inverse(&order(matrix, 0), size, one()?).ok_or(NoSeries::Singular { of })?;
         Ok(SeriesSolve { over, determinant, size, width, solved: Vec::new() })
     }
 
     /// The next order of `Z` (size×width), from `R` at that order.
-    fn next(&mut self, matrix: &[Jet<C>], rest: &[C]) {
+    pub(crate) fn next(&mut self, matrix: &[Jet<C>], rest: &[C]) {
         let k = self.solved.len();
         let mut right: Vec<C> = rest.iter().map(|&r| -r).collect();
         for j in 1..=k {
@@ -171,11 +173,15 @@ impl Family {
         Jet<C>: Scalar,
     {
         let shape = &self.shape;
-        let values = self.evaluator::<Jet<C>>().run(&curve.inputs).to_vec();
+        let mut inputs = curve.inputs.clone();
+        if let Some(lift) = &self.lift {
+            inputs.extend(lift.series(&curve.inputs, orders)?);
+        }
+        let values = self.evaluator::<Jet<C>>().run(&inputs).to_vec();
         sound(&values)?;
         let instant = shape.instant(&values);
         let (size, k, width) = (shape.unknowns, shape.costates, shape.constants + 1);
-        let start = self.start(&curve.inputs);
+        let start = self.start(&inputs);
         sound(&start)?;
         // η, order by order: k rows of `width`
         let mut costates: Vec<Vec<C>> = vec![order(&start, 0)];

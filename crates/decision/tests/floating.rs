@@ -2,6 +2,7 @@
 
 use decision::{Decision, Known, Point, Verdict, decide};
 use equations::Compiled;
+use mechanics::Removal;
 
 use crate::questions::{
     built_in, chetaev, chetaev_equations, decided, flow, is_vakonomic, removed, vakonomic, vakonomic_equations,
@@ -103,6 +104,20 @@ fn a_removed_motion_that_is_a_vakonomic_one() {
     contains(&decision, &[pull * horizon], 0);
     let other = flow(&scene, &vakonomic_equations(&scene), &[0.3]);
     assert_eq!(decided(&removed(&scene, &scene.removals[0]), &other).verdict, Verdict::NotContained);
+}
+
+#[test]
+fn removals_by_coordinates_are_the_vakonomic_family() {
+    // mu_0 = -P_0 - L_w'; the ball: L_w' = m (x', y')
+    let ball = built_in("turntable", &CONTAINED);
+    let removal = Removal::by_coordinates(&ball.system, &ball.start).expect("a removal");
+    contains(&decided(&removed(&ball, &removal), &chetaev(&ball)), &[0.0, -0.168], 0);
+    // where the costate is dropped, its value is 0: mu_0 = -z' = 1 for the particle
+    let particle = built_in("particle", &[]);
+    let one = decided(&removed(&particle, &particle.removals[0]), &chetaev(&particle));
+    assert!(one.constants.is_empty());
+    let whole = is_vakonomic(&particle);
+    assert!(near(one.least, whole.mismatch_at(&[1.0]), 1e-6), "{} {}", one.least, whole.mismatch_at(&[1.0]));
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use decision::{Finding, Proof};
 
-use crate::questions::{built_in, leading, proved, written};
+use crate::questions::{
+    built_in, chetaev_equations, leading, proved, proved_in, removed, vakonomic, vakonomic_equations, written,
+};
 
 fn order(finding: &Finding) -> Option<usize> {
     match finding {
@@ -73,6 +75,27 @@ fn identities_over_all_starts() {
     assert!(matches!(proof.this_start, Finding::Contained { rank: 0, .. }), "{proof:?}");
     let (proof, _) = proved(&built_in("appell-hamel", &[]));
     assert!(matches!(proof.this_start, Finding::ThroughOrder { rank: 0, .. }), "{proof:?}");
+}
+
+#[test]
+fn other_curves_and_other_families() {
+    // a vakonomic sledge is one, with the constant that it has
+    let sledge = built_in("sledge", &[]);
+    let (proof, section) = proved_in(&sledge, &vakonomic_equations(&sledge), &[0.3], &vakonomic(&sledge));
+    assert!(matches!(proof.this_start, Finding::Contained { rank: 1, .. }), "{proof:?}");
+    assert_eq!(section.expect("a section").expressions, ["3/10"]);
+    // Chetaev's sledge is no removed-constraint one, whatever the constants
+    for removal in &sledge.removals {
+        let family = removed(&sledge, removal);
+        let (proof, _) = proved_in(&sledge, &chetaev_equations(&sledge), &[], &family);
+        println!("{}: {:?}", removal.name, proof.this_start);
+        assert!(order(&proof.this_start).is_some() && order(&proof.almost_every_start).is_some(), "{proof:?}");
+    }
+    // Newton's motion in a turning frame is one
+    let body = built_in("planar-body", &[]);
+    let family = removed(&body, &body.removals[0]);
+    let (proof, _) = proved_in(&body, &chetaev_equations(&body), &[], &family);
+    assert!(matches!(proof.this_start, Finding::Contained { rank: 2, .. }), "{proof:?}");
 }
 
 const NONLINEAR: &str = r#"

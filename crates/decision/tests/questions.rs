@@ -65,13 +65,22 @@ fn exact_start(scene: &Scene) -> ExactStart {
     ExactStart::new(&scene.system, &scene.start, &scene.completion, scene.removals.first()).expect("a start")
 }
 
-/// What is proved about it, and the section of the set over all starts.
-pub(crate) fn proved(scene: &Scene) -> (Proof, Option<Section>) {
-    let family = vakonomic(scene);
-    let question = Question::new(&scene.system, &chetaev_equations(scene), &[], &family).expect("a question");
+/// What is proved about the motion of `equations` with `constants` as one of `family`.
+pub(crate) fn proved_in(
+    scene: &Scene,
+    equations: &Equations,
+    constants: &[f64],
+    family: &Family,
+) -> (Proof, Option<Section>) {
+    let question = Question::new(&scene.system, equations, constants, family).expect("a question");
     let start = exact_start(scene);
     let section = question.section(&scene.system, &start, &scene.start).expect("a search");
     (question.prove(&start), section)
+}
+
+/// What is proved about Chetaev's motion as a vakonomic one, and the section of the set over all starts.
+pub(crate) fn proved(scene: &Scene) -> (Proof, Option<Section>) {
+    proved_in(scene, &chetaev_equations(scene), &[], &vakonomic(scene))
 }
 
 /// The exponent and the coefficient of the leading difference, and whether that is exact.

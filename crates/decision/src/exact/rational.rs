@@ -1,6 +1,7 @@
 //! Numbers that stay known exactly: `a + b π/2` with a rational `a` and an integer `b`.
 
 use std::f64::consts::FRAC_PI_2;
+use std::fmt;
 
 /// Multiples of π/2 up to this one are recognized.
 const TURNS: i32 = 8;
@@ -93,6 +94,17 @@ impl Exact {
 
     pub(crate) fn to_f64(self) -> f64 {
         self.numerator as f64 / self.denominator as f64 + f64::from(self.quarters) * FRAC_PI_2
+    }
+}
+
+impl fmt::Display for Exact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.numerator, self.denominator, self.quarters) {
+            (0, _, quarters) if quarters != 0 => write!(f, "{quarters}*pi/2"),
+            (n, 1, 0) => write!(f, "{n}"),
+            (n, d, 0) => write!(f, "{n}/{d}"),
+            (n, d, quarters) => write!(f, "{n}/{d} + {quarters}*pi/2"),
+        }
     }
 }
 
