@@ -17,8 +17,9 @@ pub(super) struct Context<'a> {
     pub(super) overrides: Overrides,
     pub(super) names: Names,
     pub(super) system: System,
-    /// `q₀`.
+    /// `q₀`, and the same as written.
     pub(super) positions: Vec<f64>,
+    pub(super) written: Vec<(Symbol, Expr)>,
     /// `t₀`.
     pub(super) time: f64,
 }
@@ -50,6 +51,14 @@ impl Context<'_> {
             return Ok(value);
         }
         Err(self.source.error(&text.span, SceneErrorKind::NotFinite { what: what.into(), value }))
+    }
+
+    /// `value` as it is written.
+    pub(super) fn written(&self, value: &Value) -> Result<Expr, SceneError> {
+        match value {
+            Value::Number(x) => Ok(self.system.graph.number(*x)),
+            Value::Expression(text) => self.parse(text),
+        }
     }
 
     /// Values of parameters and time.

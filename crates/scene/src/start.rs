@@ -14,6 +14,7 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
     let start = context.root.section("start")?;
     let mut project = false;
     let mut given = Vec::new();
+    let mut written = context.written.clone();
     let mut guess = Vec::new();
     let mut place = context.root.get("system").map_or(0..0, |e| e.key_span);
     if let Some(start) = &start {
@@ -23,6 +24,9 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         if let Some(velocities) = start.section("velocities")? {
             place = velocities.span.clone();
             given = rates(context, &velocities, removals.first())?;
+            for (entry, (symbol, _)) in velocities.entries().zip(&given) {
+                written.push((*symbol, context.written(&entry.value()?)?));
+            }
         }
         if let Some(section) = start.section("guess")? {
             guess = rates(context, &section, removals.first())?;
@@ -32,6 +36,8 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         if let Some(value) = context.overrides.get(&name) {
             given.retain(|(s, _)| *s != symbol);
             given.push((symbol, value));
+            written.retain(|(s, _)| *s != symbol);
+            written.push((symbol, context.system.graph.number(value)));
         }
     }
     let data = StartData {
@@ -42,10 +48,11 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         project,
         removal: removals.first(),
     };
-    complete_start(&context.system, &data).map_err(|error| {
+    let completed = complete_start(&context.system, &data).map_err(|error| {
         let place = blamed(context, &error).unwrap_or(place);
         context.source.error(&place, SceneErrorKind::Start(error))
-    })
+    });
+    completed.map(|(state, completion)| (state, Completion { written, ..completion }))
 }
 
 /// Velocities of the coordinates, and rates of the first removal's own parameters.

@@ -37,12 +37,12 @@ pub(super) fn build<'a>(
     let units: Vec<(&str, &str)> = units.iter().map(|(name, unit)| (*name, unit.as_str())).collect();
     let system = System::new(graph, &units);
     names.insert("t", Role::Time, system.graph.variable(system.time), &[]);
-    let mut context = Context { source, root, overrides, names, system, positions: Vec::new(), time: 0.0 };
+    let mut context = Context { source, root, overrides, names, system, positions: Vec::new(), written: Vec::new(), time: 0.0 };
     context.system.parameters = parameters;
     definitions(&mut context)?;
     read_system(&mut context)?;
     context.time = start_time(&context)?;
-    context.positions = positions(&context, &coordinates)?;
+    positions(&mut context, &coordinates)?;
     Ok(context)
 }
 
@@ -139,20 +139,20 @@ fn start_time(context: &Context) -> Result<f64, SceneError> {
     Ok(context.overrides.get("time").unwrap_or(given))
 }
 
-fn positions(context: &Context, coordinates: &Section) -> Result<Vec<f64>, SceneError> {
+fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneError> {
     let mut values = context.constants();
-    let mut positions = Vec::new();
-    for (entry, coordinate) in coordinates.entries().zip(&context.system.coordinates) {
+    for (entry, symbol) in coordinates.entries().zip(context.system.positions()) {
         let start = entry.section()?;
         let start = start.require("start", "a number, or an expression in parameters and earlier coordinates")?;
         let known = "parameters, t and the coordinates above";
         let value = start.value()?;
-        let x = match context.overrides.get(entry.key) {
-            Some(x) => x,
-            None => context.evaluate(&value, &start.path, &values, known)?,
+        let (x, written) = match context.overrides.get(entry.key) {
+            Some(x) => (x, context.system.graph.number(x)),
+            None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&value)?),
         };
-        values.insert(coordinate.position, x);
-        positions.push(x);
+        values.insert(symbol, x);
+        context.positions.push(x);
+        context.written.push((symbol, written));
     }
-    Ok(positions)
+    Ok(())
 }

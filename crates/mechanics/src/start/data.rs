@@ -34,4 +34,7 @@ pub struct Completion {
     pub residual: f64,
     /// Length `√(δvᵀ M δv)` of the projection onto the constraint, where one was asked for.
     pub projected: Option<f64>,
+    /// Positions and given velocities or rates as they were written, in parameters, time and earlier positions: exact where the state is
+    /// rounded. Empty where there are numbers only.
+    pub written: Vec<(Symbol, Expr)>,
 }

@@ -1,0 +1,201 @@
+//! Curves `q(t)`: given from outside, or integrated from the equations of a formulation.
+
+use equations::{Equations, Role};
+use integrate::EvaluationError;
+use mechanics::{State, System};
+use nalgebra::{DMatrix, DVector};
+use symbolic::Expr;
+
+use crate::DecisionError;
+use crate::family::flow;
+use crate::program::{Evaluator, Program};
+
+/// A point of a curve: positions, velocities and accelerations, each of length n.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Point {
+    /// `q`.
+    pub q: Vec<f64>,
+    /// `v = q̇`.
+    pub v: Vec<f64>,
+    /// `a = q̈`, the curve's own.
+    pub a: Vec<f64>,
+}
+
+/// A curve on `f = 0` in the space of coordinates.
+///
+/// A curve that is known everywhere answers with [`Point`]s and has no states. One that has to be integrated hands its states and their
+/// rates to the same time loop in which the constants are transported.
+pub trait Curve {
+    /// Start and end of the time for which the question is put.
+    fn span(&self) -> (f64, f64);
+
+    /// States at the start.
+    fn states(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The point at `t`, where the states are `states`; writes their rates.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where the curve has no such point.
+    fn point(&mut self, t: f64, states: &[f64], rates: &mut [f64]) -> Result<Point, EvaluationError>;
+}
+
+/// A curve that is known everywhere: any motion, as a function of time.
+pub struct Known<F> {
+    span: (f64, f64),
+    point: F,
+}
+
+impl<F: FnMut(f64) -> Result<Point, EvaluationError>> Known<F> {
+    /// The curve `point` between two times.
+    pub fn new(start: f64, end: f64, point: F) -> Self {
+        Known { span: (start, end), point }
+    }
+}
+
+impl<F: FnMut(f64) -> Result<Point, EvaluationError>> Curve for Known<F> {
+    fn span(&self) -> (f64, f64) {
+        self.span
+    }
+
+    fn point(&mut self, t: f64, _: &[f64], _: &mut [f64]) -> Result<Point, EvaluationError> {
+        (self.point)(t)
+    }
+}
+
+/// The solution of a formulation's equations through one start, with values for its free constants.
+#[derive(Clone)]
+pub struct Flow {
+    programs: Dynamics,
+    instant: Evaluator<f64>,
+    rates: Evaluator<f64>,
+    inputs: Vec<f64>,
+    start: Vec<f64>,
+    span: (f64, f64),
+}
+
+/// Equations whose instants are linear in their unknowns `z`, as programs for numbers of any kind.
+#[derive(Clone)]
+pub(crate) struct Dynamics {
+    pub(crate) coordinates: usize,
+    pub(crate) states: usize,
+    pub(crate) unknowns: usize,
+    /// `J` (N×N), then `R` at `z = 0`; from parameters, `t, y`.
+    pub(crate) instant: Program,
+    /// Rates of `y`, then `q`, `v`, `a`; from parameters, `t, y, z`.
+    pub(crate) rates: Program,
+    /// `y(t₀)` from parameters, `t, q, v` and the free constants.
+    pub(crate) start: Program,
+}
+
+impl Dynamics {
+    /// # Errors
+    /// [`DecisionError::Unsuited`] where unknowns stand nonlinearly or velocities are unknowns.
+    pub(crate) fn new(system: &System, equations: &Equations) -> Result<Self, DecisionError> {
+        let system = &System { graph: equations.graph.clone(), ..system.clone() };
+        let g = &system.graph;
+        let unsuited =
+            |reason: &str| DecisionError::Unsuited { formulation: equations.formulation, reason: reason.into() };
+        if !equations.definitions.is_empty() {
+            return Err(unsuited("intermediate quantities stand in its equations; take the form as derived"));
+        }
+        if equations.states.iter().any(|y| matches!(y.role, Role::DisplacementParameter | Role::Memory)) {
+            return Err(unsuited(
+                "its start needs values for parameters of a removal; hand its motion over as a known curve",
+            ));
+        }
+        let unknowns = equations.unknowns();
+        let residuals: Vec<Expr> = equations.blocks.iter().flat_map(|b| b.residuals.clone()).collect();
+        let matrix = g.jacobian(&residuals, &unknowns);
+        let free = |e: Expr| unknowns.iter().all(|&z| !g.depends_on(e, z));
+        if !matrix.entries().iter().all(|&e| free(e)) {
+            return Err(unsuited("the equations of one instant are not linear"));
+        }
+        if !equations.velocities.iter().all(|&e| free(e)) {
+            return Err(unsuited("velocities are solved for at every instant; take the form in which they are states"));
+        }
+        let mut inputs: Vec<_> = system.parameters.iter().map(|p| p.symbol).collect();
+        inputs.push(system.time);
+        let mut at_start = inputs.clone();
+        inputs.extend(equations.state_symbols());
+        at_start.extend(system.positions().into_iter().chain(system.velocities()).chain(equations.constant_symbols()));
+        let at_zero = unknowns.iter().map(|&z| (z, g.zero())).collect();
+        let mut instant = matrix.entries().to_vec();
+        instant.extend(g.substitute_all(&residuals, &at_zero));
+        let instant = Program::new(g, &inputs, &instant)?;
+        inputs.extend(&unknowns);
+        let mut rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
+        rates.extend(&equations.coordinates);
+        rates.extend(&equations.velocities);
+        rates.extend(g.total_derivatives(&equations.velocities, &flow(system, equations)));
+        let starts: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
+        Ok(Dynamics {
+            coordinates: system.dimension(),
+            states: equations.states.len(),
+            unknowns: unknowns.len(),
+            instant,
+            rates: Program::new(g, &inputs, &rates)?,
+            start: Program::new(g, &at_start, &starts)?,
+        })
+    }
+}
+
+impl Flow {
+    /// The motion of `equations`, as derived for `system`, from `start` to `end`; `constants` are its free constants.
+    ///
+    /// # Errors
+    /// [`DecisionError::Unsuited`] for equations that cannot be followed in this way; hand over such a motion as [`Known`].
+    pub fn new(
+        system: &System,
+        equations: &Equations,
+        start: &State,
+        constants: &[f64],
+        end: f64,
+    ) -> Result<Self, DecisionError> {
+        let programs = Dynamics::new(system, equations)?;
+        let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();
+        let at_start = [&parameters[..], &[start.t], &start.q, &start.v, constants].concat();
+        let start_states = programs.start.evaluator().run(&at_start).to_vec();
+        Ok(Flow {
+            instant: programs.instant.evaluator(),
+            rates: programs.rates.evaluator(),
+            programs,
+            inputs: parameters,
+            start: start_states,
+            span: (start.t, end),
+        })
+    }
+}
+
+impl Curve for Flow {
+    fn span(&self) -> (f64, f64) {
+        self.span
+    }
+
+    fn states(&self) -> Vec<f64> {
+        self.start.clone()
+    }
+
+    fn point(&mut self, t: f64, states: &[f64], rates: &mut [f64]) -> Result<Point, EvaluationError> {
+        let parameters = self.inputs.len();
+        self.inputs.push(t);
+        self.inputs.extend(states);
+        let size = self.programs.unknowns;
+        let values = self.instant.run(&self.inputs);
+        let matrix = DMatrix::from_row_slice(size, size, &values[..size * size]);
+        let rest = DVector::from_column_slice(&values[size * size..]);
+        let solution = matrix.lu().solve(&rest);
+        if let Some(z) = &solution {
+            self.inputs.extend(z.iter().map(|z| -z));
+        }
+        let point = solution.map(|_| {
+            let (of_states, point) = self.rates.run(&self.inputs).split_at(states.len());
+            rates.copy_from_slice(of_states);
+            let part = |i: usize| point[i * self.programs.coordinates..(i + 1) * self.programs.coordinates].to_vec();
+            Point { q: part(0), v: part(1), a: part(2) }
+        });
+        self.inputs.truncate(parameters);
+        point.ok_or_else(|| EvaluationError { reason: format!("the equations of the curve are singular at t = {t}") })
+    }
+}

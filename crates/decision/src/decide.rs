@@ -1,0 +1,232 @@
+//! The decision in floating point.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::DecisionError;
+use crate::curve::{Curve, Flow};
+use crate::family::Family;
+use crate::transport::Transport;
+
+/// Gauss nodes a panel, and the least number of panels: at least 256 nodes.
+const NODES: usize = 8;
+const PANELS: usize = 32;
+/// A mismatch up to this many times its noise is none.
+const CERTAIN: f64 = 10.0;
+/// What round-off leaves of the rows at best, relative to their size.
+const ROUND_OFF: f64 = 1e-14;
+/// Noise over this part of the terms that cancel tells nothing: a mismatch below it could be a real one.
+const TOO_LOUD: f64 = 1e-5;
+
+/// How the decision is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DecisionSettings {
+    /// Relative tolerance of the looser run.
+    pub tolerance: f64,
+    /// The tighter run has this part of it.
+    pub tighter: f64,
+}
+
+impl Default for DecisionSettings {
+    fn default() -> Self {
+        DecisionSettings { tolerance: 1e-10, tighter: 1e-2 }
+    }
+}
+
+/// Whether the curve is a motion of the family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Some constants leave no mismatch that stands out from the noise.
+    Contained,
+    /// None do.
+    NotContained,
+    /// The noise is too loud to tell.
+    Undecided,
+}
+
+/// Constants `point + span(directions)`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AffineSet {
+    /// The element of least norm.
+    pub point: Vec<f64>,
+    /// Orthonormal directions; none for a single point, all for every choice.
+    pub directions: Vec<Vec<f64>>,
+}
+
+impl AffineSet {
+    /// Its dimension.
+    pub fn dimension(&self) -> usize {
+        self.directions.len()
+    }
+
+    /// The distance of `constants` from it.
+    pub fn distance(&self, constants: &[f64]) -> f64 {
+        let mut rest = DVector::from_column_slice(constants) - DVector::from_column_slice(&self.point);
+        for direction in &self.directions {
+            let direction = DVector::from_column_slice(direction);
+            rest -= &direction * direction.dot(&rest);
+        }
+        rest.norm()
+    }
+}
+
+/// What was decided, and from which numbers.
+///
+/// The mismatch of accelerations is `y(t) = O(t) c + y₀(t)` for constants `c`; lengths are `(∫ |y|²_M dt)^{1/2}`, in the unit of
+/// `√E/√T`.
+#[derive(Clone, Debug)]
+pub struct Decision {
+    /// The answer.
+    pub verdict: Verdict,
+    /// The constants with the least mismatch: the answer where the verdict is [`Verdict::Contained`], else the nearest miss.
+    pub set: AffineSet,
+    /// The least mismatch, ρ.
+    pub least: f64,
+    /// The mismatch at `c = 0`.
+    pub at_zero: f64,
+    /// What ρ is known to.
+    pub noise: f64,
+    /// `(∫ |a|²_M dt)^{1/2}` of the curve: what ρ is compared with for the reader.
+    pub acceleration: f64,
+    /// Names of the constants.
+    pub constants: Vec<String>,
+    triangle: DMatrix<f64>,
+    rows_noise: f64,
+}
+
+impl Decision {
+    /// The mismatch that the constants `c` leave.
+    pub fn mismatch_at(&self, constants: &[f64]) -> f64 {
+        let mut c = DVector::from_column_slice(constants);
+        c = c.push(1.0);
+        (&self.triangle * c).norm()
+    }
+
+    /// The same question with only the constants `kept` (by their places), the others zero.
+    pub fn keeping(&self, kept: &[usize]) -> Decision {
+        let last = self.triangle.ncols() - 1;
+        let columns: Vec<usize> = kept.iter().copied().chain([last]).collect();
+        let triangle = compressed(self.triangle.select_columns(&columns));
+        let constants = kept.iter().map(|&i| self.constants[i].clone()).collect();
+        judge(triangle, self.rows_noise, self.acceleration, constants)
+    }
+}
+
+/// Decides whether a curve is a motion of `family` for some choice of the family's constants.
+///
+/// The same curve is handed over twice: as well as it is known, and less well; the difference tells the noise. For a motion that comes with
+/// two runs these are the two; [`decide_flow`] does it for a curve that is integrated here.
+///
+/// # Errors
+/// [`DecisionError`] where curve or constants cannot be followed to the end.
+pub fn decide(
+    family: &Family,
+    tighter: &mut dyn Curve,
+    looser: &mut dyn Curve,
+    settings: &DecisionSettings,
+) -> Result<Decision, DecisionError> {
+    let (start, end) = tighter.span();
+    let mut fine = Transport::new(family, tighter);
+    let fine_run = fine.run(settings.tolerance * settings.tighter)?;
+    let mut coarse = Transport::new(family, looser);
+    let coarse_run = coarse.run(settings.tolerance)?;
+    let steps = fine_run.as_ref().map_or(0, |run| run.step_times().len());
+    let panels = PANELS.max(steps);
+    let size = family.constants().len() + 1;
+    let mut triangle = DMatrix::zeros(0, size);
+    let (mut difference, mut acceleration) = (DMatrix::zeros(0, size), 0.0);
+    let width = (end - start) / panels as f64;
+    for (place, weight) in (0..panels).flat_map(|panel| legendre().map(move |(x, w)| (panel as f64 + x, w))) {
+        let t = start + width * place;
+        let root = (weight * width.abs()).sqrt();
+        let (own, other) = (fine.mismatch(fine_run.as_ref(), t)?, coarse.mismatch(coarse_run.as_ref(), t)?);
+        triangle = compressed(stacked(&triangle, &(&own.rows * root)));
+        difference = compressed(stacked(&difference, &((own.rows - other.rows) * root)));
+        acceleration += (own.acceleration * root).powi(2);
+    }
+    let rows_noise = difference.norm().max(ROUND_OFF * triangle.norm());
+    Ok(judge(triangle, rows_noise, acceleration.sqrt(), family.constants().to_vec()))
+}
+
+/// [`decide`] for a curve that is integrated beside the transport of the constants.
+///
+/// # Errors
+/// As [`decide`].
+pub fn decide_flow(family: &Family, flow: &Flow, settings: &DecisionSettings) -> Result<Decision, DecisionError> {
+    decide(family, &mut flow.clone(), &mut flow.clone(), settings)
+}
+
+fn judge(triangle: DMatrix<f64>, rows_noise: f64, acceleration: f64, constants: Vec<String>) -> Decision {
+    let last = triangle.ncols() - 1;
+    let goal = -triangle.column(last);
+    let matrix = triangle.columns(0, last).into_owned();
+    let mut point = DVector::zeros(last);
+    let mut directions = Vec::new();
+    if last > 0 {
+        // thin rows leave V incomplete: padded, the decomposition has all directions
+        let rows = matrix.nrows().max(last);
+        let svd = matrix.clone().resize_vertically(rows, 0.0).svd(true, true);
+        let goal = goal.clone().resize_vertically(rows, 0.0);
+        if let (Some(u), Some(v)) = (&svd.u, &svd.v_t) {
+            for (i, &sigma) in svd.singular_values.iter().enumerate() {
+                if sigma > CERTAIN * rows_noise {
+                    point += v.row(i).transpose() * (u.column(i).dot(&goal) / sigma);
+                } else {
+                    directions.push(v.row(i).iter().copied().collect());
+                }
+            }
+        }
+    }
+    let least = (&matrix * &point - &goal).norm();
+    let reach = (1.0 + point.norm_squared()).sqrt();
+    let noise = rows_noise * reach;
+    let scale = acceleration.max(triangle.norm() * reach);
+    let verdict = if least > CERTAIN * noise {
+        Verdict::NotContained
+    } else if CERTAIN * noise <= TOO_LOUD * scale {
+        Verdict::Contained
+    } else {
+        Verdict::Undecided
+    };
+    Decision {
+        verdict,
+        set: AffineSet { point: point.as_slice().to_vec(), directions },
+        least,
+        at_zero: goal.norm(),
+        noise,
+        acceleration,
+        constants,
+        triangle,
+        rows_noise,
+    }
+}
+
+fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut whole = DMatrix::zeros(above.nrows() + below.nrows(), below.ncols());
+    whole.rows_mut(0, above.nrows()).copy_from(above);
+    whole.rows_mut(above.nrows(), below.nrows()).copy_from(below);
+    whole
+}
+
+/// The triangular factor: the same lengths in at most as many rows as columns.
+fn compressed(rows: DMatrix<f64>) -> DMatrix<f64> {
+    if rows.nrows() <= rows.ncols() { rows } else { rows.qr().r() }
+}
+
+/// Nodes and weights of the Gauss-Legendre rule on [0, 1].
+fn legendre() -> [(f64, f64); NODES] {
+    let n = NODES as f64;
+    std::array::from_fn(|i| {
+        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
+        let mut slope = 0.0;
+        for _ in 0..50 {
+            let (mut before, mut value) = (1.0, x);
+            for k in 2..=NODES {
+                let k = k as f64;
+                (before, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * before) / k);
+            }
+            slope = n * (x * value - before) / (x * x - 1.0);
+            x -= value / slope;
+        }
+        ((1.0 - x) / 2.0, 1.0 / ((1.0 - x * x) * slope * slope))
+    })
+}

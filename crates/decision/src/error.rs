@@ -1,0 +1,41 @@
+//! Why a question cannot be decided.
+
+use integrate::CallError;
+use mechanics::StartError;
+use symbolic::CompileError;
+
+/// Why a question cannot be put or decided.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DecisionError {
+    /// The equations cannot be read as a condition on the constants.
+    #[error("{formulation}: {reason}")]
+    Unsuited {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// What about its equations, and what to take instead.
+        reason: String,
+    },
+    /// The family leaves no solvable system of one instant along the curve.
+    #[error("at t = {t} the equations of the {formulation} family are singular along the curve")]
+    Singular {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// Where.
+        t: f64,
+    },
+    /// The curve could not be followed.
+    #[error("the curve cannot be followed: {reason}")]
+    Curve {
+        /// In the words of the curve or of the time loop.
+        reason: String,
+    },
+    /// A tape could not be made.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// The time loop was called with something it does not take.
+    #[error(transparent)]
+    Call(#[from] CallError),
+    /// The variables of a parametrization have no start.
+    #[error(transparent)]
+    Start(#[from] StartError),
+}

@@ -1,0 +1,381 @@
+//! Truncated power series as numbers that a tape can be evaluated in.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use symbolic::{Function, Scalar};
+
+use super::rational::Exact;
+use super::{Coefficient, Flaw};
+
+/// Coefficients a series can have.
+pub(crate) const ORDERS: usize = 24;
+
+/// `Σ c_k s^k`, known up to `s^{known − 1}`, with no coefficient but zero from `terms` on.
+///
+/// A constant is known to all orders. Its exact value is followed as long as it is rational, and of moderate size: functions of it need that.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Jet<C> {
+    coefficients: [C; ORDERS],
+    known: usize,
+    terms: usize,
+    exact: Option<Exact>,
+    flaw: Option<Flaw>,
+}
+
+impl<C: Coefficient> Jet<C> {
+    /// The constant `value`.
+    pub(crate) fn constant(value: C, exact: Option<Exact>) -> Self {
+        let mut coefficients = [C::ZERO; ORDERS];
+        coefficients[0] = value;
+        Jet { coefficients, known: ORDERS, terms: 1, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
+    }
+
+    fn number(x: Result<C, Flaw>, exact: Option<Exact>) -> Self {
+        match x {
+            Ok(value) => Self::constant(value, exact),
+            Err(flaw) => Self::flawed(flaw),
+        }
+    }
+
+    fn flawed(flaw: Flaw) -> Self {
+        Jet { flaw: Some(flaw), ..Self::constant(C::ZERO, None) }
+    }
+
+    /// The decimal that `x` is written as.
+    pub(crate) fn of(x: f64) -> Self {
+        match Exact::of(x).filter(|_| C::FOLLOWED) {
+            Some(exact) => Self::number(C::of(exact), Some(exact)),
+            None => Self::number(C::of_float(x), None),
+        }
+    }
+
+    /// The series with these coefficients, all that are known; the first is exactly `exact`, where that is known.
+    pub(crate) fn series(coefficients: &[C], exact: Option<Exact>) -> Self {
+        let known = coefficients.len().min(ORDERS);
+        let mut all = [C::ZERO; ORDERS];
+        all[..known].copy_from_slice(&coefficients[..known]);
+        Jet { coefficients: all, known, terms: known, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
+    }
+
+    pub(crate) fn coefficient(&self, k: usize) -> C {
+        self.coefficients[k]
+    }
+
+    pub(crate) fn exact(&self) -> Option<Exact> {
+        self.exact
+    }
+
+    /// Why its coefficients are no images, if they are none; π in its constant counts.
+    pub(crate) fn flaw(&self) -> Option<Flaw> {
+        let with_pi = self.exact.is_some_and(|x| !x.is_rational());
+        self.flaw.or(with_pi.then_some(Flaw::Pi))
+    }
+
+    /// A flaw that is there already, π in a followed constant not counted.
+    pub(crate) fn own_flaw(&self) -> Option<Flaw> {
+        self.flaw
+    }
+
+    fn has_pi(&self) -> bool {
+        self.exact.is_some_and(|x| !x.is_rational())
+    }
+
+    /// The result of an operation on `self` and `other` that follows exact constants to `exact`.
+    fn combined(&self, other: &Self, terms: usize, exact: Option<Exact>) -> Self {
+        let known = self.known.min(other.known);
+        let lost = (exact.is_none() && (self.has_pi() || other.has_pi())).then_some(Flaw::Pi);
+        let flaw = self.flaw.or(other.flaw).or(lost);
+        Jet { coefficients: [C::ZERO; ORDERS], known, terms: terms.min(known).max(1), exact, flaw }
+    }
+
+    /// `y` with `y' = u' w` or the like: fills coefficients from 1 on, each from the earlier ones; `next(k, y)` is `k y_k`.
+    fn integrated(
+        &self,
+        first: Result<(C, Option<Exact>), Flaw>,
+        next: impl Fn(usize, &[C; ORDERS]) -> Option<C>,
+    ) -> Self {
+        let (value, exact) = match first {
+            Ok(first) => first,
+            Err(flaw) => return Jet { flaw: self.flaw.or(Some(flaw)), ..self.combined(self, 1, self.exact) },
+        };
+        let mut result = Jet { exact, ..self.combined(self, ORDERS, self.exact) };
+        result.coefficients[0] = value;
+        if self.terms == 1 {
+            return Jet { terms: 1, ..result };
+        }
+        for k in 1..result.known {
+            let over = C::of(Exact { denominator: k as i128, numerator: 1, quarters: 0 });
+            match (next(k, &result.coefficients), over) {
+                (Some(x), Ok(over)) => result.coefficients[k] = x * over,
+                _ => return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..result },
+            }
+        }
+        result
+    }
+
+    /// Coefficients of `u'`, shifted: entry k is `k u_k`.
+    fn slopes(&self) -> [C; ORDERS] {
+        std::array::from_fn(|k| match C::of(Exact { numerator: k as i128, denominator: 1, quarters: 0 }) {
+            Ok(k_times) if k < self.terms => self.coefficients[k] * k_times,
+            _ => C::ZERO,
+        })
+    }
+
+    fn recip(self) -> Self {
+        Self::constant_one() / self
+    }
+
+    fn constant_one() -> Self {
+        let one = Exact { numerator: 1, denominator: 1, quarters: 0 };
+        Self::number(C::of(one), Some(one))
+    }
+
+    fn half(self) -> Self {
+        let half = Exact { numerator: 1, denominator: 2, quarters: 0 };
+        self * Self::number(C::of(half), Some(half))
+    }
+
+    /// `u^α` for a constant `α`, from `u y' = α u' y`.
+    fn to_power(self, first: Result<(C, Option<Exact>), Flaw>, exponent: Self) -> Self {
+        let Some(over) = self.coefficients[0].inverse() else {
+            return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..self };
+        };
+        let (alpha, slopes) = (exponent.coefficients[0], self.slopes());
+        self.integrated(first, |k, y| {
+            // k u₀ y_k = α Σ_j j u_j y_{k−j} − Σ_{j<k} j y_j u_{k−j}
+            let mut sum = alpha * C::convolution(&slopes[1..=k], &y[..k]);
+            for j in 1..k {
+                let times = C::of(Exact { numerator: j as i128, denominator: 1, quarters: 0 }).ok()?;
+                sum = sum - times * y[j] * self.coefficients[k - j];
+            }
+            Some(sum * over)
+        })
+    }
+
+    /// A function with the derivative `slope` (a series in the same variable) and the known value `first`.
+    fn with_slope(self, first: Result<(C, Option<Exact>), Flaw>, slope: Self) -> Self {
+        let slopes = self.slopes();
+        let result = self.integrated(first, |k, _| Some(C::convolution(&slopes[1..=k], &slope.coefficients[..k])));
+        Jet { flaw: result.flaw.or(slope.flaw), ..result }
+    }
+
+    fn inverse_function(self, function: Function, slope: Self) -> Self {
+        let first = self.coefficients[0].inverse_function(function, self.exact);
+        self.with_slope(first, slope)
+    }
+
+    fn exponential_pair(self) -> (Self, Self) {
+        (self.exp(), (-self).exp())
+    }
+}
+
+impl<C: Coefficient> Add for Jet<C> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.add(b));
+        let mut sum = self.combined(&other, self.terms.max(other.terms), exact);
+        for k in 0..sum.terms {
+            sum.coefficients[k] = self.coefficients[k] + other.coefficients[k];
+        }
+        sum
+    }
+}
+
+impl<C: Coefficient> Neg for Jet<C> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        let mut negative = Jet { exact: self.exact.map(Exact::neg), ..self };
+        for c in &mut negative.coefficients[..self.terms] {
+            *c = -*c;
+        }
+        negative
+    }
+}
+
+impl<C: Coefficient> Sub for Jet<C> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<C: Coefficient> Mul for Jet<C> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b));
+        let mut product = self.combined(&other, self.terms + other.terms - 1, exact);
+        // π in a constant would be lost where it meets a coefficient that varies
+        let meets = |a: &Self, b: &Self| a.has_pi() && b.terms > 1;
+        if meets(&self, &other) || meets(&other, &self) {
+            product.flaw = product.flaw.or(Some(Flaw::Pi));
+        }
+        for k in 0..product.terms {
+            let (from, to) = ((k + 1).saturating_sub(other.terms), k.min(self.terms - 1));
+            let (a, b) = (&self.coefficients[from..=to], &other.coefficients[k - to..=k - from]);
+            product.coefficients[k] = C::convolution(a, b);
+        }
+        product
+    }
+}
+
+impl<C: Coefficient> Div for Jet<C> {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b.recip()?));
+        let constant = other.terms == 1;
+        let mut quotient = self.combined(&other, if constant { self.terms } else { ORDERS }, exact);
+        let Some(over) = other.coefficients[0].inverse() else {
+            quotient.flaw = quotient.flaw.or(Some(Flaw::Zero));
+            return quotient;
+        };
+        if other.has_pi() || (self.has_pi() && !constant) {
+            quotient.flaw = quotient.flaw.or(Some(Flaw::Pi));
+        }
+        for k in 0..quotient.terms {
+            let mut rest = self.coefficients[k];
+            if k > 0 && !constant {
+                rest = rest - C::convolution(&other.coefficients[1..=k], &quotient.coefficients[..k]);
+            }
+            quotient.coefficients[k] = rest * over;
+        }
+        quotient
+    }
+}
+
+impl<C: Coefficient> Scalar for Jet<C> {
+    fn from_f64(x: f64) -> Self {
+        // the graph keeps what is no fraction of moderate size as a float, which may be rounded already
+        let exact = Exact::of(x).filter(|exact| exact.denominator == 1);
+        match exact {
+            None if C::FOLLOWED => Self::flawed(Flaw::Number),
+            _ => Self::of(x),
+        }
+    }
+
+    fn from_ratio(numerator: i64, denominator: i64) -> Self {
+        // long decimals are looked at again: they may be multiples of π/2
+        match Exact::of(numerator as f64 / denominator as f64) {
+            Some(exact) if !exact.is_rational() => Self::number(C::of(exact), Some(exact)),
+            _ => match Exact::ratio(numerator.into(), denominator.into()) {
+                Some(exact) => Self::number(C::of(exact), Some(exact)),
+                None => Self::flawed(Flaw::Number),
+            },
+        }
+    }
+
+    fn sqrt(self) -> Self {
+        let half = Exact { numerator: 1, denominator: 2, quarters: 0 };
+        self.to_power(self.coefficients[0].root(self.exact), Self::number(C::of(half), Some(half)))
+    }
+
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let slopes = self.slopes();
+        let first = self.coefficients[0].sine_and_cosine(self.exact);
+        let begun = |f: fn((C, C)) -> C| {
+            let begun = self.integrated(first.map(|values| (f(values), None)), |_, _| Some(C::ZERO));
+            Jet { terms: 1, ..begun }
+        };
+        let (mut sine, mut cosine) = (begun(|v| v.0), begun(|v| v.1));
+        if let Some(x) = self.exact.filter(|x| x.numerator == 0) {
+            // multiples of π/2
+            let value = |turns: i32| [0, 1, 0, -1][turns.rem_euclid(4) as usize];
+            sine.exact = Exact::ratio(value(x.quarters), 1);
+            cosine.exact = Exact::ratio(value(x.quarters + 1), 1);
+        }
+        if self.terms == 1 {
+            return (sine, cosine);
+        }
+        for k in 1..self.known {
+            let Ok(over) = C::of(Exact { numerator: 1, denominator: k as i128, quarters: 0 }) else { continue };
+            let forward = C::convolution(&slopes[1..=k], &cosine.coefficients[..k]);
+            let backward = C::convolution(&slopes[1..=k], &sine.coefficients[..k]);
+            sine.coefficients[k] = forward * over;
+            cosine.coefficients[k] = -(backward * over);
+        }
+        (Jet { terms: self.known, ..sine }, Jet { terms: self.known, ..cosine })
+    }
+
+    fn tan(self) -> Self {
+        let (sine, cosine) = self.sin_cos();
+        sine / cosine
+    }
+
+    fn sinh(self) -> Self {
+        let (up, down) = self.exponential_pair();
+        (up - down).half()
+    }
+
+    fn cosh(self) -> Self {
+        let (up, down) = self.exponential_pair();
+        (up + down).half()
+    }
+
+    fn tanh(self) -> Self {
+        let (up, down) = self.exponential_pair();
+        (up - down) / (up + down)
+    }
+
+    fn asin(self) -> Self {
+        let slope = (Self::constant_one() - self * self).sqrt().recip();
+        self.inverse_function(Function::Asin, slope)
+    }
+
+    fn acos(self) -> Self {
+        let slope = -(Self::constant_one() - self * self).sqrt().recip();
+        self.inverse_function(Function::Acos, slope)
+    }
+
+    fn atan(self) -> Self {
+        let slope = (Self::constant_one() + self * self).recip();
+        self.inverse_function(Function::Atan, slope)
+    }
+
+    fn asinh(self) -> Self {
+        let slope = (Self::constant_one() + self * self).sqrt().recip();
+        self.inverse_function(Function::Asinh, slope)
+    }
+
+    fn acosh(self) -> Self {
+        let slope = (self * self - Self::constant_one()).sqrt().recip();
+        self.inverse_function(Function::Acosh, slope)
+    }
+
+    fn atanh(self) -> Self {
+        let slope = (Self::constant_one() - self * self).recip();
+        self.inverse_function(Function::Atanh, slope)
+    }
+
+    fn exp(self) -> Self {
+        let slopes = self.slopes();
+        let one = self.exact.filter(|x| x.is_zero()).and_then(|_| Exact::ratio(1, 1));
+        let first = self.coefficients[0].exponential(self.exact).map(|x| (x, one));
+        self.integrated(first, |k, y| Some(C::convolution(&slopes[1..=k], &y[..k])))
+    }
+
+    fn log(self) -> Self {
+        let slope = self.recip();
+        self.inverse_function(Function::Log, slope)
+    }
+
+    fn powf(self, exponent: Self) -> Self {
+        if exponent.terms > 1 || exponent.flaw().is_some() {
+            return (exponent * self.log()).exp();
+        }
+        let first = self.coefficients[0].power(self.exact, exponent.coefficients[0]);
+        self.to_power(first.map(|y| (y, None)), exponent)
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        // the angle of (x, y) has the rate (x y' − y x')/(x² + y²); its value is followed for x > 0 only, as that of atan(y/x)
+        let positive = x.exact.is_some_and(|x| x.is_rational() && x.numerator > 0);
+        if positive { (self / x).atan() } else { Jet { flaw: self.flaw.or(Some(Flaw::InverseFunction)), ..self } }
+    }
+}

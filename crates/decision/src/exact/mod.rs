@@ -1,0 +1,178 @@
+//! Truncated power series whose coefficients are elements of a finite field, or `f64`: the expressions of the graph evaluated on them.
+
+mod jet;
+mod linear;
+mod modular;
+mod rational;
+
+pub(crate) use jet::{Jet, ORDERS};
+pub(crate) use linear::{inverse, subtract_product};
+pub(crate) use modular::{Modular, ORDER, PRIME};
+pub(crate) use rational::Exact;
+
+/// Why a number has no image in the finite field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Flaw {
+    /// A number of the system that is no decimal fraction of moderate length.
+    #[error("a number of the system is no fraction of moderate size")]
+    Number,
+    /// A trigonometric or exponential function of a number that is not rational, or not followed as one.
+    #[error("a sine, cosine or exponential is taken of a number at the start that is not known to be rational")]
+    Angle,
+    /// A root of something else than a product of small primes.
+    #[error("a root is taken of a number at the start that is no rational one made of small primes")]
+    Root,
+    /// A logarithm of a number other than 1.
+    #[error("a logarithm is taken at the start")]
+    Logarithm,
+    /// An inverse function of a number at which its value is not known.
+    #[error("an inverse trigonometric or hyperbolic function is taken at the start")]
+    InverseFunction,
+    /// π outside of trigonometric functions.
+    #[error("the number pi stands outside of sines and cosines")]
+    Pi,
+    /// A division by what is zero, or has the image zero.
+    #[error("something at the start is divided by zero")]
+    Zero,
+}
+
+/// Coefficients of a power series.
+pub(crate) trait Coefficient:
+    Copy
+    + std::fmt::Debug
+    + std::ops::Add<Output = Self>
+    + std::ops::Sub<Output = Self>
+    + std::ops::Mul<Output = Self>
+    + std::ops::Neg<Output = Self>
+{
+    const ZERO: Self;
+    /// Whether functions of constants need these exactly.
+    const FOLLOWED: bool;
+    fn of(x: Exact) -> Result<Self, Flaw>;
+    fn of_float(x: f64) -> Result<Self, Flaw>;
+    /// `None` for 0.
+    fn inverse(self) -> Option<Self>;
+    /// What a pivot is chosen by; 0 for 0.
+    fn weight(self) -> f64;
+    /// `Σ a_i b_{m−1−i}`.
+    fn convolution(a: &[Self], b: &[Self]) -> Self;
+    fn sine_and_cosine(self, exact: Option<Exact>) -> Result<(Self, Self), Flaw>;
+    fn exponential(self, exact: Option<Exact>) -> Result<Self, Flaw>;
+    /// The square root, and that exactly where it is rational.
+    fn root(self, exact: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw>;
+    /// The value of a function whose value is known at few points only.
+    fn inverse_function(
+        self,
+        function: symbolic::Function,
+        exact: Option<Exact>,
+    ) -> Result<(Self, Option<Exact>), Flaw>;
+    /// `self^exponent` where that is no integer.
+    fn power(self, exact: Option<Exact>, exponent: Self) -> Result<Self, Flaw>;
+}
+
+impl Coefficient for Modular {
+    const ZERO: Self = Modular::ZERO;
+    const FOLLOWED: bool = true;
+
+    fn of(x: Exact) -> Result<Self, Flaw> {
+        // a multiple of π stays outside of the value; it is known from the exact number
+        Modular::fraction(x).ok_or(Flaw::Number)
+    }
+
+    fn of_float(_: f64) -> Result<Self, Flaw> {
+        Err(Flaw::Number)
+    }
+
+    fn inverse(self) -> Option<Self> {
+        Modular::inverse(self)
+    }
+
+    fn weight(self) -> f64 {
+        if self.is_zero() { 0.0 } else { 1.0 }
+    }
+
+    fn convolution(a: &[Self], b: &[Self]) -> Self {
+        Modular::convolution(a, b)
+    }
+
+    fn sine_and_cosine(self, exact: Option<Exact>) -> Result<(Self, Self), Flaw> {
+        Modular::sine_and_cosine(exact.ok_or(Flaw::Angle)?)
+    }
+
+    fn exponential(self, exact: Option<Exact>) -> Result<Self, Flaw> {
+        Modular::exponential(exact.ok_or(Flaw::Angle)?)
+    }
+
+    fn root(self, exact: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw> {
+        Modular::root(exact.ok_or(Flaw::Root)?)
+    }
+
+    fn inverse_function(
+        self,
+        function: symbolic::Function,
+        exact: Option<Exact>,
+    ) -> Result<(Self, Option<Exact>), Flaw> {
+        use symbolic::Function::{Acos, Log};
+        let unknown = if function == Log { Flaw::Logarithm } else { Flaw::InverseFunction };
+        let x = exact.ok_or(unknown)?;
+        let quarter = Exact { quarters: 1, ..Exact::ZERO };
+        let one = Exact::ratio(1, 1);
+        match function {
+            Log | Acos if Some(x) == one => Ok((Self::ZERO, Some(Exact::ZERO))),
+            Acos if x.is_zero() => Ok((Self::ZERO, Some(quarter))),
+            Log | Acos => Err(unknown),
+            _ if x.is_zero() => Ok((Self::ZERO, Some(Exact::ZERO))),
+            _ => Err(unknown),
+        }
+    }
+
+    fn power(self, exact: Option<Exact>, _: Self) -> Result<Self, Flaw> {
+        if exact.is_some_and(|x| Some(x) == Exact::ratio(1, 1)) { Ok(Modular::one()) } else { Err(Flaw::Root) }
+    }
+}
+
+impl Coefficient for f64 {
+    const ZERO: Self = 0.0;
+    const FOLLOWED: bool = false;
+
+    fn of(x: Exact) -> Result<Self, Flaw> {
+        Ok(x.to_f64())
+    }
+
+    fn of_float(x: f64) -> Result<Self, Flaw> {
+        Ok(x)
+    }
+
+    fn inverse(self) -> Option<Self> {
+        (self != 0.0).then(|| 1.0 / self)
+    }
+
+    fn weight(self) -> f64 {
+        self.abs()
+    }
+
+    fn convolution(a: &[Self], b: &[Self]) -> Self {
+        a.iter().zip(b.iter().rev()).map(|(a, b)| a * b).sum()
+    }
+
+    fn sine_and_cosine(self, _: Option<Exact>) -> Result<(Self, Self), Flaw> {
+        Ok(self.sin_cos())
+    }
+
+    fn exponential(self, _: Option<Exact>) -> Result<Self, Flaw> {
+        Ok(self.exp())
+    }
+
+    fn root(self, _: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw> {
+        Ok((self.sqrt(), None))
+    }
+
+    fn inverse_function(self, function: symbolic::Function, _: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw> {
+        Ok((function.apply(self), None))
+    }
+
+    fn power(self, _: Option<Exact>, exponent: Self) -> Result<Self, Flaw> {
+        Ok(self.powf(exponent))
+    }
+}

@@ -1,0 +1,84 @@
+//! How a motion of the family leaves the curve.
+
+use mechanics::{State, System};
+
+use crate::exact::{Jet, Modular};
+use crate::proof::Question;
+use crate::series::{MismatchSeries, SeriesStart};
+use crate::start::ExactStart;
+
+/// Orders that are looked at.
+const HIGHEST: usize = 12;
+/// A coefficient under this part of the terms that it is made of counts as zero, where no exact numbers decide.
+const VANISHES: f64 = 1e-9;
+
+/// The leading term of `q_family − q_curve`: `coefficient · (t − t₀)^exponent`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeadingDifference {
+    /// `k + 2`, where the mismatch of accelerations starts with `y_k (t − t₀)^k`.
+    pub exponent: usize,
+    /// `y_k / ((k + 1)(k + 2))`, length n.
+    pub coefficient: Vec<f64>,
+    /// Whether the exponent is proved for the numbers as written: all lower coefficients have the image zero, and this one has not.
+    pub exact: bool,
+}
+
+impl Question<'_> {
+    /// The leading term for the motion of the family that starts at `state` with `constants`; `None` where no coefficient up to the twelfth
+    /// stands out. With an exact start the exponent is looked at in exact numbers, `constants` being the decimals that they are written as.
+    pub fn leading_difference(
+        &self,
+        system: &System,
+        state: &State,
+        exact: Option<&ExactStart>,
+        constants: &[f64],
+    ) -> Option<LeadingDifference> {
+        let start = SeriesStart {
+            parameters: system.parameters.iter().map(|p| Jet::<f64>::of(p.value)).collect(),
+            time: Jet::of(state.t),
+            positions: state.q.iter().map(|&x| Jet::of(x)).collect(),
+            velocities: state.v.iter().map(|&x| Jet::of(x)).collect(),
+        };
+        let (_, series) = self.series(&start, HIGHEST).ok()?;
+        let proved = exact.and_then(|exact| self.proved_order(exact, constants));
+        let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants))?;
+        // decimals that stand for other numbers leave lower terms, of the size of round-off
+        let order = proved.flatten().map_or(seen, |order| order.max(seen));
+        let over = ((order + 1) * (order + 2)) as f64;
+        let coefficient = rows(&series, order).map(|row| value(row, constants).0 / over).collect();
+        Some(LeadingDifference { exponent: order + 2, coefficient, exact: proved == Some(Some(order)) })
+    }
+
+    /// The first order that does not vanish, in exact numbers; `None` where these do not apply.
+    fn proved_order(&self, exact: &ExactStart, constants: &[f64]) -> Option<Option<usize>> {
+        let (start, _) = exact.series().ok()?;
+        let (_, series) = self.series(&start, HIGHEST).ok()?;
+        let constants: Vec<Jet<Modular>> = constants.iter().map(|&c| Jet::of(c)).collect();
+        if constants.iter().any(|c| c.flaw().is_some()) {
+            return None;
+        }
+        let vanishes = |k: usize| {
+            series.accelerations[k].chunks_exact(series.width).all(|row| {
+                let terms = row.iter().zip(constants.iter().map(|c| c.coefficient(0)).chain([Modular::one()]));
+                terms.fold(Modular::ZERO, |sum, (&r, c)| sum + r * c).is_zero()
+            })
+        };
+        Some((0..HIGHEST).find(|&k| !vanishes(k)))
+    }
+}
+
+fn rows(series: &MismatchSeries<f64>, order: usize) -> impl Iterator<Item = &[f64]> {
+    series.accelerations[order].chunks_exact(series.width)
+}
+
+/// `O c + y₀` of one row, and the size of its terms.
+fn value(row: &[f64], constants: &[f64]) -> (f64, f64) {
+    let terms = row.iter().zip(constants.iter().chain(&[1.0])).map(|(r, c)| r * c);
+    terms.fold((0.0, 0.0), |(sum, size), x| (sum + x, size + x.abs()))
+}
+
+fn stands_out(series: &MismatchSeries<f64>, order: usize, constants: &[f64]) -> bool {
+    // terms that cancelled at earlier orders left round-off that is as large as they were
+    let size = (0..=order).flat_map(|k| rows(series, k)).map(|row| value(row, constants).1).fold(0.0_f64, f64::max);
+    rows(series, order).any(|row| value(row, constants).0.abs() > VANISHES * size)
+}

@@ -1,0 +1,37 @@
+//! Expressions as numbers of any kind, parameters among the inputs: so they stay exact where the numbers are.
+
+use symbolic::{CompileError, Expr, Graph, Scalar, Symbol, Tape, Workspace};
+
+use std::collections::HashMap;
+
+/// A tape whose first inputs are the parameters of a system.
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    tape: Tape,
+}
+
+/// A program with registers for numbers of one kind.
+#[derive(Clone, Debug)]
+pub(crate) struct Evaluator<T> {
+    tape: Tape,
+    registers: Workspace<T>,
+    values: Vec<T>,
+}
+
+impl Program {
+    pub(crate) fn new(graph: &Graph, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
+        Ok(Program { tape: graph.compile(inputs, outputs, &HashMap::new())? })
+    }
+
+    pub(crate) fn evaluator<T: Scalar>(&self) -> Evaluator<T> {
+        let values = vec![T::from_f64(0.0); self.tape.outputs()];
+        Evaluator { registers: self.tape.workspace(), values, tape: self.tape.clone() }
+    }
+}
+
+impl<T: Scalar> Evaluator<T> {
+    pub(crate) fn run(&mut self, inputs: &[T]) -> &[T] {
+        self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
+        &self.values
+    }
+}

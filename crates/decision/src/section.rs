@@ -1,0 +1,188 @@
+//! Constants as functions of the start: `c = φ(q, v, t)`, an identity on all of `f = 0`.
+
+use std::collections::HashMap;
+
+use mechanics::{State, System};
+use symbolic::{Expr, Symbol};
+
+use crate::DecisionError;
+use crate::exact::{Coefficient, Exact, Jet, Modular};
+use crate::family::{CostateRate, Family, inputs};
+use crate::program::Program;
+use crate::proof::Question;
+use crate::start::ExactStart;
+
+/// Points at which an identity is tried again after it was found.
+const TRIALS: u64 = 4;
+/// Numerators and denominators of coefficients are at most this.
+const LARGEST: i128 = 1_000_000;
+
+/// Constants with which every start on the constraint has the motion in question.
+///
+/// `c_j = Σ a_{jb} B_b(q, v)` with fractions `a_{jb}` and the momenta `∂L/∂v`, 1 and the velocities as `B_b`. The equations were solved for `a` over
+/// random points of the finite field and hold at four more of these: by chance less often than once in 10^50.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// Names of the constants.
+    pub constants: Vec<String>,
+    /// `φ_j`, as printed expressions.
+    pub expressions: Vec<String>,
+    /// Their values at the start in question.
+    pub values: Vec<f64>,
+}
+
+/// The system with the functions that constants are sought among.
+struct Ansatz<'a> {
+    question: &'a Question<'a>,
+    family: &'a Family,
+    program: Program,
+    functions: Vec<Expr>,
+}
+
+/// Rows `r · a = s` at one point, for the coefficients `a` of all constants.
+type Rows = Vec<Vec<Modular>>;
+
+impl Question<'_> {
+    /// Looks for a section of the set of constants over all starts.
+    ///
+    /// # Errors
+    /// [`DecisionError::Compile`] for expressions with symbols that the system does not have.
+    pub fn section(
+        &self,
+        system: &System,
+        start: &ExactStart,
+        state: &State,
+    ) -> Result<Option<Section>, DecisionError> {
+        let family = self.family();
+        if family.shape.constants != family.shape.costates || family.lift.is_some() {
+            return Ok(None);
+        }
+        let g = &system.graph;
+        let mut functions = g.gradient(system.lagrangian, &system.velocities());
+        functions.push(g.one());
+        functions.extend(g.variables(&system.velocities()));
+        let program = Program::new(g, &inputs(system, &[]), &functions)?;
+        let ansatz = Ansatz { question: self, family, program, functions };
+        let Some(coefficients) = ansatz.solve(start) else { return Ok(None) };
+        let (k, count) = (family.shape.constants, ansatz.functions.len());
+        let mut values: HashMap<Symbol, f64> = system.parameter_values();
+        values.extend(system.values_at(state));
+        let mut section =
+            Section { constants: family.constants().to_vec(), expressions: Vec::new(), values: Vec::new() };
+        for j in 0..k {
+            let terms = ansatz.functions.iter().zip(&coefficients[j * count..(j + 1) * count]).map(|(&b, a)| {
+                let (n, d) = (i64::try_from(a.numerator).unwrap_or(0), i64::try_from(a.denominator).unwrap_or(1));
+                g.mul(g.ratio(n, d), b)
+            });
+            let expression = g.sum(&terms.collect::<Vec<_>>());
+            section.values.push(g.evaluate(expression, &values)?);
+            section.expressions.push(g.plain(expression));
+        }
+        Ok(Some(section))
+    }
+}
+
+impl Ansatz<'_> {
+    /// Coefficients that solve the equations at random points, as fractions, and hold at further ones.
+    fn solve(&self, start: &ExactStart) -> Option<Vec<Exact>> {
+        let unknowns = self.family.shape.constants * self.functions.len();
+        let mut echelon: Vec<(usize, Vec<Modular>)> = Vec::new();
+        let points = (unknowns / self.family.shape.coordinates + 4) as u64;
+        for seed in 0..points {
+            for row in self.rows(start, seed)? {
+                add(&mut echelon, row);
+            }
+        }
+        // a pivot in the last column: 0 = 1
+        if echelon.iter().any(|(pivot, _)| *pivot == unknowns) {
+            return None;
+        }
+        let mut solution = vec![Modular::ZERO; unknowns];
+        let mut rows: Vec<&(usize, Vec<Modular>)> = echelon.iter().collect();
+        rows.sort_by_key(|(pivot, _)| std::cmp::Reverse(*pivot));
+        for (pivot, row) in rows {
+            let mut value = row[unknowns];
+            for (j, &x) in row[..unknowns].iter().enumerate().skip(pivot + 1) {
+                value = value - x * solution[j];
+            }
+            solution[*pivot] = value;
+        }
+        let fractions: Vec<Exact> = solution.iter().map(|&x| fraction(x)).collect::<Option<_>>()?;
+        for seed in points..points + TRIALS {
+            for row in self.rows(start, seed)? {
+                let sum = row.iter().zip(&solution).fold(Modular::ZERO, |sum, (&r, &a)| sum + r * a);
+                if sum != row[unknowns] {
+                    return None;
+                }
+            }
+        }
+        Some(fractions)
+    }
+
+    /// What the equations of the family say about the coefficients at a random point.
+    fn rows(&self, start: &ExactStart, seed: u64) -> Option<Rows> {
+        let point = start.random(seed.wrapping_mul(0x51ed) ^ 0xa11).ok()?;
+        let (curve, _) = self.question.series(&point, 2).ok()?;
+        let functions = self.program.evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
+        let values = self.family.evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
+        if functions.iter().chain(&values).any(|x| x.flaw().is_some()) {
+            return None;
+        }
+        let shape = &self.family.shape;
+        let instant = shape.instant(&values);
+        let (k, size, count) = (shape.costates, shape.unknowns, functions.len());
+        let mut rows = Vec::new();
+        let mut row = |slope: &dyn Fn(usize) -> Modular, rate: &dyn Fn(usize) -> Modular, rest: Modular| {
+            let entries = (0..k).flat_map(|j| functions.iter().map(move |b| (j, b)));
+            let entries = entries.map(|(j, b)| slope(j) * b.coefficient(0) + rate(j) * b.coefficient(1));
+            rows.push(entries.chain([-rest]).collect::<Vec<_>>());
+        };
+        for i in 0..size {
+            // R_η η + J_η̇ η̇ + R₀ = 0, the accelerations being the curve's own
+            let rate = |j: usize| match shape.rates[j] {
+                CostateRate::Unknown(place) => instant.matrix[i * size + place].coefficient(0),
+                CostateRate::Explicit(_) => Modular::ZERO,
+            };
+            row(&|j| instant.by_costate[i * k + j].coefficient(0), &rate, instant.rest[i].coefficient(0));
+        }
+        for (own, kind) in shape.rates.iter().enumerate() {
+            let CostateRate::Explicit(place) = *kind else { continue };
+            let explicit = &instant.explicit[place * (k + 1)..(place + 1) * (k + 1)];
+            let minus = |j: usize| if j == own { -Modular::one() } else { Modular::ZERO };
+            row(&|j| explicit[j].coefficient(0), &minus, explicit[k].coefficient(0));
+        }
+        debug_assert!(rows.iter().all(|row| row.len() == k * count + 1));
+        Some(rows)
+    }
+}
+
+/// Reduces `row` by the echelon form, and adds what is left.
+fn add(echelon: &mut Vec<(usize, Vec<Modular>)>, mut row: Vec<Modular>) {
+    for (pivot, other) in echelon.iter() {
+        let factor = row[*pivot];
+        if !factor.is_zero() {
+            row.iter_mut().zip(other).for_each(|(x, &y)| *x = *x - factor * y);
+        }
+    }
+    let pivot = row.iter().position(|x| !x.is_zero());
+    if let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) {
+        row.iter_mut().for_each(|x| *x = *x * over);
+        echelon.push((pivot, row));
+    }
+}
+
+/// The fraction of small numerator and denominator with the image `x`.
+fn fraction(x: Modular) -> Option<Exact> {
+    let prime = i128::from(crate::exact::PRIME);
+    let (mut r, mut s) = ((prime, i128::from(x.value())), (0_i128, 1_i128));
+    while r.1 > LARGEST {
+        let quotient = r.0 / r.1;
+        r = (r.1, r.0 - quotient * r.1);
+        s = (s.1, s.0 - quotient * s.1);
+    }
+    if s.1.abs() > LARGEST {
+        return None;
+    }
+    let found = Exact::ratio(r.1, s.1)?;
+    (Modular::of(found) == Ok(x)).then_some(found)
+}

@@ -1,0 +1,239 @@
+//! Curves and mismatches as power series in the time since the start.
+
+use symbolic::Scalar;
+
+use crate::curve::Dynamics;
+use crate::exact::{Coefficient, Exact, Flaw, Jet, ORDERS, inverse, subtract_product};
+use crate::family::{CostateRate, Family};
+
+/// Why there are no series.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum NoSeries {
+    #[error("{0}")]
+    Flaw(#[from] Flaw),
+    #[error("the equations of the {of} are singular at the start")]
+    Singular { of: &'static str },
+    #[error("the start of `{name}` is not written")]
+    Unwritten { name: String },
+}
+
+/// A start in numbers of one kind, with their exact values where they are followed.
+#[derive(Clone, Debug)]
+pub(crate) struct SeriesStart<C> {
+    pub(crate) parameters: Vec<Jet<C>>,
+    pub(crate) time: Jet<C>,
+    pub(crate) positions: Vec<Jet<C>>,
+    pub(crate) velocities: Vec<Jet<C>>,
+}
+
+/// `q, v, a` along a curve, up to `s^{orders − 1}`, and what was divided by.
+#[derive(Clone, Debug)]
+pub(crate) struct CurveSeries<C> {
+    /// Parameters, `t`, `q`, `v`, `a`: what a family asks for.
+    pub(crate) inputs: Vec<Jet<C>>,
+    /// Determinant of the equations of the first instant.
+    pub(crate) determinant: C,
+}
+
+pub(crate) fn sound<C: Coefficient>(values: &[Jet<C>]) -> Result<(), NoSeries> {
+    match values.iter().find_map(Jet::flaw) {
+        Some(flaw) => Err(flaw.into()),
+        None => Ok(()),
+    }
+}
+
+fn one<C: Coefficient>() -> Result<C, Flaw> {
+    C::of(Exact { numerator: 1, denominator: 1, quarters: 0 })
+}
+
+/// `t₀ + s`
+fn time<C: Coefficient>(start: &Jet<C>, orders: usize) -> Result<Jet<C>, Flaw> {
+    let mut coefficients = vec![C::ZERO; orders];
+    coefficients[0] = start.coefficient(0);
+    if orders > 1 {
+        coefficients[1] = one()?;
+    }
+    Ok(Jet::series(&coefficients, start.exact()))
+}
+
+/// The order-k coefficients of a row of series.
+pub(crate) fn order<C: Coefficient>(values: &[Jet<C>], k: usize) -> Vec<C> {
+    values.iter().map(|x| x.coefficient(k)).collect()
+}
+
+/// `J Z = −R` order by order: what is known of `J`, and `Z` so far.
+pub(crate) struct SeriesSolve<C> {
+    over: Vec<C>,
+    determinant: C,
+    size: usize,
+    width: usize,
+    pub(crate) solved: Vec<Vec<C>>,
+}
+
+impl<C: Coefficient> SeriesSolve<C> {
+    pub(crate) fn new(matrix: &[Jet<C>], size: usize, width: usize, of: &'static str) -> Result<Self, NoSeries> {
+        let (over, determinant) = inverse(&order(matrix, 0), size, one()?).ok_or(NoSeries::Singular { of })?;
+        Ok(SeriesSolve { over, determinant, size, width, solved: Vec::new() })
+    }
+
+    /// The next order of `Z` (size×width), from `R` at that order.
+    pub(crate) fn next(&mut self, matrix: &[Jet<C>], rest: &[C]) {
+        let k = self.solved.len();
+        let mut right: Vec<C> = rest.iter().map(|&r| -r).collect();
+        for j in 1..=k {
+            subtract_product(&mut right, &order(matrix, j), &self.solved[k - j], self.size, self.width);
+        }
+        let mut z = vec![C::ZERO; right.len()];
+        subtract_product(&mut z, &self.over, &right, self.size, self.width);
+        self.solved.push(z.into_iter().map(|x| -x).collect());
+    }
+}
+
+impl Dynamics {
+    /// The solution through `start` with these free constants, `orders` coefficients of it.
+    pub(crate) fn series<C: Coefficient>(
+        &self,
+        start: &SeriesStart<C>,
+        constants: &[Jet<C>],
+        orders: usize,
+    ) -> Result<CurveSeries<C>, NoSeries>
+    where
+        Jet<C>: Scalar,
+    {
+        let orders = orders.min(ORDERS);
+        let at_start =
+            [&start.parameters[..], std::slice::from_ref(&start.time), &start.positions, &start.velocities, constants]
+                .concat();
+        let first = self.start.evaluator::<Jet<C>>().run(&at_start).to_vec();
+        let exact: Vec<Option<Exact>> = first.iter().map(Jet::exact).collect();
+        if let Some(flaw) = first.iter().find_map(Jet::own_flaw) {
+            return Err(flaw.into());
+        }
+        let mut states: Vec<Vec<C>> = first.iter().map(|y| vec![y.coefficient(0)]).collect();
+        let (mut instant, mut rates) = (self.instant.evaluator::<Jet<C>>(), self.rates.evaluator::<Jet<C>>());
+        let mut solve: Option<SeriesSolve<C>> = None;
+        let size = self.unknowns;
+        loop {
+            let k = states.first().map_or(orders, Vec::len);
+            let mut inputs = start.parameters.clone();
+            inputs.push(time(&start.time, k)?);
+            inputs.extend(states.iter().zip(&exact).map(|(y, exact)| Jet::series(y, *exact)));
+            let values = instant.run(&inputs);
+            sound(values)?;
+            let (matrix, rest) = values.split_at(size * size);
+            if solve.is_none() {
+                solve = Some(SeriesSolve::new(matrix, size, 1, "curve")?);
+            }
+            let Some(solve) = &mut solve else { continue };
+            solve.next(matrix, &order(rest, k - 1));
+            inputs.extend((0..size).map(|i| {
+                let z: Vec<C> = solve.solved.iter().map(|z| z[i]).collect();
+                Jet::series(&z, None)
+            }));
+            let values = rates.run(&inputs);
+            let (rates, point) = values.split_at(self.states);
+            if k < orders {
+                sound(rates)?;
+                let over = C::of(Exact { numerator: 1, denominator: k as i128, quarters: 0 })?;
+                for (y, rate) in states.iter_mut().zip(rates) {
+                    y.push(rate.coefficient(k - 1) * over);
+                }
+                continue;
+            }
+            if let Some(flaw) = point.iter().find_map(Jet::own_flaw) {
+                return Err(flaw.into());
+            }
+            let mut inputs = start.parameters.clone();
+            inputs.push(time(&start.time, orders)?);
+            inputs.extend(point);
+            return Ok(CurveSeries { inputs, determinant: solve.determinant });
+        }
+    }
+}
+
+/// The mismatch `y(s) = O(s) c + y₀(s)` of a family along a curve.
+#[derive(Clone, Debug)]
+pub(crate) struct MismatchSeries<C> {
+    /// `orders[k]`: rows of `[O_k | y₀_k]`, one for each acceleration of the family, constants + 1 wide.
+    pub(crate) orders: Vec<Vec<C>>,
+    /// The same as accelerations of the coordinates, n rows.
+    pub(crate) accelerations: Vec<Vec<C>>,
+    pub(crate) width: usize,
+    pub(crate) determinant: C,
+}
+
+impl Family {
+    /// Its mismatch along `curve`, as many orders as that has.
+    pub(crate) fn series<C: Coefficient>(
+        &self,
+        curve: &CurveSeries<C>,
+        orders: usize,
+    ) -> Result<MismatchSeries<C>, NoSeries>
+    where
+        Jet<C>: Scalar,
+    {
+        let shape = &self.shape;
+        let mut inputs = curve.inputs.clone();
+        if let Some(lift) = &self.lift {
+            inputs.extend(lift.series(&curve.inputs, orders)?);
+        }
+        let values = self.evaluator::<Jet<C>>().run(&inputs).to_vec();
+        sound(&values)?;
+        let instant = shape.instant(&values);
+        let (size, k, width) = (shape.unknowns, shape.costates, shape.constants + 1);
+        let start = self.start(&inputs);
+        sound(&start)?;
+        // η, order by order: k rows of `width`
+        let mut costates: Vec<Vec<C>> = vec![order(&start, 0)];
+        let mut solve = SeriesSolve::new(instant.matrix, size, width, "family")?;
+        let along = |costates: &[Vec<C>], rows: &dyn Fn(usize) -> Vec<C>, rest: &[C], at: usize| {
+            let mut sum = vec![C::ZERO; rest.len() * width];
+            for j in 0..=at {
+                subtract_product(&mut sum, &rows(j), &costates[at - j], k, width);
+            }
+            let mut sum: Vec<C> = sum.into_iter().map(|x| -x).collect();
+            for (i, &r) in rest.iter().enumerate() {
+                sum[(i + 1) * width - 1] = sum[(i + 1) * width - 1] + r;
+            }
+            sum
+        };
+        for at in 0..orders {
+            let rest = along(&costates, &|j| order(instant.by_costate, j), &order(instant.rest, at), at);
+            solve.next(instant.matrix, &rest);
+            let explicit = |j: usize| -> Vec<C> {
+                let rows = instant.explicit.chunks_exact(k + 1);
+                rows.flat_map(|row| order(&row[..k], j)).collect()
+            };
+            let rest: Vec<C> = instant.explicit.chunks_exact(k + 1).map(|row| row[k].coefficient(at)).collect();
+            let explicit = along(&costates, &explicit, &rest, at);
+            let over = C::of(Exact { numerator: 1, denominator: at as i128 + 1, quarters: 0 })?;
+            let mut next = Vec::with_capacity(k * width);
+            for rate in &shape.rates {
+                let (from, place) = match *rate {
+                    CostateRate::Unknown(place) => (&solve.solved[at], place),
+                    CostateRate::Explicit(place) => (&explicit, place),
+                };
+                next.extend(from[place * width..(place + 1) * width].iter().map(|&x| x * over));
+            }
+            costates.push(next);
+        }
+        let rows = |z: &Vec<C>| -> Vec<C> {
+            shape.accelerations.iter().flat_map(|&i| z[i * width..(i + 1) * width].to_vec()).collect()
+        };
+        let unknowns: Vec<Vec<C>> = solve.solved.iter().map(rows).collect();
+        let count = shape.accelerations.len();
+        let accelerations = (0..orders).map(|at| {
+            let mut sum = vec![C::ZERO; shape.coordinates * width];
+            for j in 0..=at {
+                subtract_product(&mut sum, &order(instant.to_acceleration, j), &unknowns[at - j], count, width);
+            }
+            sum.into_iter().map(|x| -x).collect()
+        });
+        Ok(MismatchSeries {
+            accelerations: accelerations.collect(),
+            determinant: solve.determinant,
+            orders: unknowns,
+            width,
+        })
+    }
+}

@@ -1,0 +1,239 @@
+//! The constants' images along a curve: `η(t) = Φ c + φ`, integrated beside it.
+
+use integrate::{Dense, DenseOutput, EvaluationError, Method, Options, Problem, Start, Status, integrate};
+use mechanics::State;
+use nalgebra::{DMatrix, DVector};
+
+use crate::DecisionError;
+use crate::curve::{Curve, Point};
+use crate::family::{CostateRate, Family};
+use crate::lift::Lift;
+use crate::program::Evaluator;
+
+/// The smallest size that a state is held to have.
+const SMALLEST: f64 = 1e-3;
+
+/// What one instant says: the mismatch of accelerations `O c + y₀`, and how long it is.
+pub(crate) struct Mismatch {
+    /// n×(constants + 1), whitened: its Euclidean length is the length in the metric `M` on `ker A`.
+    pub(crate) rows: DMatrix<f64>,
+    /// `√(aᵀ M a)` of the curve's own acceleration.
+    pub(crate) acceleration: f64,
+}
+
+/// `(states of the curve, u, w, Φ, φ)` as a problem for the time loop.
+pub(crate) struct Transport<'a> {
+    family: &'a Family,
+    curve: &'a mut dyn Curve,
+    own: usize,
+    lift: Option<LiftNumbers<'a>>,
+    instant: Evaluator<f64>,
+    inputs: Vec<f64>,
+    values: Vec<f64>,
+    point: Point,
+}
+
+struct LiftNumbers<'a> {
+    lift: &'a Lift,
+    velocities: Evaluator<f64>,
+    accelerations: Evaluator<f64>,
+}
+
+/// `[Δz | η̇]` for every column of `[Φ | φ]`.
+struct Solved {
+    unknowns: DMatrix<f64>,
+    rates: DMatrix<f64>,
+}
+
+fn broken(reason: String) -> EvaluationError {
+    EvaluationError { reason }
+}
+
+impl<'a> Transport<'a> {
+    pub(crate) fn new(family: &'a Family, curve: &'a mut dyn Curve) -> Self {
+        let lift = family.lift.as_ref().map(|lift| LiftNumbers {
+            lift,
+            velocities: lift.velocities.evaluator(),
+            accelerations: lift.accelerations.evaluator(),
+        });
+        Transport {
+            own: curve.states().len(),
+            curve,
+            lift,
+            instant: family.evaluator(),
+            inputs: Vec::new(),
+            values: Vec::new(),
+            point: Point::default(),
+            family,
+        }
+    }
+
+    /// States at the start of the curve.
+    fn start(&mut self) -> Result<Start, DecisionError> {
+        let (t, _) = self.curve.span();
+        let mut y = self.curve.states();
+        let mut rates = vec![0.0; self.own];
+        let fault = |e: EvaluationError| DecisionError::Curve { reason: e.reason };
+        let point = self.curve.point(t, &y, &mut rates).map_err(fault)?;
+        if let Some(numbers) = &self.lift {
+            y.extend(numbers.lift.start(&State { t, q: point.q, v: point.v })?);
+        }
+        let size = y.len() + self.family.shape.costates * (self.family.shape.constants + 1);
+        y.resize(size, 0.0);
+        let mut lifted = vec![0.0; size];
+        self.load(t, &y, &mut lifted).map_err(fault)?;
+        let begin = self.own + self.lifted();
+        y[begin..].copy_from_slice(&self.family.start(&self.inputs));
+        Ok(Start { t, y })
+    }
+
+    fn lifted(&self) -> usize {
+        self.lift.as_ref().map_or(0, |numbers| numbers.lift.parameters + numbers.lift.memory)
+    }
+
+    /// Fills the inputs for `(t, y)`, and the rates of all but `Φ, φ`.
+    fn load(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
+        self.point = self.curve.point(t, &y[..self.own], &mut rates[..self.own])?;
+        self.inputs.clear();
+        self.inputs.extend(self.family.parameters());
+        self.inputs.push(t);
+        self.inputs.extend(&self.point.q);
+        self.inputs.extend(&self.point.v);
+        self.inputs.extend(&self.point.a);
+        let Some(numbers) = &mut self.lift else { return Ok(()) };
+        let Lift { parameters, memory, coordinates, .. } = *numbers.lift;
+        let end = self.own + parameters + memory;
+        self.inputs.extend(&y[self.own..end]);
+        let values = numbers.velocities.run(&self.inputs);
+        let slopes = DMatrix::from_row_slice(coordinates, parameters, &values[..coordinates * parameters]);
+        let rest = DVector::from_column_slice(&values[coordinates * parameters..]);
+        let slopes = slopes.svd(true, true);
+        let least = |rest: &DVector<f64>| {
+            slopes
+                .solve(rest, 1e-13)
+                .map_err(|_| broken(format!("the parameters of the removal are not determined at t = {t}")))
+        };
+        let speeds = -least(&rest)?;
+        self.inputs.extend(speeds.iter());
+        let values = numbers.accelerations.run(&self.inputs);
+        let seconds = -least(&DVector::from_column_slice(&values[..coordinates]))?;
+        rates[self.own..self.own + parameters].copy_from_slice(speeds.as_slice());
+        rates[self.own + parameters..end].copy_from_slice(&values[coordinates..]);
+        self.inputs.extend(seconds.iter());
+        Ok(())
+    }
+
+    /// Solves the family's instant for all columns of `[Φ | φ]`; the inputs are loaded.
+    fn solve(&mut self, t: f64, columns: &DMatrix<f64>) -> Result<Solved, EvaluationError> {
+        let shape = &self.family.shape;
+        self.values.clear();
+        self.values.extend(self.instant.run(&self.inputs));
+        let instant = shape.instant(&self.values);
+        let (size, k, last) = (shape.unknowns, shape.costates, shape.constants);
+        let matrix = DMatrix::from_row_slice(size, size, instant.matrix);
+        let mut right = DMatrix::from_row_slice(size, k, instant.by_costate) * columns;
+        for (r, rest) in right.column_mut(last).iter_mut().zip(instant.rest) {
+            *r += rest;
+        }
+        let unknowns = matrix.lu().solve(&-right).filter(|z| z.iter().all(|x| x.is_finite()));
+        let singular =
+            || broken(format!("the equations of the {} family are singular at t = {t}", self.family.formulation));
+        let unknowns = unknowns.ok_or_else(singular)?;
+        let mut rates = DMatrix::zeros(k, last + 1);
+        for (i, rate) in shape.rates.iter().enumerate() {
+            match *rate {
+                CostateRate::Unknown(place) => rates.row_mut(i).copy_from(&unknowns.row(place)),
+                CostateRate::Explicit(place) => {
+                    let row = &instant.explicit[place * (k + 1)..(place + 1) * (k + 1)];
+                    rates.row_mut(i).copy_from(&(DMatrix::from_row_slice(1, k, &row[..k]) * columns));
+                    rates[(i, last)] += row[k];
+                }
+            }
+        }
+        Ok(Solved { unknowns, rates })
+    }
+
+    fn columns(&self, y: &[f64]) -> DMatrix<f64> {
+        let shape = &self.family.shape;
+        DMatrix::from_row_slice(shape.costates, shape.constants + 1, &y[self.own + self.lifted()..])
+    }
+
+    /// Integrates to the end of the curve.
+    /// `None` where there is nothing to integrate.
+    pub(crate) fn run(&mut self, tolerance: f64) -> Result<Option<DenseOutput>, DecisionError> {
+        let start = self.start()?;
+        if start.y.is_empty() {
+            return Ok(None);
+        }
+        let (_, end) = self.curve.span();
+        let options = Options {
+            method: Method::Dop853,
+            dense: Dense::Everywhere,
+            sizes: self.sizes(&start, end)?,
+            ..Options::with_tolerance(tolerance)
+        };
+        let solution = integrate(self, &start, end, &options)?;
+        match solution.status {
+            Status::Completed => Ok(Some(solution.dense)),
+            Status::Stopped { cause, t } => Err(DecisionError::Curve { reason: format!("{cause} (at t = {t})") }),
+        }
+    }
+
+    /// The size of each state by its start and its rate there, where that is under 1; at least a thousandth: round-off is no size.
+    fn sizes(&mut self, start: &Start, end: f64) -> Result<Vec<f64>, DecisionError> {
+        let mut rates = vec![0.0; start.y.len()];
+        self.rates(start.t, &start.y, &mut rates).map_err(|e| DecisionError::Curve { reason: e.reason })?;
+        let way = (end - start.t).abs();
+        let size = |(y, rate): (&f64, &f64)| (y.abs() + rate.abs() * way).clamp(SMALLEST, 1.0);
+        Ok(start.y.iter().zip(&rates).map(size).collect())
+    }
+
+    /// The mismatch at `t` of what was integrated.
+    pub(crate) fn mismatch(&mut self, dense: Option<&DenseOutput>, t: f64) -> Result<Mismatch, DecisionError> {
+        let fault = |reason: String| DecisionError::Curve { reason };
+        let mut y = vec![0.0; self.dimension()];
+        if let Some(dense) = dense {
+            dense.try_evaluate(t, &mut y).map_err(|e| fault(e.to_string()))?;
+        }
+        let mut rates = vec![0.0; y.len()];
+        self.load(t, &y, &mut rates).map_err(|e| fault(e.reason))?;
+        let solved = self.solve(t, &self.columns(&y)).map_err(|e| fault(e.reason))?;
+        let shape = &self.family.shape;
+        let instant = shape.instant(&self.values);
+        let (n, h) = (shape.coordinates, shape.constraints);
+        let to_acceleration = DMatrix::from_row_slice(n, shape.accelerations.len(), instant.to_acceleration);
+        let mismatch = to_acceleration * solved.unknowns.select_rows(&shape.accelerations);
+        // on ker A, where alone M has to be positive
+        let mut inside = DMatrix::identity(n, n);
+        if h > 0 {
+            let normal = DMatrix::from_row_slice(h, n, instant.jacobian).transpose().qr().q();
+            inside -= &normal * normal.transpose();
+        }
+        let mass = DMatrix::from_row_slice(n, n, instant.mass);
+        let metric = (&inside * &mass * &inside).symmetric_eigen();
+        let roots = DMatrix::from_diagonal(&metric.eigenvalues.map(|x| x.max(0.0).sqrt()));
+        let rows = &metric.eigenvectors * roots * metric.eigenvectors.transpose() * mismatch;
+        let a = DVector::from_column_slice(&self.point.a);
+        Ok(Mismatch { rows, acceleration: a.dot(&(&mass * &a)).max(0.0).sqrt() })
+    }
+}
+
+impl Problem for Transport<'_> {
+    fn dimension(&self) -> usize {
+        self.own + self.lifted() + self.family.shape.costates * (self.family.shape.constants + 1)
+    }
+
+    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
+        self.load(t, y, rates)?;
+        let solved = self.solve(t, &self.columns(y))?;
+        let begin = self.own + self.lifted();
+        for (rate, x) in rates[begin..].iter_mut().zip(solved.rates.transpose().iter()) {
+            *rate = *x;
+        }
+        Ok(())
+    }
+
+    fn jacobian(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), EvaluationError> {
+        Err(broken("the transport of constants has no Jacobian".into()))
+    }
+}

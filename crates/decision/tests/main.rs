@@ -1,0 +1,7 @@
+//! Decisions whose answers are known: of scenes, and of systems with closed forms.
+
+mod closed_forms;
+mod floating;
+mod proofs;
+mod questions;
+mod signs;
