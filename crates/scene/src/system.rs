@@ -37,7 +37,8 @@ pub(super) fn build<'a>(
     let units: Vec<(&str, &str)> = units.iter().map(|(name, unit)| (*name, unit.as_str())).collect();
     let system = System::new(graph, &units);
     names.insert("t", Role::Time, system.graph.variable(system.time), &[]);
-    let mut context = Context { source, root, overrides, names, system, positions: Vec::new(), written: Vec::new(), time: 0.0 };
+    let mut context =
+        Context { source, root, overrides, names, system, positions: Vec::new(), written: Vec::new(), time: 0.0 };
     context.system.parameters = parameters;
     definitions(&mut context)?;
     read_system(&mut context)?;

@@ -6,8 +6,8 @@ use discrete::Composition;
 use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use symbolic::Evaluator;
 use serde::{Serialize, Serializer};
+use symbolic::Evaluator;
 
 use super::cases::{choice, sledge_reference};
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};

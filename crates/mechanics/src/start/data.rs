@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use symbolic::Symbol;
+use symbolic::{Expr, Symbol};
 
 use crate::Removal;
 
