@@ -1,9 +1,13 @@
 //! Arrays of Python as slices, and results as arrays.
 
+use mechanics::System;
 use numpy::{AllowTypeChange, PyArray1, PyArrayDyn, PyArrayLike1, PyArrayLikeDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use symbolic::Expr;
+
+use crate::errors;
 
 /// Anything that numpy reads as numbers, of any shape.
 pub(crate) type Floats<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
@@ -108,4 +112,22 @@ pub(crate) fn columns<'py, 'a>(
         }
     }
     Ok(dict)
+}
+
+/// Expressions of t, q and v of a system at the given points, row after row, and how many points there are.
+pub(crate) fn at_points(
+    system: &System,
+    [t, q, v]: [Floats<'_>; 3],
+    expressions: impl Fn(&System) -> Vec<Expr>,
+) -> PyResult<(Vec<f64>, Option<usize>)> {
+    let n = system.dimension();
+    let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
+    let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
+    let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
+    let mut program = system.evaluator(&inputs, &expressions(system)).map_err(errors::solve)?;
+    let mut values = Vec::new();
+    for i in 0..count.unwrap_or(1) {
+        values.extend_from_slice(program.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));
+    }
+    Ok((values, count))
 }

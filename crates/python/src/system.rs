@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{FloatList, Floats, Rows, array, common, finite, times};
+use crate::arrays::{FloatList, Floats, array, at_points, finite};
 use crate::comparison::{Comparison, check_tolerance, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
@@ -60,29 +60,6 @@ impl System {
     /// The scene. No lock of Python is waited for while it is held.
     fn scene(&self) -> MutexGuard<'_, Scene> {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl System {
-    /// Expressions of t, q and v at the given points, row after row, and how many points there are.
-    fn values(
-        &self,
-        [t, q, v]: [Floats<'_>; 3],
-        expressions: impl Fn(&mechanics::System) -> Vec<symbolic::Expr>,
-    ) -> PyResult<(Vec<f64>, Option<usize>)> {
-        let scene = self.scene();
-        let system = &scene.system;
-        let n = system.dimension();
-        let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
-        let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
-        let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-        let outputs = expressions(system);
-        let mut program = system.evaluator(&inputs, &outputs).map_err(errors::solve)?;
-        let mut values = Vec::new();
-        for i in 0..count.unwrap_or(1) {
-            values.extend_from_slice(program.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));
-        }
-        Ok((values, count))
     }
 }
 
@@ -255,7 +232,7 @@ impl System {
         q: Floats<'_>,
         v: Floats<'_>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (values, count) = self.values([t, q, v], |system| system.constraints.clone())?;
+        let (values, count) = at_points(&self.scene().system, [t, q, v], |system| system.constraints.clone())?;
         array(py, values, count, &[self.scene().system.constraints.len()])
     }
 
@@ -270,7 +247,8 @@ impl System {
         q: Floats<'_>,
         v: Floats<'_>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (values, count) = self.values([t, q, v], |system| system.velocity_hessian().entries().to_vec())?;
+        let (values, count) =
+            at_points(&self.scene().system, [t, q, v], |system| system.velocity_hessian().entries().to_vec())?;
         let n = self.scene().system.dimension();
         array(py, values, count, &[n, n])
     }
