@@ -110,8 +110,6 @@ pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     #[test]
     fn the_target_folder_is_the_one_that_this_program_was_built_into() {
         let (program, target) = (std::env::current_exe().unwrap(), super::target());
@@ -120,10 +118,11 @@ mod tests {
 
     #[test]
     fn an_installed_program_keeps_to_the_users_cache() {
-        let (named, home) = (|| Some("/var/cache/me".into()), || Some("/home/me".into()));
-        assert_eq!(super::cache(named(), home()), Path::new("/var/cache/me/deltaq"));
-        assert_eq!(super::cache(None, home()), Path::new("/home/me/.cache/deltaq"));
-        assert_eq!(super::cache(Some("relative".into()), home()), Path::new("/home/me/.cache/deltaq"), "not absolute");
+        let (named, home) = (std::env::temp_dir().join("cache"), std::env::temp_dir().join("me"));
+        let in_home = home.join(".cache").join("deltaq");
+        assert_eq!(super::cache(Some(named.clone()), Some(home.clone())), named.join("deltaq"));
+        assert_eq!(super::cache(None, Some(home.clone())), in_home);
+        assert_eq!(super::cache(Some("relative".into()), Some(home)), in_home, "not absolute");
         assert!(super::cache(None, None).is_absolute());
     }
 }
