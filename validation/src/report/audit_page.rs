@@ -255,8 +255,8 @@ fn equation(f: &Finding) -> String {
     } else {
         let mut table = Table::new(["as printed", &corrected_words(f).trim_end_matches(':').to_lowercase()]);
         let forms = [&f.printed, &f.corrected];
-        let [printed, corrected] = forms.map(|form| form.lines.iter().map(|l| &l.latex).chain(&form.integrals));
-        for (one, two) in printed.zip(corrected) {
+        let [printed, corrected] = forms.map(|form| form.lines.iter().map(|l| &l.latex));
+        for (one, two) in printed.zip(corrected).chain(f.printed.integrals.iter().zip(&f.corrected.integrals)) {
             table.cells([one, two].map(|latex| format!("${latex}$")));
         }
         table.cells(forms.map(|form| format!("residual {}", form_residual(form))));

@@ -47,7 +47,8 @@ impl Table {
 }
 
 fn line(cells: &[String]) -> String {
-    format!("| {} |\n", cells.join(" | "))
+    let cell = |cell: &String| if cell.is_empty() { " |".into() } else { format!(" {cell} |") };
+    format!("|{}\n", cells.iter().map(cell).collect::<String>())
 }
 
 impl fmt::Display for Table {
