@@ -1,13 +1,15 @@
 //! One scene in every formulation, pair by pair.
 
-use mechanics::{Integrability, State, System, integrability};
-use nalgebra::{DMatrix, DVector};
+use mechanics::{Integrability, integrability};
 use scene::Scene;
 
 use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::growth::{Growth, LeadingTerm, growth, leading_term};
-use crate::{Choice, Metric, Motion, Settings, SolveError, constant_names, formulation, setting, solve_choice};
+use crate::{
+    Choice, Membership, Metric, Motion, Settings, SolveError, constant_names, formulation, membership, setting,
+    solve_choice,
+};
 
 /// A choice and what became of it.
 pub struct Run {
@@ -61,6 +63,8 @@ pub struct Comparison {
     pub pairs: Vec<Pair>,
     /// Fits of free constants.
     pub fits: Vec<Fit>,
+    /// Is Chetaev's motion vakonomic for some `μ₀`? `None` where there is no constraint, or one of the two has no motion.
+    pub membership: Option<Result<Membership, SolveError>>,
 }
 
 impl Comparison {
@@ -129,8 +133,16 @@ pub fn compare(
             pairs.push(pair);
         }
     }
-    let fits = fits(&scene, &mut runs, &pairs, &mut metric, settings)?;
-    Ok(Comparison { scene, integrability, runs, pairs, fits })
+    let end_of = |name: &str| {
+        runs.iter().find(|r| r.choice.formulation == name).and_then(|r| r.outcome.as_ref().ok()).map(Motion::end)
+    };
+    let membership = match (end_of("chetaev"), end_of("vakonomic")) {
+        (Some(end), Some(_)) => membership(&scene, end).transpose(),
+        _ => None,
+    };
+    let decided = membership.as_ref().and_then(|m| m.as_ref().ok()).map(|m| m.decision.set.point.clone());
+    let fits = fits(&scene, &mut runs, &pairs, decided, &mut metric, settings)?;
+    Ok(Comparison { scene, integrability, runs, pairs, fits, membership })
 }
 
 /// The costate form is the vakonomic motion once more, and compared with that only; a run from outside the table with Chetaev only.
@@ -148,6 +160,7 @@ fn fits(
     scene: &Scene,
     runs: &mut [Run],
     pairs: &[Pair],
+    decided: Option<Vec<f64>>,
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Vec<Fit>, SolveError> {
@@ -166,21 +179,29 @@ fn fits(
     let mut fits = Vec::new();
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
-        if pairs.iter().find(pair).is_some_and(|p| p.gap.verdict == Verdict::Different)
-            && let Some(fitted) = fit_run(scene, runs, run, target, metric, settings)?
-        {
+        let Some(pair) = pairs.iter().find(pair).filter(|p| p.gap.verdict == Verdict::Different) else { continue };
+        if let Some(mut fitted) = fit_run(scene, runs, run, target, decided.as_deref(), metric, settings)? {
+            // a search is no reason to go farther away
+            if let (Some(found), Ok(motion)) = (&mut fitted, &runs[run].outcome)
+                && found.gap.largest > pair.gap.largest
+            {
+                let values = found.constants.iter_mut().zip(&motion.constants);
+                values.for_each(|((_, value), unfitted)| *value = *unfitted);
+                found.gap = pair.gap.clone();
+            }
             fits.push(Fit { run, target, fitted });
         }
     }
     Ok(fits)
 }
 
-/// Outer `None`: there is nothing to fit. Inner `None`: no constants lead to a motion.
+/// `decided` is the least-norm element of the decided set, or the nearest miss. Outer `None`: there is nothing to fit. Inner `None`: no constants lead to a motion.
 fn fit_run(
     scene: &Scene,
     runs: &mut [Run],
     run: usize,
     target: usize,
+    decided: Option<&[f64]>,
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Option<Option<FittedMotion>>, SolveError> {
@@ -194,7 +215,7 @@ fn fit_run(
         guesses.push(constants);
     }
     if runs[run].choice.formulation == "vakonomic" {
-        guesses.extend(costate_free_guess(&scene.system, &scene.start));
+        guesses.extend(decided.map(<[f64]>::to_vec));
     }
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
     let Some(mut motion) = best_fit(setting(scene), &equations, goal, &guesses, metric, settings)? else {
@@ -203,19 +224,4 @@ fn fit_run(
     let gap = compare_motions(goal, &mut motion, metric)?;
     let names = constant_names(&motion.equations);
     Ok(Some(Some(FittedMotion { constants: names.into_iter().zip(motion.constants.clone()).collect(), gap })))
-}
-
-/// The `μ₀` that makes the costate `L_v + Aᵀ μ₀` smallest: where a vakonomic motion can be a Chetaev one, it often is this.
-fn costate_free_guess(system: &System, start: &State) -> Option<Vec<f64>> {
-    let system = system.clone();
-    let g = &system.graph;
-    let mut values = system.parameter_values();
-    values.extend(system.values_at(start));
-    let number = |&e: &symbolic::Expr| g.evaluate(e, &values).ok();
-    let momenta: Option<Vec<f64>> = g.gradient(system.lagrangian, &system.velocities()).iter().map(number).collect();
-    let jacobian = system.constraint_jacobian();
-    let entries: Option<Vec<f64>> = jacobian.entries().iter().map(number).collect();
-    let a = DMatrix::from_row_slice(jacobian.rows(), jacobian.columns(), &entries?);
-    let solution = a.transpose().svd(true, true).solve(&-DVector::from_vec(momenta?), 1e-12).ok()?;
-    Some(solution.as_slice().to_vec())
 }

@@ -1,5 +1,6 @@
 //! Why a motion could not be computed.
 
+use decision::DecisionError;
 use discrete::DiscreteError;
 use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError};
@@ -18,6 +19,9 @@ pub enum SolveError {
     /// Start values of the formulation's own states could not be found.
     #[error(transparent)]
     Start(#[from] StartError),
+    /// Whether a motion is one of another formulation could not be decided.
+    #[error(transparent)]
+    Decision(#[from] DecisionError),
     /// The derived equations contain an unknown symbol.
     #[error("the derived equations cannot be compiled: {0}")]
     Compile(#[from] CompileError),

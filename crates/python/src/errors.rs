@@ -47,6 +47,7 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::ConstantNotFinite { .. }
         | Error::NoNaturalCondition { .. }
         | Error::Horizon { .. }
+        | Error::Decision(_)
         | Error::Discrete(_)
         | Error::NoPrinciple { .. }
         | Error::Step { .. }

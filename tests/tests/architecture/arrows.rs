@@ -40,6 +40,7 @@ const ALLOWED: [(&str, &[&str]); 22] = [
             "scene",
             "discrete",
             "integrate",
+            "decision",
             "equations",
             "chetaev",
             "vakonomic",

@@ -3,6 +3,7 @@
 mod audit_page;
 mod bench_page;
 mod files;
+mod membership;
 mod numbers;
 mod overview;
 mod pictures;

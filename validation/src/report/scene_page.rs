@@ -5,9 +5,8 @@ use std::fmt::Write;
 use anyhow::Result;
 use deltaq::{Comparison, EquationStyle, Pair, Verdict, equations_text};
 
-use crate::report::Table;
 use crate::report::numbers::{enumerate, precise, short};
-use crate::report::tables;
+use crate::report::{Table, membership, tables};
 use random::substitution;
 
 /// The answer in a few sentences: do the formulations agree; if not, from when, by how much, and why.
@@ -51,23 +50,8 @@ pub fn answer(comparison: &Comparison) -> String {
             sentences.push(format!("No motion: {error}."));
         }
     }
-    sentences.extend(best_multipliers(comparison));
+    sentences.extend(membership::sentences(comparison));
     sentences.join(" ")
-}
-
-/// What the best vakonomic multipliers leave of the gap to Chetaev.
-fn best_multipliers(comparison: &Comparison) -> Option<String> {
-    let (run, target) = (comparison.run("vakonomic")?, comparison.run("chetaev")?);
-    let fitted = comparison.fits.iter().find(|f| f.run == run && f.target == target)?.fitted.as_ref()?;
-    let constants: Vec<String> = fitted.constants.iter().map(|(_, c)| precise(*c)).collect();
-    let constants = constants.join(", ");
-    Some(match fitted.gap.verdict {
-        Verdict::Same => format!("With μ₀ = ({constants}) the vakonomic motion is the Chetaev motion."),
-        _ => format!(
-            "The vakonomic motion closest to Chetaev's that was found, μ₀ = ({constants}), still leaves a gap of {}.",
-            short(fitted.gap.largest)
-        ),
-    })
 }
 
 /// Why the motions part, or do not.

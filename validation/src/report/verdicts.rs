@@ -3,6 +3,8 @@
 use deltaq::{Comparison, Ending, Verdict};
 use serde_json::{Map, Value, json};
 
+use crate::report::membership;
+
 /// Relative difference in a time that two runs may have.
 const SAME_TIME: f64 = 1e-3;
 
@@ -57,7 +59,13 @@ fn scene(comparison: &Comparison) -> Value {
             json!({ "run": label(f.run), "target": label(f.target), "verdict": verdict })
         })
         .collect();
-    json!({ "integrability": comparison.integrability.to_string(), "runs": runs, "pairs": pairs, "fits": fits })
+    json!({
+        "integrability": comparison.integrability.to_string(),
+        "runs": runs,
+        "pairs": pairs,
+        "multipliers": membership::value(comparison),
+        "fits": fits,
+    })
 }
 
 /// Four significant digits.
