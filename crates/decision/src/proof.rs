@@ -147,6 +147,9 @@ impl Ranks {
     }
 }
 
+/// A random start with its series and their ranks.
+type Sampled = (SeriesStart<Modular>, CurveSeries<Modular>, MismatchSeries<Modular>, Ranks);
+
 /// Equations of a curve and a family of motions, ready for series.
 #[derive(Clone)]
 pub struct Question<'a> {
@@ -240,7 +243,7 @@ impl<'a> Question<'a> {
 
     fn generic(&self, start: &ExactStart) -> Finding {
         let orders = self.orders();
-        let mut found: Vec<(SeriesStart<Modular>, CurveSeries<Modular>, MismatchSeries<Modular>, Ranks)> = Vec::new();
+        let mut found: Vec<Sampled> = Vec::new();
         for seed in SEEDS {
             let series = match start.random(seed) {
                 Ok(exact) => self.series(&exact, orders).map(|(curve, series)| (exact, curve, series)),

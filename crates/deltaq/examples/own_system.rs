@@ -6,10 +6,11 @@ use scene::Scene;
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::parse("disc-on-slope", &std::fs::read_to_string("disc-on-slope.toml")?)?;
     let settings = Settings::default();
-    for choice in choices(&scene) {
-        let mut motion = solve_choice(&scene, &choice, &settings)?;
+    let choices = choices(&scene);
+    for choice in &choices {
+        let mut motion = solve_choice(&scene, choice, &settings)?;
         println!("{}: x(2) = {:.6}", choice.label, motion.at(2.0)?.coordinates[0]); // Chetaev: 1.405317
     }
-    println!("{:.2}", compare(scene, Vec::new(), &settings)?.pairs[0].gap.largest); // 6.58
+    println!("{:.2}", compare(scene, choices, Vec::new(), &settings)?.pairs[0].gap.largest); // 6.58
     Ok(())
 }

@@ -27,8 +27,11 @@ use scene::Scene;
 
 use road::{Outcome, Stage, Trial};
 
+/// A scene by its name, numbers in the place of its own, and what is known of its guards.
+type BuiltIn = (&'static str, &'static [(&'static str, f64)], Guards);
+
 /// Built-in scenes, with numbers of one size where the built-in ones are not.
-const SCENES: [(&str, &[(&str, f64)], Guards); 10] = [
+const SCENES: [BuiltIn; 10] = [
     ("sledge", &[], Guards::None),
     ("ball-in-cone", &[("a", 0.6)], Guards::Some),
     ("heisenberg", &[], Guards::None),

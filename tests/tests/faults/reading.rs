@@ -230,7 +230,8 @@ impl<'a> Reader<'a> {
                     continue;
                 };
                 let bent: Vec<f64> = (0..a.len()).map(|i| a[i] - 2.0 * b[i] + c[i]).collect();
-                guarded.push(!(largest(&bent) < 1e-11 * (1.0 + largest(&b))));
+                let straight = largest(&bent) < 1e-11 * (1.0 + largest(&b));
+                guarded.push(!straight);
             }
         }
         Ok(guarded)

@@ -59,6 +59,9 @@ struct Road {
     near: Option<Vec<f64>>,
 }
 
+/// What judges find with the k-th fault, and how far it leads.
+type WithFault = Box<dyn Fn(usize) -> Result<(Findings, f64), String>>;
+
 /// Work into which faults are put.
 pub struct Trial {
     pub name: String,
@@ -67,7 +70,7 @@ pub struct Trial {
     /// What judges find without a fault.
     pub sound: Findings,
     /// What they find with one, and how far it leads from what is handed over without.
-    pub with_fault: Box<dyn Fn(usize) -> Result<(Findings, f64), String>>,
+    pub with_fault: WithFault,
 }
 
 impl Trial {

@@ -144,9 +144,9 @@ impl<C: Coefficient> Jet<C> {
         self.integrated(first, |k, y| {
             // k u₀ y_k = α Σ_j j u_j y_{k−j} − Σ_{j<k} j y_j u_{k−j}
             let mut sum = alpha * C::convolution(&slopes[1..=k], &y[..k]);
-            for j in 1..k {
+            for (j, &before) in y.iter().enumerate().take(k).skip(1) {
                 let times = C::of(Exact { numerator: j as i128, denominator: 1, quarters: 0 }).ok()?;
-                sum = sum - times * y[j] * self.coefficients[k - j];
+                sum = sum - times * before * self.coefficients[k - j];
             }
             Some(sum * over)
         })
