@@ -3,6 +3,7 @@
 use deltaq::{Settings, choices, compare, solve_choice};
 use scene::Scene;
 
+/// One system in every formulation.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::parse("disc-on-slope", &std::fs::read_to_string("disc-on-slope.toml")?)?;
     let settings = Settings::default();
