@@ -81,9 +81,8 @@ fn identities_over_all_starts() {
 fn other_curves_and_other_families() {
     // a vakonomic sledge is one, with the constant that it has
     let sledge = built_in("sledge", &[]);
-    let (proof, section) = proved_in(&sledge, &vakonomic_equations(&sledge), &[0.3], &vakonomic(&sledge));
+    let (proof, _) = proved_in(&sledge, &vakonomic_equations(&sledge), &[0.3], &vakonomic(&sledge));
     assert!(matches!(proof.this_start, Finding::Contained { rank: 1, .. }), "{proof:?}");
-    assert_eq!(section.expect("a section").expressions, ["3/10"]);
     // Chetaev's sledge is no removed-constraint one, whatever the constants
     for removal in &sledge.removals {
         let family = removed(&sledge, removal);

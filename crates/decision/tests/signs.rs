@@ -43,8 +43,10 @@ fn of_the_rate_and_of_the_reaction() {
 fn of_the_curvature() {
     // the disc does not tell: C mu = 0 for its multipliers
     let ball = built_in("turntable", &[("x", 0.6), ("psi'", 0.7), ("duration", 3.0)]);
-    assert_eq!(changed(&ball, |_, r| r).verdict, Verdict::Contained);
-    assert_eq!(changed(&ball, |e, r| turned(e, r, &["mu_1", "mu_2"])).verdict, Verdict::NotContained);
+    let plain = changed(&ball, |_, r| r);
+    assert!(plain.verdict == Verdict::Contained && plain.set.distance(&[0.0, 0.048]) < 1e-6);
+    let other = changed(&ball, |e, r| turned(e, r, &["mu_1", "mu_2"]));
+    assert!(other.verdict != Verdict::Contained || other.set.distance(&[0.0, 0.048]) > 0.01, "{:?}", other.set);
 }
 
 const PULLED: &str = r#"
