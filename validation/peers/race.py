@@ -146,7 +146,10 @@ class Race:
                                       + v[2] * (v[1] * np.cos(q[2]) - v[0] * np.sin(q[2])))
             self.expected["omega", ""] = a["v", "theta0"]
         else:
-            case.tags, case.start = tags, list(y)
+            # a parameter that nothing depends on is no state of ours: it starts at zero
+            cyclic = {("u", name): x for (kind, name), x in zip(tags, y) if kind == "du" and ("u", name) not in tags}
+            self.expected |= cyclic
+            case.tags, case.start = tags + list(cyclic), [*y, *(0.0 for _ in cyclic)]
 
     def set_everybody_up(self):
         """Derivations, right-hand sides checked; entrant, method and seconds of the derivation for what may be timed."""
@@ -219,7 +222,7 @@ class Race:
                 return None
             other = self.far_better(row, method, slowest, best)
             if other:
-                words = f"{other.method} at {other.tolerance:.0e} is over {HOPELESS} times as fast, with a smaller error"
+                words = f"{other.method} at {short(other.tolerance)} is over {HOPELESS} times as fast, with a smaller error"
             elif slowest > self.effort.slow:
                 words = f"{slowest:.1f} s a run, error {short(best)}"
             else:
@@ -254,7 +257,7 @@ class Race:
             try:
                 rung.seconds = min(rung.seconds, self.ask(rung.entrant, "run", repeat=self.effort.repeat, **about)[0])
             except Refusal as refusal:
-                self.fail(rung.row, f"{rung.method} at {rung.tolerance:.0e}, again", refusal)
+                self.fail(rung.row, f"{rung.method} at {short(rung.tolerance)}, again", refusal)
 
     def totals(self):
         """Ours from the text of the scene, measured as a whole: the candidates, and every method in every form, for one that takes longer to
