@@ -5,7 +5,9 @@ import time
 
 
 def least(call, seconds, own=None):
-    """(least seconds, last answer); at least one repeat, garbage collection off. `own` reads the seconds off an answer."""
+    """(least seconds, last answer); at least one repeat, garbage collection off. `own` reads the seconds off
+    an answer.
+    """
     gc.collect()
     gc.disable()
     try:

@@ -11,7 +11,9 @@ TOTAL = 50
 
 
 def demanded(row):
-    """How much faster ours has to be than the peer of a row: not slower than heyoka, three times as fast as any other."""
+    """How much faster ours has to be than the peer of a row: not slower than heyoka, three times as fast as
+    any other.
+    """
     return 1 if row.startswith("heyoka") else 3
 
 

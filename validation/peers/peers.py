@@ -1,4 +1,6 @@
-"""`cargo xtask peers`: times ours and the peers, writes `reports/peers.md` with its pictures, and everything that was measured as JSON."""
+"""`cargo xtask peers`: times ours and the peers, writes `reports/peers.md` with its pictures, and everything
+that was measured as JSON.
+"""
 
 import argparse
 import datetime

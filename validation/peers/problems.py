@@ -23,7 +23,8 @@ class Case:
     duration: float
     removal: str | None = None
     trailers: int | None = None
-    # (tool, form), ours first; a form is `scene`, derived from the text, or for a train also `reduced` or `multipliers`, both by hand
+    # (tool, form), ours first; a form is `scene`, derived from the text, or for a train also `reduced` or
+    # `multipliers`, both by hand
     entrants: list = field(default_factory=list)
     # what this tool gets
     form: str = "scene"
@@ -43,9 +44,11 @@ class Case:
 
 
 def train(n, duration, bodies=False):
-    """`trailer.toml` with n trailers, coordinates x, y, theta0 ... theta_n, headings evenly from 0.3 to 0 rad.
+    """`trailer.toml` with n trailers, coordinates x, y, theta0 ... theta_n, headings evenly from 0.3 to 0
+    rad.
 
-    Or the same with a place for every body, x, y, theta0, x1, y1, theta1 ..., hitches as constraints: each touches neighbours only.
+    Or the same with a place for every body, x, y, theta0, x1, y1, theta1 ..., hitches as constraints: each
+    touches neighbours only.
     """
     coordinates, definitions, constraints, squares, turns = [], [], [], [], []
     x, y, front = 0.0, 0.0, ("", "")

@@ -1,4 +1,6 @@
-"""One problem, solved by everybody in turns. All errors are computed here, in the kinetic metric, against one reference."""
+"""One problem, solved by everybody in turns. All errors are computed here, in the kinetic metric, against one
+reference.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -25,8 +27,9 @@ OURS = "deltaq"
 
 
 class Effort(NamedTuple):
-    """Tolerances 10^-k: every how many-th k; turns of everybody; seconds of repeats in a turn; a run that takes longer is the last one of its
-    method; seconds that a single question may take."""
+    """Tolerances 10^-k: every how many-th k; turns of everybody; seconds of repeats in a turn; a run that
+    takes longer is the last one of its method; seconds that a single question may take.
+    """
 
     step: int = 1
     rounds: int = 2
@@ -40,7 +43,9 @@ QUICK = Effort(step=2, rounds=1, repeat=0.02, slow=0.3, limit=30)
 
 @dataclass
 class Rung:
-    """A method at a tolerance: seconds of the derivation, of what else comes before the first run, and of a run; of ours also of all as a whole."""
+    """A method at a tolerance: seconds of the derivation, of what else comes before the first run, and of a
+    run; of ours also of all as a whole.
+    """
 
     row: str
     entrant: tuple
@@ -76,7 +81,9 @@ def row_of(case, entrant, method=""):
 
 
 class Race:
-    """What was found, for the page: `setups` and `checks` by row, `rungs`, `failures`; `reference`, how far our tightest run is from it, or why not."""
+    """What was found, for the page: `setups` and `checks` by row, `rungs`, `failures`; `reference`, how far
+    our tightest run is from it, or why not.
+    """
 
     def __init__(self, case, effort):
         self.case, self.effort, self.workers = replace(case), effort, {}
@@ -146,10 +153,15 @@ class Race:
                                       + v[2] * (v[1] * np.cos(q[2]) - v[0] * np.sin(q[2])))
             self.expected["omega", ""] = a["v", "theta0"]
         else:
-            case.tags, case.start = tags, list(y)
+            # a parameter that nothing depends on is no state of ours: it starts at zero
+            cyclic = {("u", name): x for (kind, name), x in zip(tags, y) if kind == "du" and ("u", name) not in tags}
+            self.expected |= cyclic
+            case.tags, case.start = tags + list(cyclic), [*y, *(0.0 for _ in cyclic)]
 
     def set_everybody_up(self):
-        """Derivations, right-hand sides checked; entrant, method and seconds of the derivation for what may be timed."""
+        """Derivations, right-hand sides checked; entrant, method and seconds of the derivation for what may
+        be timed.
+        """
         methods = []
         for entrant in self.case.entrants:
             row, what = row_of(self.case, entrant), "derivation"
@@ -179,7 +191,9 @@ class Race:
         return np.abs(rates - ours).max() / max(1.0, np.abs(ours).max())
 
     def refer(self):
-        """The reference: heyoka's Taylor method in 113 bits at 1e-28, from expressions that heyoka differentiates itself, confirmed by ours."""
+        """The reference: heyoka's Taylor method in 113 bits at 1e-28, from expressions that heyoka
+        differentiates itself, confirmed by ours.
+        """
         entrant = ("heyoka", "reduced" if self.case.trailers else "scene")
         about = {"method": "Taylor, 113 bits", "tolerance": 1e-28, "task": "trajectory"}
         _, self.truth = self.ask(entrant, "run", "reference", **about)
@@ -219,7 +233,7 @@ class Race:
                 return None
             other = self.far_better(row, method, slowest, best)
             if other:
-                words = f"{other.method} at {other.tolerance:.0e} is over {HOPELESS} times as fast, with a smaller error"
+                words = f"{other.method} at {short(other.tolerance)} is over {HOPELESS} times as fast, with a smaller error"
             elif slowest > self.effort.slow:
                 words = f"{slowest:.1f} s a run, error {short(best)}"
             else:
@@ -254,11 +268,12 @@ class Race:
             try:
                 rung.seconds = min(rung.seconds, self.ask(rung.entrant, "run", repeat=self.effort.repeat, **about)[0])
             except Refusal as refusal:
-                self.fail(rung.row, f"{rung.method} at {rung.tolerance:.0e}, again", refusal)
+                self.fail(rung.row, f"{rung.method} at {short(rung.tolerance)}, again", refusal)
 
     def totals(self):
-        """Ours from the text of the scene, measured as a whole: the candidates, and every method in every form, for one that takes longer to
-        integrate may be derived sooner."""
+        """Ours from the text of the scene, measured as a whole: the candidates, and every method in every
+        form, for one that takes longer to integrate may be derived sooner.
+        """
         chosen = {id(rung): rung for rung in self.candidates()}
         # the derivation of a long train takes seconds
         if not self.case.trailers:
@@ -278,7 +293,9 @@ class Race:
 
 
 def tags_of(states, coordinates, removal):
-    """What our states are, in the words that all tools understand; `removal` has the parameters and the memory variables."""
+    """What our states are, in the words that all tools understand; `removal` has the parameters and the
+    memory variables.
+    """
     parameters, memory = removal or ((), ())
     counted, tags = 0, []
     for state in states:

@@ -1,4 +1,6 @@
-"""Ours, through the Python module. Runs are timed by the module's own clock, which leaves out the call from Python and the start of a thread."""
+"""Ours, through the Python module. Runs are timed by the module's own clock, which leaves out the call from
+Python and the start of a thread.
+"""
 
 import deltaq
 

@@ -1,4 +1,6 @@
-"""A tool as a process of its own, asked through a pipe: so tools take turns, and one that is too slow can be ended."""
+"""A tool as a process of its own, asked through a pipe: so tools take turns, and one that is too slow can be
+ended.
+"""
 
 import importlib
 import multiprocessing
@@ -16,10 +18,11 @@ LOADING = 120
 class Work:
     """A tool with a case. `with_NAME.py` has a class Tool with
 
-    setup(case), the derivation, which hands back seconds that do not count; methods(case), their names; rates(), (tags, rates) at the start;
-    shared(method), a name and a call, what has to be done once for several tolerances or methods; prepare(method, tolerance, times), what else
-    has to be done before a run; run(method, tolerance, times), a call that integrates, and a function from what it hands back to a table of
-    coordinates. A tool that has a clock of its own says so by `seconds(answer)`.
+    setup(case), the derivation, which hands back seconds that do not count; methods(case), their names;
+    rates(), (tags, rates) at the start; shared(method), a name and a call, what has to be done once for
+    several tolerances or methods; prepare(method, tolerance, times), what else has to be done before a run;
+    run(method, tolerance, times), a call that integrates, and a function from what it hands back to a table
+    of coordinates. A tool that has a clock of its own says so by `seconds(answer)`.
     """
 
     def __init__(self, name):
