@@ -40,6 +40,7 @@ pub fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
     let choices = choices(&scene);
     let control = substitution::run(&scene, &choices, settings).into_iter().collect();
     let mut comparison = compare(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))?;
+    comparison.keep_closer();
     let mut files = pictures(&mut comparison).with_context(|| format!("pictures of scene `{name}`"))?;
     let links: Vec<String> =
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();

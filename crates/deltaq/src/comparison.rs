@@ -73,6 +73,23 @@ impl Comparison {
         self.runs.iter().position(|r| r.choice.formulation == formulation)
     }
 
+    /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: fits minimize the sum of squares, not the
+    /// largest gap, and a search is no reason to go farther away.
+    pub fn keep_closer(&mut self) {
+        for fit in &mut self.fits {
+            let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));
+            let pair = self.pairs.iter().find(|p| (p.first, p.second) == (first, second));
+            let (Some(found), Some(pair), Ok(motion)) = (&mut fit.fitted, pair, &self.runs[fit.run].outcome) else {
+                continue;
+            };
+            if found.gap.largest > pair.gap.largest {
+                let values = found.constants.iter_mut().zip(&motion.constants);
+                values.for_each(|((_, value), own)| *value = *own);
+                found.gap = pair.gap.clone();
+            }
+        }
+    }
+
     /// The pair of two runs, in either order.
     pub fn pair(&self, a: usize, b: usize) -> Option<&Pair> {
         self.pairs.iter().find(|p| (p.first, p.second) == (a, b) || (p.first, p.second) == (b, a))
@@ -179,16 +196,9 @@ fn fits(
     let mut fits = Vec::new();
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
-        let Some(pair) = pairs.iter().find(pair).filter(|p| p.gap.verdict == Verdict::Different) else { continue };
-        if let Some(mut fitted) = fit_run(scene, runs, run, target, decided.as_deref(), metric, settings)? {
-            // a search is no reason to go farther away
-            if let (Some(found), Ok(motion)) = (&mut fitted, &runs[run].outcome)
-                && found.gap.largest > pair.gap.largest
-            {
-                let values = found.constants.iter_mut().zip(&motion.constants);
-                values.for_each(|((_, value), unfitted)| *value = *unfitted);
-                found.gap = pair.gap.clone();
-            }
+        if pairs.iter().find(pair).is_some_and(|p| p.gap.verdict == Verdict::Different)
+            && let Some(fitted) = fit_run(scene, runs, run, target, decided.as_deref(), metric, settings)?
+        {
             fits.push(Fit { run, target, fitted });
         }
     }
