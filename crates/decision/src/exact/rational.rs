@@ -109,6 +109,7 @@ impl fmt::Display for Exact {
 }
 
 #[cfg(test)]
+#[expect(clippy::approx_constant, reason = "decimals as a scene has them")]
 mod tests {
     use super::*;
 
