@@ -1,5 +1,6 @@
 //! Decisions whose answers are known: of scenes, and of systems with closed forms.
 
+mod classics;
 mod closed_forms;
 mod floating;
 mod proofs;

@@ -14,6 +14,12 @@ pub(crate) fn built_in(name: &str, overrides: &[(&str, f64)]) -> Scene {
     Scene::load_with(&file, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// A system of the literature.
+pub(crate) fn beside(name: &str) -> Scene {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../validation/equivalence/{name}.toml"));
+    Scene::load_with(&file, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A scene from its text, with other numbers.
 pub(crate) fn written(text: &str, overrides: &[(&str, f64)]) -> Scene {
     let overrides: Vec<(String, f64)> = overrides.iter().map(|&(name, value)| (name.into(), value)).collect();
