@@ -1,10 +1,8 @@
 //! The kinetic metric: how far two configurations are apart.
 
-use std::collections::HashMap;
-
 use mechanics::System;
 use nalgebra::DMatrix;
-use symbolic::{CompileError, Graph, Matrix, Symbol, Tape, Workspace};
+use symbolic::{CompileError, Symbol, Tape, Workspace};
 
 /// The length `sqrt(Δqᵀ M Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
 #[derive(Clone)]
@@ -95,16 +93,6 @@ impl Metric {
         let n = self.dimension;
         self.values[n * n..].iter().fold(0.0, |a, f| a.max(f.abs()))
     }
-}
-
-/// The numbers in a matrix of expressions at given values of all its symbols.
-pub(crate) fn numbers(
-    graph: &Graph,
-    matrix: &Matrix,
-    values: &HashMap<Symbol, f64>,
-) -> Result<DMatrix<f64>, CompileError> {
-    let entries: Result<Vec<f64>, CompileError> = matrix.entries().iter().map(|&e| graph.evaluate(e, values)).collect();
-    Ok(DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries?))
 }
 
 pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {

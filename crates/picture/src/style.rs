@@ -83,6 +83,7 @@ impl Style {
             ("vakonomic", Style::Vakonomic),
             ("removed-constraint", Style::RemovedConstraint),
             ("substitution", Style::Substituted),
+            ("kappa", Style::Member(7)),
         ];
         styles.into_iter().find(|(start, _)| name.starts_with(start)).map(|(_, style)| style)
     }

@@ -9,6 +9,9 @@ use super::section::{Entry, Section, Source, Value};
 use crate::{SceneError, SceneErrorKind};
 use mechanics::{Parameter, System};
 
+/// The parameter that can be set in a scene that does not name it.
+const KAPPA: &str = "kappa";
+
 /// Reads everything that makes the system, and the positions at the start.
 pub(super) fn build<'a>(
     source: Source<'a>,
@@ -55,13 +58,19 @@ fn parameters(
     names: &mut Names,
 ) -> Result<Vec<Parameter>, SceneError> {
     let mut parameters = Vec::new();
-    let Some(section) = root.section("parameters")? else { return Ok(parameters) };
-    for entry in section.entries() {
+    let section = root.section("parameters")?;
+    for entry in section.iter().flat_map(Section::entries) {
         names.check(source, graph, entry.key, &entry.key_span)?;
         let given = entry.number()?;
         let symbol = graph.symbol(entry.key);
         parameters.push(Parameter { symbol, value: overrides.get(entry.key).unwrap_or(given) });
         names.insert(entry.key, Role::Parameter, graph.variable(symbol), &[]);
+    }
+    // a number of the family between, which is no part of the system: any scene takes it
+    if let Some(value) = overrides.get(KAPPA) {
+        let symbol = graph.symbol(KAPPA);
+        parameters.push(Parameter { symbol, value });
+        names.insert(KAPPA, Role::Parameter, graph.variable(symbol), &[]);
     }
     Ok(parameters)
 }

@@ -12,7 +12,7 @@ use super::support::{constrained_scenes, regular_removals, scenes};
 /// A formulation's equations as it derived them, nothing left out.
 fn derived(scene: &Scene, name: &str, removal: Option<&Removal>) -> Equations {
     let entry = FORMULATIONS.iter().find(|f| f.name == name).expect("in the table");
-    (entry.derive)(&scene.system, &Derivation { removal, start: None })
+    (entry.derive)(&scene.system, &Derivation { removal, ..Derivation::default() })
         .unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name))
 }
 

@@ -1,6 +1,7 @@
 //! Formulations that must agree: two forms of one, all of them on integrable constraints, and rewritten constraints (T1, T4).
 
-use mechanics::Removal;
+use deltaq::Choice;
+use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 use symbolic::Matrix;
 
@@ -192,4 +193,34 @@ fn costate_form_keeps_to_its_branch_near_a_fold() {
     // read off backwards, far from where it was read last: the start velocities come out again
     let start = at(&mut costate, 0.0);
     must("near a fold: velocities read at the start", largest_difference(&start.velocities, &scene.start.v), 1e-11);
+}
+
+/// `P₀ = −∂(L + μ₀·f)/∂ẇ` for removals by coordinates, with every costate kept, those too that never move; and back.
+#[test]
+fn removals_by_coordinates_are_the_vakonomic_family() {
+    let mut seen = 0;
+    for (name, duration) in
+        [("heisenberg", 2.0), ("disc", 2.0), ("sledge", 0.5), ("three-cylinders", 0.5), ("turntable", 2.0)]
+    {
+        let scene = scene(name, &[("duration", duration)]);
+        let mu0: Vec<f64> = (0..scene.system.constraints.len()).map(|i| 0.7 - 0.45 * i as f64).collect();
+        for removal in deltaq::removals(&scene).expect("removals") {
+            let Some(costates) = deltaq::costates_of(&scene, &removal, &mu0).expect("values") else { continue };
+            seen += 1;
+            let back = deltaq::multipliers_of(&scene, &removal, &costates).expect("values").expect("regular");
+            must(&format!("{name} ({}): μ₀ and back", removal.name), largest_difference(&mu0, &back), 1e-12);
+            let choice = Choice {
+                label: removal.name.clone(),
+                formulation: "removed-constraint",
+                removal: Some(removal.clone()),
+                constants: ConstantsRule::Given(costates),
+            };
+            let mut removed = deltaq::solve_choice(&scene, &choice, &tight()).expect("a motion");
+            let mut other = vakonomic(&scene, &mu0);
+            let end = removed.end().min(other.end());
+            let (one, two) = (at(&mut removed, end).coordinates, at(&mut other, end).coordinates);
+            must(&format!("{name} ({}), t = {end}", removal.name), largest_difference(&one, &two), 1e-8);
+        }
+    }
+    assert!(seen >= 5, "only {seen} removals by coordinates");
 }

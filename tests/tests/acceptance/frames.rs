@@ -80,7 +80,7 @@ fn rates_in_a_frame_are_those_by_maggi_and_those_of_the_costate_form() {
     let outcome = proptest::test_runner::TestRunner::new(config).run(&strategy, |(kind, x)| {
         let text = text(kind, &x);
         let scene = Scene::parse("frame", &text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
-        let derivation = equations::Derivation { removal: None, start: Some(&scene.start) };
+        let derivation = equations::Derivation { removal: None, start: Some(&scene.start), ..Default::default() };
         let form = deltaq::formulation("chetaev-reduced").expect("in the table");
         let reduced = (form.derive)(&scene.system, &derivation).map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = reduced_form::differences(&scene, &reduced, &scene.start);

@@ -71,7 +71,7 @@ fn reduced_rates_are_those_by_maggi_on_every_scene() {
 fn reduced_rates_are_those_by_maggi_on_random_systems() {
     let worst = std::cell::Cell::new(0.0_f64);
     for_all_linear(1894, |scene| {
-        let derivation = equations::Derivation { removal: None, start: Some(&scene.start) };
+        let derivation = equations::Derivation { removal: None, start: Some(&scene.start), ..Default::default() };
         let form = deltaq::formulation("chetaev-reduced").expect("in the table");
         let equations = (form.derive)(&scene.system, &derivation).map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = differences(scene, &equations.leave_out_unneeded(), &scene.start);

@@ -16,7 +16,7 @@ use super::support::{
 };
 
 fn raw(scene: &Scene, name: &str) -> Equations {
-    let derivation = Derivation { removal: None, start: Some(&scene.start) };
+    let derivation = Derivation { removal: None, start: Some(&scene.start), ..Default::default() };
     (formulation(name).expect("in the table").derive)(&scene.system, &derivation).unwrap_or_else(|e| panic!("{e}"))
 }
 

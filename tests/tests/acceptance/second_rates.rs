@@ -125,7 +125,7 @@ fn energy_of_second_order_is_constant() {
 fn a_singular_highest_hessian_is_refused_with_its_rank() {
     let scene = scene("three-cylinders", &[]);
     let paper = super::support::removal(&scene, "paper");
-    let derivation = Derivation { removal: Some(paper), start: None };
+    let derivation = Derivation { removal: Some(paper), ..Derivation::default() };
     let entry = deltaq::formulation("removed-constraint").expect("in the table");
     match (entry.derive)(&scene.system, &derivation) {
         Err(DerivationError::SingularHighestHessian { formulation, removal, second_rates, rank, size }) => {
@@ -161,7 +161,7 @@ duration = 3
 #[test]
 fn a_singular_highest_hessian_is_refused_where_only_some_parameters_are_of_second_order() {
     let scene = Scene::parse("half-blind", HALF_BLIND).unwrap_or_else(|e| panic!("{e}"));
-    let derivation = Derivation { removal: Some(&scene.removals[0]), start: None };
+    let derivation = Derivation { removal: Some(&scene.removals[0]), ..Derivation::default() };
     let entry = deltaq::formulation("removed-constraint").expect("in the table");
     match (entry.derive)(&scene.system, &derivation) {
         Err(DerivationError::SingularHighestHessian { rank, size, .. }) => assert_eq!((rank, size), (1, 2)),

@@ -14,7 +14,7 @@ struct Arrow {
 }
 
 /// What each member may be built on. A member that is not named here may be built on none.
-const ALLOWED: [(&str, &[&str]); 22] = [
+const ALLOWED: [(&str, &[&str]); 23] = [
     ("symbolic", &[]),
     ("mechanics", &["symbolic"]),
     ("scene", &["symbolic", "mechanics"]),
@@ -24,6 +24,7 @@ const ALLOWED: [(&str, &[&str]); 22] = [
     ("equations", &["symbolic", "mechanics"]),
     ("chetaev", &["symbolic", "mechanics", "equations"]),
     ("vakonomic", &["symbolic", "mechanics", "equations"]),
+    ("kappa", &["symbolic", "mechanics", "equations"]),
     ("removed-constraint", &["symbolic", "mechanics", "equations"]),
     // it reads equations and decides; that it can tell one formulation from another, its tests say
     (
@@ -45,6 +46,7 @@ const ALLOWED: [(&str, &[&str]); 22] = [
             "chetaev",
             "vakonomic",
             "removed-constraint",
+            "kappa",
             "reduction",
         ],
     ),

@@ -86,7 +86,8 @@ impl Trial {
 
     fn equations(&self) -> Equations {
         let entry = formulation(self.formulation).unwrap_or_else(|| panic!("no {}", self.formulation));
-        let derived = (entry.derive)(&self.scene.system, &Derivation { removal: self.removal.as_ref(), start: None });
+        let derived =
+            (entry.derive)(&self.scene.system, &Derivation { removal: self.removal.as_ref(), ..Derivation::default() });
         derived.unwrap_or_else(|e| panic!("{}: {e}", self.what))
     }
 

@@ -159,7 +159,8 @@ impl Road {
     }
 
     fn derived(&self) -> Result<Equations, String> {
-        let derivation = Derivation { removal: self.removal.as_ref(), start: Some(&self.scene.start) };
+        let derivation =
+            Derivation { removal: self.removal.as_ref(), start: Some(&self.scene.start), ..Default::default() };
         (self.formulation.derive)(&self.scene.system, &derivation).map_err(|e| e.to_string())
     }
 

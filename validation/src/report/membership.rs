@@ -1,18 +1,18 @@
-//! Words for the decision: is there a `μ₀` with which the vakonomic motion is Chetaev's?
+//! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
-use deltaq::{Answer, Comparison, Membership};
+use deltaq::{Answer, Comparison, Decided, Membership};
 use serde_json::{Value, json};
 
 use crate::report::numbers::{precise, short};
 
 /// Is the answer for a scene of this kind?
 pub(crate) fn is(comparison: &Comparison, wanted: fn(&Answer) -> bool) -> bool {
-    matches!(&comparison.membership, Some(Ok(membership)) if wanted(&membership.answer()))
+    matches!(comparison.membership(), Some(Ok(membership)) if wanted(&membership.answer()))
 }
 
-/// The answer in a few words.
+/// The answer for Chetaev's motion and the multipliers, in a few words.
 pub(crate) fn words(comparison: &Comparison) -> String {
-    match &comparison.membership {
+    match comparison.membership() {
         None => "–".into(),
         Some(Err(_)) => "undecided".into(),
         Some(Ok(membership)) => match membership.answer() {
@@ -28,45 +28,56 @@ pub(crate) fn words(comparison: &Comparison) -> String {
 
 /// Sentences for the head of the page of a scene.
 pub(crate) fn sentences(comparison: &Comparison) -> Vec<String> {
-    let membership = match &comparison.membership {
-        None => return Vec::new(),
-        Some(Err(error)) => return vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
-        Some(Ok(membership)) => membership,
+    let mut sentences: Vec<String> = comparison.decided.iter().map(|decided| sentence(comparison, decided)).collect();
+    if let Some(Ok(membership)) = comparison.membership() {
+        sentences.extend(least_gap(comparison, &membership.answer()));
+    }
+    sentences
+}
+
+fn sentence(comparison: &Comparison, decided: &Decided) -> String {
+    let [family, curve] = [decided.family, decided.curve].map(|i| &comparison.runs[i].choice);
+    let c = if family.removal.is_some() { "P(t₀)" } else { "μ₀" };
+    let (family, motion) = match curve.formulation {
+        "chetaev" => (&family.label, "Chetaev's"),
+        _ => (&family.label, "the vakonomic one"),
+    };
+    let membership = match &decided.outcome {
+        Err(error) => return format!("Whether some {c} makes the {family} motion {motion} is undecided: {error}."),
+        Ok(membership) => membership,
     };
     let decision = &membership.decision;
     let point: Vec<String> = decision.set.point.iter().map(|c| precise(*c)).collect();
     let which = match decision.set.dimension() {
-        0 => format!("μ₀ = ({})", point.join(", ")),
-        d if d == decision.constants.len() => "every μ₀".to_owned(),
-        d => format!("every μ₀ of a set of dimension {d} around ({})", point.join(", ")),
+        0 => format!("{c} = ({})", point.join(", ")),
+        d if d == decision.constants.len() => format!("every {c}"),
+        d => format!("every {c} of a set of dimension {d} around ({})", point.join(", ")),
     };
     let mismatch = format!(
         "the least mismatch of accelerations is {} of the motion's own",
         short(decision.least / decision.acceleration)
     );
-    let mut sentences = vec![match membership.answer() {
+    match membership.answer() {
         Answer::NoneProved { order } => {
-            format!("No μ₀ makes the vakonomic motion Chetaev's: proved (order {order}); {mismatch}.")
+            format!("No {c} makes the {family} motion {motion}: proved (order {order}); {mismatch}.")
         }
         Answer::None { unproved } => {
-            format!("No μ₀ makes the vakonomic motion Chetaev's: {mismatch}; there is no proof, since {unproved}.")
+            format!("No {c} makes the {family} motion {motion}: {mismatch}; there is no proof, since {unproved}.")
         }
         Answer::SomeProved => {
             let section = membership.section.as_ref();
             let reason = section.map_or("proved by ranks that grow no more".to_owned(), |section| {
-                format!("an identity, μ₀ = ({}), for all starts", section.expressions.join(", "))
+                format!("an identity, {c} = ({}), for all starts", section.expressions.join(", "))
             });
-            format!("With {which} the vakonomic motion is the Chetaev motion: {reason}.")
+            format!("With {which} the {family} motion is {motion}: {reason}.")
         }
         Answer::Some { order } => {
-            format!("With {which} the vakonomic motion is the Chetaev motion, {}.", how_far(membership, order))
+            format!("With {which} the {family} motion is {motion}, {}.", how_far(membership, order))
         }
         Answer::Undecided => {
-            format!("Whether some μ₀ gives Chetaev's motion is undecided: round-off hides it, {mismatch}.")
+            format!("Whether some {c} makes the {family} motion {motion} is undecided: round-off hides it, {mismatch}.")
         }
-    }];
-    sentences.extend(least_gap(comparison, &membership.answer()));
-    sentences
+    }
 }
 
 /// What a search over `μ₀` leaves of the gap, where there is none that leaves nothing.
@@ -81,10 +92,22 @@ fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
     Some(format!("The least gap that a search found is {gap}, at μ₀ = ({constants})."))
 }
 
-/// For machines: the answer, its order and the dimension of the set.
+/// For machines: for each family and motion asked about the answer, its order and the dimension of the set.
 pub(crate) fn value(comparison: &Comparison) -> Value {
-    let Some(membership) = &comparison.membership else { return Value::Null };
-    let Ok(membership) = membership else { return json!({ "answer": "undecided" }) };
+    let label = |i: usize| comparison.runs[i].choice.label.clone();
+    let of = |decided: &Decided| {
+        let mut value = match &decided.outcome {
+            Err(error) => json!({ "answer": "undecided", "because": error.to_string() }),
+            Ok(membership) => answer(membership),
+        };
+        value["family"] = label(decided.family).into();
+        value["motion"] = label(decided.curve).into();
+        value
+    };
+    comparison.decided.iter().map(of).collect()
+}
+
+fn answer(membership: &Membership) -> Value {
     let dimension = membership.decision.set.dimension();
     match membership.answer() {
         Answer::NoneProved { order } => json!({ "answer": "none", "proved": true, "order": order }),

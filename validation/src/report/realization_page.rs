@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::{Context, Result};
-use deltaq::{Metric, Motion, Setting, SolveError, choices, setting, solve_choice};
+use deltaq::{Metric, Motion, Setting, Settings, SolveError, choices, setting, solve, solve_choice};
 use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
@@ -13,8 +13,8 @@ use crate::report::numbers::short;
 use crate::report::{File, Table};
 use picture::{Axis, Curve, Picture, Style};
 use random::parallel;
-use random::realization::{Realization, distance, realize, realize_removal};
-use random::{Case, Kind, draw_recipe, free_constants};
+use random::realization::{Realization, distance, realize, realize_removal, with_kappa};
+use random::{Case, Kind, draw_recipe, equations, free_constants};
 
 /// `N`.
 const STRENGTHS: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
@@ -24,6 +24,9 @@ const SCENES: [(&str, f64); 3] = [("sledge", 3.0), ("disc", 3.0), ("ball-in-cone
 
 /// Multipliers of the start where a scene has none, one after the other.
 const MULTIPLIERS: [f64; 2] = [0.4, -0.3];
+
+/// Friction over mass where both act, in 1/s.
+const KAPPA: f64 = 0.5;
 
 /// Random systems on the page: seed and number.
 const SEED: u64 = 8;
@@ -62,6 +65,7 @@ pub struct RealizationReport {
 
 const FRICTION: &str = "friction, to Chetaev";
 const ADDED_MASS: &str = "added mass, to vakonomic";
+const BOTH: &str = "mass and friction, to κ = 0.5";
 const AUGMENTED: &str = "added mass on the augmented system, to removed constraint";
 
 impl RealizationReport {
@@ -100,7 +104,7 @@ impl RealizationReport {
         let within = rates.iter().filter(|r| RATE.contains(r)).count();
         let (least, most) = rates.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
         format!(
-            "Friction leads to Chetaev, added mass to the vakonomic motion, added mass on the augmented system to the removed-constraint motion: \
+            "Friction leads to Chetaev, added mass to the vakonomic motion, both together to the motion between them with κ = friction over mass, added mass on the augmented system to the removed-constraint motion: \
              {within} of {} measured rates are 1 within 0.05 in 1/N (from {} to {}).",
             rates.len(),
             short(least),
@@ -140,6 +144,8 @@ impl RealizationReport {
         page += "A constraint is an idealization. Take it away, and let something strong take its place, of strength $N$:\n\n\
                  - **Friction**: the force $-N A^T f$ on the unconstrained system. As $N \\to \\infty$ the motion tends to Chetaev's.\n\
                  - **Added mass**: $L + \\tfrac12 N f\\cdot f$, started at the momenta $L_v + A^T\\mu_0$. It tends to the vakonomic motion with that $\\mu_0$.\n\
+                 - **Mass and friction**: $L + \\tfrac12 N f\\cdot f$ and the force $-\\kappa N A^T f$, started at the same momenta. It tends to neither of the two, but to \
+                 $\\frac{d}{dt} \\mathcal L_v - \\mathcal L_q = Q - \\kappa A^T \\mu$, $\\mathcal L = L + \\mu\\cdot f$, which is vakonomic at $\\kappa = 0$ and Chetaev's as $\\kappa \\to \\infty$.\n\
                  - **Added mass on the augmented system**: the displacement parameters $u$ of a removal become coordinates of their own, without mass, and the added mass \
                  sits on $\\dot w - B(\\dot u, \\dots)$, started at $\\mu = -P - L_{\\dot w}$. It tends to the removed-constraint motion with that $P(t_0)$, because that is the vakonomic \
                  motion of the augmented system. So this formulation has a realization too, but only with coordinates that the mechanism itself does not have; where every $u$ is a function of the \
@@ -162,7 +168,7 @@ impl RealizationReport {
         );
         let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell"];
         let mut table = Table::new(columns);
-        for name in [FRICTION, ADDED_MASS, AUGMENTED] {
+        for name in [FRICTION, ADDED_MASS, BOTH, AUGMENTED] {
             let (rates, open) = self.random_rates(name);
             if let (Some(least), Some(most)) = (rates.first(), rates.last()) {
                 let [least, median, most] = [*least, rates[rates.len() / 2], *most].map(short);
@@ -234,9 +240,14 @@ fn approaches(
     metric: &mut Metric,
 ) -> Result<Vec<Approach>> {
     let plain = |kind| move |strength| realize(kind, strength, setting, multipliers);
+    let system = with_kappa(setting.system, KAPPA);
+    let (rule, settings) = (ConstantsRule::Given(multipliers.to_vec()), Settings::default());
+    let mut between =
+        solve(Setting { system: &system, ..setting }, equations(&system, "kappa", None)?, &rule, &settings)?;
     Ok(vec![
         approach(FRICTION, Style::Chetaev, chetaev, metric, &plain(Realization::Friction))?,
         approach(ADDED_MASS, Style::Vakonomic, vakonomic, metric, &plain(Realization::AddedMass))?,
+        approach(BOTH, Style::Substituted, &mut between, metric, &plain(Realization::Both { kappa: KAPPA }))?,
         approach(AUGMENTED, Style::RemovedConstraint, removed, metric, &|strength| {
             realize_removal(strength, setting, removal, costates)
         })?,

@@ -197,7 +197,10 @@ fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
         Some(removal) => removal.constants.clone(),
         None => default_constants(entry, scene),
     };
-    let derived = (entry.derive)(&system, &Derivation { removal: removal.as_ref(), start: Some(&scene.start) })?;
+    let derived = (entry.derive)(
+        &system,
+        &Derivation { removal: removal.as_ref(), start: Some(&scene.start), ..Default::default() },
+    )?;
     let equations = derived.leave_out_unneeded();
     let known = match &constants {
         ConstantsRule::Given(_) => &constants,

@@ -1,6 +1,6 @@
 //! T5: how the divergence begins.
 
-use deltaq::{growth, leading_term};
+use deltaq::{Pairing, choices, growth};
 
 use super::CheckError;
 use crate::Case;
@@ -20,9 +20,9 @@ const VISIBLE: f64 = 1e-5;
 
 /// `q_vak − q_chet = ½ Π C μ₀ t²`, or `−⅙ Π C λ₀ t³` where `μ₀ = 0`; constraints linear in the velocities.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
-    let start = case.scene.start.clone();
-    let reaction = case.chetaev.at(start.t)?.multipliers;
-    let Some(predicted) = leading_term(&case.scene.system, &start, &case.scene.multipliers, &reaction)? else {
+    let choices = choices(&case.scene);
+    let Some(predicted) = Pairing::new(&case.scene, &choices[0], &choices[1])?.leading_term(&case.scene.multipliers)?
+    else {
         return Ok(());
     };
     if predicted.length * case.scene.duration.powi(predicted.exponent as i32) < VISIBLE {
