@@ -58,7 +58,7 @@ pub(crate) fn fits(
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
         if pairs.iter().find(pair).is_some_and(|p| p.gap.verdict == Verdict::Different) {
-            let known = by_identity(scene, &runs[run].choice, &runs[target])?;
+            let known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
             let by_identity = known.is_some();
             let nearest = decided.iter().find(|d| (d.family, d.curve) == (run, target));
             let nearest = nearest.and_then(|d| Some(d.outcome.as_ref().ok()?.decision.set.point.clone()));
@@ -71,12 +71,16 @@ pub(crate) fn fits(
     Ok(fits)
 }
 
-/// The constants of a removal by coordinates with which its motion is `target`, vakonomic or of another removal by coordinates.
-fn by_identity(scene: &Scene, choice: &Choice, target: &Run) -> Result<Option<Vec<f64>>, SolveError> {
+/// The constants of a removal by coordinates with which its motion is `target`, vakonomic or of another removal by coordinates; or, where `target` is
+/// Chetaev's, with which it is the vakonomic motion that was fitted to that before.
+fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> Result<Option<Vec<f64>>, SolveError> {
     let (Some(removal), Ok(motion)) = (&choice.removal, &target.outcome) else { return Ok(None) };
     let multipliers = match &target.choice.removal {
         None if target.choice.formulation == "vakonomic" => Some(motion.constants.clone()),
-        None => None,
+        None => {
+            let fitted = before.first().and_then(|fit| fit.fitted.as_ref());
+            fitted.map(|fitted| fitted.constants.iter().map(|(_, mu)| *mu).collect())
+        }
         Some(other) => {
             let mut costates = vec![0.0; other.memory.len()];
             for (constant, value) in motion.equations.free_constants.iter().zip(&motion.constants) {

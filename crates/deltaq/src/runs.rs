@@ -5,7 +5,7 @@ use scene::Scene;
 
 use crate::gap::Gap;
 use crate::growth::{Growth, LeadingTerm};
-use crate::{Choice, Membership, Motion, Pairing, SolveError, constant_names, costates_of};
+use crate::{Choice, Membership, Motion, Pairing, SolveError, constant_names, costates_of, formulation};
 
 /// A choice and what became of it.
 pub struct Run {
@@ -56,7 +56,8 @@ pub(crate) fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<Lead
 /// more than coordinates for their variables.
 pub(crate) fn decided(scene: &Scene, runs: &[Run]) -> Vec<Decided> {
     let end = |i: usize| runs[i].outcome.as_ref().map_or(0.0, Motion::end);
-    let has = |i: &usize| runs[*i].outcome.is_ok() && !scene.system.constraints.is_empty();
+    let known = |i: usize| formulation(runs[i].choice.formulation).is_some();
+    let has = |i: &usize| runs[*i].outcome.is_ok() && known(*i) && !scene.system.constraints.is_empty();
     let of = |name: &str| (0..runs.len()).filter(has).find(|&i| runs[i].choice.formulation == name);
     let own_variables = |i: &usize| {
         let removal = runs[*i].choice.removal.as_ref();

@@ -3,6 +3,7 @@
 use deltaq::{Answer, Comparison, Decided, Membership};
 use serde_json::{Value, json};
 
+use crate::report::Table;
 use crate::report::numbers::{precise, short};
 
 /// Is the answer for a scene of this kind?
@@ -26,57 +27,75 @@ pub(crate) fn words(comparison: &Comparison) -> String {
     }
 }
 
-/// Sentences for the head of the page of a scene.
+/// Sentences for the head of the page of a scene, about multipliers and Chetaev's motion.
 pub(crate) fn sentences(comparison: &Comparison) -> Vec<String> {
-    let mut sentences: Vec<String> = comparison.decided.iter().map(|decided| sentence(comparison, decided)).collect();
-    if let Some(Ok(membership)) = comparison.membership() {
+    let Some(outcome) = comparison.membership() else { return Vec::new() };
+    let mut sentences = match outcome {
+        Err(error) => vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
+        Ok(membership) => match membership.answer() {
+            Answer::NoneProved { .. } | Answer::None { .. } => {
+                vec![format!("No μ₀ makes the vakonomic motion Chetaev's: {}.", reason(membership))]
+            }
+            Answer::Undecided => {
+                vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {}.", reason(membership))]
+            }
+            Answer::SomeProved | Answer::Some { .. } => vec![format!(
+                "With {} the vakonomic motion is the Chetaev motion: {}.",
+                constants(membership, "μ₀"),
+                reason(membership)
+            )],
+        },
+    };
+    if let Ok(membership) = outcome {
         sentences.extend(least_gap(comparison, &membership.answer()));
     }
     sentences
 }
 
-fn sentence(comparison: &Comparison, decided: &Decided) -> String {
-    let [family, curve] = [decided.family, decided.curve].map(|i| &comparison.runs[i].choice);
-    let c = if family.removal.is_some() { "P(t₀)" } else { "μ₀" };
-    let (family, motion) = match curve.formulation {
-        "chetaev" => (&family.label, "Chetaev's"),
-        _ => (&family.label, "the vakonomic one"),
-    };
-    let membership = match &decided.outcome {
-        Err(error) => return format!("Whether some {c} makes the {family} motion {motion} is undecided: {error}."),
-        Ok(membership) => membership,
-    };
-    let decision = &membership.decision;
-    let point: Vec<String> = decision.set.point.iter().map(|c| precise(*c)).collect();
-    let which = match decision.set.dimension() {
+/// Which families have which motions.
+pub(crate) fn table(comparison: &Comparison) -> Table {
+    let mut table = Table::new(["family", "has the motion", "for", "because"]);
+    for decided in &comparison.decided {
+        let [family, curve] = [decided.family, decided.curve].map(|i| &comparison.runs[i].choice);
+        let c = if family.removal.is_some() { "P(t₀)" } else { "μ₀" };
+        let (which, reason) = match &decided.outcome {
+            Err(error) => ("undecided".into(), error.to_string()),
+            Ok(membership) => match membership.answer() {
+                Answer::NoneProved { .. } | Answer::None { .. } => (format!("**no** {c}"), reason(membership)),
+                Answer::SomeProved | Answer::Some { .. } => (constants(membership, c), reason(membership)),
+                Answer::Undecided => ("undecided".into(), reason(membership)),
+            },
+        };
+        table.row(&[&family.label, &curve.label, &which, &reason]);
+    }
+    table
+}
+
+/// The set that was found.
+fn constants(membership: &Membership, c: &str) -> String {
+    let set = &membership.decision.set;
+    let point: Vec<String> = set.point.iter().map(|c| precise(*c)).collect();
+    match set.dimension() {
         0 => format!("{c} = ({})", point.join(", ")),
-        d if d == decision.constants.len() => format!("every {c}"),
+        d if d == membership.decision.constants.len() => format!("every {c}"),
         d => format!("every {c} of a set of dimension {d} around ({})", point.join(", ")),
-    };
-    let mismatch = format!(
-        "the least mismatch of accelerations is {} of the motion's own",
-        short(decision.least / decision.acceleration)
-    );
+    }
+}
+
+fn reason(membership: &Membership) -> String {
+    let decision = &membership.decision;
+    let part = short(decision.least / decision.acceleration);
+    let mismatch = format!("the least mismatch of accelerations is {part} of the motion's own");
     match membership.answer() {
-        Answer::NoneProved { order } => {
-            format!("No {c} makes the {family} motion {motion}: proved (order {order}); {mismatch}.")
-        }
-        Answer::None { unproved } => {
-            format!("No {c} makes the {family} motion {motion}: {mismatch}; there is no proof, since {unproved}.")
-        }
+        Answer::NoneProved { order } => format!("proved (order {order}); {mismatch}"),
+        Answer::None { unproved } => format!("{mismatch}; there is no proof, since {unproved}"),
         Answer::SomeProved => {
-            let section = membership.section.as_ref();
-            let reason = section.map_or("proved by ranks that grow no more".to_owned(), |section| {
-                format!("an identity, {c} = ({}), for all starts", section.expressions.join(", "))
-            });
-            format!("With {which} the {family} motion is {motion}: {reason}.")
+            membership.section.as_ref().map_or("proved by ranks that grow no more".into(), |section| {
+                format!("an identity, ({}), for all starts", section.expressions.join(", "))
+            })
         }
-        Answer::Some { order } => {
-            format!("With {which} the {family} motion is {motion}, {}.", how_far(membership, order))
-        }
-        Answer::Undecided => {
-            format!("Whether some {c} makes the {family} motion {motion} is undecided: round-off hides it, {mismatch}.")
-        }
+        Answer::Some { order } => how_far(membership, order),
+        Answer::Undecided => format!("round-off hides it, {mismatch}"),
     }
 }
 

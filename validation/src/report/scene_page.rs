@@ -127,6 +127,10 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
         page += "Two formulations differ as theories only if they do so for every choice of the constants that the start leaves free. By identity: for a removal by \
                  coordinates $P(t_0) = -\\partial(L + \\mu_0\\cdot f)/\\partial\\dot w$ gives the vakonomic motion, and nothing is searched.\n";
     }
+    if !comparison.decided.is_empty() {
+        let _ = writeln!(page, "\n## Which family has which motion\n\n{}", membership::table(comparison));
+        page += "Decided for this start over the whole run, and proved where it says so: constants $\\mu_0$ or $P(t_0)$, all costates kept.\n";
+    }
     let _ = writeln!(page, "\n## What stays constant\n\n{}", tables::invariants(comparison)?);
     page += &equations(comparison);
     Ok(page)
