@@ -5,7 +5,7 @@ use symbolic::{Expr, Graph};
 use super::context::Context;
 use super::names::{Names, Role};
 use super::overrides::Overrides;
-use super::section::{Entry, Section, Source, Value};
+use super::section::{Entry, Section, Source};
 use crate::{SceneError, SceneErrorKind};
 use mechanics::{Parameter, System};
 
@@ -79,10 +79,7 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
     let Some(section) = context.root.section("definitions")? else { return Ok(()) };
     for entry in section.entries() {
         context.names.check(context.source, &context.system.graph, entry.key, &entry.key_span)?;
-        let e = match entry.value()? {
-            Value::Number(x) => context.system.graph.number(x),
-            Value::Expression(text) => context.parse(&text)?,
-        };
+        let e = context.written(&entry)?;
         context.names.insert(entry.key, Role::Definition, e, &[]);
     }
     Ok(())
@@ -102,10 +99,7 @@ fn read_system(context: &mut Context) -> Result<(), SceneError> {
             let Some(i) = known.iter().position(|name| name == entry.key) else {
                 return Err(entry.unknown_name("coordinate", &known));
             };
-            context.system.forces[i] = match entry.value()? {
-                Value::Number(x) => context.system.graph.number(x),
-                Value::Expression(text) => context.parse(&text)?,
-            };
+            context.system.forces[i] = context.written(&entry)?;
         }
     }
     Ok(())
@@ -158,7 +152,7 @@ fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneEr
         let value = start.value()?;
         let (x, written) = match context.overrides.get(entry.key) {
             Some(x) => (x, context.system.graph.number(x)),
-            None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&value)?),
+            None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&start)?),
         };
         values.insert(symbol, x);
         context.positions.push(x);
