@@ -176,12 +176,14 @@ impl StabilityReport {
 
     fn section(&self, page: &mut String, case: &Case) {
         let cells: Vec<&Cell> = self.cells.iter().filter(|cell| cell.case == case.name).collect();
-        let _ = writeln!(page, "\n## {}\n\n{}\n\n*Reference*: {}.\n", case.name, case.about, case.reference);
+        let _ =
+            writeln!(page, "\n## {}\n\n{}\n\n*Reference*: {}.\n", case.name, case.texts.about, case.texts.reference);
         if DRAWN.iter().any(|(name, _)| *name == case.name) {
-            let _ = writeln!(page, "![Error over {}]({})\n", case.variable, picture_name(case.name));
+            let _ = writeln!(page, "![Error over {}]({})\n", case.texts.variable, picture_name(case.name));
         }
         let methods = Method::ALL.iter().map(|method| format!(">{}", method.name()));
-        let mut table = Table::new([format!(">{}", case.variable), "formulation".into()].into_iter().chain(methods));
+        let mut table =
+            Table::new([format!(">{}", case.texts.variable), "formulation".into()].into_iter().chain(methods));
         for line in cells.chunks(Method::ALL.len()) {
             let words = line.iter().map(|cell| words(&cell.verdict));
             table.cells([short(line[0].point), line[0].formulation.clone()].into_iter().chain(words));
@@ -223,7 +225,7 @@ fn picture_name(case: &str) -> String {
 }
 
 fn variable(case: &str) -> &'static str {
-    CASES.iter().find(|c| c.name == case).map_or("", |c| c.variable)
+    CASES.iter().find(|c| c.name == case).map_or("", |c| &c.texts.variable)
 }
 
 fn words(verdict: &Verdict) -> String {
