@@ -6,31 +6,7 @@ use std::time::Instant;
 
 use crate::support::{self, deltaq};
 
-const GOOD: &str = r#"title = "Particle on a twisted plane field"
-
-[parameters]
-m = 1.0
-
-[coordinates]
-x = { unit = "m", start = 0 }
-y = { unit = "m", start = -1 }
-z = { unit = "m", start = 0 }
-
-[system]
-lagrangian  = "m*(x'^2 + y'^2 + z'^2)/2"
-constraints = ["z' - y*x'"]
-
-[start.velocities]
-"x'" = 1.0
-"y'" = 0.5
-
-[removal.along-x]
-parameters = ["x", "y"]
-rates = { z = "y*x'" }
-
-[run]
-duration = 2
-"#;
+const GOOD: &str = include_str!("good.toml");
 
 const LAGRANGIAN: &str = "m*(x'^2 + y'^2 + z'^2)/2";
 

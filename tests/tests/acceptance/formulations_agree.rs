@@ -162,26 +162,7 @@ fn units_do_not_matter() {
 }
 
 /// Found by random systems (seed 2, index 8808): `∂²𝓛/∂v²` is nearly singular in `q4'`, the equations for `(v, μ)` have another root close by.
-const NEAR_A_FOLD: &str = r#"
-title = "Near a fold of the costate form"
-[coordinates]
-q1 = { start = 0.25 }
-q2 = { start = 0 }
-q3 = { start = 0 }
-q4 = { start = 0 }
-[system]
-lagrangian = "11*q1'^2/16 + 7*q2'^2/8 + 11*q3'^2/16 + q4'^2/2"
-constraints = ["q3'^2 - 9*(3*sin(q1) + 8)^2*(q1'^2 + q2'^2 + q4'^2)/1024"]
-[start.velocities]
-"q1'" = 0.625
-"q2'" = -0.375
-"q3'" = 0.6060893314407467
-"q4'" = -0.125
-[vakonomic]
-multipliers = [0.75]
-[run]
-duration = 1.5
-"#;
+const NEAR_A_FOLD: &str = include_str!("../scenes/near-a-fold.toml");
 
 #[test]
 fn costate_form_keeps_to_its_branch_near_a_fold() {

@@ -153,21 +153,7 @@ fn the_jacobian_goes_through_what_waits_for_the_unknowns() {
 }
 
 /// `L` quartic in the velocities: `w` by Newton's method.
-const QUARTIC: &str = r#"
-title = "Sledge whose momentum grows faster than its speed"
-[coordinates]
-x   = { start = 0 }
-y   = { start = 0 }
-phi = { start = 0.3 }
-[system]
-lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + (x'^2 + y'^2)^2/8 + phi'^4/9 + x"
-constraints = ["y'*cos(phi) - x'*sin(phi)"]
-[start.velocities]
-"phi'" = 1
-"x'" = 0.5
-[run]
-duration = 1
-"#;
+const QUARTIC: &str = include_str!("../scenes/quartic.toml");
 
 #[test]
 fn a_lagrangian_that_is_not_quadratic_is_solved_by_newton() {

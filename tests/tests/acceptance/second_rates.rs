@@ -15,23 +15,7 @@ use scene::Scene;
 
 use super::support::{at, complete, equations, must, must_exceed, removed, scene};
 
-const OSCILLATOR: &str = r#"
-title = "Oscillator in a parameter of second order"
-[parameters]
-epsilon = 0.5
-[coordinates]
-x = { start = 0.8 }
-[system]
-lagrangian = "x'^2/2 - x^2/2"
-constraints = []
-[start.velocities]
-"x'" = -0.3
-[removal.second-order]
-parameters = ["u"]
-direct = { x = "u + epsilon*u'" }
-[run]
-duration = 3
-"#;
+const OSCILLATOR: &str = include_str!("../scenes/oscillator.toml");
 
 const EPSILON: f64 = 0.5;
 const POSITION: f64 = 0.8;
@@ -138,24 +122,7 @@ fn a_singular_highest_hessian_is_refused_with_its_rank() {
     }
 }
 
-const HALF_BLIND: &str = r#"
-title = "Two coordinates from one parameter of second order, and one that does nothing"
-[coordinates]
-x = { start = 0.8 }
-y = { start = 0 }
-[system]
-lagrangian = "(x'^2 + y'^2)/2 - x^2/2"
-constraints = []
-[start.velocities]
-"x'" = -0.3
-"y'" = -0.3
-[removal.half-blind]
-parameters = ["u", "w"]
-direct = { x = "u + u'", y = "u'" }
-start = { u = 0.8, w = 0, "w'" = 0 }
-[run]
-duration = 3
-"#;
+const HALF_BLIND: &str = include_str!("../scenes/half-blind.toml");
 
 /// One parameter has its second rate in `L`, the other not: the Hessian in `(ü, ẇ)` has rank 1.
 #[test]

@@ -1,7 +1,5 @@
 //! The page about realizations.
 
-use std::fmt::Write;
-
 use anyhow::{Context, Result};
 use deltaq::{Metric, Motion, Setting, Settings, SolveError, choices, setting, solve, solve_choice};
 use mechanics::ConstantsRule;
@@ -10,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::catalogue;
 use crate::report::numbers::short;
-use crate::report::{File, Table};
+use crate::report::{File, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use random::parallel;
 use random::realization::{Realization, distance, realize, realize_removal, with_kappa};
@@ -140,42 +138,34 @@ impl RealizationReport {
     }
 
     fn page(&self) -> String {
-        let mut page = format!("# What nature would have to do\n\n**{}**\n\n", self.headline());
-        page += "A constraint is an idealization. Take it away, and let something strong take its place, of strength $N$:\n\n\
-                 - **Friction**: the force $-N A^T f$ on the unconstrained system. As $N \\to \\infty$ the motion tends to Chetaev's.\n\
-                 - **Added mass**: $L + \\tfrac12 N f\\cdot f$, started at the momenta $L_v + A^T\\mu_0$. It tends to the vakonomic motion with that $\\mu_0$.\n\
-                 - **Mass and friction**: $L + \\tfrac12 N f\\cdot f$ and the force $-\\kappa N A^T f$, started at the same momenta. It tends to neither of the two, but to \
-                 $\\frac{d}{dt} \\mathcal L_v - \\mathcal L_q = Q - \\kappa A^T \\mu$, $\\mathcal L = L + \\mu\\cdot f$, which is vakonomic at $\\kappa = 0$ and Chetaev's as $\\kappa \\to \\infty$.\n\
-                 - **Added mass on the augmented system**: the displacement parameters $u$ of a removal become coordinates of their own, without mass, and the added mass \
-                 sits on $\\dot w - B(\\dot u, \\dots)$, started at $\\mu = -P - L_{\\dot w}$. It tends to the removed-constraint motion with that $P(t_0)$, because that is the vakonomic \
-                 motion of the augmented system. So this formulation has a realization too, but only with coordinates that the mechanism itself does not have; where every $u$ is a function of the \
-                 configuration, it is added mass on the constraint itself, with the $\\mu_0$ that belongs to $P(t_0)$.\n\n\
-                 Distances are the largest in the kinetic metric over the second half of the run; the rate is that from $N = 10^3$ to $10^4$. The limits are integrated as everywhere \
-                 else in these reports; the realizations are Newton's equations of an unconstrained system, those with friction by an implicit method.\n";
-        for (name, approaches) in &self.scenes {
-            let _ = writeln!(page, "\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n");
+        let scene = |(name, approaches): &(String, Vec<Approach>)| {
             let mut table = Table::new(["realization", ">$N = 10^2$", ">$10^3$", ">$10^4$", ">$10^5$", ">rate"]);
             for a in approaches {
                 let cells = a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) });
                 let rate = a.rate().map_or("too close to tell".into(), short);
                 table.cells([a.name.to_string()].into_iter().chain(cells).chain([rate]));
             }
-            page += &table.to_string();
-        }
-        let _ = writeln!(
-            page,
-            "\n## Random systems\n\n{COUNT} systems of seed {SEED}, constraints linear or affine and not integrable:\n"
-        );
+            format!("\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n\n{table}")
+        };
         let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell"];
-        let mut table = Table::new(columns);
+        let mut random = Table::new(columns);
         for name in [FRICTION, ADDED_MASS, BOTH, AUGMENTED] {
             let (rates, open) = self.random_rates(name);
             if let (Some(least), Some(most)) = (rates.first(), rates.last()) {
                 let [least, median, most] = [*least, rates[rates.len() / 2], *most].map(short);
-                table.row(&[&name, &least, &median, &most, &rates.len(), &open]);
+                random.row(&[&name, &least, &median, &most, &rates.len(), &open]);
             }
         }
-        page + &table.to_string()
+        fill(
+            include_str!("pages/realization.md"),
+            &[
+                ("headline", &self.headline()),
+                ("scenes", &self.scenes.iter().map(scene).collect::<String>()),
+                ("count", &COUNT),
+                ("seed", &SEED),
+                ("random", &random),
+            ],
+        )
     }
 }
 
