@@ -52,7 +52,7 @@ pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };
 pub use growth::{Growth, LeadingTerm, growth, leading_term};
-pub use membership::{Answer, Membership, membership};
+pub use membership::{Answer, Membership, certificate, membership};
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve};
 pub use prepared::Prepared;

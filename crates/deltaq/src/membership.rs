@@ -1,9 +1,10 @@
 //! Is Chetaev's motion vakonomic for some choice of the multipliers? Decided, not searched, and a no is proved.
 
 use decision::{
-    Decision, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question, Section, Verdict, decide_flow,
+    Certificate, Decision, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question, Section, Verdict,
+    decide_flow,
 };
-use equations::Derivation;
+use equations::{Derivation, Equations};
 use mechanics::System;
 use scene::Scene;
 
@@ -66,6 +67,17 @@ impl Membership {
     }
 }
 
+/// Chetaev's equations, and the family of vakonomic motions.
+fn derived(system: &System) -> Result<(Equations, Family), SolveError> {
+    let curve = chetaev::derive(system, &Derivation::default())?;
+    let without_forces = System { forces: vec![system.graph.zero(); system.dimension()], ..system.clone() };
+    Ok((curve, Family::new(system, &vakonomic::derive(&without_forces, &Derivation::default())?, false)?))
+}
+
+fn exact_start(scene: &Scene) -> Result<ExactStart, SolveError> {
+    Ok(ExactStart::new(&scene.system, &scene.start, &scene.completion, scene.removals.first())?)
+}
+
 /// Decides whether Chetaev's motion of a scene up to `end` is vakonomic; `None` where there is no constraint.
 ///
 /// # Errors
@@ -75,13 +87,23 @@ pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveEr
     if system.constraints.is_empty() {
         return Ok(None);
     }
-    let curve = chetaev::derive(system, &Derivation::default())?;
-    let without_forces = System { forces: vec![system.graph.zero(); system.dimension()], ..system.clone() };
-    let family = Family::new(system, &vakonomic::derive(&without_forces, &Derivation::default())?, false)?;
+    let (curve, family) = derived(system)?;
     let flow = Flow::new(system, &curve, &scene.start, &[], end)?;
     let decision = decide_flow(&family, &flow, &DecisionSettings::default())?;
     let question = Question::new(system, &curve, &[], &family)?;
-    let start = ExactStart::new(system, &scene.start, &scene.completion, scene.removals.first())?;
+    let start = exact_start(scene)?;
     let section = question.section(system, &start, &scene.start)?;
     Ok(Some(Membership { decision, proof: question.prove(&start), section }))
+}
+
+/// The certificate that no `μ₀` makes the vakonomic motion Chetaev's, for others to check; the reason in words where there is none.
+///
+/// # Errors
+/// As for [`membership`].
+pub fn certificate(scene: &Scene) -> Result<Result<Certificate, String>, SolveError> {
+    if scene.system.constraints.is_empty() {
+        return Ok(Err("nothing is constrained".into()));
+    }
+    let (curve, family) = derived(&scene.system)?;
+    Ok(Question::new(&scene.system, &curve, &[], &family)?.certificate(&exact_start(scene)?))
 }

@@ -1,6 +1,6 @@
 //! Words for the decision: is there a `μ₀` with which the vakonomic motion is Chetaev's?
 
-use deltaq::{Answer, Comparison, Membership};
+use deltaq::{Answer, Comparison, Membership, SolveError};
 use serde_json::{Value, json};
 
 use crate::report::numbers::{precise, short};
@@ -33,6 +33,13 @@ pub(crate) fn sentences(comparison: &Comparison) -> Vec<String> {
         Some(Err(error)) => return vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
         Some(Ok(membership)) => membership,
     };
+    let mut sentences = vec![sentence(membership)];
+    sentences.extend(least_gap(comparison, &membership.answer()));
+    sentences
+}
+
+/// The answer in a sentence.
+pub fn sentence(membership: &Membership) -> String {
     let decision = &membership.decision;
     let point: Vec<String> = decision.set.point.iter().map(|c| precise(*c)).collect();
     let which = match decision.set.dimension() {
@@ -44,7 +51,7 @@ pub(crate) fn sentences(comparison: &Comparison) -> Vec<String> {
         "the least mismatch of accelerations is {} of the motion's own",
         short(decision.least / decision.acceleration)
     );
-    let mut sentences = vec![match membership.answer() {
+    match membership.answer() {
         Answer::NoneProved { order } => {
             format!("No μ₀ makes the vakonomic motion Chetaev's: proved (order {order}); {mismatch}.")
         }
@@ -64,9 +71,7 @@ pub(crate) fn sentences(comparison: &Comparison) -> Vec<String> {
         Answer::Undecided => {
             format!("Whether some μ₀ gives Chetaev's motion is undecided: round-off hides it, {mismatch}.")
         }
-    }];
-    sentences.extend(least_gap(comparison, &membership.answer()));
-    sentences
+    }
 }
 
 /// What a search over `μ₀` leaves of the gap, where there is none that leaves nothing.
@@ -81,9 +86,9 @@ fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
     Some(format!("The least gap that a search found is {gap}, at μ₀ = ({constants})."))
 }
 
-/// For machines: the answer, its order and the dimension of the set.
-pub(crate) fn value(comparison: &Comparison) -> Value {
-    let Some(membership) = &comparison.membership else { return Value::Null };
+/// For machines: the answer, its order and the dimension of the set; null where there is no constraint.
+pub fn value(membership: Option<&Result<Membership, SolveError>>) -> Value {
+    let Some(membership) = membership else { return Value::Null };
     let Ok(membership) = membership else { return json!({ "answer": "undecided" }) };
     let dimension = membership.decision.set.dimension();
     match membership.answer() {

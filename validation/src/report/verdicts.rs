@@ -63,7 +63,7 @@ fn scene(comparison: &Comparison) -> Value {
         "integrability": comparison.integrability.to_string(),
         "runs": runs,
         "pairs": pairs,
-        "multipliers": membership::value(comparison),
+        "multipliers": membership::value(comparison.membership.as_ref()),
         "fits": fits,
     })
 }
