@@ -55,7 +55,7 @@ pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };
 pub use growth::{Growth, LeadingTerm, growth};
-pub use membership::{Answer, Membership, Pairing, costates_of, membership, multipliers_of};
+pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve};
 pub use prepared::Prepared;

@@ -1,8 +1,8 @@
 //! Is the motion of one formulation a motion of another, for some values of its free constants? Decided, not searched, and a no is proved.
 
 use decision::{
-    Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question, Section, Verdict,
-    decide_flow,
+    Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question,
+    Section, Verdict, decide_flow,
 };
 use equations::{Derivation, Equations};
 use mechanics::{ConstantsRule, Removal, System};
@@ -112,6 +112,15 @@ impl<'a> Pairing<'a> {
         Ok(Membership { decision, proof: question.prove(&exact), section })
     }
 
+    /// The certificate that no constants do, for others to check; the reason in words where there is none.
+    ///
+    /// # Errors
+    /// [`SolveError::Decision`] where an expression cannot be evaluated.
+    pub fn certificate(&self) -> Result<Result<Certificate, String>, SolveError> {
+        let question = Question::new(&self.scene.system, &self.curve, &self.constants, &self.family)?;
+        Ok(question.certificate(&self.exact_start()?))
+    }
+
     /// How the motion of the family with `constants` leaves the other one; `None` where no Taylor coefficient up to the twelfth stands out.
     ///
     /// # Errors
@@ -151,11 +160,24 @@ fn as_derived(system: &System, choice: &Choice) -> Result<(Equations, bool), Sol
 /// # Errors
 /// As [`Pairing::new`] and [`Pairing::decide`].
 pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveError> {
+    principal(scene)?.map(|pairing| pairing.decide(end)).transpose()
+}
+
+/// The certificate that no `μ₀` makes the vakonomic motion Chetaev's; the reason in words where there is none.
+///
+/// # Errors
+/// As [`Pairing::new`] and [`Pairing::certificate`].
+pub fn certificate(scene: &Scene) -> Result<Result<Certificate, String>, SolveError> {
+    principal(scene)?.map_or(Ok(Err("nothing is constrained".into())), |pairing| pairing.certificate())
+}
+
+/// Chetaev's motion and the vakonomic family.
+fn principal(scene: &Scene) -> Result<Option<Pairing<'_>>, SolveError> {
     let choices = choices(scene);
     let named = |name: &str| choices.iter().find(|choice| choice.formulation == name);
     match (named(chetaev::FORMULATION.name), named(vakonomic::FORMULATION.name)) {
         (Some(curve), Some(family)) if !scene.system.constraints.is_empty() => {
-            Ok(Some(Pairing::new(scene, curve, family)?.decide(end)?))
+            Pairing::new(scene, curve, family).map(Some)
         }
         _ => Ok(None),
     }

@@ -1,6 +1,6 @@
 //! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
-use deltaq::{Answer, Comparison, Decided, Membership};
+use deltaq::{Answer, Comparison, Decided, Membership, SolveError};
 use serde_json::{Value, json};
 
 use crate::report::Table;
@@ -30,26 +30,27 @@ pub(crate) fn words(comparison: &Comparison) -> String {
 /// Sentences for the head of the page of a scene, about multipliers and Chetaev's motion.
 pub(crate) fn sentences(comparison: &Comparison) -> Vec<String> {
     let Some(outcome) = comparison.membership() else { return Vec::new() };
-    let mut sentences = match outcome {
-        Err(error) => vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
-        Ok(membership) => match membership.answer() {
-            Answer::NoneProved { .. } | Answer::None { .. } => {
-                vec![format!("No μ₀ makes the vakonomic motion Chetaev's: {}.", reason(membership))]
-            }
-            Answer::Undecided => {
-                vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {}.", reason(membership))]
-            }
-            Answer::SomeProved | Answer::Some { .. } => vec![format!(
-                "With {} the vakonomic motion is the Chetaev motion: {}.",
-                constants(membership, "μ₀"),
-                reason(membership)
-            )],
-        },
+    let membership = match outcome {
+        Err(error) => return vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
+        Ok(membership) => membership,
     };
-    if let Ok(membership) = outcome {
-        sentences.extend(least_gap(comparison, &membership.answer()));
-    }
+    let mut sentences = vec![sentence(membership)];
+    sentences.extend(least_gap(comparison, &membership.answer()));
     sentences
+}
+
+/// The answer for Chetaev's motion and the vakonomic family, in a sentence.
+pub fn sentence(membership: &Membership) -> String {
+    let reason = reason(membership);
+    match membership.answer() {
+        Answer::NoneProved { .. } | Answer::None { .. } => {
+            format!("No μ₀ makes the vakonomic motion Chetaev's: {reason}.")
+        }
+        Answer::Undecided => format!("Whether some μ₀ gives Chetaev's motion is undecided: {reason}."),
+        Answer::SomeProved | Answer::Some { .. } => {
+            format!("With {} the vakonomic motion is the Chetaev motion: {reason}.", constants(membership, "μ₀"))
+        }
+    }
 }
 
 /// Which families have which motions.
@@ -111,14 +112,11 @@ fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
     Some(format!("The least gap that a search found is {gap}, at μ₀ = ({constants})."))
 }
 
-/// For machines: for each family and motion asked about the answer, its order and the dimension of the set.
-pub(crate) fn value(comparison: &Comparison) -> Value {
+/// For machines: every family and motion asked about, with the answer.
+pub(crate) fn values(comparison: &Comparison) -> Value {
     let label = |i: usize| comparison.runs[i].choice.label.clone();
     let of = |decided: &Decided| {
-        let mut value = match &decided.outcome {
-            Err(error) => json!({ "answer": "undecided", "because": error.to_string() }),
-            Ok(membership) => answer(membership),
-        };
+        let mut value = value(Some(&decided.outcome));
         value["family"] = label(decided.family).into();
         value["motion"] = label(decided.curve).into();
         value
@@ -126,7 +124,13 @@ pub(crate) fn value(comparison: &Comparison) -> Value {
     comparison.decided.iter().map(of).collect()
 }
 
-fn answer(membership: &Membership) -> Value {
+/// For machines: the answer, its order and the dimension of the set; null where there is no constraint.
+pub fn value(outcome: Option<&Result<Membership, SolveError>>) -> Value {
+    let membership = match outcome {
+        None => return Value::Null,
+        Some(Err(error)) => return json!({ "answer": "undecided", "because": error.to_string() }),
+        Some(Ok(membership)) => membership,
+    };
     let dimension = membership.decision.set.dimension();
     match membership.answer() {
         Answer::NoneProved { order } => json!({ "answer": "none", "proved": true, "order": order }),

@@ -63,7 +63,7 @@ fn scene(comparison: &Comparison) -> Value {
         "integrability": comparison.integrability.to_string(),
         "runs": runs,
         "pairs": pairs,
-        "decided": membership::value(comparison),
+        "decided": membership::values(comparison),
         "fits": fits,
     })
 }

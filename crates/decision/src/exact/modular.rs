@@ -20,6 +20,8 @@ const CIRCLE: u64 = 500_365_693_788_483_288;
 const NEPER: u64 = 871_121_100_965_325_420;
 /// `√−1`.
 const IMAGINARY: u64 = 304_924_282_205_937_375;
+/// The least common multiple of 1 … 40.
+const COMMON: u64 = 5_342_931_457_063_200;
 /// A number without a square root.
 const NO_SQUARE: u64 = 53;
 /// `p − 1 = 2^4 · odd`.
@@ -62,14 +64,14 @@ impl Modular {
         Self::new(IMAGINARY)
     }
 
-    /// The image of `e^i`.
-    pub(crate) fn circle() -> Self {
-        Self::new(CIRCLE)
-    }
-
-    /// The image of `e`.
-    pub(crate) fn neper() -> Self {
-        Self::new(NEPER)
+    /// `N` in decimals, and the image `τ` of `e^{i/N}`: `N = 10^38 · lcm(1, …, 40)`, of which the denominators of angles are divisors.
+    pub(crate) fn turn() -> (String, Self) {
+        let root = |base: Self, parts: i128| {
+            let part = Exact { numerator: 1, denominator: parts, quarters: 0 };
+            Self::rational_power(base.value(), part).unwrap_or(base)
+        };
+        let turn = root(root(Self::new(CIRCLE), 10_i128.pow(38)), COMMON.into());
+        (format!("{COMMON}{:038}", 0), turn)
     }
 
     pub(crate) fn is_zero(self) -> bool {
