@@ -10,7 +10,7 @@ mod paper;
 mod stationarity;
 
 pub use action::{Action, BUMPS, Jet, bump};
-pub use constants::{Augmented, Constants, HORIZONS, Horizon};
+pub use constants::{Constants, HORIZONS};
 pub use context::Context;
 pub use examples::{Example, cone, refusal};
 pub use paper::{Finding, Form, Line, Paper, Variant, Verdict, Which};
