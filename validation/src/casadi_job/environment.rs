@@ -18,18 +18,12 @@ const SCRIPTS: [(&str, &str); 6] = [
 ];
 
 /// The interpreter of the referee's environment.
-///
-/// # Errors
-/// [`NotRun`].
-pub fn interpreter() -> Result<PathBuf, NotRun> {
+pub(super) fn interpreter() -> Result<PathBuf, NotRun> {
     python_environment::interpreter(REQUIREMENTS)
 }
 
 /// Runs the scripts on a job; the text of their answer.
-///
-/// # Errors
-/// [`NotRun`].
-pub fn answer(interpreter: &Path, job: &str) -> Result<String, NotRun> {
+pub(super) fn answer(interpreter: &Path, job: &str) -> Result<String, NotRun> {
     let folder = tempfile::tempdir().map_err(files("the scripts"))?;
     for (name, text) in SCRIPTS {
         std::fs::write(folder.path().join(name), text).map_err(files("the scripts"))?;

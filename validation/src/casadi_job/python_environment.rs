@@ -52,9 +52,6 @@ pub(super) fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
 
 /// The interpreter of the environment with the packages of `requirements`, made now if it is not there yet. What is half made is never seen: it is built beside its place and
 /// moved there when it is complete.
-///
-/// # Errors
-/// [`NotRun`].
 pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     let target = target();
     let place = target.join(format!("casadi-{:016x}", hash(requirements)));
