@@ -2,27 +2,18 @@
 
 use deltaq::{Motion, Settings};
 use integrate::Method;
-use referees::closed_forms::Sledge;
 
 use validation::trailer::{self, Coordinates};
 
+use super::closed_forms::sledge;
 use super::support::{
-    all_equations, at, equations, jacobian_error, linear_scenes, motion_of, must, parameter, scene, scenes,
-    some_multipliers,
+    all_equations, at, equations, jacobian_error, linear_scenes, motion_of, must, scene, scenes, some_multipliers,
 };
 
 #[test]
 fn every_method_reaches_the_closed_form_of_the_sledge() {
     let scene = scene("sledge", &[]);
-    let (q, v) = (&scene.start.q, &scene.start.v);
-    let exact = Sledge {
-        gravity_along: parameter(&scene, "g") * parameter(&scene, "alpha").sin(),
-        x: q[0],
-        y: q[1],
-        phi: q[2],
-        speed: v[0].hypot(v[1]),
-        omega: v[2],
-    };
+    let exact = sledge(&scene);
     let end = exact.at(10.0);
     let size = end.x.hypot(end.y);
     // tolerance of the looser run, and what the tighter run, at a hundredth of it, may be wrong by over its own tolerance
