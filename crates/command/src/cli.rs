@@ -106,10 +106,7 @@ pub struct SceneArguments {
 
 impl SceneArguments {
     /// The scene.
-    ///
-    /// # Errors
-    /// [`NotFound`], with the place in the file where there is one.
-    pub fn find(&self) -> Result<Scene, NotFound> {
+    pub(crate) fn find(&self) -> Result<Scene, NotFound> {
         catalogue::find(&self.scene, &self.set.overrides)
     }
 }

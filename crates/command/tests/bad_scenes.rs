@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::Output;
 use std::time::Instant;
 
-use crate::support::{self, deltaq};
+use crate::support::deltaq;
 
 const GOOD: &str = include_str!("good.toml");
 
@@ -189,9 +189,4 @@ fn nested_tables_are_refused_and_overflow_no_stack() {
 fn a_long_flat_sum_is_no_nesting() {
     let sum = format!("{LAGRANGIAN}{}", " + 0*x".repeat(2_000));
     accepted(&GOOD.replacen(LAGRANGIAN, &sum, 1));
-}
-
-#[test]
-fn a_file_that_is_not_there_is_named() {
-    support::refused(&["solve", "/no/such/scene.toml", "-f", "chetaev"], &["/no/such/scene.toml"]);
 }

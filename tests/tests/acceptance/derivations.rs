@@ -2,18 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use deltaq::FORMULATIONS;
-use equations::{Derivation, Equations, Role};
+use equations::{Equations, Role};
 use mechanics::Removal;
 use scene::Scene;
 
-use super::support::{constrained_scenes, regular_removals, scenes};
+use super::support::{self, constrained_scenes, regular_removals, scenes};
 
-/// A formulation's equations as it derived them, nothing left out.
 fn derived(scene: &Scene, name: &str, removal: Option<&Removal>) -> Equations {
-    let entry = FORMULATIONS.iter().find(|f| f.name == name).expect("in the table");
-    (entry.derive)(&scene.system, &Derivation { removal, ..Derivation::default() })
-        .unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name))
+    support::derived(scene, name, removal, None).unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name))
 }
 
 /// Every formulation of a scene, removals included.

@@ -19,7 +19,7 @@ use random::equations;
 
 /// Readings of (34), each as what has to be zero, with `P = C − ∫ L_λ dt`. (The fourth, second operator on `L` and first on `β`, divides by `P`, which is
 /// zero at `t₁`.)
-pub const READINGS: [(&str, &str); 4] = [
+const READINGS: [(&str, &str); 4] = [
     (STATEMENT, "K_u"),
     ("(34), first operator on L, second on β", "L_u2'' - L_u1' + L_u0 - P*(beta_u1' - beta_u0) + beta_u1*L_lambda"),
     ("(34), first operator on both", "L_u2'' - L_u1' + L_u0 - P*(beta_u2'' - beta_u1' + beta_u0) + beta_u1*L_lambda"),

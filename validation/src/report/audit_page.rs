@@ -1,13 +1,13 @@
 //! The pages about the paper's equations.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 use symbolic::Vanishing;
 
 use crate::audit::{
-    Constants, Example, Finding, Form, HORIZONS, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
+    Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
 use crate::report::numbers::{enumerate, short};
 use crate::report::{File, Table, fill};
@@ -95,12 +95,12 @@ impl AuditReport {
         }
         let (c, s) = (&self.constants, &self.stationarity);
         let natural = c.natural.iter().map(|[t, x]| format!("$C = {}$ for $t_1 = {}$ s", short(*x), short(*t)));
-        let augmented = c.augmented.iter().map(|a| {
-            let constants: Vec<String> = a.constants.iter().map(|x| short(*x)).collect();
-            format!("{} for `{}`, $C = ({})$", short(a.gap), a.scene, constants.join(", "))
+        let augmented = c.augmented.iter().map(|(scene, constants, gap)| {
+            let constants: Vec<String> = constants.iter().map(|x| short(*x)).collect();
+            format!("{} for `{}`, $C = ({})$", short(*gap), scene, constants.join(", "))
         });
         let mut horizons = Table::new([">$t_1$, s", ">$C$", ">best $\\mu_0$", ">gap that is left"]);
-        c.horizons.iter().for_each(|h| horizons.cells([h.horizon, h.constant, h.multiplier, h.gap].map(short)));
+        c.horizons.iter().for_each(|h| horizons.cells(h.map(short)));
         let columns = ["motion of", ">order in $u$", "$dI/d\\varepsilon$, four $\\delta u$", "stationary"];
         let mut readings = Table::new(columns);
         for r in &s.readings {
@@ -110,36 +110,28 @@ impl AuditReport {
         let columns = [">$dI/d\\varepsilon$ measured", ">from $\\delta I$ as printed", ">as corrected"];
         let mut sledge = Table::new(columns);
         s.sledge.iter().for_each(|numbers| sledge.cells(numbers.map(|x| format!("{x:.8}"))));
-        fill(
-            include_str!("pages/paper-audit.md"),
-            &[
-                ("headline", &self.headline()),
-                ("verdicts", &verdicts),
-                ("one", &short(c.two[0])),
-                ("two", &short(c.two[1])),
-                ("apart", &short(c.two[2])),
-                ("gap_two", &short(c.two[3])),
-                ("duration", &short(c.duration)),
-                ("natural", &enumerate(&natural.collect::<Vec<_>>())),
-                ("t_one", &short(HORIZONS[0])),
-                ("t_two", &short(HORIZONS[1])),
-                ("gap_natural", &short(c.natural_gap)),
-                ("augmented", &enumerate(&augmented.collect::<Vec<_>>())),
-                ("matching", &short(c.matching)),
-                ("multiplier", &short(c.multiplier)),
-                ("gap", &short(c.gap)),
-                // within the item of the list
-                ("horizons", &horizons.to_string().lines().map(|line| format!("  {line}\n")).collect::<String>()),
-                ("body", &short(c.body_zero[0])),
-                ("rotation", &short(c.body_zero[1])),
-                ("body_right", &short(c.body_right)),
-                ("readings", &readings),
-                ("statement", &STATEMENT),
-                ("gap_derived", &short(s.gap)),
-                ("sledge", &sledge),
-                ("equations", &self.findings.iter().map(equation).collect::<String>()),
-            ],
-        )
+        let headline = self.headline();
+        let natural = enumerate(&natural.collect::<Vec<_>>());
+        let augmented = enumerate(&augmented.collect::<Vec<_>>());
+        // within the item of the list
+        let horizons = horizons.to_string().lines().map(|line| format!("  {line}\n")).collect::<String>();
+        let gap_derived = short(s.gap);
+        let equations = self.findings.iter().map(equation).collect::<String>();
+        let numbers: Vec<(&str, String)> = c.numbers.iter().map(|&(name, x)| (name, short(x))).collect();
+        let mut values: Vec<(&str, &dyn Display)> = numbers.iter().map(|(name, text)| (*name, text as _)).collect();
+        values.extend::<[(&str, &dyn Display); 10]>([
+            ("headline", &headline),
+            ("verdicts", &verdicts),
+            ("natural", &natural),
+            ("augmented", &augmented),
+            ("horizons", &horizons),
+            ("readings", &readings),
+            ("statement", &STATEMENT),
+            ("gap_derived", &gap_derived),
+            ("sledge", &sledge),
+            ("equations", &equations),
+        ]);
+        fill(include_str!("pages/paper-audit.md"), &values)
     }
 
     fn examples(&self) -> String {

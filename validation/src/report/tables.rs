@@ -139,9 +139,6 @@ pub(crate) fn fits(comparison: &Comparison) -> Table {
 }
 
 /// Drift of what should be constant, and how far the constraint was left.
-///
-/// # Errors
-/// Where a motion cannot be read off.
 pub(crate) fn invariants(comparison: &mut Comparison) -> Result<Table> {
     let mut metric = deltaq::Metric::new(&comparison.scene.system)?;
     let columns = ["motion", "largest constraint residual", "constant by theory: largest deviation"];
