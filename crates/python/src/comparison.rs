@@ -1,6 +1,6 @@
 //! All formulations of a system, pair by pair.
 
-use deltaq::{Gap, THRESHOLDS, Verdict};
+use deltaq::{Answer, Gap, Membership, THRESHOLDS, Verdict};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -23,15 +23,17 @@ pub(crate) struct Growth {
     length: f64,
 }
 
-/// The leading term of vakonomic minus Chetaev as theory predicts it.
+/// The leading term of the second motion minus the first, from the Taylor coefficients of their accelerations.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct LeadingTerm {
-    /// 2 or 3.
+    /// Exponent of t - t0.
     exponent: u32,
     /// Leading coefficient, shape (n,).
     coefficient: Py<PyArrayDyn<f64>>,
     /// Its length in the kinetic metric.
     length: f64,
+    /// Whether exact numbers prove that this term is the first one, so that the motions differ.
+    proved: bool,
 }
 
 /// Two motions compared.
@@ -65,7 +67,7 @@ pub(crate) struct Pair {
     limit: Py<PyArrayDyn<f64>>,
     /// Growth near the start, None where the gap does not stand out from the errors there.
     growth: Option<Py<Growth>>,
-    /// Predicted leading term for Chetaev and vakonomic, None elsewhere.
+    /// Predicted leading term; None where the gap has no growth, or the pair cannot be followed in Taylor series.
     predicted: Option<Py<LeadingTerm>>,
 }
 
@@ -90,6 +92,8 @@ pub(crate) struct Fit {
     verdict: Option<&'static str>,
     /// Largest gap that is left; None as for `constants`.
     largest_gap: Option<f64>,
+    /// Whether the constants follow from those of the target, and nothing was searched.
+    by_identity: bool,
 }
 
 #[pymethods]
@@ -97,6 +101,70 @@ impl Fit {
     fn __repr__(&self) -> String {
         let left = self.largest_gap.map_or("no motion".into(), |gap| format!("gap left {gap:.3e}"));
         format!("<deltaq.Fit {} to {}: {left}>", self.run, self.target)
+    }
+}
+
+/// Whether a motion belongs to the family that another formulation has for all values of its constants.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct Decided {
+    /// Label of the run whose constants are asked for.
+    family: String,
+    /// Label of the run that is to be met.
+    motion: String,
+    /// "some", "none" or "undecided".
+    answer: &'static str,
+    /// Whether the answer is proved, in exact numbers or as an identity.
+    proved: bool,
+    /// The Taylor order that proves "none", or through which "some" was checked; None where there is neither.
+    order: Option<usize>,
+    /// What stands in the way of a proof or of a decision, else None.
+    because: Option<String>,
+    /// The constants of least norm, or of the nearest miss, by name.
+    constants: Option<Py<PyDict>>,
+    /// Dimension of the set of constants, None unless the answer is "some".
+    dimension: Option<usize>,
+    /// The constants as functions of the start, where an identity was found.
+    identity: Option<Vec<String>>,
+    /// Least mismatch of accelerations over the motion's own acceleration, None where nothing could be computed.
+    mismatch: Option<f64>,
+}
+
+#[pymethods]
+impl Decided {
+    fn __repr__(&self) -> String {
+        let Decided { family, motion, answer, proved, .. } = self;
+        let proved = if *proved { "proved" } else { "not proved" };
+        format!("<deltaq.Decided {motion} in {family}: {answer}, {proved}>")
+    }
+}
+
+impl Decided {
+    fn new(
+        py: Python<'_>,
+        family: String,
+        motion: String,
+        outcome: Result<Membership, deltaq::SolveError>,
+    ) -> PyResult<Self> {
+        let (answer, proved, order, because) = match outcome.as_ref().map(Membership::answer) {
+            Err(error) => ("undecided", false, None, Some(error.to_string())),
+            Ok(Answer::NoneProved { order }) => ("none", true, Some(order), None),
+            Ok(Answer::None { unproved }) => ("none", false, None, Some(unproved)),
+            Ok(Answer::SomeProved) => ("some", true, None, None),
+            Ok(Answer::Some { order }) => ("some", false, order, None),
+            Ok(Answer::Undecided) => ("undecided", false, None, Some("round-off hides it".into())),
+        };
+        let membership = outcome.ok();
+        let constants = membership.as_ref().map(|m| -> PyResult<Py<PyDict>> {
+            let dict = PyDict::new(py);
+            let values = m.decision.constants.iter().zip(&m.decision.set.point);
+            values.into_iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
+            Ok(dict.unbind())
+        });
+        let dimension = membership.as_ref().filter(|_| answer == "some").map(|m| m.decision.set.dimension());
+        let mismatch = membership.as_ref().map(|m| m.decision.least / m.decision.acceleration);
+        let identity = membership.and_then(|m| m.section).map(|section| section.expressions);
+        let constants = constants.transpose()?;
+        Ok(Decided { family, motion, answer, proved, order, because, constants, dimension, identity, mismatch })
     }
 }
 
@@ -133,6 +201,8 @@ pub(crate) struct Comparison {
     pairs: Vec<Py<Pair>>,
     /// Fits of free constants.
     fits: Vec<Py<Fit>>,
+    /// Which families have which motions: decided, not searched.
+    decided: Vec<Py<Decided>>,
 }
 
 #[pymethods]
@@ -170,7 +240,7 @@ impl Comparison {
     }
 
     pub(crate) fn new(py: Python<'_>, compared: Compared) -> PyResult<Comparison> {
-        let Compared { scene, integrability, runs, pairs, fits } = compared;
+        let Compared { scene, integrability, runs, pairs, fits, decided } = compared;
         let labels: Vec<String> = runs.iter().map(|r| r.0.label.clone()).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
         let vector = |values: Vec<f64>| {
@@ -191,8 +261,8 @@ impl Comparison {
                 Py::new(py, Growth { exponent, uncertainty, length, coefficient: vector(g.coefficient)? })
             });
             let predicted = p.predicted.map(|term| -> PyResult<Py<LeadingTerm>> {
-                let (exponent, length) = (term.exponent, term.length);
-                Py::new(py, LeadingTerm { exponent, length, coefficient: vector(term.coefficient)? })
+                let (exponent, length, proved) = (term.exponent, term.length, term.proved);
+                Py::new(py, LeadingTerm { exponent, length, proved, coefficient: vector(term.coefficient)? })
             });
             let samples = |pick: fn(&deltaq::GapPoint) -> f64| vector(p.gap.points.iter().map(pick).collect());
             let pair = Pair {
@@ -226,6 +296,7 @@ impl Comparison {
                 constants: constants.transpose()?,
                 verdict: f.fitted.as_ref().map(|m| words(&m.gap).0),
                 largest_gap: f.fitted.as_ref().map(|m| m.gap.largest),
+                by_identity: f.by_identity,
             };
             Py::new(py, fit)
         };
@@ -237,8 +308,12 @@ impl Comparison {
             let removal = choice.removal.map(|r| r.name);
             Py::new(py, Run { label: choice.label, formulation: choice.formulation, removal, motion, error })
         };
+        let membership = |d: deltaq::Decided| {
+            Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)
+        };
         Ok(Comparison {
             integrability,
+            decided: decided.into_iter().map(membership).collect::<PyResult<_>>()?,
             runs: runs.into_iter().map(run).collect::<PyResult<_>>()?,
             pairs: pairs.into_iter().map(pair).collect::<PyResult<_>>()?,
             fits: fits.into_iter().map(fit).collect::<PyResult<_>>()?,
@@ -261,16 +336,17 @@ pub(crate) struct Compared {
     runs: Vec<(deltaq::Choice, Result<Sampled, deltaq::SolveError>)>,
     pairs: Vec<deltaq::Pair>,
     fits: Vec<deltaq::Fit>,
+    decided: Vec<deltaq::Decided>,
 }
 
 /// Compares all formulations of `scene`.
 pub(crate) fn compare(scene: Scene, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
     let choices = deltaq::choices(&scene);
     let compared = deltaq::compare(scene, choices, Vec::new(), settings)?;
-    let deltaq::Comparison { scene, integrability, runs, pairs, fits, .. } = compared;
+    let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided } = compared;
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
-    Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, scene })
+    Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, decided, scene })
 }
 
 /// Refuses a tolerance with which every run would be refused.

@@ -18,7 +18,7 @@ mod system;
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::comparison::{Comparison, Fit, Growth, LeadingTerm, Pair, Run};
+    use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
     #[pymodule_export]
     use crate::ensemble::Ensemble;
     #[pymodule_export]

@@ -30,6 +30,18 @@ def test_growth_is_as_predicted(comparison):
     np.testing.assert_allclose(pair.growth.coefficient, pair.predicted.coefficient, rtol=1e-3, atol=1e-3)
 
 
+def test_what_is_decided(sledge, comparison):
+    decided = next(d for d in comparison.decided if (d.family, d.motion) == ("vakonomic", "Chetaev"))
+    assert (decided.answer, decided.proved, decided.dimension) == ("none", True, None)
+    assert decided.order == 1 and list(decided.constants) == ["mu0_1"] and decided.mismatch > 0.01
+    assert comparison.pair("chetaev", "vakonomic").predicted.proved
+    # straight down the slope no reaction acts
+    start, velocities = {"x": 0, "y": 0, "phi": 0}, {"phi'": 0, "x'": 0.5}
+    straight = sledge.system(duration=1.0, removals=None, start=start, velocities=velocities).compare()
+    decided = next(d for d in straight.decided if (d.family, d.motion) == ("vakonomic", "Chetaev"))
+    assert decided.answer == "some" and decided.dimension is not None
+
+
 def test_runs_and_fits(sledge, comparison):
     assert [run.formulation for run in comparison.runs][:2] == ["chetaev", "vakonomic"]
     assert all(run.error is None and run.motion.status in ("completed", "stopped") for run in comparison.runs)

@@ -210,6 +210,7 @@ class LeadingTerm:
     exponent: Final[int]
     coefficient: Final[_Array]
     length: Final[float]
+    proved: Final[bool]
 
 @final
 class Pair:
@@ -236,6 +237,20 @@ class Fit:
     constants: Final[dict[str, float] | None]
     verdict: Final[_Verdict | None]
     largest_gap: Final[float | None]
+    by_identity: Final[bool]
+
+@final
+class Decided:
+    family: Final[str]
+    motion: Final[str]
+    answer: Final[Literal["some", "none", "undecided"]]
+    proved: Final[bool]
+    order: Final[int | None]
+    because: Final[str | None]
+    constants: Final[dict[str, float] | None]
+    dimension: Final[int | None]
+    identity: Final[list[str] | None]
+    mismatch: Final[float | None]
 
 @final
 class Run:
@@ -251,5 +266,6 @@ class Comparison:
     runs: Final[list[Run]]
     pairs: Final[list[Pair]]
     fits: Final[list[Fit]]
+    decided: Final[list[Decided]]
     def pair(self, a: str, b: str) -> Pair: ...
     def verdict(self, a: str, b: str) -> _Verdict: ...
