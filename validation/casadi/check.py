@@ -1,7 +1,7 @@
 """The referee: `python check.py JOB ANSWER`. Reads a job (JSON), compares, and writes the answer (JSON).
 
 A job is {"scenes": [scene, ...]}; a scene {"name", "toml", "removals", "cases", "transcriptions", "lagranges_method"}, where `toml` is the text of
-the scene and `removals` a text with all its removals. A case is one formulation: "formulation", "removal", "label", "tags" of the states, "samples" with
+the scene and `removals` a text with all its removals; "decision" may hold what was decided of the multipliers. A case is one formulation: "formulation", "removal", "label", "tags" of the states, "samples" with
 "states" (N x (1 + s): t, then y), "rates" (N x s), "multipliers" (N x h, Chetaev only), and "motion" with "tags", "start", "times", "coordinates",
 "multipliers". The answer is {"rows": [row, ...]}, a row {"scene", "who", "what", "count", "largest", "tolerance", "verdict", "note"}.
 """
@@ -13,12 +13,14 @@ import time
 
 import numpy as np
 
+import decision
 import formulations
 import trajectories
 from reader import Scene
 
 RATES_TOLERANCE = 1e-12
 MOTION_TOLERANCE = 1e-8
+MULTIPLIERS_TOLERANCE = 1e-6
 # a referee whose own two runs are apart by more than MOTION_TOLERANCE agrees within their distance, if that is no more than this
 COARSEST = 1e-5
 # where a motion is further from theirs: it is compared as long as our two runs, at tolerances 1e-11 and 1e-13, are together within this
@@ -115,6 +117,17 @@ def check_case(name, scene, case):
     return rows
 
 
+def check_decision(entry):
+    """The set of all multipliers with which the vakonomic motion is Chetaev's: empty or not, its dimension, its element of least norm."""
+    ours = entry["decision"]
+    dimension, point, _ = decision.decide(entry["toml"], ours["start"])
+    point = np.array(point, dtype=float)
+    same = dimension == ours["dimension"]
+    apart = float(np.linalg.norm(point - ours["point"]) / max(1.0, np.linalg.norm(point))) if same else np.inf
+    note = "empty" if dimension is None else f"dimension {dimension}"
+    return row(entry["name"], "power series", "multipliers of Chetaev's motion", 1, apart, MULTIPLIERS_TOLERANCE, note)
+
+
 def check_scene(entry):
     clock, name, rows = time.perf_counter(), entry["name"], []
     for case in entry["cases"]:
@@ -137,6 +150,11 @@ def check_scene(entry):
                     rows.append(row(name, *lagranges_method.compare(Scene(entry["toml"]), case, entry["lagranges_method"])))
                 except Exception as error:
                     rows.append(failure(name, "SymPy", "Chetaev: accelerations", error))
+    if entry.get("decision"):
+        try:
+            rows.append(check_decision(entry))
+        except Exception as error:
+            rows.append(failure(name, "power series", "multipliers of Chetaev's motion", error))
     return {"rows": rows, "scene": name, "seconds": time.perf_counter() - clock}
 
 

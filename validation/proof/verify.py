@@ -89,7 +89,7 @@ def by_removal(table, at, rates):
         at |= {x + "_rate": rate for x, rate in rates.items()}
         rates = {x: read(text, at) for x, text in texts.items()} | rates
         at |= {x: Jet([at[x].c[0], rate.c[0]], {}, at[x].first) for x, rate in rates.items()}
-    return rates | {x: Jet(read(text, at).c[1:]) for x, text in removal.get("direct", {}).items()}
+    return {x: Jet(read(text, at).c[1:]) for x, text in removal.get("direct", {}).items()} | rates
 
 def balance(table, at, q, v):
     """f with its derivatives, L_v, L_q and Q along series for q and v (seeds 0 .. n-1, n .. 2n-1), and what formulas may contain."""
@@ -115,6 +115,7 @@ def verify(table, proof):
     rates = by_removal(table, at, rates) if rates.keys() - set(names) else rates
     for x, c in zip(names, q):
         demand(at[x].c[0] == c[0] and (x not in rates or rates[x].plain().c[0] == c[1]), f"{x} at the start")
+    demand({len(c) for c in q} == {SIZE} and len(reactions) == order + 1, "the length of a series")
     f, momenta, slopes, Q, scope = balance(table, at, q, v)
     h, A, B = len(f), *([[x.d.get(i, Jet([]).c) for i in seeds] for x in f] for seeds in (range(n, 2 * n), range(n)))
     E = [[((k + 1) * momenta[i][k + 1] - slopes[i][k] - Q[i][k]) % P for k in range(order + 1)] for i in range(n)]
@@ -125,8 +126,7 @@ def verify(table, proof):
     matrix = [[moved[j][1][i][1] - momenta[i][1] for j in range(n)] + [-A[j][i][0] for j in range(h)] for i in range(n)]
     free = [j for j, x in enumerate(names) if x not in rates]
     linear = all(y.d[s][1] == x.d[s][1] for j in free for x, y in zip(f, moved[j][0]) for s in x.d if s >= n)
-    demand(len(free) in (0, h) and linear, "the constraints leave the start open")
-    demand(proof["completed"] in ([], [names[j] + "'" for j in free]), "what is completed")
+    demand(len(free) in (0, h) and linear and proof["completed"] in ([], [names[j] + "'" for j in free]), "what the start leaves open")
     divided = {"constraints at the start": determinant([[A[i][j][0] for j in free] for i in range(h)] if free else [])}
     divided["equations of motion"] = determinant(matrix + [[x[0] for x in row] + [0] * h for row in A])
     divided |= {text: read(text, scope).c[0] for text in proof["divided_by"] if text not in divided}
@@ -136,12 +136,12 @@ def verify(table, proof):
         for l, j in product(range(k + 1), range(h)):
             row[h * (k - l + 1) + j] += A[j][i][l] * (k - l + 1)
             row[h * (k - l) + j] += (l + 1) * A[j][i][l + 1] - B[j][i][l]
-    demand({len(row) for row in system} == {len(system)} and {len(c) for c in q} == {SIZE} and len(reactions) == order + 1, "a size")
+    demand(min(map(min, proof["rows"])) >= 0 and {len(row) for row in system} == {len(system)}, "the rows")
     return determinant(system)
 
 if __name__ == "__main__":
     try:
-        TABLE, PROOF = tomllib.load(open(sys.argv[1], "rb")), json.load(open(sys.argv[2]))
+        TABLE, PROOF = tomllib.load(open(sys.argv[1], "rb")), json.load(open(sys.argv[2]), parse_float=str, parse_constant=str)
         P, I, N, TAU, SIZE = PROOF["prime"], PROOF["i"], int(PROOF["N"]), PROOF["tau"], PROOF["order"] + 3
         demand(PROOF["version"] == 1 and all(pow(a, P - 1, P) == 1 for a in (2, 3, 5, 7)) and (I * I + 1) % P == 0, "version, p or i")
         demand(verify(TABLE, PROOF) == PROOF["minor"] != 0, "the minor")

@@ -15,7 +15,9 @@
 //! - motions, with those of SUNDIALS' CVODES and IDAS;
 //! - motions, with curves that make the discretized action stationary: no equation of motion at all (vakonomic: `f = 0` imposed, ends fixed;
 //!   removed constraint: `u` fixed at both ends, `w(t₁)` free, so that `P(t₁) = 0` has to come out);
-//! - Chetaev's accelerations, with those of SymPy's `LagrangesMethod`.
+//! - Chetaev's accelerations, with those of SymPy's `LagrangesMethod`;
+//! - where it is asked ([`Question::with_decision`]): the set of all `μ₀` with which the vakonomic motion is Chetaev's, empty or with its dimension and
+//!   its element of least norm, with what power series in sixty digits say, multipliers and all (no CasADi in this).
 //!
 //! The virtual environment is made when it is first needed, in cargo's target folder; by an installed program in the user's cache.
 
@@ -53,7 +55,7 @@ pub enum Word {
 pub struct Row {
     /// Name of the scene.
     pub scene: String,
-    /// Who compared: `CasADi`, `CVODES`, `IDAS`, `transcription`, `SymPy`.
+    /// Who compared: `CasADi`, `CVODES`, `IDAS`, `transcription`, `SymPy`, `power series`.
     pub who: String,
     /// What was compared: the run and the quantity.
     pub what: String,

@@ -1,5 +1,6 @@
 //! The referee in Python: it has to be able to run, to agree where we are right, and to disagree where we are not.
 
+use random::{Batch, Kind};
 use scene::Scene;
 use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, random};
 use validation::catalogue;
@@ -67,4 +68,41 @@ fn a_wrong_text_is_found() {
         let row = rows.iter().find(|row| row.what.starts_with(formulation)).expect(formulation);
         assert_eq!(row.verdict, Word::Disagrees, "{row:?}");
     }
+}
+
+/// What is asked about the multipliers of a scene, whose text is `text`.
+fn about_multipliers(scene: &Scene, text: &str) -> Question {
+    let question = Question::new(scene, text, Amount { states: 0, times: 0 }).expect("questions");
+    question.with_decision(scene).unwrap_or_else(|error| panic!("{}: {error}", scene.name))
+}
+
+#[test]
+fn the_multipliers_are_those_of_power_series() {
+    let batch = Batch { seed: 20_261, kinds: Kind::ALL.to_vec() };
+    let scene = |(name, text): &(&str, &str)| about_multipliers(&Scene::parse(name, text).expect(name), text);
+    let mut questions: Vec<Question> = catalogue::SCENES.iter().map(scene).collect();
+    questions.extend((0..50).map(|index| batch.scene(index)).map(|scene| about_multipliers(&scene, &scene.to_toml())));
+    let rows = rows(&questions);
+    for row in &rows {
+        assert_eq!(row.verdict, Word::Agrees, "{row:?}");
+    }
+    // all but those without a constraint
+    assert_eq!(rows.iter().filter(|row| row.who == "power series").count(), 13 + 45);
+    let of = |note: &str| rows.iter().filter(|row| row.note == note).count();
+    assert!(of("empty") >= 28 && of("dimension 0") >= 2 && of("dimension 1") >= 8, "{rows:?}");
+}
+
+#[test]
+fn wrong_multipliers_are_found() {
+    // half of the mass, half of the multipliers; and a particle that runs straight ahead has some
+    let changes = [("disc", "m = 1.0", "m = 0.5"), ("particle", "\"y'\" = 0.5", "\"y'\" = 0.0")];
+    let questions = changes.map(|(name, from, to)| {
+        let (_, text) = catalogue::SCENES.iter().find(|scene| scene.0 == name).expect(name);
+        let other = text.replace(from, to);
+        assert_ne!(*text, other);
+        about_multipliers(&Scene::parse(name, text).expect(name), &other)
+    });
+    let rows = rows(&questions);
+    let words: Vec<Word> = rows.iter().map(|row| row.verdict).collect();
+    assert_eq!(words, [Word::Disagrees, Word::Disagrees], "{rows:?}");
 }

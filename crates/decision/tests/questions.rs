@@ -52,10 +52,13 @@ pub(crate) fn vakonomic(scene: &Scene) -> Family {
     Family::new(&scene.system, &vakonomic_equations(scene), false).expect("a family")
 }
 
-pub(crate) fn removed(scene: &Scene, removal: &Removal) -> Family {
+pub(crate) fn removed_equations(scene: &Scene, removal: &Removal) -> Equations {
     let derivation = Derivation { removal: Some(removal), ..Derivation::default() };
-    let equations = removed_constraint::derive(&without_forces(&scene.system), &derivation).expect("equations");
-    Family::new(&scene.system, &equations, false).expect("a family")
+    removed_constraint::derive(&without_forces(&scene.system), &derivation).expect("equations")
+}
+
+pub(crate) fn removed(scene: &Scene, removal: &Removal) -> Family {
+    Family::new(&scene.system, &removed_equations(scene, removal), false).expect("a family")
 }
 
 pub(crate) fn decided(family: &Family, flow: &Flow) -> Decision {

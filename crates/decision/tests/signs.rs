@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 
 use decision::{Decision, Family, Verdict};
-use equations::Equations;
+use equations::{Equations, Role};
 use scene::Scene;
 use symbolic::Expr;
 
-use crate::questions::{built_in, chetaev, decided, vakonomic_equations, written};
+use crate::questions::{built_in, chetaev, decided, flow, removed_equations, vakonomic_equations, written};
 
 /// The family with its balances `R(μ̇, μ)` changed.
 fn changed(scene: &Scene, change: impl Fn(&Equations, Expr) -> Expr) -> Decision {
@@ -47,6 +47,32 @@ fn of_the_curvature() {
     assert!(plain.verdict == Verdict::Contained && plain.set.distance(&[0.0, 0.048]) < 1e-6);
     let other = changed(&ball, |e, r| turned(e, r, &["mu_1", "mu_2"]));
     assert!(other.verdict != Verdict::Contained || other.set.distance(&[0.0, 0.048]) > 0.01, "{:?}", other.set);
+}
+
+#[test]
+fn of_the_costate_equations() {
+    // T3: this vakonomic sledge is a removed-constraint one
+    let scene = built_in("sledge", &[("duration", 3.0)]);
+    let pull = 9.81 * 0.4_f64.sin();
+    let horizon = -0.5 / (pull * 0.3_f64.cos());
+    let curve = flow(&scene, &vakonomic_equations(&scene), &[pull * horizon * 0.3_f64.sin()]);
+    let verdict = |change: &dyn Fn(&mut Equations)| {
+        let mut equations = removed_equations(&scene, &scene.removals[0]);
+        change(&mut equations);
+        decided(&Family::new(&scene.system, &equations, false).expect("a family"), &curve).verdict
+    };
+    assert_eq!(verdict(&|_| ()), Verdict::Contained);
+    let rate = |equations: &mut Equations| {
+        for y in equations.states.iter_mut().filter(|y| y.role == Role::MemoryCostate) {
+            y.rate = equations.graph.neg(y.rate);
+        }
+    };
+    assert_eq!(verdict(&rate), Verdict::NotContained);
+    let balance = |equations: &mut Equations| {
+        let turned = equations.blocks[0].residuals.iter().map(|&r| turned(equations, r, &["P_x"])).collect();
+        equations.blocks[0].residuals = turned;
+    };
+    assert_eq!(verdict(&balance), Verdict::NotContained);
 }
 
 const PULLED: &str = r#"

@@ -78,12 +78,12 @@ def test_what_is_changed_is_refused(tmp_path):
         "N": [true["N"] + "0", "1"],
         "tau": [true["tau"] + 1],
         "order": [0, 2],
-        "rows": [[first, first, *rest], [second, first, *rest], [first, second], [[9, 9], second, *rest]],
+        "rows": [[first, first, *rest], [second, first, *rest], [first, second], [[9, 9], second, *rest], [[-1, 0], second, *rest]],
         "minor": [0, true["minor"] + 1],
         "divided_by": [divided_by, {}, true["divided_by"] | {"x": 0}, true["divided_by"] | {"().__class__": 1}],
         "set": [{"phi'": 1.2}, {"g": 9.8}, {"x": 1}],
         "completed": [["x'"], ["nobody"]],
-        "motion": [motion | {"phi": motion["x"]}, {"x": motion["x"]}, *(motion | {x: [*c[:-1], c[-1] + 1]} for x, c in motion.items())],
+        "motion": [motion | {"phi": motion["x"]}, {"x": motion["x"]}, *(motion | {x: [*c[:-1], c[-1] + by]} for x, c in motion.items() for by in (1, 0.5))],
         "reactions": [reactions[:1], [[1], *reactions[1:]], [*reactions[:-1], [reactions[-1][0] + 1]]],
     }.items():
         for other in others:

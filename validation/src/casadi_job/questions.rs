@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use anyhow::{Context, Result};
-use deltaq::{Choice, Motion, Settings, choices, formulation, setting, solve};
+use anyhow::{Context, Result, bail};
+use deltaq::{Answer, Choice, Motion, Settings, choices, formulation, setting, solve};
 use equations::{Compiled, Derivation, Equations, Role};
 use mechanics::{ConstantsRule, complete_removal_start};
 use scene::Scene;
@@ -34,6 +34,17 @@ pub struct Question {
     pub(super) transcriptions: Vec<Transcription>,
     /// States that go to SymPy.
     pub(super) lagranges_method: usize,
+    /// What was decided of the multipliers.
+    pub(super) decision: Option<Decided>,
+}
+
+/// The `μ₀` with which the vakonomic motion is Chetaev's: the dimension of their set and its least-norm element, none where it is empty.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Decided {
+    /// Velocities at the start, rounded: for those that the text does not say.
+    start: Vec<f64>,
+    dimension: Option<usize>,
+    point: Vec<f64>,
 }
 
 /// One formulation of a scene.
@@ -116,7 +127,24 @@ impl Question {
             cases,
             transcriptions: Vec::new(),
             lagranges_method: 0,
+            decision: None,
         })
+    }
+
+    /// Asks for the decision about the multipliers of `scene` to be compared, where there is a constraint.
+    ///
+    /// # Errors
+    /// Where it cannot be decided.
+    pub fn with_decision(mut self, scene: &Scene) -> Result<Question> {
+        let Some(found) = deltaq::membership(scene, scene.start.t + scene.duration)? else { return Ok(self) };
+        let dimension = match found.answer() {
+            Answer::NoneProved { .. } | Answer::None { .. } => None,
+            Answer::SomeProved | Answer::Some { .. } => Some(found.decision.set.dimension()),
+            Answer::Undecided => bail!("the multipliers of `{}` are undecided", scene.name),
+        };
+        let point = dimension.map_or(Vec::new(), |_| found.decision.set.point);
+        self.decision = Some(Decided { start: scene.start.v.clone(), dimension, point });
+        Ok(self)
     }
 
     /// Asks for `states` of the Chetaev states to be compared with SymPy's `LagrangesMethod` too.
