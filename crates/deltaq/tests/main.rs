@@ -2,4 +2,3 @@
 
 mod errors;
 mod examples;
-mod plain;

@@ -151,7 +151,6 @@ mod tests {
         for composition in Composition::ALL {
             let order = composition.order();
             let found = violations(composition.lengths(), order + 1);
-            println!("{composition:?}: {found:?}");
             assert!(found[..order as usize].iter().all(|&x| x < 4e-15), "{composition:?}: {found:?}");
             assert!(found[order as usize] > 1e-6, "{composition:?}: {found:?}");
         }

@@ -120,7 +120,6 @@ fn steps_of_stationary_action_are_symplectic() {
                         worst = worst.max((form(&columns[i], &columns[j]) - unit).abs());
                     }
                 }
-                println!("{name}, {what}, {composition:?}: {worst:.1e}");
                 assert!(worst < 1e-7, "{name}, {what}, {composition:?}: {worst:e}");
                 count += 1;
             }
@@ -141,11 +140,9 @@ fn compensated_sums_lose_less_than_plain_ones() {
         let mut discrete = discrete.clone();
         (discrete.start.x.plain, discrete.start.p.plain) = (plain, plain);
         let drift = discrete.drift(steps as usize, 10).unwrap();
-        println!("plain: {plain}, {:?}", drift.energy);
         drift.relative_energy()
     };
     let (plain, compensated) = (lost(true), lost(false));
-    println!("energy lost in {steps} steps: plain {plain:.1e}, compensated {compensated:.1e}");
     assert!(plain > 10.0 * compensated, "{plain:e} {compensated:e}");
     assert!(compensated < 1e-14, "{compensated:e}");
 }

@@ -13,20 +13,8 @@ fn scene(name: &str) -> Scene {
     Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
 }
 
-fn say(what: &str, drift: &Drift) {
-    println!(
-        "{what}: {} steps, energy off by {:.1e}, its means apart by {:.1e}, f = {:.1e} at nodes, {:.1e} between",
-        drift.steps,
-        drift.relative_energy(),
-        drift.relative_trend(),
-        drift.largest_constraint(),
-        drift.discrete_constraint
-    );
-}
-
 /// Runs to the end, keeps its constraints, and its energy error at the end is the one at the beginning.
 fn must_not_drift(what: &str, drift: &Drift, energy: f64, trend: f64, constraint: f64) {
-    say(what, drift);
     assert_eq!((drift.steps, &drift.stop), (MILLION, &None), "{what}");
     assert!(drift.relative_energy() < energy, "{what}: {:e}", drift.relative_energy());
     assert!(drift.relative_trend() < trend, "{what}: {:e}, {:?}", drift.relative_trend(), drift.energy);
@@ -82,11 +70,9 @@ fn a_motion_that_does_not_return_lets_the_energy_of_order_two_go() {
     let scene = scene("trailer");
     let discrete = Discrete::chetaev(&scene.system, &scene.start, 0.01 * 100_000.0).unwrap();
     let drift = discrete.drift(100_000, PARTS).unwrap();
-    say("Chetaev, trailer, order 2", &drift);
     let trend = drift.relative_trend();
     assert!(trend > 1e-4 && trend < 1e-3, "{trend:e}");
     assert!(drift.largest_constraint() < 1e-14);
     let fourth = discrete.composed(Composition::Fourth).drift(100_000, PARTS).unwrap();
-    say("Chetaev, trailer, order 4", &fourth);
     assert!(fourth.relative_trend() < 1e-9);
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use equations::{Block, Compiled, Equations, EvaluationFailure, FreeConstant, Named, Plan, Role, StateVariable};
+use equations::{Block, Compiled, Equations, EvaluationFailure, Named, Plan, Role, StateVariable};
 use mechanics::System;
 use symbolic::{Expr, Graph};
 
@@ -144,70 +144,6 @@ fn dependent_constraints_make_the_instant_singular() {
     let EvaluationFailure::Singular { reciprocal, limit, regular } = failure.clone() else { panic!("{failure}") };
     assert!(reciprocal < limit && regular == REGULAR, "{failure}");
     assert!(failure.to_string().ends_with(&format!("needed: {REGULAR}")), "{failure}");
-}
-
-/// Appell and Hamel's system in costate form, on a slope `a + b x` that grows.
-fn appell_hamel() -> Equations {
-    let states = [
-        ("x", Role::Position, "vx"),
-        ("y", Role::Position, "vy"),
-        ("z", Role::Position, "vz"),
-        ("px", Role::Costate, "-2*mu*b*(a + b*x)*(vx^2 + vy^2)"),
-        ("py", Role::Costate, "0"),
-        ("pz", Role::Costate, "-m*g"),
-    ];
-    let residuals: [&str; 4] = [
-        "px - m*vx + 2*mu*(a + b*x)^2*vx",
-        "py - m*vy + 2*mu*(a + b*x)^2*vy",
-        "pz - m*vz - 2*mu*vz",
-        "vz^2 - (a + b*x)^2*(vx^2 + vy^2)",
-    ];
-    let parameters = [("m", 1.3), ("g", 9.81), ("a", 0.5), ("b", 0.3)];
-    let blocks: [(&[&str], &[&str]); 1] = [(&["vx", "vy", "vz", "mu"], &residuals)];
-    let mut equations = equations(&parameters, &states, &blocks, &["x", "y", "z"], &["vx", "vy", "vz"]);
-    let symbol = equations.graph.symbol("mu0");
-    equations.free_constants.push(FreeConstant { symbol, natural: None, memory: None });
-    equations
-}
-
-#[test]
-fn the_jacobian_of_a_nonlinear_block_is_that_of_central_differences() {
-    let equations = appell_hamel();
-    let mut compiled = Compiled::new(&equations).unwrap().with_jacobian(&equations).unwrap();
-    let (m, a, mu) = (1.3, 0.5 + 0.3 * 0.2, 0.11);
-    let v: [f64; 3] = [3.0, 4.0, 5.0 * a];
-    let momenta = [0, 1].map(|i: usize| m * v[i] - 2.0 * mu * a * a * v[i]);
-    let y = [0.2, -0.1, 0.4, momenta[0], momenta[1], (m + 2.0 * mu) * v[2]];
-    // from nearby the root is found, and it is this one
-    compiled.set_guess(&[2.9, 4.2, 2.6, 0.0]);
-    let velocities = compiled.outputs(0.0, &y).unwrap().velocities;
-    for (found, expected) in velocities.iter().zip(v) {
-        assert!((found - expected).abs() < 1e-12, "{velocities:?}");
-    }
-    let n = y.len();
-    let mut exact = vec![0.0; n * n];
-    compiled.jacobian(0.0, &y, &mut exact).unwrap();
-    let largest = exact.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-    let step = 1e-5;
-    let mut worst = 0.0_f64;
-    for column in 0..n {
-        let mut side = |h: f64| {
-            let mut moved = y;
-            moved[column] += h;
-            let mut rates = vec![0.0; n];
-            compiled.rates(0.0, &moved, &mut rates).unwrap();
-            rates
-        };
-        let (plus, minus) = (side(step), side(-step));
-        for row in 0..n {
-            let difference = (plus[row] - minus[row]) / (2.0 * step);
-            worst = worst.max((difference - exact[row * n + column]).abs() / largest);
-        }
-    }
-    assert!(worst < 1e-9, "{worst:.2e}");
-    // every state but y and z has a say
-    let counts = |column: usize| (0..n).any(|row| exact[row * n + column].abs() > 1e-3 * largest);
-    assert_eq!((0..n).map(counts).collect::<Vec<_>>(), [true, false, false, true, true, true]);
 }
 
 #[test]

@@ -13,28 +13,24 @@ struct Tree {
 
 /// The stages' matrix a_ij; stage 12 is the end of the step.
 fn matrix() -> [[f64; STAGES]; STAGES] {
-    let mut a = [[0.0; STAGES]; STAGES];
-    fn put<const M: usize>(row: &mut [f64; STAGES], from: &Row<M>) {
-        for (j, w) in from.from.iter().zip(from.weight) {
-            row[*j] = w;
-        }
-    }
-    put(&mut a[1], &STAGE_1);
-    put(&mut a[2], &STAGE_2);
-    put(&mut a[3], &STAGE_3);
-    put(&mut a[4], &STAGE_4);
-    put(&mut a[5], &STAGE_5);
-    put(&mut a[6], &STAGE_6);
-    put(&mut a[7], &STAGE_7);
-    put(&mut a[8], &STAGE_8);
-    put(&mut a[9], &STAGE_9);
-    put(&mut a[10], &STAGE_10);
-    put(&mut a[11], &STAGE_11);
-    put(&mut a[12], &STEP);
-    put(&mut a[13], &STAGE_13);
-    put(&mut a[14], &STAGE_14);
-    put(&mut a[15], &STAGE_15);
-    a
+    [
+        [0.0; STAGES],
+        weights(&STAGE_1),
+        weights(&STAGE_2),
+        weights(&STAGE_3),
+        weights(&STAGE_4),
+        weights(&STAGE_5),
+        weights(&STAGE_6),
+        weights(&STAGE_7),
+        weights(&STAGE_8),
+        weights(&STAGE_9),
+        weights(&STAGE_10),
+        weights(&STAGE_11),
+        weights(&STEP),
+        weights(&STAGE_13),
+        weights(&STAGE_14),
+        weights(&STAGE_15),
+    ]
 }
 
 fn weights<const M: usize>(row: &Row<M>) -> [f64; STAGES] {

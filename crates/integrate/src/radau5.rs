@@ -70,7 +70,6 @@ pub(crate) struct Radau5<'s, 'p> {
     /// `Θ/(1 − Θ)`, kept from step to step.
     margin: f64,
     candidate: Vec<f64>,
-    candidate_raw: Vec<f64>,
     step: f64,
     taken: f64,
     taken_to: f64,
@@ -118,7 +117,6 @@ impl<'s, 'p> Radau5<'s, 'p> {
             guessed_end: vec![0.0; n],
             margin: 1.0,
             candidate: vec![0.0; n],
-            candidate_raw: vec![0.0; n],
             step: length.signum() * first.min(length.abs()),
             taken: 0.0,
             taken_to: start.t,
@@ -207,7 +205,6 @@ impl Stepper for Radau5<'_, '_> {
         for i in 0..self.y.len() {
             self.candidate[i] = self.y[i] + self.z[2][i];
         }
-        self.candidate_raw.copy_from_slice(&self.candidate);
         if let Err(failure) = check_finite(&self.candidate) {
             return Attempt::Failed(failure);
         }

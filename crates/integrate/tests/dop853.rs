@@ -25,21 +25,6 @@ fn errors(solution: &Solution, reference: impl Fn(f64, &mut [f64])) -> (f64, f64
 }
 
 #[test]
-fn the_oscillator_gives_order_eight() {
-    let points: Vec<(f64, f64)> = [1e-5, 1e-7, 1e-9, 1e-11]
-        .iter()
-        .map(|&tolerance| {
-            let solution = run(&mut oscillator(), 0.0, &[1.0, 0.0], 50.0, &Options::with_tolerance(tolerance));
-            let (everywhere, ends) = errors(&solution, |t, y| (y[0], y[1]) = (t.cos(), -t.sin()));
-            assert!(everywhere < 3.0 * ends, "{tolerance:e}: {everywhere:e} within the steps, {ends:e} at their ends");
-            (solution.work.steps as f64, ends)
-        })
-        .collect();
-    let order = -slope(&points);
-    assert!((7.6..8.6).contains(&order), "order {order} from {points:?}");
-}
-
-#[test]
 fn a_nonautonomous_problem_gives_order_eight_at_the_steps_and_seven_between() {
     let (mut at_ends, mut between) = (Vec::new(), Vec::new());
     for tolerance in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {

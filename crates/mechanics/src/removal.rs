@@ -119,34 +119,22 @@ impl Removal {
     pub fn verify(&self, system: &System) -> Result<(), RemovalError> {
         let expected = system.dimension().saturating_sub(system.constraints.len());
         if self.parameters.len() != expected {
-            return Err(RemovalError::WrongCount {
-                removal: self.name.clone(),
-                found: self.parameters.len(),
-                expected,
-            });
+            let (removal, found) = (self.name.clone(), self.parameters.len());
+            return Err(RemovalError::WrongCount { removal, found, expected });
         }
         let constants = system.parameter_values();
         for (index, &f) in system.constraints.iter().enumerate() {
-            let rewritten = self.rewrite(system, f);
-            match system.graph.vanishes(rewritten, &constants) {
-                Vanishing::Exactly | Vanishing::Numerically { .. } => {}
-                Vanishing::No { value, bound } => {
-                    return Err(RemovalError::ConstraintRemains {
-                        removal: self.name.clone(),
-                        constraint: index + 1,
-                        text: system.graph.plain(f),
-                        residual: value,
-                        limit: bound,
-                    });
-                }
-                _ => {
-                    return Err(RemovalError::NotCheckable {
-                        removal: self.name.clone(),
-                        constraint: index + 1,
-                        text: system.graph.plain(f),
-                    });
-                }
+            let verdict = system.graph.vanishes(self.rewrite(system, f), &constants);
+            if verdict.is_zero() {
+                continue;
             }
+            let (removal, constraint, text) = (self.name.clone(), index + 1, system.graph.plain(f));
+            return Err(match verdict {
+                Vanishing::No { value: residual, bound: limit } => {
+                    RemovalError::ConstraintRemains { removal, constraint, text, residual, limit }
+                }
+                _ => RemovalError::NotCheckable { removal, constraint, text },
+            });
         }
         Ok(())
     }

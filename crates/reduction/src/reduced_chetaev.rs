@@ -1,12 +1,6 @@
 //! # Chetaev's equations in quasi-velocities
 //!
-//! For constraints linear in the velocities, `A(q, t) v + b(q, t) = 0`, every admissible velocity is
-//!
-//! ```text
-//! v = S(q, t) w + s(q, t) ,      A S = 0 ,   A s + b = 0 ,
-//! ```
-//!
-//! with n − h quasi-velocities `w`. Virtual displacements are `δq = S ε` with `ε` free, so that the principle becomes
+//! With `v = S w + s`, virtual displacements are `δq = S ε` with `ε` free, so that the principle becomes
 //!
 //! ```text
 //! Sᵀ ( d/dt ∂L/∂v − ∂L/∂q − Q ) = 0 ,      q̇ = S w + s :

@@ -1,7 +1,6 @@
 //! # The vakonomic equations in quasi-velocities
 //!
-//! For constraints linear in the velocities, `A(q, t) v + b(q, t) = 0`, every admissible velocity is `v = S(q, t) w + s(q, t)` with n − h
-//! quasi-velocities `w`, and Hamilton's equations need no multiplier: with
+//! With n − h quasi-velocities `w`, `v = S(q, t) w + s(q, t)`, Hamilton's equations need no multiplier:
 //!
 //! ```text
 //! K(q, p, w, t) = p·v − L(q, v, t) ,   v = S w + s ,        ∂K/∂w = Sᵀ (p − L_v) = 0   determines w;

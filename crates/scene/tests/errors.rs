@@ -145,10 +145,17 @@ fn names() {
     fault_is(&error("start = { u = 0 }", "memory = { u = \"u'\" }"), &taken("a parameter of the removal"));
     fault_is(&error("k = 0.7", "t = 0.7"), &NameFault::Reserved("time"));
     fault_is(&error("k = 0.7", "pi = 3"), &NameFault::Reserved("a constant"));
-    fault_is(&error("k = 0.7", "sin = 3"), &NameFault::Reserved("a function"));
+    for function in ["sin", "sqrt", "atan2", "log", "pow", "abs", "min"] {
+        fault_is(&error("k = 0.7", &format!("{function} = 3")), &NameFault::Reserved("a function"));
+    }
     fault_is(&error("k = 0.7", "\"k'\" = 3"), &NameFault::Primed);
     fault_is(&error("phi = {", "\"phi'\" = {"), &NameFault::Primed);
-    fault_is(&error("k = 0.7", "\"k k\" = 3"), &NameFault::NotIdentifier);
+    for bad in ["", "1", "k k", " y", "y ", "α", "a-b", "a+b", "(y)", "-y"] {
+        fault_is(&error("k = 0.7", &format!("\"{bad}\" = 3")), &NameFault::NotIdentifier);
+    }
+    for good in ["theta_1", "I", "E", "e", "x1"] {
+        Scene::parse("sledge", &SLEDGE.replace("g = 9.81", &format!("g = 9.81\n{good} = 3"))).unwrap();
+    }
     fault!("k = 0.7", "g = 0.7", Kind::Syntax { .. }, "g");
 }
 

@@ -94,6 +94,18 @@ impl Neg for Bounded {
     }
 }
 
+/// Functions `y` of `x` with their slopes.
+macro_rules! mapped {
+    ($x:ident, $y:ident: $($name:ident $slope:expr;)*) => { $(
+        #[allow(unused_variables)] // a slope may need one of the two only
+        fn $name(self) -> Self {
+            let $x = self.value;
+            let $y = Scalar::$name($x);
+            self.mapped($y, $slope)
+        }
+    )* };
+}
+
 impl Scalar for Bounded {
     fn from_f64(x: f64) -> Self {
         Self { value: x, magnitude: x.abs() }
@@ -101,54 +113,22 @@ impl Scalar for Bounded {
     fn from_ratio(numerator: i64, denominator: i64) -> Self {
         Self::from_f64(numerator as f64 / denominator as f64)
     }
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.mapped(root, 0.5 / root)
-    }
-    fn sin(self) -> Self {
-        self.mapped(self.value.sin(), self.value.cos())
-    }
-    fn cos(self) -> Self {
-        self.mapped(self.value.cos(), self.value.sin())
-    }
-    fn tan(self) -> Self {
-        let tangent = self.value.tan();
-        self.mapped(tangent, 1.0 + tangent * tangent)
-    }
-    fn sinh(self) -> Self {
-        self.mapped(self.value.sinh(), self.value.cosh())
-    }
-    fn cosh(self) -> Self {
-        self.mapped(self.value.cosh(), self.value.sinh())
-    }
-    fn tanh(self) -> Self {
-        let tangent = self.value.tanh();
-        self.mapped(tangent, 1.0 - tangent * tangent)
-    }
-    fn asin(self) -> Self {
-        self.mapped(self.value.asin(), 1.0 / (1.0 - self.value * self.value).sqrt())
-    }
-    fn acos(self) -> Self {
-        self.mapped(self.value.acos(), 1.0 / (1.0 - self.value * self.value).sqrt())
-    }
-    fn atan(self) -> Self {
-        self.mapped(self.value.atan(), 1.0 / (1.0 + self.value * self.value))
-    }
-    fn asinh(self) -> Self {
-        self.mapped(self.value.asinh(), 1.0 / (1.0 + self.value * self.value).sqrt())
-    }
-    fn acosh(self) -> Self {
-        self.mapped(self.value.acosh(), 1.0 / (self.value * self.value - 1.0).sqrt())
-    }
-    fn atanh(self) -> Self {
-        self.mapped(self.value.atanh(), 1.0 / (1.0 - self.value * self.value))
-    }
-    fn exp(self) -> Self {
-        let power = self.value.exp();
-        self.mapped(power, power)
-    }
-    fn log(self) -> Self {
-        self.mapped(self.value.ln(), 1.0 / self.value)
+    mapped! { x, y:
+        sqrt 0.5 / y;
+        sin x.cos();
+        cos x.sin();
+        tan 1.0 + y * y;
+        sinh x.cosh();
+        cosh x.sinh();
+        tanh 1.0 - y * y;
+        asin 1.0 / (1.0 - x * x).sqrt();
+        acos 1.0 / (1.0 - x * x).sqrt();
+        atan 1.0 / (1.0 + x * x);
+        asinh 1.0 / (1.0 + x * x).sqrt();
+        acosh 1.0 / (x * x - 1.0).sqrt();
+        atanh 1.0 / (1.0 - x * x);
+        exp y;
+        log 1.0 / x;
     }
     fn powf(self, exponent: Self) -> Self {
         let value = self.value.powf(exponent.value);

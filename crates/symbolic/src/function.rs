@@ -43,41 +43,18 @@ pub enum Function {
 
 impl Function {
     /// All of them.
-    pub const ALL: [Function; 14] = [
-        Function::Sin,
-        Function::Cos,
-        Function::Tan,
-        Function::Sinh,
-        Function::Cosh,
-        Function::Tanh,
-        Function::Asin,
-        Function::Acos,
-        Function::Atan,
-        Function::Asinh,
-        Function::Acosh,
-        Function::Atanh,
-        Function::Exp,
-        Function::Log,
-    ];
+    pub const ALL: [Function; 14] = {
+        use Function::*;
+        [Sin, Cos, Tan, Sinh, Cosh, Tanh, Asin, Acos, Atan, Asinh, Acosh, Atanh, Exp, Log]
+    };
+
+    /// Their names, in the same order.
+    pub(crate) const NAMES: [&str; 14] =
+        ["sin", "cos", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "asinh", "acosh", "atanh", "exp", "log"];
 
     /// The name under which [`Graph::parse`](crate::Graph::parse) knows it.
     pub fn name(self) -> &'static str {
-        match self {
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Tan => "tan",
-            Function::Sinh => "sinh",
-            Function::Cosh => "cosh",
-            Function::Tanh => "tanh",
-            Function::Asin => "asin",
-            Function::Acos => "acos",
-            Function::Atan => "atan",
-            Function::Asinh => "asinh",
-            Function::Acosh => "acosh",
-            Function::Atanh => "atanh",
-            Function::Exp => "exp",
-            Function::Log => "log",
-        }
+        Function::NAMES[self as usize]
     }
 
     /// −1 for an odd function, 1 for an even one, 0 for neither.

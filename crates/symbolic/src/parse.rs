@@ -1,7 +1,7 @@
 //! Formulas as text to expressions.
 
 use crate::lexer::{Fault, Spanned, Token, token_at};
-use crate::suggest::{FUNCTIONS, arity, nearest, smooth_substitute};
+use crate::suggest::{arity, callable, nearest, smooth_substitute};
 use crate::{Expr, Function, Graph, ParseError, ParseErrorKind};
 
 /// Nested parentheses, calls and powers that are accepted.
@@ -231,7 +231,7 @@ impl<'a> Parser<'a> {
             let known = self.known.iter().map(String::as_str).chain(["pi"]);
             ParseErrorKind::Undefined {
                 name: name.to_owned(),
-                suggestion: nearest(name, known).or_else(|| nearest(name, FUNCTIONS)),
+                suggestion: nearest(name, known).or_else(|| nearest(name, callable())),
             }
         };
         Err(self.fault(kind, token))
@@ -246,7 +246,7 @@ impl<'a> Parser<'a> {
             } else if (self.scope)(name).is_some() || name == "pi" {
                 ParseErrorKind::VariableCalled { name: name.to_owned() }
             } else {
-                let suggestion = nearest(name, FUNCTIONS);
+                let suggestion = nearest(name, callable());
                 ParseErrorKind::UnknownFunction { name: name.to_owned(), suggestion }
             };
             return Err(self.fault(kind, token));
@@ -294,7 +294,7 @@ impl Graph {
         }
     }
 
-    /// A function of [`FUNCTIONS`] with as many arguments as it takes.
+    /// One of the [`callable`] functions with as many arguments as it takes.
     fn apply(&self, name: &str, arguments: &[Expr]) -> Expr {
         let x = arguments[0];
         match name {

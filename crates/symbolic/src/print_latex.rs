@@ -55,7 +55,7 @@ impl Arena {
     }
 
     fn latex_call(&self, function: Function, argument: Expr, negated: bool, exponent: &str) -> Vec<Piece> {
-        let name = format!("{}{exponent}", function_name(function));
+        let name = format!("{}{exponent}", NAMES[function as usize]);
         let inner = if negated { Piece::Negated(argument, 0) } else { Piece::Node(argument, 0) };
         match self.node(argument) {
             Node::Symbol(_) => vec![text(name + " "), inner],
@@ -161,21 +161,20 @@ fn raised_at_name(function: Function) -> bool {
     matches!(function, Sin | Cos | Tan | Sinh | Cosh | Tanh)
 }
 
-fn function_name(function: Function) -> &'static str {
-    match function {
-        Function::Sin => r"\sin",
-        Function::Cos => r"\cos",
-        Function::Tan => r"\tan",
-        Function::Sinh => r"\sinh",
-        Function::Cosh => r"\cosh",
-        Function::Tanh => r"\tanh",
-        Function::Asin => r"\arcsin",
-        Function::Acos => r"\arccos",
-        Function::Atan => r"\arctan",
-        Function::Asinh => r"\operatorname{arsinh}",
-        Function::Acosh => r"\operatorname{arcosh}",
-        Function::Atanh => r"\operatorname{artanh}",
-        Function::Exp => r"\exp",
-        Function::Log => r"\ln",
-    }
-}
+/// Names of the functions, in the order of [`Function::ALL`].
+const NAMES: [&str; 14] = [
+    r"\sin",
+    r"\cos",
+    r"\tan",
+    r"\sinh",
+    r"\cosh",
+    r"\tanh",
+    r"\arcsin",
+    r"\arccos",
+    r"\arctan",
+    r"\operatorname{arsinh}",
+    r"\operatorname{arcosh}",
+    r"\operatorname{artanh}",
+    r"\exp",
+    r"\ln",
+];

@@ -1,16 +1,20 @@
 //! The names that a formula may call, and which name was meant by an unknown one.
 
+use crate::Function;
+
+/// What can be called besides the functions of [`Function`].
+const OTHERS: [&str; 7] = ["ln", "sqrt", "sec", "csc", "cot", "atan2", "pow"];
+
 /// The names that can be called.
-pub(crate) const FUNCTIONS: [&str; 21] = [
-    "sin", "cos", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "asinh", "acosh", "atanh", "exp", "log", "ln",
-    "sqrt", "sec", "csc", "cot", "atan2", "pow",
-];
+pub(crate) fn callable() -> impl Iterator<Item = &'static str> {
+    Function::NAMES.into_iter().chain(OTHERS)
+}
 
 /// How many arguments a function takes.
 pub(crate) fn arity(name: &str) -> Option<usize> {
     match name {
         "atan2" | "pow" => Some(2),
-        _ => FUNCTIONS.contains(&name).then_some(1),
+        _ => callable().any(|known| known == name).then_some(1),
     }
 }
 

@@ -5,7 +5,7 @@ use scene::Scene;
 use symbolic::LANES;
 
 use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart};
-use crate::{Choice, Ending, MemberMotion, MemberRun, Settings, SolveError, choices, solve_choice};
+use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, solve_choice};
 use integrate::Method;
 
 const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
@@ -75,42 +75,6 @@ fn ready(scenes: &[Scene], formulation: &str, parameters: &[&str]) -> (Ensemble,
     let mut ensemble = Ensemble::new(&scenes[0], &choice, parameters, &settings()).unwrap();
     let members = scenes.iter().map(|scene| ensemble.member(scene).unwrap()).collect();
     (ensemble, members)
-}
-
-#[test]
-fn every_member_is_its_single_run() {
-    let scenes = sledges(2 * LANES + 3);
-    let times = [0.0, 0.3, 0.9, 2.0, 4.0];
-    for formulation in ["chetaev", "chetaev-reduced", "vakonomic", "vakonomic-costate"] {
-        let known = crate::formulation(formulation).unwrap();
-        let of = |scene: &Scene| Choice {
-            label: formulation.into(),
-            formulation: known.name,
-            removal: None,
-            constants: crate::default_constants(known, scene),
-        };
-        let mut ensemble = Ensemble::new(&scenes[0], &of(&scenes[0]), &["alpha", "k"], &settings()).unwrap();
-        assert_eq!(ensemble.refusal(), None, "{formulation}");
-        let members: Vec<EnsembleMember> = scenes.iter().map(|scene| ensemble.member(scene).unwrap()).collect();
-        let motions = ensemble.motions(&members, &times, &EnsembleOptions::default());
-        for (scene, motion) in scenes.iter().zip(motions) {
-            let MemberMotion { run, outputs, estimate } = motion.unwrap();
-            assert!(estimate.is_some_and(|e| e.relative < 1e-8), "{formulation}: {estimate:?}");
-            let mut single = solve_choice(scene, &of(scene), &settings()).unwrap();
-            assert_eq!((&run.ending, &run.alone), (&Ending::Completed, &None), "{formulation}");
-            let reached: Vec<f64> = times.iter().copied().filter(|&t| t <= scene.duration).collect();
-            assert_eq!((run.states.len(), run.differences.len()), (reached.len(), reached.len()));
-            for (&t, (here, difference)) in reached.iter().zip(outputs.iter().zip(&run.differences)) {
-                let there = single.at(t).unwrap();
-                let size = 1.0 + there.coordinates.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-                for (a, b) in here.coordinates.iter().zip(&there.coordinates) {
-                    assert!((a - b).abs() < 1e-9 * size, "{formulation} at {t}: {a} and {b}");
-                }
-                let worst = difference.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-                assert!(worst < 1e-7 * size, "{formulation} at {t}: {worst}");
-            }
-        }
-    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Closed forms and orders.
 
+use std::fmt::Display;
+
 use mechanics::Removal;
 use scene::Scene;
 
@@ -14,16 +16,24 @@ fn scene(name: &str) -> Scene {
     Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
 }
 
-/// Every measured order above round-off is `order ± 0.1`, and at least `least` of them are measured.
-fn assert_orders(what: &str, found: &Convergence, column: usize, least: usize) {
-    let order = 2.0 * (column as f64 + 1.0);
-    let orders = found.orders(column, PLATEAU);
-    println!(
-        "{what}, extrapolated {column} times: orders {orders:.3?}, then {:.1e} ± {:.1e}",
-        found.difference, found.estimate
-    );
-    assert!(orders.len() >= least, "{what}: {:?}", found.errors);
-    assert!(orders.iter().all(|o| (o - order).abs() < 0.1), "{what}: {orders:?} {:?}", found.errors);
+/// Halves the step of `discrete` so many times, and finds its orders, `± 0.1` wherever errors are above round-off, and in the end `reference`.
+///
+/// `least`: so many orders are measured, without extrapolation and extrapolated once.
+fn tends_to<E: Display>(
+    what: &str,
+    mut discrete: Discrete,
+    (steps, levels): (usize, usize),
+    least: [usize; 2],
+    reference: impl FnMut(f64) -> Result<Vec<f64>, E>,
+) {
+    let found = convergence(&mut discrete, steps, levels, reference).unwrap();
+    for (column, least) in least.into_iter().enumerate() {
+        let order = 2.0 * (column as f64 + 1.0);
+        let orders = found.orders(column, PLATEAU);
+        assert!(orders.len() >= least, "{what}: {:?}", found.errors);
+        assert!(orders.iter().all(|o| (o - order).abs() < 0.1), "{what}: {orders:?} {:?}", found.errors);
+    }
+    assert!(found.difference < 1e-11, "{what}: {:?}", found.errors);
 }
 
 fn known(q: Vec<f64>) -> Result<Vec<f64>, DiscreteError> {
@@ -33,28 +43,20 @@ fn known(q: Vec<f64>) -> Result<Vec<f64>, DiscreteError> {
 #[test]
 fn chetaev_sledge_has_its_closed_form() {
     let scene = scene("sledge");
-    let mut discrete = Discrete::chetaev(&scene.system, &scene.start, 1.5).unwrap();
+    let discrete = Discrete::chetaev(&scene.system, &scene.start, 1.5).unwrap();
     let start = Sledge { gravity_along: 9.81 * 0.4_f64.sin(), x: 0.0, y: 0.0, phi: 0.3, speed: 0.5, omega: 1.1 };
-    let exact = |t: f64| {
+    tends_to("sledge", discrete, (20, 4), [3, 1], |t| {
         let at = start.at(t);
         known(vec![at.x, at.y, at.phi])
-    };
-    let found = convergence(&mut discrete, 20, 4, exact).unwrap();
-    assert_orders("sledge", &found, 0, 3);
-    assert_orders("sledge", &found, 1, 1);
-    assert!(found.difference < 1e-12, "{:?}", found.errors);
+    });
 }
 
 #[test]
 fn vakonomic_heisenberg_runs_on_circles() {
     let scene = scene("heisenberg");
     let start = Heisenberg { multiplier: 0.8, position: [0.5, 0.0, 0.0], velocity: [0.6, 0.8] };
-    let mut discrete = Discrete::vakonomic(&scene.system, &scene.start, &[start.multiplier], 4.0).unwrap();
-    let exact = |t: f64| known(start.at(t).to_vec());
-    let found = convergence(&mut discrete, 30, 4, exact).unwrap();
-    assert_orders("heisenberg", &found, 0, 3);
-    assert_orders("heisenberg", &found, 1, 2);
-    assert!(found.difference < 1e-11, "{:?}", found.errors);
+    let discrete = Discrete::vakonomic(&scene.system, &scene.start, &[start.multiplier], 4.0).unwrap();
+    tends_to("heisenberg", discrete, (30, 4), [3, 2], |t| known(start.at(t).to_vec()));
 }
 
 /// Two oscillators without a constraint.
@@ -86,14 +88,10 @@ fn oscillators_keep_time_by_all_three() {
         ("free, removed", Discrete::removed(&system, &removal, &at, 2.2, Ends::GivenStart)),
         ("free, backwards", Discrete::chetaev(&system, &start, -1.8)),
     ] {
-        let exact = |t: f64| {
+        tends_to(what, discrete.unwrap(), (20, 4), [3, 2], |t| {
             let t = t - 0.2;
             known(vec![t.cos() + 0.5 * t.sin(), (2.0 * t).sin()])
-        };
-        let found = convergence(&mut discrete.unwrap(), 20, 4, exact).unwrap();
-        assert_orders(what, &found, 0, 3);
-        assert_orders(what, &found, 1, 2);
-        assert!(found.difference < 1e-11, "{what}: {:?}", found.errors);
+        });
     }
 }
 
@@ -106,13 +104,10 @@ fn a_nonlinear_constraint_has_its_order_too() {
     let lagrangian = g.add(scene.system.lagrangian, bend);
     scene.system.lagrangian = lagrangian;
     let (system, start) = (scene.system, scene.start);
-    let mut discrete = Discrete::chetaev(&system, &start, 0.5).unwrap();
+    let discrete = Discrete::chetaev(&system, &start, 0.5).unwrap();
     let mut maggi = crate::maggi::Maggi::new(&system).unwrap();
     let mut motion = maggi.solve(&start, 0.5, 1e-13, crate::maggi::Form::Accelerations).unwrap();
-    let found = convergence(&mut discrete, 10, 5, |t| motion.state(t).map(|s| s.q)).unwrap();
-    assert_orders("nonlinear", &found, 0, 4);
-    assert_orders("nonlinear", &found, 1, 2);
-    assert!(found.difference < 1e-11, "{:?}", found.errors);
+    tends_to("nonlinear", discrete, (10, 5), [4, 2], |t| motion.state(t).map(|s| s.q));
 }
 
 #[test]
