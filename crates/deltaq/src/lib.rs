@@ -35,6 +35,8 @@ mod steps;
 mod table;
 mod trajectory;
 
+pub use decision::{Finding, Section};
+
 pub use choice::{
     Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
     solve_choice,
@@ -52,7 +54,7 @@ pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };
 pub use growth::{Growth, LeadingTerm, growth, leading_term};
-pub use membership::{Answer, Membership, membership};
+pub use membership::{Answer, Membership, membership, membership_of};
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve};
 pub use prepared::Prepared;

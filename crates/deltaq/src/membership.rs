@@ -3,7 +3,7 @@
 use decision::{
     Decision, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question, Section, Verdict, decide_flow,
 };
-use equations::Derivation;
+use equations::{Derivation, Equations};
 use mechanics::System;
 use scene::Scene;
 
@@ -71,16 +71,24 @@ impl Membership {
 /// # Errors
 /// [`SolveError::Derivation`] where one of the two is refused; [`SolveError::Decision`] where the motion cannot be followed.
 pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveError> {
+    membership_of(scene, &chetaev::derive(&scene.system, &Derivation::default())?, end)
+}
+
+/// [`membership`] of the motion of other equations of the scene, all their own free constants zero.
+///
+/// # Errors
+/// As [`membership`].
+pub fn membership_of(scene: &Scene, curve: &Equations, end: f64) -> Result<Option<Membership>, SolveError> {
     let system = &scene.system;
     if system.constraints.is_empty() {
         return Ok(None);
     }
-    let curve = chetaev::derive(system, &Derivation::default())?;
     let without_forces = System { forces: vec![system.graph.zero(); system.dimension()], ..system.clone() };
     let family = Family::new(system, &vakonomic::derive(&without_forces, &Derivation::default())?, false)?;
-    let flow = Flow::new(system, &curve, &scene.start, &[], end)?;
+    let constants = vec![0.0; curve.free_constants.len()];
+    let flow = Flow::new(system, curve, &scene.start, &constants, end)?;
     let decision = decide_flow(&family, &flow, &DecisionSettings::default())?;
-    let question = Question::new(system, &curve, &[], &family)?;
+    let question = Question::new(system, curve, &constants, &family)?;
     let start = ExactStart::new(system, &scene.start, &scene.completion, scene.removals.first())?;
     let section = question.section(system, &start, &scene.start)?;
     Ok(Some(Membership { decision, proof: question.prove(&start), section }))
