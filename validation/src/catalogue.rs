@@ -24,12 +24,24 @@ pub const SCENES: &[(&str, &str)] = &[
     ("trailer", include_str!("../scenes/trailer.toml")),
 ];
 
+macro_rules! beside {
+    ($($name:literal)*) => { &[$(($name, include_str!(concat!("../equivalence/", $name, ".toml")))),*] };
+}
+
+/// Further systems of the literature, which are asked one question only: which of their motions are vakonomic.
+pub const CLASSICS: &[(&str, &str)] = beside!(
+    "coin-on-incline" "mobile-robot" "falling-disc" "two-wheeled-carriage" "unicycle-in-potential" "turning-knife-edge"
+    "nonholonomic-oscillator" "martinet" "engel" "generalized-heisenberg" "suslov" "veselova" "chaplygin-sphere"
+    "rubber-ball" "rubber-chaplygin-sphere" "routh-sphere" "ball-on-incline" "ball-in-cylinder" "rattleback"
+    "snakeboard" "roller-racer" "pursuit" "isokinetic" "parallel-velocities" "sledge-with-friction"
+);
+
 /// The built-in scene of that name, or else the scene file at that path; `overrides` replace parameters and start values.
 ///
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.
 pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, NotFound> {
-    if let Some((name, text)) = SCENES.iter().find(|(name, _)| *name == name_or_path) {
+    if let Some((name, text)) = SCENES.iter().chain(CLASSICS).find(|(name, _)| *name == name_or_path) {
         return Ok(Scene::parse_with(name, text, overrides)?);
     }
     if let Some((trailers, coordinates)) = trailer::named(name_or_path) {

@@ -62,6 +62,8 @@ pub enum Section {
     Realization,
     /// The paper's equations, each shown to hold or not.
     PaperAudit,
+    /// Which motions of classic systems are vakonomic, and what was published about that.
+    Equivalence,
     /// Error against run time.
     ErrorVsTime,
     /// Every method on stiff and extreme cases, against references.

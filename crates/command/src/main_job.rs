@@ -18,9 +18,9 @@ use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
 use validation::catalogue;
 use validation::report::{
-    AuditReport, File, RealizationReport, StabilityReport, answer, bench_files, bench_headline, difference_of_verdicts,
-    overview, pictures, random_files, random_headline, random_verdicts, referees_section, scene_page, verdicts,
-    write_all,
+    AuditReport, EquivalenceReport, File, LiteratureReport, RealizationReport, StabilityReport, answer, bench_files,
+    bench_headline, difference_of_verdicts, overview, pictures, random_files, random_headline, random_verdicts,
+    referees_section, scene_page, verdicts, write_all,
 };
 
 /// A compared scene with its page and pictures.
@@ -107,6 +107,14 @@ impl Results {
             let report = AuditReport::new()?;
             let (headline, verdicts) = (report.headline(), Some(("paper audit", report.verdicts())));
             parts.push(Part { page: "paper-audit.md", headline, verdicts, files: report.files() });
+        }
+        if asked(Section::Equivalence) {
+            let report = EquivalenceReport::new(quiet)?;
+            let (headline, verdicts) = (report.headline(), Some(("equivalence", report.verdicts())));
+            parts.push(Part { page: "equivalence.md", headline, verdicts, files: report.files() });
+            let report = LiteratureReport::new(quiet)?;
+            let (headline, verdicts) = (report.headline(), Some(("literature", report.verdicts())));
+            parts.push(Part { page: "literature.md", headline, verdicts, files: report.files() });
         }
         if asked(Section::Stability) {
             let report = StabilityReport::new(|_| true, quiet)?;

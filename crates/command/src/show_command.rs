@@ -11,13 +11,13 @@ use scene::Scene;
 use crate::cli::ShowArguments;
 use validation::catalogue;
 
-/// The built-in scenes, a line each.
+/// The built-in scenes, then those of the pages about the literature, a line each.
 pub(crate) fn list() -> String {
     let line = |&(name, text): &(&str, &str)| match Scene::parse(name, text) {
         Ok(scene) => format!("{name:<24} {} ({})\n", scene.title, scene.source),
         Err(error) => format!("{name:<24} {error}\n"),
     };
-    catalogue::SCENES.iter().map(line).collect()
+    catalogue::SCENES.iter().chain(catalogue::CLASSICS).map(line).collect()
 }
 
 /// Equations of every formulation and its further forms, what was left out, and whether the constraints are integrable.

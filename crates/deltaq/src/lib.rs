@@ -37,6 +37,8 @@ mod steps;
 mod table;
 mod trajectory;
 
+pub use decision::{Finding, Section};
+
 pub use choice::{
     Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
     solve_choice,

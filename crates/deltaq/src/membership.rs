@@ -83,10 +83,7 @@ impl<'a> Pairing<'a> {
     /// # Errors
     /// [`SolveError::Derivation`] where one of the two is refused; [`SolveError::Decision`] for equations that are not affine in their costates.
     pub fn new(scene: &'a Scene, curve: &Choice, family: &Choice) -> Result<Self, SolveError> {
-        let system = &scene.system;
-        let (equations, carries_forces) = as_derived(system, family)?;
-        let family = Family::new(system, &equations, carries_forces)?;
-        let (equations, _) = as_derived(system, curve)?;
+        let (equations, _) = as_derived(&scene.system, curve)?;
         let reason = "its constants are found by a search, and have no exact values".to_owned();
         let constants = match &curve.constants {
             ConstantsRule::Zero => vec![0.0; equations.free_constants.len()],
@@ -95,7 +92,22 @@ impl<'a> Pairing<'a> {
                 return Err(DecisionError::Unsuited { formulation: equations.formulation, reason }.into());
             }
         };
-        Ok(Pairing { scene, curve: equations, constants, family })
+        Pairing::with_curve(scene, equations, constants, family)
+    }
+
+    /// [`Pairing::new`] for the motion of equations that stand in no table, with values for their free constants.
+    ///
+    /// # Errors
+    /// As [`Pairing::new`].
+    pub fn with_curve(
+        scene: &'a Scene,
+        curve: Equations,
+        constants: Vec<f64>,
+        family: &Choice,
+    ) -> Result<Self, SolveError> {
+        let (equations, carries_forces) = as_derived(&scene.system, family)?;
+        let family = Family::new(&scene.system, &equations, carries_forces)?;
+        Ok(Pairing { scene, curve, constants, family })
     }
 
     /// Decides for which constants of the family the motion is one of its own, up to `end`.

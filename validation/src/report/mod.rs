@@ -2,8 +2,10 @@
 
 mod audit_page;
 mod bench_page;
+mod equivalence;
 mod files;
 mod fill;
+mod literature;
 mod membership;
 mod numbers;
 mod overview;
@@ -20,9 +22,11 @@ mod verdicts;
 
 pub use audit_page::AuditReport;
 pub use bench_page::{bench_files, bench_headline, bench_json, bench_table, ensemble_text};
+pub use equivalence::EquivalenceReport;
 pub use files::{File, write_all};
 pub use fill::fill;
 pub use membership::{sentence as membership_sentence, value as membership_value};
+pub use literature::LiteratureReport;
 pub use overview::overview;
 pub use pictures::pictures;
 pub use random_page::{random_files, random_headline, random_verdicts};

@@ -1,0 +1,310 @@
+//! The page about classic systems: is Chetaev's motion vakonomic, at almost every start, at the scene's, and at exceptional ones?
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Write};
+
+use anyhow::{Context, Result, ensure};
+use deltaq::{Answer, Finding, Membership, Pairing, Section, choices, membership};
+use mechanics::Removal;
+use random::{parallel, substitution};
+use scene::Scene;
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::catalogue::{self, CLASSICS};
+use crate::report::numbers::short;
+use crate::report::{File, Table};
+
+const DATA: &str = include_str!("../../equivalence/pages/systems.toml");
+
+/// Whose motion is asked about: a scene with other numbers.
+#[derive(Clone, Debug, Deserialize)]
+pub(super) struct Asked {
+    pub(super) scene: String,
+    #[serde(default)]
+    set: BTreeMap<String, f64>,
+    /// The motion with the constraint put into `L`, instead of Chetaev's.
+    #[serde(default)]
+    control: bool,
+}
+
+impl Asked {
+    /// The scene with what `set` adds.
+    pub(super) fn scene(&self, set: &BTreeMap<String, f64>) -> Result<Scene> {
+        let numbers: Vec<_> = self.set.iter().chain(set).map(|(name, value)| (name.clone(), *value)).collect();
+        catalogue::find(&self.scene, &numbers).with_context(|| format!("scene `{}`", self.scene))
+    }
+
+    /// What is found at this start, and at almost every one.
+    pub(super) fn found(&self, set: &BTreeMap<String, f64>) -> Result<[Found; 2]> {
+        let scene = self.scene(set)?;
+        let end = scene.start.t + scene.duration;
+        let found = if self.control {
+            let removal = Removal::by_coordinates(&scene.system, &scene.start)?;
+            let curve = substitution::derive(&scene.system, &removal);
+            let constants = vec![0.0; curve.free_constants.len()];
+            let vakonomic = choices(&scene).into_iter().find(|choice| choice.formulation == "vakonomic");
+            let family = vakonomic.context("no vakonomic formulation")?;
+            Pairing::with_curve(&scene, curve, constants, &family).and_then(|pairing| pairing.decide(end)).map(Some)
+        } else {
+            membership(&scene, end)
+        };
+        let what = || format!("scene `{}` with {:?} {set:?}", self.scene, self.set);
+        let membership = found.with_context(what)?.with_context(what)?;
+        Ok([Found::here(&membership), Found::almost_everywhere(&membership)])
+    }
+
+    /// The scene as a link from the folder of reports, with its numbers.
+    pub(super) fn link(&self) -> String {
+        let name = &self.scene;
+        let classic = CLASSICS.iter().any(|(known, _)| known == name);
+        let page = if classic { format!("../validation/equivalence/{name}.toml") } else { format!("scenes/{name}.md") };
+        let numbers = if self.set.is_empty() { String::new() } else { format!(", {}", numbers(&self.set)) };
+        let control = if self.control { ", the constraint put into $L$" } else { "" };
+        format!("[{name}]({page}){numbers}{control}")
+    }
+}
+
+/// `phi = 0, phi' = 1`.
+fn numbers(set: &BTreeMap<String, f64>) -> String {
+    set.iter().map(|(name, value)| format!("`{name} = {value}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// The set of multipliers in a word, and how it is known.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Found {
+    pub(super) what: String,
+    how: String,
+}
+
+impl Found {
+    pub(super) fn new(what: &str, how: impl Into<String>) -> Found {
+        Found { what: what.into(), how: how.into() }
+    }
+
+    fn here(membership: &Membership) -> Found {
+        let set = &membership.decision.set;
+        let (rank, how) = match (&membership.proof.this_start, membership.answer()) {
+            (Finding::None(found), _) => return none(found.order, found.certificate.is_some()),
+            (_, Answer::None { unproved }) => return Found::new("none", format!("in floating point: {unproved}")),
+            (_, Answer::Undecided) => return Found::new("undecided", "round-off"),
+            (Finding::Contained { rank, .. } | Finding::ThroughOrder { rank, .. }, Answer::SomeProved)
+                if membership.section.is_some() =>
+            {
+                (*rank, "identity".into())
+            }
+            (Finding::Contained { rank, .. }, _) => (*rank, SETTLED.into()),
+            (Finding::ThroughOrder { rank, order }, _) => (*rank, format!("through order {order}")),
+            (Finding::NotApplicable(_), _) => (set.point.len() - set.dimension(), "in floating point".into()),
+        };
+        // round-off is not printed
+        let point = set.point.iter().map(|&c| short(if c.abs() < 1e-6 { 0.0 } else { c })).collect();
+        let what = of_rank(rank, set.point.len());
+        let point = if what == "one" { format!(", $\\mu_0 = {}$", vector(point)) } else { String::new() };
+        Found { what, how: how + &point }
+    }
+
+    fn almost_everywhere(membership: &Membership) -> Found {
+        let proof = &membership.proof;
+        match (&proof.almost_every_start, &proof.this_start, &membership.section) {
+            // a minor that is not zero at one start is zero almost nowhere
+            (Finding::None(found), ..) | (Finding::NotApplicable(_), Finding::None(found), _) => {
+                none(found.order, found.certificate.is_some())
+            }
+            (Finding::Contained { rank, .. }, _, section) => {
+                let identity = |section: &Section| format!("identity, `{}`", vector(section.expressions.clone()));
+                let how = section.as_ref().map_or(SETTLED.into(), identity);
+                Found { what: of_rank(*rank, membership.decision.constants.len()), how }
+            }
+            (Finding::NotApplicable(reason), ..) => Found::new("open", reason.clone()),
+            (Finding::ThroughOrder { .. }, ..) => Found::new("open", "ranks did not settle"),
+        }
+    }
+
+    /// Whether this is what was said: `none`, `some`, `one`, `every one`, `dimension 1`.
+    pub(super) fn is(&self, said: &str) -> bool {
+        self.what == said || (said == "some" && !["none", "undecided", "open"].contains(&&self.what[..]))
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "**{}**: {}", self.what, self.how)
+    }
+}
+
+fn none(order: usize, minor: bool) -> Found {
+    Found::new("none", format!("{} (order {order})", if minor { "proved" } else { "ranks mod p" }))
+}
+
+/// `(a, b)`, `a`, or `0` for a vector of zeros.
+fn vector(entries: Vec<String>) -> String {
+    match &entries[..] {
+        all if all.iter().all(|x| x == "0") => "0".into(),
+        [one] => one.clone(),
+        _ => format!("({})", entries.join(", ")),
+    }
+}
+
+/// Why later coefficients need not be looked at.
+const SETTLED: &str = "ranks grow no more";
+
+fn of_rank(rank: usize, constants: usize) -> String {
+    match constants - rank {
+        0 => "one".into(),
+        d if d == constants => "every one".into(),
+        d => format!("dimension {d}"),
+    }
+}
+
+#[derive(Deserialize)]
+struct Data {
+    /// Paragraphs before the tables, and before the list.
+    #[serde(default)]
+    paragraphs: [String; 3],
+    system: Vec<System>,
+}
+
+#[derive(Deserialize)]
+struct System {
+    #[serde(flatten)]
+    asked: Asked,
+    title: Option<String>,
+    /// All that is known of exceptional starts.
+    exceptions: String,
+    /// What was published, where, and whether that was read.
+    literature: Option<String>,
+    start: Vec<Start>,
+}
+
+/// A start, and what is expected of it.
+#[derive(Deserialize)]
+struct Start {
+    at: String,
+    set: BTreeMap<String, f64>,
+    is: String,
+}
+
+/// What was found about one system: at almost every start, at that of the scene, and at further ones.
+struct Row {
+    title: String,
+    size: [usize; 2],
+    almost_everywhere: Found,
+    starts: Vec<Found>,
+}
+
+impl Row {
+    fn new(system: &System) -> Result<Row> {
+        let scene = system.asked.scene(&BTreeMap::new())?;
+        let [here, almost_everywhere] = system.asked.found(&BTreeMap::new())?;
+        let mut starts = vec![here];
+        for Start { set, is, .. } in &system.start {
+            let [found, _] = system.asked.found(set)?;
+            ensure!(found.is(is), "scene `{}`, {set:?}: {is} was expected, {found} was found", scene.name);
+            starts.push(found);
+        }
+        let title = system.title.clone().unwrap_or(scene.title);
+        let size = [scene.system.dimension(), scene.system.constraints.len()];
+        Ok(Row { title, size, almost_everywhere, starts })
+    }
+}
+
+/// Decisions about classic systems.
+pub struct EquivalenceReport {
+    data: Data,
+    rows: Vec<Row>,
+}
+
+impl EquivalenceReport {
+    /// Decides every system at every start.
+    ///
+    /// # Errors
+    /// Where a scene cannot be decided, or the finding is not what the page's data say about a start.
+    pub fn new(quiet: bool) -> Result<EquivalenceReport> {
+        EquivalenceReport::of(DATA, quiet)
+    }
+
+    fn of(data: &str, quiet: bool) -> Result<EquivalenceReport> {
+        let data: Data = toml::from_str(data).context("equivalence/pages/systems.toml")?;
+        let name = |system: &System| system.asked.scene.clone();
+        let rows = parallel::try_map(&data.system, quiet, name, Row::new)?;
+        Ok(EquivalenceReport { data, rows })
+    }
+
+    /// The first line of the page.
+    pub fn headline(&self) -> String {
+        let [none, some, open] =
+            ["none", "some", "open"].map(|what| self.rows.iter().filter(|row| row.almost_everywhere.is(what)).count());
+        let starts: usize = self.data.system.iter().map(|system| system.start.len()).sum();
+        let open = if open == 0 { String::new() } else { format!("; {open} open") };
+        format!(
+            "Of {} classic systems {none} have no $\\mu_0$ with which the vakonomic motion is Chetaev's at almost every start, {some} have one at almost every start{open}. \
+             {starts} further starts, on and beside the exceptional ones, are decided one by one.",
+            self.rows.len()
+        )
+    }
+
+    /// The findings for machines.
+    pub fn verdicts(&self) -> Value {
+        let words = |found: &Found| Value::from(format!("{}: {}", found.what, found.how));
+        let value = |(system, row): (&System, &Row)| {
+            let names = system.start.iter().map(|start| numbers(&start.set).replace('`', ""));
+            let names = ["almost every start".into(), "start of the scene".into()].into_iter().chain(names);
+            let found = [&row.almost_everywhere].into_iter().chain(&row.starts).map(words);
+            (row.title.clone(), names.zip(found).collect())
+        };
+        Value::Object(self.data.system.iter().zip(&self.rows).map(value).collect())
+    }
+
+    /// The page.
+    pub fn files(&self) -> Vec<File> {
+        let [about, starts, published] = &self.data.paragraphs;
+        let mut text =
+            format!("# Which motions of classic systems are vakonomic?\n\n**{}**\n\n{about}\n", self.headline());
+        let systems = || self.data.system.iter().zip(&self.rows);
+        let columns = ["system", "scene", ">n", ">h", "almost every start", "start of the scene", "exceptional starts"];
+        let mut table = Table::new(columns);
+        for (system, row) in systems() {
+            let [n, h] = row.size;
+            let (link, everywhere, here) = (system.asked.link(), &row.almost_everywhere, &row.starts[0]);
+            table.row(&[&row.title, &link, &n, &h, everywhere, here, &system.exceptions]);
+        }
+        let _ = write!(text, "{table}\n{starts}\n");
+        let mut table = Table::new(["system", "start", "numbers", "found"]);
+        for (system, row) in systems() {
+            for (start, found) in system.start.iter().zip(&row.starts[1..]) {
+                table.row(&[&row.title, &start.at, &numbers(&start.set), found]);
+            }
+        }
+        let _ = write!(text, "{table}\n{published}\n");
+        for (system, row) in systems() {
+            if let Some(literature) = &system.literature {
+                let _ = writeln!(text, "- **{}.** {literature}", row.title);
+            }
+        }
+        vec![File { path: "equivalence.md".into(), text }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_start_is_what_the_page_says() {
+        let told = EquivalenceReport::new(true).map(|_| ()).map_err(|e| format!("{e:#}"));
+        assert_eq!(told, Ok(()));
+    }
+
+    #[test]
+    fn a_start_that_is_not_what_the_page_says_is_refused() {
+        let data = |is: &str| {
+            format!(
+                "[[system]]\nscene = 'sledge'\nexceptions = ''\nstart = [{{ at = '', set = {{ phi = 0, \"phi'\" = 0 }}, is = '{is}' }}]"
+            )
+        };
+        assert!(EquivalenceReport::of(&data("one"), true).is_ok());
+        let told = EquivalenceReport::of(&data("none"), true).err().expect("a wrong expectation").to_string();
+        assert!(told.contains("none was expected"), "{told}");
+    }
+}

@@ -1,0 +1,231 @@
+//! The page about published claims: what each says, what was computed, and the word that follows.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fmt::Write;
+
+use anyhow::{Context, Result, ensure};
+use deltaq::{Settings, choices, solve_choice};
+use random::parallel;
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::report::equivalence::{Asked, Found};
+use crate::report::numbers::short;
+use crate::report::{File, Table};
+
+const DATA: &str = include_str!("../../equivalence/pages/claims.toml");
+
+/// Instants at which a quantity along a motion is looked at.
+const INSTANTS: usize = 400;
+
+#[derive(Deserialize)]
+struct Data {
+    /// The paragraphs before the claims.
+    #[serde(default)]
+    about: String,
+    claim: Vec<Claim>,
+}
+
+#[derive(Deserialize)]
+struct Claim {
+    source: String,
+    /// What was read of it.
+    read: String,
+    about: String,
+    says: String,
+    /// The word that the computation is expected to lead to.
+    word: String,
+    /// The condition under which the claim holds, where it does not hold throughout.
+    condition: Option<String>,
+    /// Why nothing was computed, or what else is to be said.
+    #[serde(default)]
+    remark: String,
+    #[serde(default)]
+    case: Vec<Case>,
+}
+
+/// A prediction of the claim.
+#[derive(Deserialize)]
+struct Case {
+    #[serde(flatten)]
+    asked: Asked,
+    /// Asked of almost every start, instead of the scene's.
+    #[serde(default)]
+    almost_every_start: bool,
+    /// What the claim says of it; of a quantity, that it stays between the bounds.
+    #[serde(default = "yes")]
+    claimed: String,
+    along: Option<Along>,
+    /// The condition of the claim does not hold here.
+    #[serde(default)]
+    outside: bool,
+}
+
+/// A quantity along a motion.
+#[derive(Deserialize)]
+struct Along {
+    formulation: String,
+    /// An expression in coordinates, velocities, parameters and `t`.
+    quantity: String,
+    during: [f64; 2],
+    between: [f64; 2],
+}
+
+fn yes() -> String {
+    "yes".into()
+}
+
+impl Case {
+    fn found(&self) -> Result<Found> {
+        let Some(along) = &self.along else {
+            let [here, almost_everywhere] = self.asked.found(&BTreeMap::new())?;
+            return Ok(if self.almost_every_start { almost_everywhere } else { here });
+        };
+        let [from, to] = along.during;
+        let scene = self.asked.scene(&BTreeMap::from([("duration".into(), to)]))?;
+        let choice = choices(&scene).into_iter().find(|choice| choice.formulation == along.formulation);
+        let mut motion = solve_choice(&scene, &choice.context("no such formulation")?, &Settings::default())?;
+        let (system, g) = (&scene.system, &scene.system.graph);
+        let inputs: Vec<_> = [&[system.time][..], &system.positions(), &system.velocities()].concat();
+        let names: HashMap<String, _> =
+            system.parameters.iter().map(|p| p.symbol).chain(inputs.clone()).map(|s| (g.name(s), s)).collect();
+        let quantity = g.parse(&along.quantity, &|name| names.get(name).map(|&s| g.variable(s)), &[])?;
+        let mut evaluator = system.evaluator::<f64>(&inputs, &[quantity])?;
+        let mut inside = motion.is_complete();
+        for i in 0..=INSTANTS {
+            let t = scene.start.t + from + (to - from) * i as f64 / INSTANTS as f64;
+            let at = motion.at(t.min(motion.end()))?;
+            let value = evaluator.evaluate(&[&[t][..], &at.coordinates, &at.velocities].concat())[0];
+            inside &= (along.between[0]..=along.between[1]).contains(&value);
+        }
+        Ok(Found::new(if inside { "yes" } else { "no" }, "integrated"))
+    }
+
+    /// What is asked.
+    fn question(&self) -> String {
+        let link = self.asked.link();
+        match &self.along {
+            None if self.almost_every_start => format!("{link}: almost every start"),
+            None => format!("{link}: this start"),
+            Some(Along { formulation, quantity, during: [from, to], between }) => {
+                let [low, high] = between.map(short);
+                format!("{link}, {formulation}: from {from} s to {to} s {low} ≤ `{quantity}` ≤ {high}")
+            }
+        }
+    }
+}
+
+impl Claim {
+    /// *confirmed*: found as claimed throughout; *qualified*: just where the condition holds; *refuted*: not throughout; *open*: nothing to compute.
+    fn follows(&self, found: &[Found]) -> &'static str {
+        let as_claimed: Vec<bool> = self.case.iter().zip(found).map(|(case, found)| found.is(&case.claimed)).collect();
+        let by_condition = || self.case.iter().zip(&as_claimed).all(|(case, yes)| *yes != case.outside);
+        match () {
+            () if as_claimed.is_empty() => "open",
+            () if as_claimed.iter().all(|yes| *yes) => "confirmed",
+            () if self.condition.is_some() && by_condition() => "qualified",
+            () => "refuted",
+        }
+    }
+
+    /// What was computed, which leads to the word.
+    fn found(&self) -> Result<Vec<Found>> {
+        let found = self.case.iter().map(Case::found).collect::<Result<Vec<_>>>();
+        let found = found.with_context(|| format!("claim of {}", self.source))?;
+        let (word, source) = (self.follows(&found), &self.source);
+        ensure!(word == self.word, "claim of {source}: {} was expected, it is {word}: {found:?}", self.word);
+        Ok(found)
+    }
+}
+
+/// Published claims with what was computed about them.
+pub struct LiteratureReport {
+    about: String,
+    claims: Vec<Claim>,
+    found: Vec<Vec<Found>>,
+}
+
+impl LiteratureReport {
+    /// Computes what every claim predicts.
+    ///
+    /// # Errors
+    /// Where something cannot be computed, or does not lead to the word that the claim's data expect.
+    pub fn new(quiet: bool) -> Result<LiteratureReport> {
+        LiteratureReport::of(DATA, quiet)
+    }
+
+    fn of(data: &str, quiet: bool) -> Result<LiteratureReport> {
+        let Data { about, claim: claims } = toml::from_str(data).context("equivalence/pages/claims.toml")?;
+        let found = parallel::try_map(&claims, quiet, |claim| claim.source.clone(), Claim::found)?;
+        Ok(LiteratureReport { about, claims, found })
+    }
+
+    /// The first line of the page.
+    pub fn headline(&self) -> String {
+        let [confirmed, refuted, qualified, open] = ["confirmed", "refuted", "qualified", "open"]
+            .map(|word| self.claims.iter().filter(|claim| claim.word == word).count());
+        format!(
+            "Of {} published claims {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, {refuted} are refuted, {open} are open.",
+            self.claims.len()
+        )
+    }
+
+    /// The words for machines.
+    pub fn verdicts(&self) -> Value {
+        let word = |claim: &Claim| (format!("{}: {}", claim.source, claim.about), claim.word.clone().into());
+        Value::Object(self.claims.iter().map(word).collect())
+    }
+
+    /// The page.
+    pub fn files(&self) -> Vec<File> {
+        let mut text = format!("# Published claims, computed\n\n**{}**\n\n{}\n", self.headline(), self.about);
+        let (mut all, mut each) = (Table::new([">", "source", "about", "word"]), String::new());
+        for (i, (claim, found)) in self.claims.iter().zip(&self.found).enumerate() {
+            let Claim { source, read, about, says, word, remark, .. } = claim;
+            all.row(&[&(i + 1), source, about, &format!("**{word}**")]);
+            let condition = claim.condition.as_ref().map_or(String::new(), |condition| format!(" where {condition}"));
+            let word = format!("**{word}**{condition}. {remark}");
+            let _ = writeln!(each, "\n## {}. {source}: {about}\n\n{says} {read}\n\n{}", i + 1, word.trim_end());
+            let mut table = Table::new(["asked", "the claim says", "found"]);
+            for (case, found) in claim.case.iter().zip(found) {
+                table.row(&[&case.question(), &case.claimed, found]);
+            }
+            if !table.is_empty() {
+                let _ = write!(each, "\n{table}");
+            }
+        }
+        text += &(all.to_string() + &each);
+        vec![File { path: "literature.md".into(), text }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_claim_has_the_word_that_its_data_expect() {
+        let told = LiteratureReport::new(true).map(|_| ()).map_err(|e| format!("{e:#}"));
+        assert_eq!(told, Ok(()));
+    }
+
+    #[test]
+    fn the_word_follows_from_what_was_found() {
+        let claim = |word: &str, more: &str| {
+            let head = "[[claim]]\nsource = ''\nread = ''\nabout = ''\nsays = ''\n";
+            let data = format!("{head}word = '{word}'\n{more}");
+            LiteratureReport::of(&data, true).map(|_| ()).map_err(|e| e.to_string())
+        };
+        let case = |scene: &str, claimed: &str, outside: bool| {
+            format!("[[claim.case]]\nscene = '{scene}'\nclaimed = '{claimed}'\noutside = {outside}\n")
+        };
+        let mixed = case("disc", "some", false) + &case("sledge", "some", true);
+        assert_eq!(claim("open", ""), Ok(()));
+        assert_eq!(claim("confirmed", &case("disc", "one", false)), Ok(()));
+        assert_eq!(claim("refuted", &case("sledge", "some", false)), Ok(()));
+        assert_eq!(claim("refuted", &mixed), Ok(()));
+        assert_eq!(claim("qualified", &format!("condition = ''\n{mixed}")), Ok(()));
+        let told = claim("confirmed", &mixed).expect_err("a word that does not follow");
+        assert!(told.contains("it is refuted"), "{told}");
+    }
+}
