@@ -1,14 +1,14 @@
 //! One scene in every formulation, pair by pair.
 
-use mechanics::{Integrability, integrability};
+use mechanics::Integrability;
 use scene::Scene;
 
 use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::growth::{Growth, LeadingTerm, growth, leading_term};
 use crate::{
-    Choice, Membership, Metric, Motion, Settings, SolveError, constant_names, formulation, membership, setting,
-    solve_choice,
+    Choice, Membership, Metric, Motion, Settings, SolveError, constant_names, formulation, integrability, membership,
+    setting, solve_choice,
 };
 
 /// A choice and what became of it.

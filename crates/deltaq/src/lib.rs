@@ -24,6 +24,7 @@ mod error_estimate;
 mod fit;
 mod gap;
 mod growth;
+mod integrability;
 mod membership;
 mod metric;
 mod motion;
@@ -52,6 +53,7 @@ pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };
 pub use growth::{Growth, LeadingTerm, growth, leading_term};
+pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, membership};
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve};

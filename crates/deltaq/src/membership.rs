@@ -82,6 +82,11 @@ pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveEr
     let decision = decide_flow(&family, &flow, &DecisionSettings::default())?;
     let question = Question::new(system, &curve, &[], &family)?;
     let start = ExactStart::new(system, &scene.start, &scene.completion, scene.removals.first())?;
-    let section = question.section(system, &start, &scene.start)?;
-    Ok(Some(Membership { decision, proof: question.prove(&start), section }))
+    let proof = question.prove(&start);
+    // an identity would be one at almost every start
+    let section = match proof.almost_every_start {
+        Finding::None(_) => None,
+        _ => question.section(system, &start, &scene.start)?,
+    };
+    Ok(Some(Membership { decision, proof, section }))
 }

@@ -52,7 +52,7 @@ const ALLOWED: [(&str, &[&str]); 22] = [
     ("referees", &["symbolic", "mechanics", "scene", "integrate", "discrete"]),
     // its time stepping is its own: it judges that of `integrate`
     ("reference", &["symbolic", "mechanics", "equations"]),
-    ("random", &["symbolic", "mechanics", "scene", "equations", "integrate", "deltaq", "referees"]),
+    ("random", &["symbolic", "mechanics", "scene", "equations", "integrate", "decision", "deltaq", "referees"]),
     ("picture", &[]),
     (
         "validation",

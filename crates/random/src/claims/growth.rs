@@ -1,10 +1,11 @@
 //! T5: how the divergence begins.
 
-use deltaq::{growth, leading_term};
+use decision::{ExactStart, Family, Question};
+use deltaq::{LeadingTerm, SolveError, growth};
 
 use super::CheckError;
 use crate::Case;
-use crate::case::Which;
+use crate::case::{Which, as_derived};
 
 /// Deviation of the measured exponent from the predicted one, beyond its own uncertainty.
 const EXPONENT: f64 = 1e-2;
@@ -18,21 +19,36 @@ const COEFFICIENT: f64 = 1e-2;
 /// A predicted gap that does not reach this over the run says nothing: its growth cannot be measured.
 const VISIBLE: f64 = 1e-5;
 
-/// `q_vak − q_chet = ½ Π C μ₀ t²`, or `−⅙ Π C λ₀ t³` where `μ₀ = 0`; constraints linear in the velocities.
+/// The growth is measured within this part of the time after which another term is the larger one.
+const WITHIN: f64 = 0.5;
+
+/// `q_vak − q_chet = y_k t^{k+2}/((k+1)(k+2))` with the first coefficient `y_k` of the mismatch that is not zero, for every `f` and `μ₀`.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
-    let start = case.scene.start.clone();
-    let reaction = case.chetaev.at(start.t)?.multipliers;
-    let Some(predicted) = leading_term(&case.scene.system, &start, &case.scene.multipliers, &reaction)? else {
-        return Ok(());
-    };
-    if predicted.length * case.scene.duration.powi(predicted.exponent as i32) < VISIBLE {
+    let (scene, multipliers) = (&case.scene, &case.scene.multipliers);
+    let (system, start) = (&scene.system, &scene.start);
+    if system.constraints.is_empty() {
         return Ok(());
     }
+    let family = Family::new(system, &as_derived(system, "vakonomic")?, false).map_err(SolveError::from)?;
+    let chetaev = as_derived(system, "chetaev")?;
+    let question = Question::new(system, &chetaev, &[], &family).map_err(SolveError::from)?;
+    let exact = ExactStart::new(system, start, &scene.completion, None).map_err(SolveError::from)?;
+    let Some(term) = question.leading_difference(system, start, Some(&exact), multipliers) else { return Ok(()) };
+    let length = case.metric.length(start.t, &start.q, &start.v, &term.coefficient);
+    let predicted = LeadingTerm { exponent: term.exponent as u32, coefficient: term.coefficient, length };
+    if length * scene.duration.min(term.reach).powi(term.exponent as i32) < VISIBLE {
+        return Ok(());
+    }
+    let without = multipliers.iter().all(|&mu| mu == 0.0);
     let gap = case.gap(Which::Chetaev, Which::Vakonomic)?;
     let limit = |t: f64| gap.limit_at(t);
     let claim = "the leading divergence is the predicted one";
     match growth(&mut case.vakonomic, &mut case.chetaev, &mut case.metric, &limit)? {
         None => case.found.undecided(5, claim, "the gap does not stand out from the errors near the start"),
+        Some(measured) if measured.to > WITHIN * term.reach => {
+            let note = format!("seen from t = {:.1e}, and leading until {:.1e}", measured.from, term.reach);
+            case.found.undecided(5, claim, note);
+        }
         Some(measured) if measured.uncertainty > UNCERTAIN => {
             case.found.undecided(5, claim, format!("the exponent is uncertain by {:.1e}", measured.uncertainty));
         }
@@ -45,9 +61,11 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
                 measured.deviation_from(&predicted),
                 COEFFICIENT,
             );
-            let what =
-                if predicted.exponent == 2 { "growth exponent, mu0 not zero" } else { "growth exponent, mu0 = 0" };
-            case.found.observe(5, what, measured.exponent);
+            match (predicted.exponent, without) {
+                (2, _) => case.found.observe(5, "growth exponent, mu0 not zero", measured.exponent),
+                (3, true) => case.found.observe(5, "growth exponent, mu0 = 0", measured.exponent),
+                _ => {}
+            }
         }
     }
     Ok(())
