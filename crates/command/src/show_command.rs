@@ -3,9 +3,11 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, prepare, setting};
+use deltaq::{
+    Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, integrability, prepare, setting,
+};
 use equations::{Cost, Equations};
-use mechanics::{ConstantsRule, integrability};
+use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::cli::ShowArguments;

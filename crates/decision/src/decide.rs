@@ -8,14 +8,17 @@ use crate::family::Family;
 use crate::transport::Transport;
 
 /// Gauss nodes a panel, and the least number of panels: at least 256 nodes.
-const NODES: usize = 8;
-const PANELS: usize = 32;
+const NODES: usize = 4;
+const PANELS: usize = 64;
 /// A mismatch up to this many times its noise is none.
 const CERTAIN: f64 = 10.0;
 /// What round-off leaves of the rows at best, relative to their size.
 const ROUND_OFF: f64 = 1e-14;
 /// Noise over this part of the terms that cancel tells nothing: a mismatch below it could be a real one.
 const TOO_LOUD: f64 = 1e-5;
+
+/// Where round-off makes the steps short, the tolerances grow by these factors, each in so many steps; then nothing is spared.
+const ATTEMPTS: [(f64, usize); 3] = [(1.0, 3_000), (1e2, 3_000), (1.0, 100_000)];
 
 /// How the decision is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +94,8 @@ pub struct Decision {
     pub constants: Vec<String>,
     triangle: DMatrix<f64>,
     rows_noise: f64,
+    /// What counts as a size of accelerations: the curve's own, and its speed over the time.
+    size: f64,
 }
 
 impl Decision {
@@ -101,13 +106,19 @@ impl Decision {
         (&self.triangle * c).norm()
     }
 
+    /// Whether the constants `c` leave no mismatch that stands out from the noise.
+    pub fn admits(&self, constants: &[f64]) -> bool {
+        let reach = (1.0 + constants.iter().map(|c| c * c).sum::<f64>()).sqrt();
+        self.mismatch_at(constants) <= CERTAIN * self.rows_noise * reach
+    }
+
     /// The same question with only the constants `kept` (by their places), the others zero.
     pub fn keeping(&self, kept: &[usize]) -> Decision {
         let last = self.triangle.ncols() - 1;
         let columns: Vec<usize> = kept.iter().copied().chain([last]).collect();
         let triangle = compressed(self.triangle.select_columns(&columns));
         let constants = kept.iter().map(|&i| self.constants[i].clone()).collect();
-        judge(triangle, self.rows_noise, self.acceleration, constants)
+        judge(triangle, self.rows_noise, self.size, self.acceleration, constants)
     }
 }
 
@@ -126,25 +137,40 @@ pub fn decide(
 ) -> Result<Decision, DecisionError> {
     let (start, end) = tighter.span();
     let mut fine = Transport::new(family, tighter);
-    let fine_run = fine.run(settings.tolerance * settings.tighter)?;
     let mut coarse = Transport::new(family, looser);
-    let coarse_run = coarse.run(settings.tolerance)?;
+    let mut runs = Err(DecisionError::Curve { reason: String::new() });
+    for (factor, steps) in ATTEMPTS {
+        let tolerance = settings.tolerance * factor;
+        runs = fine.run(tolerance * settings.tighter, steps).and_then(|run| Ok((run, coarse.run(tolerance, steps)?)));
+        if !matches!(runs, Err(DecisionError::Steps { .. })) {
+            break;
+        }
+    }
+    let (fine_run, coarse_run) = runs?;
     let steps = fine_run.as_ref().map_or(0, |run| run.step_times().len());
     let panels = PANELS.max(steps);
     let size = family.constants().len() + 1;
     let mut triangle = DMatrix::zeros(0, size);
-    let (mut difference, mut acceleration) = (DMatrix::zeros(0, size), 0.0);
+    let (mut difference, mut acceleration, mut speed) = (0.0, 0.0, 0.0);
     let width = (end - start) / panels as f64;
-    for (place, weight) in (0..panels).flat_map(|panel| legendre().map(move |(x, w)| (panel as f64 + x, w))) {
-        let t = start + width * place;
-        let root = (weight * width.abs()).sqrt();
-        let (own, other) = (fine.mismatch(fine_run.as_ref(), t)?, coarse.mismatch(coarse_run.as_ref(), t)?);
-        triangle = compressed(stacked(&triangle, &(&own.rows * root)));
-        difference = compressed(stacked(&difference, &((own.rows - other.rows) * root)));
-        acceleration += (own.acceleration * root).powi(2);
+    let (nodes, n) = (legendre(), family.shape.coordinates);
+    for panel in 0..panels {
+        let above = triangle.nrows();
+        triangle = triangle.resize_vertically(above + NODES * n, 0.0);
+        for (i, (x, weight)) in nodes.into_iter().enumerate() {
+            let t = start + width * (panel as f64 + x);
+            let root = (weight * width.abs()).sqrt();
+            let (own, other) = (fine.mismatch(fine_run.as_ref(), t)?, coarse.mismatch(coarse_run.as_ref(), t)?);
+            triangle.rows_mut(above + i * n, n).copy_from(&(&own.rows * root));
+            difference += ((own.rows - other.rows) * root).norm_squared();
+            acceleration += (own.acceleration * root).powi(2);
+            speed += (own.speed * root).powi(2);
+        }
+        triangle = compressed(triangle);
     }
-    let rows_noise = difference.norm().max(ROUND_OFF * triangle.norm());
-    Ok(judge(triangle, rows_noise, acceleration.sqrt(), family.constants().to_vec()))
+    let size = (acceleration + speed / (end - start).powi(2)).sqrt();
+    let rows_noise = difference.sqrt().max(ROUND_OFF * triangle.norm().max(size));
+    Ok(judge(triangle, rows_noise, size, acceleration.sqrt(), family.constants().to_vec()))
 }
 
 /// [`decide`] for a curve that is integrated beside the transport of the constants.
@@ -155,7 +181,7 @@ pub fn decide_flow(family: &Family, flow: &Flow, settings: &DecisionSettings) ->
     decide(family, &mut flow.clone(), &mut flow.clone(), settings)
 }
 
-fn judge(triangle: DMatrix<f64>, rows_noise: f64, acceleration: f64, constants: Vec<String>) -> Decision {
+fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, constants: Vec<String>) -> Decision {
     let last = triangle.ncols() - 1;
     let goal = -triangle.column(last);
     let matrix = triangle.columns(0, last).into_owned();
@@ -179,7 +205,7 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, acceleration: f64, constants: 
     let least = (&matrix * &point - &goal).norm();
     let reach = (1.0 + point.norm_squared()).sqrt();
     let noise = rows_noise * reach;
-    let scale = acceleration.max(triangle.norm() * reach);
+    let scale = size.max(triangle.norm() * reach);
     let verdict = if least > CERTAIN * noise {
         Verdict::NotContained
     } else if CERTAIN * noise <= TOO_LOUD * scale {
@@ -197,14 +223,8 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, acceleration: f64, constants: 
         constants,
         triangle,
         rows_noise,
+        size,
     }
-}
-
-fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut whole = DMatrix::zeros(above.nrows() + below.nrows(), below.ncols());
-    whole.rows_mut(0, above.nrows()).copy_from(above);
-    whole.rows_mut(above.nrows(), below.nrows()).copy_from(below);
-    whole
 }
 
 /// The triangular factor: the same lengths in at most as many rows as columns.

@@ -29,6 +29,12 @@ pub enum DecisionError {
         /// In the words of the curve or of the time loop.
         reason: String,
     },
+    /// The limit on steps was reached.
+    #[error("the curve cannot be followed: more than {limit} steps")]
+    Steps {
+        /// It.
+        limit: usize,
+    },
     /// A tape could not be made.
     #[error(transparent)]
     Compile(#[from] CompileError),

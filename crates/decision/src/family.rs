@@ -111,6 +111,10 @@ impl Family {
         }
         let is_rate = |z: usize| kinds.iter().any(|k| matches!(k, CostateRate::Unknown(place) if *place == z));
         let accelerations: Vec<usize> = (0..unknowns.len()).filter(|&z| !is_rate(z)).collect();
+        let moving = equations.removal.as_ref().map_or(system.dimension(), |removal| removal.parameters.len());
+        if accelerations.len() != moving {
+            return Err(unsuited("accelerations were solved for on the spot; take the form as derived".into()));
+        }
         let mut zeros: HashMap<Symbol, Expr> = costates.iter().map(|&s| (s, g.zero())).collect();
         zeros.extend((0..unknowns.len()).filter(|&z| is_rate(z)).map(|z| (unknowns[z], g.zero())));
         let slopes = g.jacobian(&[&residuals[..], &explicit].concat(), &costates);

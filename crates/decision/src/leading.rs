@@ -19,6 +19,8 @@ pub struct LeadingDifference {
     pub exponent: usize,
     /// `y_k / ((k + 1)(k + 2))`, length n.
     pub coefficient: Vec<f64>,
+    /// The time after which a later term of `y` makes more of the difference than this one.
+    pub reach: f64,
     /// Whether the exponent is proved for the numbers as written: all lower coefficients have the image zero, and this one has not.
     pub exact: bool,
 }
@@ -44,9 +46,15 @@ impl Question<'_> {
         let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants))?;
         // decimals that stand for other numbers leave lower terms, of the size of round-off
         let order = proved.flatten().map_or(seen, |order| order.max(seen));
-        let over = ((order + 1) * (order + 2)) as f64;
-        let coefficient = rows(&series, order).map(|row| value(row, constants).0 / over).collect();
-        Some(LeadingDifference { exponent: order + 2, coefficient, exact: proved == Some(Some(order)) })
+        let term = |k: usize| -> Vec<f64> {
+            let over = ((k + 1) * (k + 2)) as f64;
+            rows(&series, k).map(|row| value(row, constants).0 / over).collect()
+        };
+        let coefficient = term(order);
+        let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let meets = |k: usize| (size(&coefficient) / size(&term(k))).powf(1.0 / (k - order) as f64);
+        let reach = (order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min);
+        Some(LeadingDifference { exponent: order + 2, coefficient, reach, exact: proved == Some(Some(order)) })
     }
 
     /// The first order that does not vanish, in exact numbers; `None` where these do not apply.

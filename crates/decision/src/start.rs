@@ -12,6 +12,8 @@ use crate::series::SeriesStart;
 
 /// Random positions and velocities are integers up to this one.
 const LARGEST: u64 = 1 << 20;
+/// Draws until the constraints have roots: where they are squares, each has one for every second draw.
+const DRAWS: usize = 256;
 
 /// Why a start has no exact numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -143,7 +145,8 @@ impl ExactStart {
         if completed.is_empty() { &self.supplied } else { &self.spare }
     }
 
-    /// Random integers for positions and velocities, the others from the constraints.
+    /// Random integers for positions and velocities, the others from the constraints. Where these are squares, the start is on that part of `f = 0`
+    /// on which it has its roots: both signs, unless the constraint is a product.
     pub(crate) fn random(&self, seed: u64) -> Result<SeriesStart<Modular>, NoExactStart> {
         let (parameters, time) = self.given();
         let mut state = seed;
@@ -158,12 +161,61 @@ impl ExactStart {
             Modular::of(exact).map(|value| Jet::constant(value, Some(exact)))
         };
         let n = self.system.dimension();
-        let q = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
-        let v = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
         let choices = [&self.supplied, &self.spare];
         let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
-        let velocities = self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare))?;
-        Ok(SeriesStart { parameters, time, positions: q, velocities })
+        for _ in 0..DRAWS {
+            let q = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
+            let v = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
+            let velocities = match self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare)) {
+                Err(NoExactStart::Nonlinear) => self.with_roots(&parameters, time, &q, &v)?,
+                solved => Some(solved?),
+            };
+            if let Some(velocities) = velocities {
+                return Ok(SeriesStart { parameters, time, positions: q, velocities });
+            }
+        }
+        Err(NoExactStart::Nonlinear)
+    }
+
+    /// `v` on constraints that are quadratic: each is solved for a velocity that the fewest of them contain. `None` where one has no root.
+    fn with_roots(
+        &self,
+        parameters: &[Jet<Modular>],
+        time: Jet<Modular>,
+        q: &[Jet<Modular>],
+        v: &[Jet<Modular>],
+    ) -> Result<Option<Vec<Jet<Modular>>>, NoExactStart> {
+        let (h, n) = (self.system.constraints.len(), v.len());
+        let mut program = self.constraints.evaluator::<Jet<Modular>>();
+        let inputs = |v: &[Jet<Modular>]| [parameters, &[time], q, v].concat();
+        let values = program.run(&inputs(v)).to_vec();
+        let contains = |i: usize, j: usize| !values[h + i * n + j].coefficient(0).is_zero();
+        let mut v = v.to_vec();
+        let mut open: Vec<usize> = (0..n).collect();
+        for i in 0..h {
+            let others = |j: &usize| (0..h).filter(|&i| contains(i, *j)).count();
+            let Some(j) = open.iter().copied().filter(|&j| contains(i, j)).min_by_key(others) else {
+                return Err(NoExactStart::Nonlinear);
+            };
+            open.retain(|&other| other != j);
+            let before = v[j].coefficient(0);
+            // v_j + s: coefficients are those of the constraint as a polynomial in s
+            let (zero, one) = (Modular::ZERO, Modular::one());
+            v[j] = Jet::series(&[before, one, zero, zero, zero], None);
+            let f = program.run(&inputs(&v))[i];
+            let [c, b, a, third, fourth] = std::array::from_fn(|k| f.coefficient(k));
+            if f.flaw().is_some() || !third.is_zero() || !fourth.is_zero() {
+                return Err(NoExactStart::Nonlinear);
+            }
+            let two = Modular::new(2);
+            let change = match (two * a).inverse() {
+                Some(over) => (b * b - two * two * a * c).square_root().map(|root| (root - b) * over),
+                None => b.inverse().map(|over| -c * over),
+            };
+            let Some(change) = change else { return Ok(None) };
+            v[j] = Jet::constant(before + change, None);
+        }
+        self.solved(parameters, time, q, &v, &[]).map(Some)
     }
 
     fn given(&self) -> (Vec<Jet<Modular>>, Jet<Modular>) {

@@ -1,6 +1,6 @@
 //! The constants' images along a curve: `η(t) = Φ c + φ`, integrated beside it.
 
-use integrate::{Dense, DenseOutput, EvaluationError, Method, Options, Problem, Start, Status, integrate};
+use integrate::{Dense, DenseOutput, EvaluationError, Method, Options, Problem, Start, Status, StopCause, integrate};
 use mechanics::State;
 use nalgebra::{DMatrix, DVector};
 
@@ -10,6 +10,8 @@ use crate::family::{CostateRate, Family};
 use crate::lift::Lift;
 use crate::program::Evaluator;
 
+/// `AᵀA` in the unit of `M` is added to it with the first of these weights that makes it positive.
+const WEIGHTS: [f64; 4] = [1.0, 1e2, 1e4, 1e6];
 /// The smallest size that a state is held to have.
 const SMALLEST: f64 = 1e-3;
 
@@ -17,8 +19,9 @@ const SMALLEST: f64 = 1e-3;
 pub(crate) struct Mismatch {
     /// n×(constants + 1), whitened: its Euclidean length is the length in the metric `M` on `ker A`.
     pub(crate) rows: DMatrix<f64>,
-    /// `√(aᵀ M a)` of the curve's own acceleration.
+    /// `√(aᵀ M a)` of the curve's own acceleration, and `√(vᵀ M v)`.
     pub(crate) acceleration: f64,
+    pub(crate) speed: f64,
 }
 
 /// `(states of the curve, u, w, Φ, φ)` as a problem for the time loop.
@@ -160,7 +163,7 @@ impl<'a> Transport<'a> {
 
     /// Integrates to the end of the curve.
     /// `None` where there is nothing to integrate.
-    pub(crate) fn run(&mut self, tolerance: f64) -> Result<Option<DenseOutput>, DecisionError> {
+    pub(crate) fn run(&mut self, tolerance: f64, steps: usize) -> Result<Option<DenseOutput>, DecisionError> {
         let start = self.start()?;
         if start.y.is_empty() {
             return Ok(None);
@@ -170,11 +173,13 @@ impl<'a> Transport<'a> {
             method: Method::Dop853,
             dense: Dense::Everywhere,
             sizes: self.sizes(&start, end)?,
+            max_steps: steps,
             ..Options::with_tolerance(tolerance)
         };
         let solution = integrate(self, &start, end, &options)?;
         match solution.status {
             Status::Completed => Ok(Some(solution.dense)),
+            Status::Stopped { cause: StopCause::TooManySteps { limit }, .. } => Err(DecisionError::Steps { limit }),
             Status::Stopped { cause, t } => Err(DecisionError::Curve { reason: format!("{cause} (at t = {t})") }),
         }
     }
@@ -203,18 +208,19 @@ impl<'a> Transport<'a> {
         let (n, h) = (shape.coordinates, shape.constraints);
         let to_acceleration = DMatrix::from_row_slice(n, shape.accelerations.len(), instant.to_acceleration);
         let mismatch = to_acceleration * solved.unknowns.select_rows(&shape.accelerations);
-        // on ker A, where alone M has to be positive
-        let mut inside = DMatrix::identity(n, n);
-        if h > 0 {
-            let normal = DMatrix::from_row_slice(h, n, instant.jacobian).transpose().qr().q();
-            inside -= &normal * normal.transpose();
-        }
+        // the mismatch lies in ker A: there alone M has to be positive, and M + c AᵀA is M
         let mass = DMatrix::from_row_slice(n, n, instant.mass);
-        let metric = (&inside * &mass * &inside).symmetric_eigen();
-        let roots = DMatrix::from_diagonal(&metric.eigenvalues.map(|x| x.max(0.0).sqrt()));
-        let rows = &metric.eigenvectors * roots * metric.eigenvectors.transpose() * mismatch;
-        let a = DVector::from_column_slice(&self.point.a);
-        Ok(Mismatch { rows, acceleration: a.dot(&(&mass * &a)).max(0.0).sqrt() })
+        let jacobian = DMatrix::from_row_slice(h, n, instant.jacobian);
+        let normal = jacobian.transpose() * &jacobian;
+        let unit = if h == 0 { 0.0 } else { mass.norm() / normal.norm() };
+        let factor = WEIGHTS.iter().find_map(|weight| (&mass + &normal * (unit * weight)).cholesky());
+        let factor = factor.ok_or_else(|| fault(format!("M is not positive on ker A at t = {t}")))?;
+        let length = |x: &[f64]| {
+            let x = DVector::from_column_slice(x);
+            x.dot(&(&mass * &x)).max(0.0).sqrt()
+        };
+        let rows = factor.l().transpose() * mismatch;
+        Ok(Mismatch { rows, acceleration: length(&self.point.a), speed: length(&self.point.v) })
     }
 }
 

@@ -1,13 +1,15 @@
 //! One scene in every formulation, pair by pair.
 
-use mechanics::{Integrability, integrability};
+use mechanics::Integrability;
 use scene::Scene;
 
 use crate::fits::{Fit, fits};
 use crate::gap::{Verdict, compare_motions};
 use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decided, predicted};
-use crate::{Choice, Membership, Metric, Settings, SolveError, constant_names, formulation, solve_choice};
+use crate::{
+    Choice, Membership, Metric, Settings, SolveError, constant_names, formulation, integrability, solve_choice,
+};
 
 /// A scene in every formulation.
 pub struct Comparison {

@@ -34,6 +34,8 @@ pub struct LeadingTerm {
     pub coefficient: Vec<f64>,
     /// Its kinetic length.
     pub length: f64,
+    /// The time after which a later term makes more of the difference than this one.
+    pub reach: f64,
     /// Whether it is proved in exact numbers that this term is the first one: then the motions differ.
     pub proved: bool,
 }

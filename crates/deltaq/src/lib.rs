@@ -25,6 +25,7 @@ mod fit;
 mod fits;
 mod gap;
 mod growth;
+mod integrability;
 mod membership;
 mod metric;
 mod motion;
@@ -57,6 +58,7 @@ pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };
 pub use growth::{Growth, LeadingTerm, growth};
+pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve};

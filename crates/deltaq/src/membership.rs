@@ -120,8 +120,14 @@ impl<'a> Pairing<'a> {
         let decision = decide_flow(&self.family, &flow, &DecisionSettings::default())?;
         let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
         let exact = self.exact_start()?;
-        let section = if self.constants.is_empty() { question.section(system, &exact, start)? } else { None };
-        Ok(Membership { decision, proof: question.prove(&exact), section })
+        let proof = question.prove(&exact);
+        // an identity would be one at almost every start
+        let section = match proof.almost_every_start {
+            Finding::None(_) => None,
+            _ if !self.constants.is_empty() => None,
+            _ => question.section(system, &exact, start)?,
+        };
+        Ok(Membership { decision, proof, section })
     }
 
     /// The certificate that no constants do, for others to check; the reason in words where there is none.
@@ -144,7 +150,7 @@ impl<'a> Pairing<'a> {
         let Some(term) = question.leading_difference(system, start, Some(&exact), constants) else { return Ok(None) };
         let length = Metric::new(system)?.length(start.t, &start.q, &start.v, &term.coefficient);
         let exponent = term.exponent as u32;
-        Ok(Some(LeadingTerm { exponent, coefficient: term.coefficient, length, proved: term.exact }))
+        Ok(Some(LeadingTerm { exponent, coefficient: term.coefficient, length, reach: term.reach, proved: term.exact }))
     }
 
     /// Names of the constants of the family.

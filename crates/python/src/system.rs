@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{derive_at, prepare, removals, setting, solve_choice};
-use mechanics::integrability;
+use deltaq::{derive_at, integrability, prepare, removals, setting, solve_choice};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -45,7 +45,7 @@ impl Recipe {
     }
 
     /// Number of constraints that are integrable by construction.
-    fn integrals(&self) -> usize {
+    pub(crate) fn integrals(&self) -> usize {
         match self.kind {
             kind if kind.is_integrable() => self.h(),
             Kind::PartlyIntegrable => 1 + self.constraints % (self.h() - 1),
@@ -342,6 +342,19 @@ impl<'a> Builder<'a> {
         State { t: 0.0, q, v }
     }
 
+    /// Start velocities with their roots unevaluated; empty where the constraints are linear, and solved in exact numbers.
+    fn written(&self) -> Vec<(Symbol, Expr)> {
+        if self.recipe.kind != Kind::Nonlinear {
+            return Vec::new();
+        }
+        let g = &self.system.graph;
+        let given = self.recipe.velocities.iter().map(|&x| g.ratio(x, 8));
+        let independent: Vec<Expr> = given.take(self.independent.len()).collect();
+        let dependent = self.dependent_rates(&independent);
+        let places = self.independent.iter().chain(&self.dependent);
+        places.map(|&i| self.velocity(i)).zip(independent.into_iter().chain(dependent)).collect()
+    }
+
     fn scene(mut self, name: &str) -> Scene {
         self.system.lagrangian = self.lagrangian();
         self.system.constraints = self.constraints();
@@ -352,7 +365,7 @@ impl<'a> Builder<'a> {
             source: String::new(),
             notes: String::new(),
             start,
-            completion: Completion::default(),
+            completion: Completion { written: self.written(), ..Completion::default() },
             removals: vec![removal],
             multipliers: self.recipe.multipliers[..self.dependent.len()].iter().map(|&x| x as f64 / 8.0).collect(),
             duration: DURATION,

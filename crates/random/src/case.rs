@@ -1,10 +1,10 @@
 //! One random system with its motions, on which claims are tested.
 
 use deltaq::{
-    Choice, Ending, Gap, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict, compare_motions_by,
-    derive, formulation, setting,
+    Choice, Ending, Gap, Membership, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict,
+    compare_motions_by, derive, formulation, membership, setting,
 };
-use equations::Equations;
+use equations::{Derivation, Equations};
 use mechanics::{ConstantsRule, Removal, State, System};
 use nalgebra::DMatrix;
 use scene::Scene;
@@ -62,6 +62,7 @@ pub struct Case {
     pub floor: f64,
     /// What was found so far.
     pub found: Findings,
+    membership: Option<Membership>,
 }
 
 impl Case {
@@ -110,7 +111,19 @@ impl Case {
             shortened: None,
             floor,
             found: Findings::default(),
+            membership: None,
         })
+    }
+
+    /// The set of all `μ₀` with which the vakonomic motion is Chetaev's; `None` where there is no constraint.
+    ///
+    /// # Errors
+    /// [`SolveError`] where it cannot be decided.
+    pub fn membership(&mut self) -> Result<Option<Membership>, SolveError> {
+        if self.membership.is_none() {
+            self.membership = membership(&self.scene, self.end())?;
+        }
+        Ok(self.membership.clone())
     }
 
     fn earliest_stop(&self) -> Option<(f64, String)> {
@@ -232,6 +245,15 @@ pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Resu
         constants: ConstantsRule::Zero,
     };
     derive(system, &choice)
+}
+
+/// The equations of a formulation without removal as they were derived, nothing left out.
+///
+/// # Errors
+/// [`SolveError`] where it has none for this system.
+pub fn as_derived(system: &System, name: &str) -> Result<Equations, SolveError> {
+    let entry = formulation(name).unwrap_or(&deltaq::FORMULATIONS[0]);
+    Ok((entry.derive)(system, &Derivation::default())?)
 }
 
 /// The free constants of `equations` out of costates that are given one a memory variable.

@@ -85,7 +85,7 @@ impl Found {
     fn here(membership: &Membership) -> Found {
         let set = &membership.decision.set;
         let (rank, how) = match (&membership.proof.this_start, membership.answer()) {
-            (Finding::None(found), _) => return none(found.order, found.certificate.is_some()),
+            (Finding::None(found), _) => return none(found.order, found.full_rank),
             (_, Answer::None { unproved }) => return Found::new("none", format!("in floating point: {unproved}")),
             (_, Answer::Undecided) => return Found::new("undecided", "round-off"),
             (Finding::Contained { rank, .. } | Finding::ThroughOrder { rank, .. }, Answer::SomeProved)
@@ -109,7 +109,7 @@ impl Found {
         match (&proof.almost_every_start, &proof.this_start, &membership.section) {
             // a minor that is not zero at one start is zero almost nowhere
             (Finding::None(found), ..) | (Finding::NotApplicable(_), Finding::None(found), _) => {
-                none(found.order, found.certificate.is_some())
+                none(found.order, found.full_rank)
             }
             (Finding::Contained { rank, .. }, _, section) => {
                 let identity = |section: &Section| format!("identity, `{}`", vector(section.expressions.clone()));

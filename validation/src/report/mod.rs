@@ -25,8 +25,8 @@ pub use bench_page::{bench_files, bench_headline, bench_json, bench_table, ensem
 pub use equivalence::EquivalenceReport;
 pub use files::{File, write_all};
 pub use fill::fill;
-pub use membership::{sentence as membership_sentence, value as membership_value};
 pub use literature::LiteratureReport;
+pub use membership::{sentence as membership_sentence, value as membership_value};
 pub use overview::overview;
 pub use pictures::pictures;
 pub use random_page::{random_files, random_headline, random_verdicts};

@@ -1,6 +1,6 @@
 //! The field of `p` elements, and the images in it of the numbers of which jets are made.
 //!
-//! Rational numbers, `i`, `e^{i a}`, `e^a` for rational `a`, and roots of rational numbers that are products of the primes up to 47.
+//! Rational numbers, `i`, `e^{i a}`, `e^a` for rational `a`, and roots of rational numbers: products of the primes up to 47, and of every second larger one.
 //! `e^{i a} ↦ h^a` where `h` has the prime order `r`: the exponent is taken modulo `r`, so that every fraction has its image, whatever its
 //! denominator. `e^{i/N}` is transcendental for every `N`, and independent of `e^{1/N}` (Lindemann, Weierstrass), so that
 //! `T = e^{i/N} ↦ τ = h^{1/N}` is a homomorphism of rings wherever nothing that is divided by has the image 0.
@@ -26,8 +26,8 @@ const COMMON: u64 = 5_342_931_457_063_200;
 const NO_SQUARE: u64 = 53;
 /// `p − 1 = 2^4 · odd`.
 const TWOS: u32 = 4;
-/// Prime factors up to here are looked for under roots.
-const SMALL: i128 = 47;
+/// Prime factors under this are looked for under roots.
+const TRIED: i128 = 4096;
 
 /// An element of the field, as `x 2^64` modulo `p` (Montgomery).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +85,8 @@ impl Modular {
 
     /// The image of a fraction; `None` where its denominator is a multiple of `p`.
     pub(crate) fn fraction(x: Exact) -> Option<Self> {
-        Some(Self::integer(x.numerator) * Self::integer(x.denominator).inverse()?)
+        let numerator = Self::integer(x.numerator);
+        if x.denominator == 1 { Some(numerator) } else { Some(numerator * Self::integer(x.denominator).inverse()?) }
     }
 
     pub(crate) fn power(self, mut exponent: u64) -> Self {
@@ -151,7 +152,7 @@ impl Modular {
     }
 
     /// A square root, the same in every call; `None` for what is no square.
-    fn square_root(self) -> Option<Self> {
+    pub(crate) fn square_root(self) -> Option<Self> {
         if self.is_zero() {
             return Some(self);
         }
@@ -177,7 +178,7 @@ impl Modular {
         Some(root)
     }
 
-    /// `√x` for a fraction `x > 0` made of small primes and squares: roots of different primes are independent, and each prime has one root.
+    /// `√x` for a fraction `x > 0` made of squares and of primes that have roots here: those of different primes are independent, and each prime has one.
     pub(crate) fn root(x: Exact) -> Result<(Self, Option<Exact>), Flaw> {
         if !x.is_rational() || x.numerator < 0 {
             return Err(Flaw::Root);
@@ -188,21 +189,26 @@ impl Modular {
         if square_free == 0 {
             return Ok((Self::ZERO, Some(Exact::ZERO)));
         }
-        for prime in (2..=SMALL).filter(|&q| (2..q).all(|d| q % d != 0)) {
+        let of_prime = |prime: i128| Self::integer(prime).square_root().ok_or(Flaw::Root);
+        // what is no prime does not divide what is left
+        for prime in 2..TRIED {
             while square_free % (prime * prime) == 0 {
                 square_free /= prime * prime;
                 outside = Exact::ratio(prime, 1).and_then(|p| outside.mul(p)).ok_or(Flaw::Root)?;
             }
             if square_free % prime == 0 {
                 square_free /= prime;
-                roots = roots * Self::integer(prime).square_root().ok_or(Flaw::Root)?;
+                roots = roots * of_prime(prime)?;
             }
         }
         let whole = (square_free as f64).sqrt().round() as i128;
-        if whole.checked_mul(whole) != Some(square_free) {
+        if whole.checked_mul(whole) == Some(square_free) {
+            outside = Exact::ratio(whole, 1).and_then(|w| outside.mul(w)).ok_or(Flaw::Root)?;
+        } else if square_free < TRIED * TRIED {
+            roots = roots * of_prime(square_free)?;
+        } else {
             return Err(Flaw::Root);
         }
-        outside = Exact::ratio(whole, 1).and_then(|w| outside.mul(w)).ok_or(Flaw::Root)?;
         let value = Self::fraction(outside).ok_or(Flaw::Root)? * roots;
         Ok((value, (roots == Self::one()).then_some(outside)))
     }
@@ -258,7 +264,8 @@ mod tests {
         assert_eq!(root(2, 1) * root(3, 1), root(6, 1));
         assert_eq!(root(50, 9) * root(50, 9), Modular::fraction(ratio(50, 9)).unwrap());
         assert_eq!(Modular::root(ratio(16, 25)).unwrap().1, Some(ratio(4, 5)));
-        assert_eq!(Modular::root(ratio(101, 1)), Err(Flaw::Root));
+        assert_eq!(root(202, 1), root(2, 1) * root(101, 1));
+        assert_eq!(Modular::root(ratio(53, 1)), Err(Flaw::Root));
         let exponential = |n, d| Modular::exponential(ratio(n, d)).unwrap();
         assert_eq!(exponential(1, 2) * exponential(1, 3), exponential(5, 6));
     }

@@ -1,14 +1,12 @@
 //! T1, T2, T3, T11, T14: where formulations give the same motion.
 
-use std::collections::HashMap;
-
-use deltaq::{Setting, SolveError, growth};
-use mechanics::{Integrability, Removal, complete_removal_start, integrability};
+use deltaq::{Setting, SolveError, growth, integrability, integrals_by_ranks};
+use mechanics::{Integrability, Removal, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
-use symbolic::Symbol;
+use symbolic::{CompileError, Symbol};
 
 use super::CheckError;
-use crate::case::{Which, equations, free_constants};
+use crate::case::{Removed, Which, equations, free_constants};
 use crate::realization::{augmented_start, constraint_jacobian, momenta, numbers};
 use crate::{Case, Kind, Truth};
 
@@ -115,55 +113,63 @@ pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// T3: `Aᵀ μ₀ = p_q − L_v` has a solution for a removal by coordinates, and gives the same motion.
-pub(super) fn inside(case: &mut Case) -> Result<(), CheckError> {
+/// T3: `Aᵀ_w μ₀ = −P₀ − L_ẇ` is a bijection of the removed family, by coordinates and with all its costates, and the vakonomic one.
+pub(super) fn bijection(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     for i in (0..case.removed.len()).filter(|&i| is_chart(&case.removed[i].removal)).collect::<Vec<_>>() {
         if system.constraints.is_empty() {
             continue;
         }
-        let costates = momenta_of_removed(case, i)?;
-        let difference = DVector::from_vec(costates) - DVector::from_vec(momenta(&system, &case.scene.start)?);
-        let a = constraint_jacobian(&system, &case.scene.start)?.transpose();
-        let size = difference.norm().max(1.0);
-        let Ok(mu) = a.clone().svd(true, true).solve(&difference, 1e-13) else { continue };
-        case.found.bound(
-            3,
-            "the equations for the multipliers can be solved",
-            (&a * &mu - &difference).norm() / size,
-            SOLVABLE,
-        );
-        let mut motion = case.run(equations(&system, "vakonomic", None)?, mu.as_slice())?;
-        case.same(3, "coordinate removal is a vakonomic motion", Which::Removed(i), &mut motion);
+        let Removed { removal, costates, .. } = &case.removed[i];
+        let (removal, costates) = (removal.clone(), costates.clone());
+        let Some(mu) = multipliers_of(case, &removal, &costates)? else { continue };
+        let mut motion = case.run(equations(&system, "vakonomic", None)?, &mu)?;
+        case.same(3, "coordinate removal is the vakonomic motion with mu = -P - L_w'", Which::Removed(i), &mut motion);
+        let equations = equations(&system, "removed-constraint", Some(&removal))?;
+        let kept = |k: usize| equations.free_constants.iter().any(|c| c.memory == Some(k));
+        if !(0..removal.memory.len()).all(kept) {
+            continue;
+        }
+        let a = by_memory(case, &removal)?.transpose() * DVector::from_vec(case.scene.multipliers.clone());
+        let own = memory_momenta(case, &removal)?;
+        let costates: Vec<f64> = (-a - own).iter().copied().collect();
+        let constants = free_constants(&equations, &costates);
+        let mut motion = case.run(equations, &constants)?;
+        case.same(3, "vakonomic is the coordinate removal with P = -mu - L_w'", Which::Vakonomic, &mut motion);
     }
     Ok(())
 }
 
-/// `p_q` of a removal by coordinates: `G_u̇` for parameters, `−P` for memory.
-fn momenta_of_removed(case: &mut Case, i: usize) -> Result<Vec<f64>, SolveError> {
-    let start = case.scene.start.t;
-    let removal = case.removed[i].removal.clone();
-    let motion = &mut case.removed[i].motion;
-    let values = motion.at(start)?.multipliers;
-    let named: HashMap<String, f64> = motion.equations.multipliers.iter().map(|m| m.name.clone()).zip(values).collect();
-    let graph = &case.scene.system.graph;
-    let mut p = vec![0.0; case.scene.system.dimension()];
-    for u in &removal.parameters {
-        if let Some(c) = u.coordinate {
-            p[c] = named.get(&format!("p_{}", graph.name(u.symbol))).copied().unwrap_or(f64::NAN);
-        }
-    }
-    for w in &removal.memory {
-        if let Some(c) = w.coordinate {
-            p[c] = -named.get(&format!("P_{}", graph.name(w.symbol))).copied().unwrap_or(0.0);
-        }
-    }
-    Ok(p)
+/// `∂f/∂ẇ` at the start.
+fn by_memory(case: &Case, removal: &Removal) -> Result<DMatrix<f64>, CompileError> {
+    let columns: Vec<usize> = removal.memory.iter().filter_map(|w| w.coordinate).collect();
+    Ok(constraint_jacobian(&case.scene.system, &case.scene.start)?.select_columns(&columns))
+}
+
+/// `L_ẇ` at the start.
+fn memory_momenta(case: &Case, removal: &Removal) -> Result<DVector<f64>, CompileError> {
+    let momenta = momenta(&case.scene.system, &case.scene.start)?;
+    Ok(DVector::from_iterator(
+        removal.memory.len(),
+        removal.memory.iter().filter_map(|w| w.coordinate).map(|c| momenta[c]),
+    ))
+}
+
+/// The `μ₀` with `A_wᵀ μ₀ = −P₀ − L_ẇ` of a removal by coordinates; `None` where `A_w` is singular.
+pub(super) fn multipliers_of(
+    case: &Case,
+    removal: &Removal,
+    costates: &[f64],
+) -> Result<Option<Vec<f64>>, CompileError> {
+    let right = -DVector::from_column_slice(costates) - memory_momenta(case, removal)?;
+    let solution = by_memory(case, removal)?.transpose().lu().solve(&right);
+    Ok(solution.map(|mu| mu.iter().copied().collect()))
 }
 
 /// T11.
 pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
-    let found = integrability(&case.scene.system, &case.scene.start).map_err(SolveError::from)?;
+    let (system, start) = (&case.scene.system, &case.scene.start);
+    let found = integrability(system, start)?;
     let right = match (case.recipe.truth(), found) {
         (Truth::Unconstrained, Integrability::Unconstrained)
         | (Truth::Integrable, Integrability::Integrable { .. })
@@ -174,7 +180,16 @@ pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
         }
         _ => false,
     };
+    let by_ranks = match case.recipe.truth() {
+        Truth::Unconstrained | Truth::NotLinear => None,
+        _ => integrals_by_ranks(system, start)?,
+    };
     case.found.require(11, "Frobenius' test finds what the construction put in", right, found);
+    if let Some((integrals, _)) = by_ranks {
+        let note = format!("{integrals} by ranks");
+        let right = integrals == case.recipe.integrals();
+        case.found.require(11, "ranks over a finite field count the integrals", right, note);
+    }
     if let Integrability::Integrable { exact } = found {
         case.found.count(11, "integrable, and the brackets vanish by simplification", exact);
     }

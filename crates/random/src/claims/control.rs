@@ -3,7 +3,8 @@
 use deltaq::Verdict;
 
 use super::CheckError;
-use crate::case::Which;
+use super::agreement::multipliers_of;
+use crate::case::{Which, equations};
 use crate::{Case, Kind};
 use referees::maggi::Maggi;
 
@@ -19,6 +20,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     if case.control.is_none() || case.recipe.kind == Kind::Free {
         return Ok(());
     }
+    criterion(case)?;
     let residual = residual(case)?;
     let gap = case.gap(Which::Chetaev, Which::Control)?;
     let flagged = gap.certain_from.is_some();
@@ -37,6 +39,30 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         }
     } else if residual < RIGHT {
         case.found.require(12, "not flagged where it is right", !flagged, format!("residual {residual:.1e}"));
+    }
+    Ok(())
+}
+
+/// Where `L` in the parameters is free of the memory variables, as in Chaplygin's form, the control is the vakonomic motion with `P = 0`, that is `c = 0`
+/// in `(c − L_ṡ)_b 𝓑ᵇ_{αβ} ṙ^β`: right exactly where these multipliers are among those of Chetaev's motion.
+fn criterion(case: &mut Case) -> Result<(), CheckError> {
+    let (system, Some((removal, _))) = (case.scene.system.clone(), case.control.clone()) else { return Ok(()) };
+    let reduced = removal.rewrite(&system, system.lagrangian);
+    let chart = removal.parameters.iter().all(|u| u.coordinate.is_some());
+    if !chart || removal.memory.iter().any(|w| system.graph.depends_on(reduced, w.symbol)) {
+        return Ok(());
+    }
+    let Some(mu) = multipliers_of(case, &removal, &vec![0.0; removal.memory.len()])? else { return Ok(()) };
+    let mut motion = case.run(equations(&system, "vakonomic", None)?, &mu)?;
+    case.same(12, "substitution is the vakonomic motion with c = 0", Which::Control, &mut motion);
+    let Some(found) = case.membership()? else { return Ok(()) };
+    let (right, gap) = (found.decision.admits(&mu), case.gap(Which::Chetaev, Which::Control)?);
+    let note = format!("mismatch {:.1e}, gap {:.1e}", found.decision.mismatch_at(&mu), gap.largest);
+    let claim = "right exactly where c = 0 gives Chetaev's motion";
+    match (right, gap.certain_from.is_some()) {
+        (true, flagged) => case.found.require(12, claim, !flagged, note),
+        (false, true) => case.found.require(12, claim, true, note),
+        (false, false) => case.found.undecided(12, claim, note),
     }
     Ok(())
 }

@@ -1,59 +1,126 @@
-//! T9: the fit of free constants.
+//! T9: whether a motion is vakonomic for some multipliers: decided, proved, and fitted.
 
-use deltaq::{Sampling, Setting, Settings, best_fit, compare_motions_by};
+use decision::{DecisionSettings, ExactStart, Family, Finding, Flow, Question, Verdict, decide_flow};
+use deltaq::{Answer, Settings, SolveError, best_fit, setting};
 
 use super::CheckError;
-use crate::case::{Which, equations};
-use crate::{Case, Kind, Word};
+use crate::case::{Which, as_derived, equations};
+use crate::{Case, Kind};
 
-/// A planted motion is found from a guess that is this far off, and from zero.
-const OFF: f64 = 0.2;
-
-/// Plants a vakonomic motion and lets the fit find it; then fits vakonomic motions to the Chetaev motion and measures what remains.
+/// Decides of every system whether its Chetaev motion is vakonomic, and finds the multipliers of a vakonomic motion in that motion.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
-    let h = case.scene.system.constraints.len();
-    if h == 0 || case.recipe.kind == Kind::NearRankLoss {
-        return Ok(());
-    }
-    let system = case.scene.system.clone();
-    let start = case.scene.start.clone();
-    let setting = Setting { system: &system, start: &start, end: case.end() };
-    let settings = Settings { max_steps: 3_000, ..Settings::default() };
-    let equations = equations(&system, "vakonomic", None)?;
-    let planted = case.scene.multipliers.clone();
-    let near: Vec<f64> = planted.iter().enumerate().map(|(i, mu)| mu + if i % 2 == 0 { OFF } else { -OFF }).collect();
-    let mut target = case.vakonomic.clone();
-    let mut metric = case.metric.clone();
-    let claim = "a planted vakonomic motion is found";
-    match best_fit(setting, &equations, &mut target, &[vec![0.0; h], near], &mut metric, &settings)? {
-        Some(mut found) => {
-            case.same(9, claim, Which::Vakonomic, &mut found);
-            // the search is a local one: that it ends elsewhere says nothing about the claim
-            if let Some(last) = case.found.findings.last_mut().filter(|f| f.word == Word::Fails) {
-                last.word = Word::Undecided;
-                last.note = format!("the search ends elsewhere, {}", last.note);
-            }
-        }
-        None => case.found.undecided(9, claim, "no guess led to a motion"),
-    }
-    if case.recipe.kind.is_integrable() {
-        return Ok(());
-    }
-    let sampling = Sampling { instants: 80, ..Sampling::default() };
-    let mut chetaev = case.chetaev.clone();
-    let guesses = [vec![0.0; h], planted];
-    let Some(mut fitted) = best_fit(setting, &equations, &mut chetaev, &guesses, &mut metric, &settings)? else {
-        return Ok(());
+    let Some(found) = case.membership()? else { return Ok(()) };
+    planted(case)?;
+    let (decision, h) = (&found.decision, case.scene.system.constraints.len());
+    let note = format!(
+        "{:?}, rho {:.1e}, noise {:.1e}; {}",
+        decision.verdict,
+        decision.least,
+        decision.noise,
+        words(&found.proof.this_start)
+    );
+    let contradiction = match (decision.verdict, &found.proof.this_start) {
+        (Verdict::Contained, Finding::None(_)) => true,
+        (Verdict::NotContained, Finding::Contained { .. }) => true,
+        (Verdict::NotContained, _) => found.section.is_some(),
+        _ => false,
     };
+    case.found.require(9, "decision and proof agree", !contradiction, &note);
+    let dimension = decision.set.dimension();
+    if case.recipe.kind.is_integrable() {
+        let every = decision.verdict == Verdict::Contained && dimension == h;
+        case.found.require(9, "integrable constraints leave every mu0", every, &note);
+        case.found.require(9, "and that is proved", found.answer() == Answer::SomeProved, &note);
+    } else if case.recipe.integrals() > 0 {
+        case.found.require(9, "integrals leave a mu0 each", dimension >= case.recipe.integrals(), &note);
+    }
+    match decision.verdict {
+        Verdict::Contained => {
+            let equations = equations(&case.scene.system, "vakonomic", None)?;
+            let mut motion = case.run(equations, &decision.set.point)?;
+            case.same(9, "the multipliers found give Chetaev's motion", Which::Chetaev, &mut motion);
+        }
+        Verdict::Undecided => case.found.undecided(9, "Chetaev's motion is vakonomic or it is not", note),
+        Verdict::NotContained => match found.answer() {
+            Answer::None { unproved } if matches!(found.proof.this_start, Finding::NotApplicable(_)) => {
+                case.found.count(9, "no mu0, and the start has no image in the field", unproved.contains("root"));
+            }
+            answer => case.found.count(9, "no mu0, and that is proved", matches!(answer, Answer::NoneProved { .. })),
+        },
+    }
+    if !case.recipe.kind.is_integrable() {
+        case.found.count(9, "vakonomic differs from Chetaev, for every mu0", decision.verdict == Verdict::NotContained);
+    }
+    Ok(())
+}
+
+/// The vakonomic motion of the scene is vakonomic, with the multipliers of the scene.
+fn planted(case: &mut Case) -> Result<(), CheckError> {
+    let scene = &case.scene;
+    let (system, multipliers) = (&scene.system, &scene.multipliers);
+    let equations = as_derived(system, "vakonomic")?;
+    let family = Family::new(system, &equations, false).map_err(SolveError::from)?;
+    let flow = Flow::new(system, &equations, &scene.start, multipliers, case.end()).map_err(SolveError::from)?;
+    let decision = decide_flow(&family, &flow, &DecisionSettings::default()).map_err(SolveError::from)?;
+    let question = Question::new(system, &equations, multipliers, &family).map_err(SolveError::from)?;
+    let exact = ExactStart::new(system, &scene.start, &scene.completion, None).map_err(SolveError::from)?;
+    let proof = question.prove(&exact).this_start;
+    let left = decision.mismatch_at(multipliers);
+    let note =
+        format!("rho {:.1e}, {left:.1e} at mu0, noise {:.1e}; {}", decision.least, decision.noise, words(&proof));
+    let claim = "a planted vakonomic motion is found";
+    match decision.verdict {
+        Verdict::Undecided => case.found.undecided(9, claim, note),
+        verdict => {
+            let missed = verdict == Verdict::NotContained || !decision.admits(multipliers);
+            case.found.require(9, claim, !missed, &note);
+            case.found.require(9, "nor is it refuted", !matches!(proof, Finding::None(_)), note);
+        }
+    }
+    Ok(())
+}
+
+fn words(finding: &Finding) -> String {
+    match finding {
+        Finding::None(none) => format!("none: proved at order {}", none.order),
+        other => format!("{other:?}"),
+    }
+}
+
+/// A gap that ρ makes over the run is at least this part of `ρ T^{3/2}`.
+const SEEN: f64 = 1e-3;
+
+/// A fit finds nothing where nothing is.
+pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {
+    if case.recipe.kind.is_integrable() || case.recipe.kind == Kind::NearRankLoss {
+        return Ok(());
+    }
+    let Some(found) = case.membership()? else { return Ok(()) };
+    let settings = Settings { max_steps: 3_000, ..Settings::default() };
+    let equations = equations(&case.scene.system, "vakonomic", None)?;
+    let (mut chetaev, mut metric) = (case.chetaev.clone(), case.metric.clone());
+    let guesses = [found.decision.set.point.clone()];
+    let fitted = best_fit(setting(&case.scene), &equations, &mut chetaev, &guesses, &mut metric, &settings)?;
+    let Some(mut fitted) = fitted else { return Ok(()) };
     let before = case.gap(Which::Chetaev, Which::Vakonomic)?;
-    let after = compare_motions_by(&mut chetaev, &mut fitted, &mut metric, &sampling)?;
-    if before.certain_from.is_some() && before.largest > 0.0 {
-        case.found.count(
-            9,
-            "vakonomic differs from Chetaev, and still does after the best fit",
-            after.certain_from.is_some(),
-        );
-        case.found.observe(9, "gap after the best fit over gap before", after.largest / before.largest);
+    let after = deltaq::compare_motions(&mut chetaev, &mut fitted, &mut metric)?;
+    if found.decision.verdict == Verdict::NotContained {
+        let apart = after.certain_from.is_some();
+        let visible = SEEN * found.decision.least * case.scene.duration.powf(1.5);
+        let claim = "a fit does not find what the decision denies";
+        match after.points.iter().all(|p| p.limit < visible) {
+            true => case.found.require(
+                9,
+                claim,
+                apart,
+                format!("gap {:.1e}, rho {:.1e}", after.largest, found.decision.least),
+            ),
+            false if apart => case.found.require(9, claim, true, ""),
+            false => case.found.undecided(9, claim, "the motions are too close to tell"),
+        }
+        if before.largest > 0.0 {
+            case.found.observe(9, "gap after the best fit over gap before", after.largest / before.largest);
+        }
     }
     Ok(())
 }

@@ -1,0 +1,59 @@
+//! Is the constraint integrable? By brackets, and where these are too long, by ranks over a finite field.
+
+use decision::{ExactStart, Family, Finding, Question};
+use equations::Derivation;
+use mechanics::{Completion, Integrability, State, System};
+
+use crate::SolveError;
+
+/// [`mechanics::integrability`], with [`integrals_by_ranks`] where the brackets are too long for it.
+///
+/// # Errors
+/// [`SolveError`] for dependent constraints.
+pub fn integrability(system: &System, state: &State) -> Result<Integrability, SolveError> {
+    let verdict = mechanics::integrability(system, state)?;
+    let Integrability::Undecided { constraints, .. } = verdict else { return Ok(verdict) };
+    Ok(match integrals_by_ranks(system, state)? {
+        None => verdict,
+        Some((0, depth)) => Integrability::Nonintegrable { depth },
+        Some((integrals, _)) if integrals == constraints => Integrability::Integrable { exact: false },
+        Some((integrals, _)) => Integrability::PartlyIntegrable { integrals, constraints },
+    })
+}
+
+/// The number of integrable combinations of the constraints, and how deep brackets have to be nested to reach all the other directions; no
+/// bracket is written. `None` where numbers have no image in the field, or ranks still grow.
+///
+/// A multiplier with `Aᵀ μ̇ = C μ` along a curve is one that every force leaves free. Along a curve that forces of many frequencies drive, only
+/// the multipliers of integrals are: the linearization along almost every such curve reaches what brackets reach (Sontag 1992). So
+/// the curve is a vakonomic motion with `L = ½ |v|² + Σ b_i q_i / (1 − a_i (t − t₀))`, from a random start, and the number is h minus the rank of
+/// the conditions on its `μ₀`.
+///
+/// # Errors
+/// [`SolveError`] for constraints that the vakonomic formulation refuses.
+///
+/// ```
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// assert_eq!(deltaq::integrals_by_ranks(&scene.system, &scene.start)?, Some((0, 1)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn integrals_by_ranks(system: &System, state: &State) -> Result<Option<(usize, usize)>, SolveError> {
+    let (g, h) = (&system.graph, system.constraints.len());
+    let clock = g.sub(g.variable(system.time), g.number(state.t));
+    let term = |(i, c): (usize, &mechanics::Coordinate)| {
+        let driven = g.sub(g.one(), g.mul(g.ratio(2 * i as i64 + 3, 1), clock));
+        let potential = g.div(g.mul(g.ratio(i as i64 + 2, 1), g.variable(c.position)), driven);
+        g.add(g.mul(g.ratio(1, 2), g.powi(g.variable(c.velocity), 2)), potential)
+    };
+    let lagrangian = g.sum(&system.coordinates.iter().enumerate().map(term).collect::<Vec<_>>());
+    let driven = System { lagrangian, forces: vec![g.zero(); system.dimension()], ..system.clone() };
+    let equations = vakonomic::derive(&driven, &Derivation::default())?;
+    let family = Family::new(&driven, &equations, true)?;
+    let multipliers: Vec<f64> = (0..h).map(|j| (2 * j + 3) as f64).collect();
+    let question = Question::new(&driven, &equations, &multipliers, &family)?;
+    let start = ExactStart::new(&driven, state, &Completion::default(), None)?;
+    Ok(match question.prove(&start).almost_every_start {
+        Finding::Contained { rank, order } => Some((h - rank, order)),
+        _ => None,
+    })
+}
