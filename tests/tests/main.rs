@@ -6,4 +6,5 @@ mod discrete;
 mod faults;
 mod properties;
 mod reference_motions;
+mod references;
 mod stability;

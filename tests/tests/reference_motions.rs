@@ -1,12 +1,12 @@
 //! References with a known error: two methods agree, forms agree, and closed solutions and 42-digit states are met.
 
+use crate::references::{Motion, REFERENCES};
 use deltaq::{Choice, Settings, choices, derive, prepare, setting};
 use equations::Equations;
 use mechanics::StartError;
 use reference::{DoubleDouble, Entry, Question, Reference, ReferenceError, reference, reference_in};
 use scene::Scene;
 use symbolic::Scalar;
-use tests::references::{Motion, REFERENCES};
 
 fn scene(name: &str) -> Scene {
     let path = format!("{}/../validation/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));

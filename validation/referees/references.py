@@ -2,11 +2,11 @@
 
 Each system is stated once more below (L, f, removal). SymPy derives the equations of the three formulations, they are evaluated in MPFR
 arithmetic (gmpy2, 40 digits) and integrated by two methods that have nothing in common: Gragg-Bulirsch-Stoer extrapolation and
-Gauss-Legendre collocation of order 16. What both agree on is printed, as tests/src/references.csv. `--claims` also tests the statements
+Gauss-Legendre collocation of order 16. What both agree on is printed, as tests/tests/references.csv. `--claims` also tests the statements
 of the theory (bridge, matching constants, leading coefficients, invariants) and prints what it finds.
 
     pip install sympy gmpy2 mpmath
-    python references.py            > ../../tests/src/references.csv
+    python references.py            > ../../tests/tests/references.csv
     python references.py --claims
 """
 

@@ -50,7 +50,7 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
     let path = Path::new(name_or_path);
     if !path.exists() {
         let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).chain(["n-trailer-N"]).collect();
-        return Err(NotFound::Nothing { name: name_or_path.into(), known: known.join(", ") });
+        return Err(NotFound::Nothing(name_or_path.into(), known.join(", ")));
     }
     Ok(Scene::load_with(path, overrides)?)
 }
@@ -58,14 +58,9 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
 /// There is no such scene, or there is something wrong with it.
 #[derive(Debug, thiserror::Error)]
 pub enum NotFound {
-    /// Neither a built-in name nor a file.
-    #[error("`{name}` is neither a file nor one of the built-in scenes: {known}")]
-    Nothing {
-        /// What was asked for.
-        name: String,
-        /// Built-in names.
-        known: String,
-    },
+    /// What was asked for is neither a file nor a built-in name, which are these.
+    #[error("`{0}` is neither a file nor one of the built-in scenes: {1}")]
+    Nothing(String, String),
     /// The scene has a fault.
     #[error(transparent)]
     Fault(#[from] SceneError),

@@ -23,7 +23,7 @@ pub(super) fn document(plots: &Picture) -> Result<String, PictureError> {
     let ranges = layout::ranges(plots, &measured)?;
     let legend = layout::legend(plots, &measured);
     let mut svg = String::new();
-    for coarseness in Coarseness::STEPS {
+    for coarseness in Coarseness::steps() {
         svg = sheet(plots, &measured, &ranges, &legend, coarseness);
         if svg.len() <= BUDGET {
             break;
@@ -192,7 +192,7 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
         px(plot.extent.height)
     ));
     let mut order: Vec<(&Curve, &Measured)> = plot.plot.curves.iter().zip(plot.measured).collect();
-    order.sort_by_key(|(curve, _)| curve.style.depth());
+    order.sort_by_key(|(curve, _)| curve.style);
     let place = |&(x, y): &(f64, f64)| (plot.across(x), plot.down(y));
     for (curve, measured) in order {
         let runs: Vec<Vec<Place>> = measured.runs.iter().map(|run| run.iter().map(place).collect()).collect();
@@ -235,6 +235,6 @@ fn marks(out: &mut String, entry: &Entry, places: &[Place]) {
     if places.is_empty() {
         return;
     }
-    let path: String = places.iter().map(|&(x, y)| format!("M{} {}{}", px(x), px(y), mark.path())).collect();
+    let path: String = places.iter().map(|&(x, y)| format!("M{} {}{}", px(x), px(y), mark)).collect();
     out.push_str(&format!("<path d=\"{path}\" fill=\"{}\"/>\n", stroke.colour));
 }

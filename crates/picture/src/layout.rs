@@ -1,7 +1,7 @@
 //! Where things stand: points in the measures of their axes, ranges, legend.
 
 use super::axis::{self, Interval, LeftOut};
-use super::style::{Mark, Style};
+use super::style::{MARKS, Style};
 use super::text::{fit, width};
 use super::{Axis, Curve, Picture, PictureError};
 
@@ -92,7 +92,8 @@ pub(super) fn ranges(plots: &Picture, measured: &[Vec<Measured>]) -> Result<Rang
 pub(super) struct Entry {
     label: String,
     pub(super) style: Style,
-    pub(super) mark: Option<Mark>,
+    /// The first label of a style has none, and after the fifth they repeat.
+    pub(super) mark: Option<&'static str>,
     /// How many labels of this style came before.
     pub(super) rank: usize,
     points: usize,
@@ -135,7 +136,7 @@ pub(super) fn legend(plots: &Picture, measured: &[Vec<Measured>]) -> Vec<Entry> 
                 entries.push(Entry {
                     label: curve.label.clone(),
                     style: curve.style,
-                    mark: Mark::nth(rank),
+                    mark: rank.checked_sub(1).map(|n| MARKS[n % MARKS.len()]),
                     rank,
                     points: 0,
                     not_finite: 0,

@@ -3,27 +3,27 @@
 /// What a curve stands for, which fixes how it is drawn.
 ///
 /// Colours are those of Okabe and Ito that reach a contrast of 3 on white and on black alike; dash and width tell the
-/// curves apart without colour. A gap between two formulations is drawn in both their colours by turns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// curves apart without colour. Wider lines come first, so that the narrower ones stand on them. A gap between two formulations is drawn in both their colours by turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
-    /// Motion of the d'Alembert–Lagrange equations (blue, wide, solid).
-    Chetaev,
-    /// Motion of the vakonomic equations (vermilion, long dashes).
-    Vakonomic,
-    /// Motion of the removed-constraint equations (green, dots).
-    RemovedConstraint,
-    /// Motion of the deliberately wrong fourth: the constraint put into the Lagrangian (purple, dash and dot).
-    Substituted,
-    /// Gap between the Chetaev and the vakonomic motion.
-    ChetaevVakonomic,
-    /// Gap between the Chetaev and the removed-constraint motion.
-    ChetaevRemovedConstraint,
-    /// Gap between the vakonomic and the removed-constraint motion.
-    VakonomicRemovedConstraint,
-    /// One of several of a kind, such as methods: four colours, and four dashes after them.
-    Member(u8),
     /// What is to be passed or kept (grey, thin, dashed; named at its right end).
     Threshold,
+    /// Motion of the d'Alembert–Lagrange equations (blue, wide, solid).
+    Chetaev,
+    /// Gap between the Chetaev and the vakonomic motion.
+    ChetaevVakonomic,
+    /// Motion of the vakonomic equations (vermilion, long dashes).
+    Vakonomic,
+    /// Gap between the Chetaev and the removed-constraint motion.
+    ChetaevRemovedConstraint,
+    /// Motion of the deliberately wrong fourth: the constraint put into the Lagrangian (purple, dash and dot).
+    Substituted,
+    /// Gap between the vakonomic and the removed-constraint motion.
+    VakonomicRemovedConstraint,
+    /// Motion of the removed-constraint equations (green, dots).
+    RemovedConstraint,
+    /// One of several of a kind, such as methods: four colours, and four dashes after them.
+    Member(u8),
 }
 
 /// One pass of the pen along a curve.
@@ -37,14 +37,13 @@ pub(super) struct Stroke {
     pub(super) round: bool,
 }
 
-/// Shape set along a curve whose style is taken already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Mark {
-    Circle,
-    Square,
-    Triangle,
-    Diamond,
-}
+/// Shapes set along a curve whose style is taken already, as paths about the origin: circle, square, triangle, diamond.
+pub(super) const MARKS: [&str; 4] = [
+    "m-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0z",
+    "m-4.6-4.6h9.2v9.2h-9.2z",
+    "m0-6.2l5.8 10h-11.6z",
+    "m0-6.4l6.4 6.4l-6.4 6.4l-6.4-6.4z",
+];
 
 pub(super) const INK: &str = "currentColor";
 pub(super) const BLUE: &str = "#0072B2";
@@ -95,39 +94,6 @@ impl Style {
             Self::Threshold => vec![stroke(INK, 1.0, "7 4")],
         }
     }
-
-    /// Wider lines first, so that the narrower ones stand on them.
-    pub(super) fn depth(self) -> u8 {
-        match self {
-            Self::Threshold => 1,
-            Self::Chetaev => 3,
-            Self::ChetaevVakonomic => 4,
-            Self::Vakonomic => 5,
-            Self::ChetaevRemovedConstraint => 6,
-            Self::Substituted => 7,
-            Self::VakonomicRemovedConstraint => 8,
-            Self::RemovedConstraint => 9,
-            Self::Member(_) => 10,
-        }
-    }
-}
-
-impl Mark {
-    /// The mark of the `nth` label of one style; the first has none, and after the fifth they repeat.
-    pub(super) fn nth(n: usize) -> Option<Self> {
-        const ALL: [Mark; 4] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond];
-        n.checked_sub(1).map(|n| ALL[n % ALL.len()])
-    }
-
-    /// Path of the mark about the origin.
-    pub(super) fn path(self) -> &'static str {
-        match self {
-            Self::Circle => "m-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0z",
-            Self::Square => "m-4.6-4.6h9.2v9.2h-9.2z",
-            Self::Triangle => "m0-6.2l5.8 10h-11.6z",
-            Self::Diamond => "m0-6.4l6.4 6.4l-6.4 6.4l-6.4-6.4z",
-        }
-    }
 }
 
 #[cfg(test)]
@@ -162,12 +128,5 @@ mod tests {
         // A viewer may report the scheme of the desktop while the page has the other one.
         assert!(contrast(INKS[1], "#0d1117") >= 2.0);
         assert!(contrast(INKS[2], "#ffffff") >= 2.0);
-    }
-
-    #[test]
-    fn marks_start_with_the_second_label() {
-        assert_eq!(Mark::nth(0), None);
-        assert_eq!(Mark::nth(1), Some(Mark::Circle));
-        assert_eq!(Mark::nth(5), Some(Mark::Circle));
     }
 }

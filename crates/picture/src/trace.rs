@@ -24,13 +24,9 @@ pub(super) struct Coarseness {
 
 impl Coarseness {
     /// From what the eye cannot see to what it forgives.
-    pub(super) const STEPS: [Self; 5] = [
-        Self { tolerance: 0.1, column: 0.5 },
-        Self { tolerance: 0.2, column: 1.0 },
-        Self { tolerance: 0.4, column: 2.0 },
-        Self { tolerance: 0.8, column: 4.0 },
-        Self { tolerance: 1.6, column: 8.0 },
-    ];
+    pub(super) fn steps() -> [Self; 5] {
+        [1.0, 2.0, 4.0, 8.0, 16.0].map(|times| Self { tolerance: 0.1 * times, column: 0.5 * times })
+    }
 }
 
 /// One curve, ready to draw.
@@ -226,7 +222,7 @@ mod tests {
     fn thinning_keeps_the_line_within_tolerance() {
         let sine: Vec<Place> =
             (0..5000).map(|i| f64::from(i) * 0.12).map(|x| (x, 150.0 + 100.0 * (x / 60.0).sin())).collect();
-        let trace = Trace::new(std::slice::from_ref(&sine), EXTENT, Coarseness::STEPS[0]);
+        let trace = Trace::new(std::slice::from_ref(&sine), EXTENT, Coarseness::steps()[0]);
         let [line] = trace.lines.as_slice() else { panic!("{} lines", trace.lines.len()) };
         assert!(line.len() < 300, "{} points", line.len());
         for &point in &sine {
@@ -240,7 +236,7 @@ mod tests {
     fn fast_oscillations_keep_their_height() {
         let fast: Vec<Place> =
             (0..200_000).map(|i| (f64::from(i) * 0.003, 150.0 + 100.0 * f64::from(i).sin())).collect();
-        let trace = Trace::new(&[fast], EXTENT, Coarseness::STEPS[0]);
+        let trace = Trace::new(&[fast], EXTENT, Coarseness::steps()[0]);
         let line = &trace.lines[0];
         assert!(line.len() < 5000, "{} points", line.len());
         let top = line.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
@@ -259,14 +255,14 @@ mod tests {
 
     #[test]
     fn path_data_is_short() {
-        let trace = Trace::new(&[vec![(0.0, 0.0), (10.25, 0.5), (9.75, 20.0)]], EXTENT, Coarseness::STEPS[0]);
+        let trace = Trace::new(&[vec![(0.0, 0.0), (10.25, 0.5), (9.75, 20.0)]], EXTENT, Coarseness::steps()[0]);
         assert_eq!(trace.path(), "M0 0l10.3 .5-.5 19.5");
         assert_eq!(trace.marks(5, 0.5).len(), 5);
     }
 
     #[test]
     fn one_point_is_a_dot() {
-        let trace = Trace::new(&[vec![(5.0, 5.0)], vec![(7.0, 7.0), (7.01, 7.0)]], EXTENT, Coarseness::STEPS[0]);
+        let trace = Trace::new(&[vec![(5.0, 5.0)], vec![(7.0, 7.0), (7.01, 7.0)]], EXTENT, Coarseness::steps()[0]);
         assert_eq!((trace.lines.len(), trace.dots.len()), (0, 2));
     }
 }

@@ -195,7 +195,7 @@ fn pendulum_swings_as_jacobi_says() {
 
 #[test]
 fn the_closed_form_of_the_sledge_agrees_with_the_independent_references() {
-    use tests::references::{Motion, REFERENCES};
+    use crate::references::{Motion, REFERENCES};
     let sledge = sledge(&scene("sledge", &[]));
     let chetaev = REFERENCES.iter().filter(|r| r.scene == "sledge" && r.motion == Motion::Chetaev);
     assert_eq!(chetaev.clone().count(), 2);

@@ -6,70 +6,42 @@ use equations::Role;
 use integrate::Method;
 use proptest::prelude::*;
 use reduction::Frame;
-use scene::Scene;
+use scene::{Scene, SceneError};
 
 use super::support::{derived, equations, known_gap, motion_of, must, scene, some_multipliers, tight};
 use super::{reduced_form, reduced_vakonomic};
 
-/// A body of revolution in Euler angles, and a plane in polar coordinates; numbers `x` from −1 to 1.
-fn text(kind: usize, x: &[f64]) -> String {
-    let top = "A/2*(theta'^2 + phi'^2*sin(theta)^2) + C/2*(psi' + phi'*cos(theta))^2";
-    let angles = format!(
-        "psi = {{ start = {} }}\ntheta = {{ start = {} }}\nphi = {{ start = {} }}\n",
-        2.0 * x[0],
-        1.5 + x[1],
-        x[2]
-    );
-    let polar = format!("r = {{ start = {} }}\ngamma = {{ start = {} }}\n", 1.5 + 0.5 * x[3], x[4]);
-    let level = "m/2*(r'^2 + r^2*gamma'^2)";
-    let ball = "C/2*(theta'^2 + phi'^2 + psi'^2 + 2*phi'*psi'*cos(theta))";
-    let (lagrangian, constraints, coordinates, velocities) = match kind {
-        // a heavy top
-        0 => (format!("{top} - m*k*cos(theta) + k*sin(psi)"), vec![], angles, vec!["psi'", "theta'", "phi'"]),
-        // a ball rolling on a table that turns faster and faster, pulled aside
-        1 => (
-            format!("m/2*(x'^2 + y'^2) + {ball} - k*x"),
-            vec![
-                "x' - a*(theta'*sin(psi) - phi'*sin(theta)*cos(psi)) + t*k*y",
-                "y' + a*(theta'*cos(psi) + phi'*sin(theta)*sin(psi)) - t*k*x",
-            ],
-            format!("x = {{ start = {} }}\ny = {{ start = 1 }}\n{angles}", x[5]),
-            vec!["psi'", "theta'", "phi'"],
-        ),
-        // a wheel on an axle, spinning as it moves outwards
-        2 => (
-            format!("{level} + {top} + k*r"),
-            vec!["r' - a*(psi' + phi'*cos(theta))"],
-            format!("{polar}{angles}"),
-            vec!["psi'", "theta'", "phi'", "gamma'"],
-        ),
-        // a coefficient that moves with the point, in a magnetic field that changes
-        3 => (
-            format!("{level} + m/2*z'^2 + k*sin(t)*r^2*gamma' - k*z*cos(r)"),
-            vec!["z' - a*r^2*gamma' - k*sin(t + r)"],
-            format!("{polar}z = {{ start = 0.3 }}\n"),
-            vec!["r'", "gamma'"],
-        ),
-        // the same without a constraint
-        _ => (format!("{level} + k*t*r*gamma' + k*r^2"), vec![], polar, vec!["r'", "gamma'"]),
-    };
-    let constraints: Vec<String> = constraints.iter().map(|f| format!("\"{f}\"")).collect();
-    let velocities: String = velocities.iter().zip(&x[6..]).map(|(v, x)| format!("\"{v}\" = {}\n", 2.0 * x)).collect();
-    format!(
-        "title = \"frame {kind}\"\n[parameters]\nm = {}\na = {}\nA = {}\nC = {}\nk = {}\n[coordinates]\n{coordinates}[system]\n\
-         lagrangian = \"{lagrangian}\"\nconstraints = [{}]\n[start.velocities]\n{velocities}[run]\nduration = 1\n",
-        1.5 + x[10],
-        0.7 + 0.5 * x[11],
-        1.2 + x[12],
-        1.2 + x[13],
-        x[14],
-        constraints.join(", ")
-    )
+/// Bodies of revolution in Euler angles, and a plane in polar coordinates, with the velocities that are given.
+const SCENES: [(&str, &[&str]); 5] = [
+    (include_str!("../scenes/frame-0.toml"), &["psi'", "theta'", "phi'"]),
+    (include_str!("../scenes/frame-1.toml"), &["psi'", "theta'", "phi'"]),
+    (include_str!("../scenes/frame-2.toml"), &["psi'", "theta'", "phi'", "gamma'"]),
+    (include_str!("../scenes/frame-3.toml"), &["r'", "gamma'"]),
+    (include_str!("../scenes/frame-4.toml"), &["r'", "gamma'"]),
+];
+
+/// One of them with numbers `x` from −1 to 1.
+fn framed(kind: usize, x: &[f64]) -> Result<Scene, SceneError> {
+    let (text, velocities) = SCENES[kind];
+    let parameters =
+        [("m", 1.5 + x[10]), ("a", 0.7 + 0.5 * x[11]), ("A", 1.2 + x[12]), ("C", 1.2 + x[13]), ("k", x[14])];
+    let places = [
+        ("psi", 2.0 * x[0]),
+        ("theta", 1.5 + x[1]),
+        ("phi", x[2]),
+        ("r", 1.5 + 0.5 * x[3]),
+        ("gamma", x[4]),
+        ("x", x[5]),
+    ];
+    let places = places.into_iter().filter(|(name, _)| text.contains(&format!("\n{name} = {{")));
+    let velocities = velocities.iter().zip(&x[6..]).map(|(&name, x)| (name, 2.0 * x));
+    let numbers = parameters.into_iter().chain(places).chain(velocities);
+    Scene::parse_with("frame", text, &numbers.map(|(name, x)| (name.to_string(), x)).collect::<Vec<_>>())
 }
 
 #[test]
 fn rates_in_a_frame_are_those_by_maggi_and_those_of_the_costate_form() {
-    let (framed, worst) = (Cell::new([0_usize; 2]), Cell::new(0.0_f64));
+    let (frames, worst) = (Cell::new([0_usize; 2]), Cell::new(0.0_f64));
     let config = ProptestConfig {
         cases: 200,
         failure_persistence: None,
@@ -78,25 +50,24 @@ fn rates_in_a_frame_are_those_by_maggi_and_those_of_the_costate_form() {
     };
     let strategy = (0_usize..5, proptest::collection::vec(-1.0_f64..1.0, 15));
     let outcome = proptest::test_runner::TestRunner::new(config).run(&strategy, |(kind, x)| {
-        let text = text(kind, &x);
-        let scene = Scene::parse("frame", &text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        let scene = framed(kind, &x).map_err(|e| TestCaseError::fail(format!("{e}, kind {kind}, {x:?}")))?;
         let reduced = derived(&scene, "chetaev-reduced", None, Some(&scene.start));
         let reduced = reduced.map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = reduced_form::differences(&scene, &reduced, &scene.start);
         let others = reduced_vakonomic::differences(&scene, &some_multipliers(&scene));
-        let [mut chetaev, mut any] = framed.get();
+        let [mut chetaev, mut any] = frames.get();
         chetaev += usize::from(reduced.chosen.iter().any(|words| words.contains("frame")));
         any += usize::from(Frame::new(&scene.system.clone(), Some(&scene.start)).is_some());
-        framed.set([chetaev, any]);
+        frames.set([chetaev, any]);
         let found = [rates, velocities, others[0], others[1], others[2]].into_iter().fold(0.0, f64::max);
         worst.set(worst.get().max(found));
-        prop_assert!(found < 1e-9, "{rates:e}, {velocities:e}, {others:?}\n{text}");
+        prop_assert!(found < 1e-9, "{rates:e}, {velocities:e}, {others:?}\n{}", scene.to_toml());
         Ok(())
     });
     if let Err(error) = outcome {
         panic!("{error}");
     }
-    let [chetaev, any] = framed.get();
+    let [chetaev, any] = frames.get();
     println!("largest difference {:.1e}; {any} frames, {chetaev} of them taken by Chetaev's equations", worst.get());
     assert!(any > 150 && chetaev > 60 && worst.get() > 0.0, "{any} frames, {chetaev} taken");
 }

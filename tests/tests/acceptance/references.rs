@@ -1,8 +1,8 @@
 //! Every formulation against reference states from code that shares nothing with the solvers.
 
+use crate::references::{Motion, REFERENCES, Reference};
 use deltaq::{SolveError, setting, solve};
 use mechanics::ConstantsRule;
-use tests::references::{Motion, REFERENCES, Reference};
 
 use super::support::{at, equations, largest_difference, must, scene, tight};
 

@@ -276,10 +276,7 @@ pub fn must_exceed(what: &str, figure: f64, limit: f64) {
 /// Values of parameters, time, positions and velocities.
 pub fn values(system: &System, state: &State) -> HashMap<Symbol, f64> {
     let mut values = system.parameter_values();
-    values.insert(system.time, state.t);
-    for (i, c) in system.coordinates.iter().enumerate() {
-        values.extend([(c.position, state.q[i]), (c.velocity, state.v[i])]);
-    }
+    values.extend(system.values_at(state));
     values
 }
 

@@ -10,19 +10,11 @@ pub enum EngineError {
     #[error(transparent)]
     Scene(#[from] NotFound),
     /// No mapping from this scene's coordinates to a rigid body is known here.
-    #[error("scene `{scene}` is not mapped to a rigid body")]
-    NotMapped {
-        /// The scene.
-        scene: String,
-    },
-    /// A parameter or a coordinate that the mapping needs.
-    #[error("scene `{scene}` has no `{name}`, which the mapping to a rigid body needs")]
-    Missing {
-        /// The scene.
-        scene: String,
-        /// What is missing.
-        name: String,
-    },
+    #[error("scene `{0}` is not mapped to a rigid body")]
+    NotMapped(String),
+    /// The scene, and a parameter or a coordinate that the mapping needs.
+    #[error("scene `{0}` has no `{1}`, which the mapping to a rigid body needs")]
+    Missing(String, String),
     /// At the start the body does not do what the scene says.
     #[error("scene `{scene}`: at the start the {what} of the rigid body is {body:e}, that of the scene {expected:e}")]
     Mapping {
@@ -35,20 +27,12 @@ pub enum EngineError {
         /// Its value in the scene.
         expected: f64,
     },
-    /// Steps that do not fall onto the sampling times.
-    #[error("{steps} steps cannot be read off at {samples} equidistant times")]
-    Steps {
-        /// Steps asked for.
-        steps: usize,
-        /// Samples asked for.
-        samples: usize,
-    },
-    /// The body is lost, or no longer finite.
-    #[error("the engine lost the ball at t = {time} s")]
-    Lost {
-        /// Time, s.
-        time: f64,
-    },
+    /// Steps that do not fall onto so many sampling times.
+    #[error("{0} steps cannot be read off at {1} equidistant times")]
+    Steps(usize, usize),
+    /// The body is lost, or no longer finite, at this time, s.
+    #[error("the engine lost the ball at t = {0} s")]
+    Lost(f64),
     /// A motion of deltaq.
     #[error(transparent)]
     Motion(#[from] SolveError),

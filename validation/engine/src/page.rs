@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use picture::{Axis, Curve, Picture, PictureError, Style};
 use rapier3d_f64::VERSION;
-use validation::report::{File, Table};
+use validation::report::{File, Table, fill};
 
 use crate::study::{FAR, Level, NEAR, ORDER, SAMPLES, Study};
 
@@ -25,25 +25,6 @@ fn picture_name(study: &Study) -> String {
 }
 
 fn page(studies: &[Study]) -> String {
-    let mut page = String::from("# What a physics engine makes of it\n\n");
-    let _ = writeln!(page, "**{}**\n", headline(studies));
-    let _ = writeln!(
-        page,
-        "[rapier](https://rapier.rs) {VERSION} in double precision is a rigid-body engine as games use it: bodies, contacts, friction, \
-         impulses. It has not heard of virtual displacements. It gets the ball, the surface, gravity and the start of a scene, and no \
-         constraint: that the ball rolls is what friction without limit makes of a contact. So its motion is evidence from outside on \
-         which formulation contact and friction obey.\n"
-    );
-    page += "*Distance* of two motions: the largest over the run of $\\sqrt{|\\Delta c|^2 + k^2\\beta^2}$, with centres $c$, the angle \
-             $\\beta$ between the attitudes and the radius of gyration $k$, relative to how far Chetaev's motion gets from its start. ";
-    let _ = writeln!(
-        page,
-        "It is read at {SAMPLES} times. *Hard* contacts have a natural frequency of 1 GHz at damping ratio 1, one solver iteration, \
-         Coulomb friction, and are found anew in every step; *1 MHz* is the same with softer contacts; *as shipped* is every parameter of \
-         the engine but the time step left alone. *Extrapolated* is $2X(dt/2) - X(dt)$. The finding holds when the order is {} ± {}, the \
-         extrapolated distance to Chetaev at most {NEAR:.0e}, and every other formulation at least {FAR} times as far as Chetaev.\n",
-        ORDER.0, ORDER.1
-    );
     let columns = ["hard contacts", ">order in dt", ">to Chetaev, smallest dt", "floor, extrapolated"];
     let more = [">other formulations", "holds", ">1 MHz: floor, extrapolated", ">as shipped, smallest"];
     let mut table = Table::new(columns.into_iter().chain(more));
@@ -60,24 +41,21 @@ fn page(studies: &[Study]) -> String {
             [finding.nearest, finding.yielding, finding.shipped].map(|distance| format!("{distance:.1e}"));
         table.row(&[&name, &order, &nearest, &floor, &others, &holds, &yielding, &shipped]);
     }
-    page += &table.to_string();
-    page += "\nA floor counts as met when the last halving of the step no longer halves the extrapolated distance. With contacts as shipped \
-             the ball sinks into the surface, and over decades of the step its distance from Chetaev's motion follows that depth (last \
-             columns below) and not the step.\n";
-    for study in studies {
-        page += &section(study);
-    }
-    page += NOT_HELD;
-    page
+    fill(
+        include_str!("engine.md"),
+        &[
+            ("headline", &headline(studies)),
+            ("version", &VERSION),
+            ("samples", &SAMPLES),
+            ("order", &ORDER.0),
+            ("order_within", &ORDER.1),
+            ("near", &format!("{NEAR:.0e}")),
+            ("far", &FAR),
+            ("table", &table),
+            ("sections", &studies.iter().map(section).collect::<String>()),
+        ],
+    )
 }
-
-/// Why there is no third scene.
-const NOT_HELD: &str = "\n## three-cylinders\n\nNot run. The scene's three bodies are held by two crossed contacts and by two lines of contact with the \
-     ground, both ways: the equations hold the upper cylinder upright and level (only its turn about the vertical and its roll are \
-     free), and they let the lower cylinders, whose axes cross at one height, pass through each other. A contact only pushes; the engine \
-     would have to be told to overlook the lower pair, to stand the lines on invented pairs of points that share their load in no \
-     determined way, and to keep the upper one from tipping once its centre leaves the span of its two contacts. What it then did would follow \
-     from these additions, not from contact and friction. With one ball on one contact none of this arises.\n";
 
 fn headline(studies: &[Study]) -> String {
     let judged: Vec<&Study> = studies.iter().filter(|study| study.targets.len() > 1).collect();

@@ -151,7 +151,7 @@ impl Mapping {
     /// # Ok::<(), engine::EngineError>(())
     /// ```
     pub fn new(scene: &Scene) -> Result<Mapping, EngineError> {
-        let missing = |name: &str| EngineError::Missing { scene: scene.name.clone(), name: name.into() };
+        let missing = |name: &str| EngineError::Missing(scene.name.clone(), name.into());
         let graph = &scene.system.graph;
         let parameter = |name: &str| {
             let found = scene.system.parameters.iter().find(|p| graph.name(p.symbol) == name);
@@ -160,7 +160,7 @@ impl Mapping {
         let names = match scene.name.as_str() {
             "turntable" => ["x", "y", "phi", "psi", "theta"],
             "ball-in-cone" => ["r", "gamma", "phi", "chi", "theta"],
-            _ => return Err(EngineError::NotMapped { scene: scene.name.clone() }),
+            _ => return Err(EngineError::NotMapped(scene.name.clone())),
         };
         let find = |name: &str| {
             let found = scene.system.coordinates.iter().position(|c| c.name == name);

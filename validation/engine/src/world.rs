@@ -67,7 +67,7 @@ impl Run {
     /// [`EngineError::Steps`], [`EngineError::Lost`].
     pub fn of(&self, setup: &Setup) -> Result<Trajectory, EngineError> {
         if self.samples == 0 || self.steps == 0 || !self.steps.is_multiple_of(self.samples) {
-            return Err(EngineError::Steps { steps: self.steps, samples: self.samples });
+            return Err(EngineError::Steps(self.steps, self.samples));
         }
         let (mut world, ball) = world(setup);
         let parameters = &mut world.integration_parameters;
@@ -87,7 +87,7 @@ impl Run {
             if step.is_multiple_of(self.steps / self.samples) {
                 trajectory
                     .keep(setup, &world, ball)
-                    .ok_or(EngineError::Lost { time: self.duration * step as f64 / self.steps as f64 })?;
+                    .ok_or(EngineError::Lost(self.duration * step as f64 / self.steps as f64))?;
             }
         }
         Ok(trajectory)

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
+use integrate::Method;
 use serde_json::{Value, json};
 
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
@@ -18,13 +19,9 @@ pub fn bench_headline(benches: &[Bench]) -> String {
     let all: Vec<&Measurements> =
         benches.iter().flat_map(|b| &b.entries).filter_map(|e| e.outcome.as_ref().ok()).collect();
     let winners: Vec<Fastest> = all.iter().filter_map(|m| m.fastest(HEADLINE_TARGET, None)).collect();
-    let mut names: Vec<(&str, usize)> = Vec::new();
-    for winner in &winners {
-        match names.iter_mut().find(|(name, _)| *name == winner.method.name()) {
-            Some((_, count)) => *count += 1,
-            None => names.push((winner.method.name(), 1)),
-        }
-    }
+    let count = |method: Method| winners.iter().filter(|winner| winner.method == method).count();
+    let mut names = Method::ALL.map(|method| (method.name(), count(method))).to_vec();
+    names.retain(|(_, count)| *count > 0);
     names.sort_by_key(|&(name, count)| (std::cmp::Reverse(count), name));
     let words: Vec<String> = names.iter().map(|(name, count)| format!("{name} on {count}")).collect();
     format!(

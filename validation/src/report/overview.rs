@@ -1,44 +1,24 @@
 //! The first page of the reports.
 
-use std::fmt::Write;
-
 use deltaq::{Answer, Comparison, Fit, Verdict};
 
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
-use crate::report::{Table, membership};
+use crate::report::{Table, fill, membership};
 use random::substitution;
 
 /// One page: the verdict matrix, the findings, what further pages say (`further`: a line and a path), how to regenerate.
 pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {
-    let mut page = format!("# Do the formulations give the same motion?\n\n**{}**\n\n", headline(comparisons));
-    page += &matrix(comparisons).to_string();
-    page += "\nTimes are those at which the gap in the kinetic metric passes 1e-6. *Any $\\mu_0$?*: is there a choice of the free constants with which the \
-             vakonomic motion is Chetaev's? A no is proved by a Taylor coefficient of the mismatch of accelerations, of the order given, that no $\\mu_0$ \
-             removes. *After best fit*: the least gap that a search over $\\mu_0$ found. *Control*: the deliberately wrong fourth formulation, which puts the constraint into $L$; \
-             the harness has to flag it wherever it is wrong.\n";
-    page += "\n## Findings\n\n";
-    for (i, finding) in findings(comparisons).iter().enumerate() {
-        let _ = writeln!(page, "{}. {finding}", i + 1);
-    }
-    page += "\n## Further\n\n";
-    for (line, path) in further {
-        let _ = writeln!(page, "- {line} [More]({path}).");
-    }
-    page += "- The same problems in SciPy, numba, CasADi, heyoka and SymPy: `cargo xtask peers` writes [peers.md](peers.md).\n";
-    page += "- Which method reaches which error in which time, on one machine: `cargo run --release -- --measured reports/measured` writes \
-             [error-vs-time.md](measured/error-vs-time.md).\n";
-    page += "- How cost grows along a train of trailers: `deltaq scaling --out reports/measured` writes \
-             [scaling.md](measured/scaling.md).\n";
-    page += "- What a physics engine makes of rolling balls: `cargo xtask engine` writes [engine.md](engine.md).\n";
-    let _ = writeln!(
-        page,
-        "\n## How this was made\n\n`cargo run --release` writes this folder, but for the pages of times in [measured](measured/error-vs-time.md), which differ from machine to machine; `deltaq compare SCENE` makes one page for a scene of your own; \
-         [`verdicts.json`](verdicts.json) holds the verdicts for machines.\n\n\
-         Every motion is integrated twice, at tolerances a factor 100 apart; two motions are called different only where their gap is over \
-         ten times the sum of both error estimates.",
-    );
-    page
+    let findings = findings(comparisons).into_iter().zip(1..).map(|(finding, i)| format!("{i}. {finding}\n"));
+    fill(
+        include_str!("pages/overview.md"),
+        &[
+            ("headline", &headline(comparisons)),
+            ("matrix", &matrix(comparisons)),
+            ("findings", &findings.collect::<String>()),
+            ("further", &further.iter().map(|(line, path)| format!("- {line} [More]({path}).\n")).collect::<String>()),
+        ],
+    )
 }
 
 fn gap_words(comparison: &Comparison, a: &str, b: &str) -> String {

@@ -6,7 +6,7 @@ use anyhow::Result;
 use serde_json::{Map, Value, json};
 
 use crate::report::numbers::{enumerate, or_dash, short};
-use crate::report::{File, Table};
+use crate::report::{File, Table, fill};
 use picture::{Axis, Curve, Panel, Picture, Scale, Style};
 use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 
@@ -93,40 +93,60 @@ fn headline(summary: &Summary) -> String {
 }
 
 fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &[(u8, String)]) -> String {
-    let mut page = format!("# Systems that nobody chose\n\n**{}**\n\n", headline(summary));
-    page += "How many systems a claim was put to the test on, and what became of it. A claim holds where every motion, energy or coefficient \
-             compared agrees within ten times the error estimates; it fails where one does not; it is undecided where the estimates are too large.\n\n";
-    let mut table = Table::new(["", "claim", ">holds", ">fails", ">undecided"]);
+    let mut claims = Table::new(["", "claim", ">holds", ">fails", ">undecided"]);
     for (theorem, Count { holds, fails, undecided }) in &summary.theorems {
-        table.row(&[&label(*theorem), &theorem_title(*theorem), holds, fails, undecided]);
+        claims.row(&[&label(*theorem), &theorem_title(*theorem), holds, fails, undecided]);
     }
-    page += &table.to_string();
-    page += &control_words(summary);
-    page += "\n## When the motions part\n\n";
-    page += "Of the systems whose constraints are not integrable, the part on which the gap in the kinetic metric has passed 1e-3 by time $t$:\n\n\
-             ![Distribution of the time at which the gap passes 1e-3](random-times.svg)\n\n";
-    let mut table = Table::new(["pair", ">differ", ">of", ">median $\\tau(10^{-3})$", ">passed by the end"]);
+    let (flagged, wrong) = counted(summary, "the wrong formulation is wrong, and flagged");
+    let right = summary.claims.get(&12).and_then(|claims| claims.get("right in Chaplygin's integrable form"));
+    let right = right.copied().unwrap_or_default();
+    let mut pairs = Table::new(["pair", ">differ", ">of", ">median $\\tau(10^{-3})$", ">passed by the end"]);
     for names in &DIVERGES {
         let (differ, of) = counted(summary, names.differs);
         let times = observed(summary, names.passes);
         let median = or_dash(times.get(times.len() / 2).copied());
         let pair = names.passes.trim_start_matches("tau(1e-3), ");
-        table.row(&[&pair, &differ, &of, &median, &times.len()]);
+        pairs.row(&[&pair, &differ, &of, &median, &times.len()]);
     }
-    page += &table.to_string();
-    page += "\nHow the gap begins, as a power of $t$, where the exponent is certain to 0.1:\n\n![Distribution of growth exponents](random-exponents.svg)\n\n";
-    page += &exponent_words(summary);
-    page += "\n## What else was counted\n\nNo claim forbids these; they are findings.\n\n";
-    let mut table = Table::new(["", "what", ">so on", ">of"]);
+    let worst = |what: &str, exponent: f64| {
+        let values = observed(summary, what);
+        let off = values.iter().fold(0.0_f64, |a, x| a.max((x - exponent).abs()));
+        format!("{} systems, off by at most {}", values.len(), short(off))
+    };
+    let mut others = Table::new(["", "what", ">so on", ">of"]);
     for (theorem, what, values) in counts(summary) {
         let so = values.iter().filter(|x| **x == 1.0).count();
-        table.row(&[&label(theorem), &what, &so, &values.len()]);
+        others.row(&[&label(theorem), &what, &so, &values.len()]);
     }
-    page += &table.to_string();
-    page += &measured(summary);
-    page += &open_words(batch, records, counterexamples);
-    page += &systems_words(batch, summary);
-    page
+    let kinds: Vec<String> = summary.kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    let mut sizes = Table::new(["", ">$h = 0$", ">1", ">2", ">3", ">4", ">5"]);
+    for n in 2..=6 {
+        let count = |h: usize| summary.sizes.get(&format!("{n}, {h}")).map_or("–".into(), |count| count.to_string());
+        sizes.cells([format!("$n = {n}$")].into_iter().chain((0..6).map(count)));
+    }
+    fill(
+        include_str!("pages/random.md"),
+        &[
+            ("headline", &headline(summary)),
+            ("claims", &claims),
+            ("wrong", &wrong),
+            ("flagged", &flagged),
+            ("part", &short(100.0 * flagged as f64 / wrong.max(1) as f64)),
+            ("right", &right.total()),
+            ("right_called", &right.holds),
+            ("pairs", &pairs),
+            ("three", &worst("growth exponent, mu0 = 0", 3.0)),
+            ("two", &worst("growth exponent, mu0 not zero", 2.0)),
+            ("counts", &others),
+            ("measured", &measured(summary)),
+            ("open", &open_words(batch, records, counterexamples)),
+            ("seed", &batch.seed),
+            ("kinds", &enumerate(&kinds)),
+            ("duration", &DURATION),
+            ("shortened", &summary.shortened),
+            ("sizes", &sizes),
+        ],
+    )
 }
 
 /// Observations that are counted: 0 or 1. What the table of pairs shows already is left out.
@@ -144,32 +164,6 @@ fn observed<'a>(summary: &'a Summary, what: &str) -> &'a [f64] {
 fn counted(summary: &Summary, what: &str) -> (usize, usize) {
     let values = observed(summary, what);
     (values.iter().filter(|x| **x == 1.0).count(), values.len())
-}
-
-fn control_words(summary: &Summary) -> String {
-    let (flagged, wrong) = counted(summary, "the wrong formulation is wrong, and flagged");
-    let right = summary.claims.get(&12).and_then(|claims| claims.get("right in Chaplygin's integrable form"));
-    let right = right.copied().unwrap_or_default();
-    format!(
-        "\nThe deliberately wrong formulation, which puts the constraint into $L$, violates Maggi's equations on {wrong} systems and is flagged on \
-         {flagged} of them ({} %). On {} systems in Chaplygin's integrable form it is right, and called right on {}.\n",
-        short(100.0 * flagged as f64 / wrong.max(1) as f64),
-        right.total(),
-        right.holds
-    )
-}
-
-fn exponent_words(summary: &Summary) -> String {
-    let worst = |what: &str, exponent: f64| {
-        let values = observed(summary, what);
-        let off = values.iter().fold(0.0_f64, |a, x| a.max((x - exponent).abs()));
-        format!("{} systems, off by at most {}", values.len(), short(off))
-    };
-    format!(
-        "T5 predicts 3 for the vakonomic motion with $\\mu_0 = 0$ ({}) and 2 otherwise ({}).\n",
-        worst("growth exponent, mu0 = 0", 3.0),
-        worst("growth exponent, mu0 not zero", 2.0)
-    )
 }
 
 /// Figures that are neither counts nor shown in a picture.
@@ -212,35 +206,6 @@ fn open_words(batch: &Batch, records: &[Record], counterexamples: &[(u8, String)
     if counterexamples.is_empty() {
         text += "\nThere is no counterexample; one would be shrunk and stand here as a scene file.\n";
     }
-    text
-}
-
-fn systems_words(batch: &Batch, summary: &Summary) -> String {
-    let kinds: Vec<String> = summary.kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-    let mut text = format!(
-        "\n## The systems\n\nSeed {}: {}. They have 2 to 6 coordinates, masses that are constant or vary, potentials, gyroscopic terms; constraints that \
-         are linear, affine or quadratic in the velocities, with or without time; half of the starts have $\\mu_0 = 0$, half have $P(t_0) = 0$. A run lasts \
-         {DURATION}; on {} systems it was shortened because a motion stops earlier (a singularity, or the end of a removal's chart). Nearly dependent \
-         constraints are 1e-1 to 1e-3 apart: nearer than that, the multipliers' own conditioning leaves the motions uncertain by more than 1e-8.\n\n",
-        batch.seed,
-        enumerate(&kinds),
-        summary.shortened
-    );
-    text += "Systems by number of coordinates $n$ and constraints $h$:\n\n";
-    let mut table = Table::new(["", ">$h = 0$", ">1", ">2", ">3", ">4", ">5"]);
-    for n in 2..=6 {
-        let cell = |h: usize| match summary.sizes.get(&format!("{n}, {h}")) {
-            Some(count) => count.to_string(),
-            None => "–".into(),
-        };
-        table.cells([format!("$n = {n}$")].into_iter().chain((0..6).map(cell)));
-    }
-    let _ = writeln!(
-        text,
-        "{table}\n`deltaq random --seed {seed} --index I` shows one of them, claim by claim; `--out DIR` writes it as a scene file. `deltaq random --count N \
-         --seed S` draws others.",
-        seed = batch.seed
-    );
     text
 }
 

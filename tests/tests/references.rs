@@ -7,7 +7,7 @@
 use std::sync::LazyLock;
 
 /// Which motion of the scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub enum Motion {
     /// `d/dt L_v − L_q = Aᵀ λ`.
     Chetaev,
@@ -26,7 +26,7 @@ pub enum Motion {
 }
 
 /// The state of one motion at one time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Reference {
     /// File name of the scene without its ending.
     pub scene: &'static str,
@@ -40,8 +40,6 @@ pub struct Reference {
     pub v: Vec<f64>,
     /// `λ` (Chetaev) or `μ` (vakonomic) in the order of the constraints, or `P` (removed) in the order of `costates`.
     pub multipliers: Vec<f64>,
-    /// Largest difference between the two methods over all components.
-    pub agreement: f64,
     /// Largest change of a component when parameters and start are rounded to `f64`: no double-precision run can be asked to come closer.
     pub rounding: f64,
 }
@@ -55,7 +53,7 @@ fn number(field: &str) -> f64 {
 }
 
 fn read(line: &'static str) -> Reference {
-    let [scene, motion, constants, horizon, t, q, v, multipliers, agreement, rounding] =
+    let [scene, motion, constants, horizon, t, q, v, multipliers, _, rounding] =
         line.split(',').collect::<Vec<_>>().try_into().expect("ten columns");
     let numbers = |field: &str| field.split_whitespace().map(number).collect();
     let named = constants.split_whitespace().filter_map(|pair| pair.split_once('='));
@@ -68,6 +66,6 @@ fn read(line: &'static str) -> Reference {
         },
         other => panic!("`{other}` in references.csv is no motion"),
     };
-    let [t, agreement, rounding] = [t, agreement, rounding].map(number);
-    Reference { scene, motion, t, q: numbers(q), v: numbers(v), multipliers: numbers(multipliers), agreement, rounding }
+    let [t, rounding] = [t, rounding].map(number);
+    Reference { scene, motion, t, q: numbers(q), v: numbers(v), multipliers: numbers(multipliers), rounding }
 }

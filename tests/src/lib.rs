@@ -1,3 +1,0 @@
-//! Tests between crates.
-
-pub mod references;
