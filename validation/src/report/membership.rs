@@ -156,6 +156,6 @@ fn which(membership: &Membership) -> String {
 fn how_far(membership: &Membership, order: Option<usize>) -> String {
     let decision = &membership.decision;
     let part = decision.least.max(decision.noise) / decision.acceleration;
-    let part = format!("to 1e{:.0}", part.log10().ceil());
+    let part = if part.is_finite() { format!("to 1e{:.0}", part.log10().ceil()) } else { "at rest".into() };
     order.map_or(part.clone(), |order| format!("through order {order} and {part}"))
 }
