@@ -98,6 +98,15 @@ pub(crate) struct Node {
     pub(crate) multipliers: Vec<f64>,
 }
 
+impl Node {
+    /// Appends `x, p, v, ν`.
+    pub(crate) fn write(&self, to: &mut Vec<f64>) {
+        for part in [&self.x.value, &self.p.value, &self.v, &self.multipliers] {
+            to.extend_from_slice(part);
+        }
+    }
+}
+
 /// A compiled [`Principle`].
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
@@ -235,9 +244,7 @@ impl Step {
         let inputs = &mut self.legendre.inputs;
         inputs.clear();
         inputs.extend([node.t, h]);
-        for part in [&node.x.value, &node.p.value, &node.v, &node.multipliers] {
-            inputs.extend_from_slice(part);
-        }
+        node.write(inputs);
         self.legendre.solve(node.t)?;
         let (v, multipliers) = self.legendre.inputs[2 + 2 * self.size..].split_at(self.size);
         node.v.copy_from_slice(v);
@@ -248,9 +255,7 @@ impl Step {
     /// `ẋ·p − 𝓛` and `c` at a node that was read.
     pub(crate) fn readings(&mut self, node: &Node) -> &[f64] {
         let mut inputs = vec![node.t, 0.0];
-        for part in [&node.x.value, &node.p.value, &node.v, &node.multipliers] {
-            inputs.extend_from_slice(part);
-        }
+        node.write(&mut inputs);
         self.readings.evaluate(&inputs)
     }
 

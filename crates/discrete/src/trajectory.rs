@@ -56,9 +56,7 @@ impl Discrete {
         let (mut times, mut rows) = (Vec::with_capacity(steps + 1), Vec::new());
         let stop = discrete.march(start, steps, |_, node| {
             times.push(node.t);
-            for part in [&node.x.value, &node.p.value, &node.v, &node.multipliers] {
-                rows.extend_from_slice(part);
-            }
+            node.write(&mut rows);
             Ok(())
         });
         Ok(Trajectory { discrete, h, times, rows, stop: stop.err() })

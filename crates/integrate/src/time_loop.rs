@@ -124,21 +124,11 @@ impl Record<'_, '_> {
             let found = watch.look(self.system, &segment)?;
             Ok(found.map(|found| (found.index, found.theta, segment.time(found.theta))))
         });
-        let found = match found {
-            Ok(found) => found,
-            Err(failure) => {
-                if has_room {
-                    self.dense.pop_room();
-                }
-                return Err(failure);
-            }
-        };
-        if let Err(failure) = self.system.accepted(t, stepper.candidate()) {
-            if has_room {
-                self.dense.pop_room();
-            }
-            return Err(failure);
+        let found = found.and_then(|found| self.system.accepted(t, stepper.candidate()).map(|()| found));
+        if found.is_err() && has_room {
+            self.dense.pop_room();
         }
+        let found = found?;
         let mut end = t;
         if let Some((_, theta, t_event)) = found {
             let mut state = vec![0.0; self.dense.dimension()];

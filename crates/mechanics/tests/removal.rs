@@ -1,16 +1,10 @@
 //! Removals: every fault is refused with its figures, automatic ones satisfy the constraints.
 
-use mechanics::{ConstantsRule, Removal, RemovalError, System, complete_removal_start, project_velocity};
-use symbolic::Expr;
+use mechanics::{ConstantsRule, Removal, RemovalError, complete_removal_start, project_velocity};
 
 use crate::systems;
 
 const KNIFE_EDGE: &str = "y'*cos(phi) - x'*sin(phi)";
-
-fn parse(system: &System, text: &str) -> Expr {
-    let g = &system.graph;
-    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).unwrap_or_else(|e| panic!("{text}: {e}"))
-}
 
 #[test]
 fn a_wrong_number_of_parameters() {
@@ -28,7 +22,7 @@ fn a_constraint_that_remains_is_shown_with_its_residual() {
     let mut removal = Removal::by_coordinates(&system, &state).unwrap();
     removal.verify(&system).unwrap();
     let z = removal.memory.iter().position(|w| system.graph.name(w.symbol) == "z").expect("z depends on x");
-    removal.memory[z].rate = parse(&system, "y*x' + 1e-3*x'");
+    removal.memory[z].rate = system.expression("y*x' + 1e-3*x'").unwrap();
     let error = removal.verify(&system).unwrap_err();
     let RemovalError::ConstraintRemains { constraint, text, residual, limit, .. } = error else { panic!("{error}") };
     assert_eq!((constraint, text), (2, system.graph.plain(system.constraints[1])));
@@ -39,7 +33,7 @@ fn a_constraint_that_remains_is_shown_with_its_residual() {
 fn a_constraint_that_is_nowhere_finite_cannot_be_checked() {
     let (system, state) = systems::kinetic(&["x", "y", "phi"], &[], &[KNIFE_EDGE]);
     let mut removal = Removal::by_coordinates(&system, &state).unwrap();
-    removal.memory[0].rate = parse(&system, "sqrt(-1 - phi^2)*x'");
+    removal.memory[0].rate = system.expression("sqrt(-1 - phi^2)*x'").unwrap();
     let error = removal.verify(&system).unwrap_err();
     assert!(matches!(&error, RemovalError::NotCheckable { constraint: 1, .. }), "{error}");
 }
@@ -51,7 +45,7 @@ fn what_parameters_cancel_to_is_round_off() {
     let (system, state) = systems::kinetic(&["x", "y"], &third, &["y' - (a + b)*c*x'"]);
     let mut removal = Removal::by_coordinates(&system, &state).unwrap();
     let remains = |text: &str| {
-        removal.memory[0].rate = parse(&system, text);
+        removal.memory[0].rate = system.expression(text).unwrap();
         removal.verify(&system).is_err()
     };
     let rates = ["x'*(a + b)*c", "a*c*x' + b*c*x'", "a*c*x' + b*c*x' + 1e-9*x'", "a*c*x' + (b + 1e-9)*c*x'"];
@@ -115,7 +109,8 @@ fn quasi_velocity_of_the_knife_edge_is_the_arc_length() {
     let g = &system.graph;
     let blade = removal.parameters.iter().find(|u| u.coordinate.is_none()).expect("one parameter is no coordinate");
     let velocities = removal.velocities(&system);
-    let along = [parse(&system, "cos(phi)"), parse(&system, "sin(phi)")].map(|e| g.mul(e, g.variable(blade.rate)));
+    let along = [system.expression("cos(phi)").unwrap(), system.expression("sin(phi)").unwrap()]
+        .map(|e| g.mul(e, g.variable(blade.rate)));
     for (found, expected) in velocities.iter().zip(along) {
         let difference = g.vanishes(g.sub(*found, expected), &system.parameter_values());
         assert!(difference.is_zero(), "{} for {}", g.plain(*found), g.plain(expected));

@@ -49,6 +49,17 @@ pub(crate) fn parameters(equations: &Equations) -> (Vec<Symbol>, Vec<f64>) {
     ordered.into_iter().unzip()
 }
 
+/// Takes a step off `x`; its length relative to what is left.
+pub(crate) fn subtract<T: Wide>(x: &mut [T], step: &[T]) -> f64 {
+    let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
+    for (x, &dx) in x.iter_mut().zip(step) {
+        *x = *x - dx;
+        length = length.max(dx.size());
+        size = size.max(x.size());
+    }
+    length / size
+}
+
 /// One block: its matrix `∂R/∂z` row-major and `R`.
 struct WideBlock<T> {
     first: usize,
@@ -157,16 +168,10 @@ impl<T: Wide> Instant<T> {
                     pivot: singular.reciprocal,
                 })?;
                 block.factors.solve(residual);
-                let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
-                for (x, dx) in self.inputs[place.clone()].iter_mut().zip(residual) {
-                    *x = *x - *dx;
-                    length = length.max(dx.size());
-                    size = size.max(x.size());
-                }
+                let relative = subtract(&mut self.inputs[place.clone()], residual);
                 if block.linear || last {
                     break;
                 }
-                let relative = length / size;
                 last = relative < SMALL;
                 if !relative.is_finite() || step > STEPS {
                     return Err(ReferenceError::NotConverged {

@@ -112,19 +112,16 @@ const TRIES: usize = 3;
 /// use reference::{Question, reference};
 /// use symbolic::Graph;
 /// // x'' = −x from x = 1 is the cosine
-/// let graph = Graph::new();
-/// let mut system = mechanics::System::new(graph, &[("x", "m")]);
-/// let g = system.graph.clone();
+/// let mut system = mechanics::System::new(Graph::new(), &[("x", "m")]);
+/// system.lagrangian = system.expression("(x'^2 - x^2)/2")?;
+/// let g = &system.graph;
 /// let (x, v) = (system.coordinates[0].position, system.coordinates[0].velocity);
-/// let square = |s| g.mul(g.ratio(1, 2), g.powi(g.variable(s), 2));
-/// system.lagrangian = g.sub(square(v), square(x));
 /// let mut equations = equations::Equations::new("by hand", &system);
 /// equations.add_positions_and_velocities(&system);
 /// equations.states[1].rate = g.neg(g.variable(x));
 /// equations.coordinates = vec![g.variable(x)];
 /// equations.velocities = vec![g.variable(v)];
 /// equations.graph = g.clone();
-/// system.graph = g;
 ///
 /// let start = State { t: 0.0, q: vec![1.0], v: vec![0.0] };
 /// let question = Question { system: &system, start: &start, equations: &equations, constants: &[] };

@@ -10,7 +10,7 @@ use mechanics::linear::{Factors, Singular};
 use mechanics::{Removal, State, System, complete_removal_start};
 use symbolic::{Evaluator, Expr, Symbol};
 
-use crate::instant::parameters;
+use crate::instant::{parameters, subtract};
 use crate::{ReferenceError, Wide};
 
 /// Steps allowed, and the relative step after which one more step leaves round-off only.
@@ -108,16 +108,11 @@ fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Resul
         }
         residual[n..].copy_from_slice(f);
         let step = solution(&matrix, residual)?;
-        let (mut length, mut speed) = (0.0_f64, f64::MIN_POSITIVE);
-        for (x, &dx) in v.iter_mut().zip(&step) {
-            *x = *x - dx;
-            length = length.max(dx.size());
-            speed = speed.max(x.size());
-        }
+        let length = subtract(&mut v, &step);
         for (x, &dx) in kappa.iter_mut().zip(&step[n..]) {
             *x = *x - dx;
         }
-        Ok(length / speed)
+        Ok(length)
     })?;
     Ok(v)
 }
@@ -173,14 +168,7 @@ fn complete<T: Wide>(
                     }
                 }
             }
-            let step = solution(&normal, right)?;
-            let (mut length, mut size) = (0.0_f64, f64::MIN_POSITIVE);
-            for (x, dx) in x.iter_mut().zip(step) {
-                *x = *x - dx;
-                length = length.max(dx.size());
-                size = size.max(x.size());
-            }
-            Ok(length / size)
+            Ok(subtract(&mut x, &solution(&normal, right)?))
         })?;
     }
     for (symbol, x) in unknowns.into_iter().zip(x) {

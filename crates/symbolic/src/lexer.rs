@@ -107,34 +107,9 @@ fn number(text: &str, start: usize) -> Result<Spanned, Fault> {
 
 /// What may have been meant by a character that no formula contains.
 fn hint(found: char) -> Option<String> {
-    const GREEK: [(char, &str); 25] = [
-        ('α', "alpha"),
-        ('β', "beta"),
-        ('γ', "gamma"),
-        ('δ', "delta"),
-        ('ε', "epsilon"),
-        ('ζ', "zeta"),
-        ('η', "eta"),
-        ('θ', "theta"),
-        ('κ', "kappa"),
-        ('λ', "lambda"),
-        ('μ', "mu"),
-        ('ν', "nu"),
-        ('ξ', "xi"),
-        ('π', "pi"),
-        ('ρ', "rho"),
-        ('σ', "sigma"),
-        ('τ', "tau"),
-        ('φ', "phi"),
-        ('ϕ', "phi"),
-        ('χ', "chi"),
-        ('ψ', "psi"),
-        ('ω', "omega"),
-        ('Ω', "Omega"),
-        ('Φ', "Phi"),
-        ('Δ', "Delta"),
-    ];
-    if let Some((_, name)) = GREEK.iter().find(|(c, _)| *c == found) {
+    const GREEK: &str = "αalpha βbeta γgamma δdelta εepsilon ζzeta ηeta θtheta κkappa λlambda μmu νnu ξxi πpi ρrho σsigma \
+        τtau φphi ϕphi χchi ψpsi ωomega ΩOmega ΦPhi ΔDelta";
+    if let Some(name) = GREEK.split(' ').find_map(|letter| letter.strip_prefix(found)) {
         return Some(format!("write {name}"));
     }
     let text = match found {

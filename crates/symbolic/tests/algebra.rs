@@ -1,11 +1,8 @@
 //! Canonical form, derivatives, substitution, expansion: what the graph itself guarantees.
 
+use crate::read;
 use std::collections::HashMap;
 use symbolic::{Expr, Function, Graph, Matrix};
-
-fn read(g: &Graph, text: &str) -> Expr {
-    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).expect(text)
-}
 
 /// Both sides are the same node.
 #[track_caller]

@@ -1,11 +1,8 @@
 //! Tapes, vanishing, abbreviation, and expressions of great depth.
 
+use crate::read;
 use std::collections::HashMap;
 use symbolic::{CompileError, Expr, Function, Graph, Symbol, Vanishing};
-
-fn read(g: &Graph, text: &str) -> Expr {
-    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).expect(text)
-}
 
 fn run(g: &Graph, inputs: &[(&str, f64)], outputs: &[&str]) -> Vec<f64> {
     let symbols: Vec<Symbol> = inputs.iter().map(|(n, _)| g.symbol(n)).collect();

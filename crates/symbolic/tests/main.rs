@@ -5,3 +5,9 @@ mod evaluation;
 mod properties;
 mod series;
 mod text;
+
+/// A formula in whatever names it has.
+#[track_caller]
+fn read(g: &symbolic::Graph, text: &str) -> symbolic::Expr {
+    g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).expect(text)
+}

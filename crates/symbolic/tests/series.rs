@@ -1,5 +1,6 @@
 //! Taylor coefficients against repeated symbolic differentiation, identities and closed forms.
 
+use crate::read;
 use proptest::prelude::*;
 use proptest::test_runner::FileFailurePersistence;
 use std::collections::HashMap;
@@ -41,7 +42,6 @@ fn agree(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
 fn every_operation_agrees_with_repeated_differentiation() {
     let g = Graph::new();
     let (t, k) = (g.symbol("t"), g.symbol("k"));
-    let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
     let inner = "(0.3 + 0.5*t + 0.2*t^2)";
     let mut formulas: Vec<String> = symbolic::Function::ALL
         .iter()
@@ -88,7 +88,7 @@ fn every_operation_agrees_with_repeated_differentiation() {
         formulas.push(formula.to_owned());
     }
     for formula in formulas {
-        let e = g.parse(&formula, &scope, &[]).unwrap();
+        let e = read(&g, &formula);
         let order = if g.size(&[e]) > 12 { 7 } else { 10 };
         agree(&formula, &coefficients(&g, t, k, e, order), &derivatives(&g, t, k, e, order), 1e-9);
     }
@@ -138,8 +138,7 @@ proptest! {
         let symbols: Vec<Symbol> = (0..TERMS).map(|i| g.symbol(&format!("c{i}"))).collect();
         let terms = symbols.iter().enumerate().map(|(i, s)| g.mul(g.variable(*s), g.powi(g.variable(t), i as i32)));
         let polynomial = terms.fold(g.number(0.4), |sum, term| g.add(sum, term));
-        let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
-        let outputs: Vec<Expr> = IDENTITIES.iter().map(|f| g.parse(f, &scope, &[]).unwrap()).collect();
+        let outputs: Vec<Expr> = IDENTITIES.iter().map(|f| read(&g, f)).collect();
         // None of them is seen to vanish while it is built, which would leave nothing to test.
         for (identity, e) in IDENTITIES.iter().zip(&outputs) {
             prop_assert!(!g.symbols_of(*e).is_empty(), "{identity} is {}", g.plain(*e));
@@ -246,8 +245,7 @@ fn unknowns_of_implicit_equations_are_series() {
     // z² = 1 + t from z = 1, then 2w + v = z, w − v = t: w = (z + t)/3, v = (z − 2t)/3; x' = z w.
     let g = Graph::new();
     let [t, x, z, w, v] = ["t", "x", "z", "w", "v"].map(|name| g.symbol(name));
-    let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
-    let parse = |formula: &str| g.parse(formula, &scope, &[]).unwrap();
+    let parse = |formula: &str| read(&g, formula);
     let inputs = [
         (t, SeriesInput::Time),
         (x, SeriesInput::State(0)),
@@ -288,8 +286,7 @@ fn functions_of_states_are_integrated_and_lines_are_no_series() {
     // x = 0.2 + t/2 and y = 0.3 eᵗ; in terms of time alone nothing is a combination of states.
     let g = Graph::new();
     let [t, x, y, k] = ["t", "x", "y", "k"].map(|name| g.symbol(name));
-    let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
-    let parse = |formula: &str| g.parse(formula, &scope, &[]).unwrap();
+    let parse = |formula: &str| read(&g, formula);
     let of_time = HashMap::from([(x, parse("0.2 + t/2")), (y, parse("0.3*exp(t)"))]);
     let inputs =
         [(t, SeriesInput::Time), (k, SeriesInput::Steady), (x, SeriesInput::State(0)), (y, SeriesInput::State(1))];

@@ -1,5 +1,6 @@
 //! Formulas as text: what is refused and how, and what is printed.
 
+use crate::read;
 use symbolic::{Expr, Graph, ParseError, ParseErrorKind};
 
 const NAMES: [&str; 9] = ["x", "y", "phi", "x'", "phi'", "alpha", "lambda_1", "omega", "sinus"];
@@ -152,7 +153,7 @@ fn prints(text: &str, plain: &str, latex: &str) {
     for name in ["m", "g", "alpha", "x", "y", "phi", "x'", "y'", "phi'"] {
         g.symbol(name);
     }
-    let e = g.parse(text, &|name| Some(g.variable(g.symbol(name))), &[]).expect(text);
+    let e = read(&g, text);
     assert_eq!(g.plain(e), plain);
     assert_eq!(g.latex(e), latex);
 }

@@ -137,6 +137,18 @@ pub fn largest_error<const N: usize>(solution: &Solution, count: u32, exact: imp
     (0..=count).map(|i| distance(&state::<N>(solution, time(i)), &exact(time(i)))).fold(0.0, f64::max)
 }
 
+/// The largest error at 40 points a step, and at the ends of the steps alone.
+pub fn errors<const N: usize>(solution: &Solution, exact: impl Fn(f64) -> [f64; N]) -> (f64, f64) {
+    let error = |t: f64| distance(&state::<N>(solution, t), &exact(t));
+    let (mut everywhere, mut ends) = (0.0f64, 0.0f64);
+    for pair in solution.dense.step_times().windows(2) {
+        let within = (1..40).map(|i| error(pair[0] + (pair[1] - pair[0]) * f64::from(i) / 40.0));
+        ends = ends.max(error(pair[1]));
+        everywhere = within.fold(everywhere.max(ends), f64::max);
+    }
+    (everywhere, ends)
+}
+
 /// y₀' = y₁, y₁' = −y₀; from (1, 0): (cos t, −sin t).
 pub fn oscillator() -> Case {
     Case::new(2, |_, y| vec![y[1].clone(), -&y[0]])

@@ -28,10 +28,7 @@ impl Frame {
     /// use symbolic::Graph;
     /// // a point in polar coordinates: L = (r'^2 + r^2 phi'^2)/2, u = (r', r phi')
     /// let mut system = System::new(Graph::new(), &[("r", "m"), ("phi", "rad")]);
-    /// let g = system.graph.clone();
-    /// let scope = |name: &str| g.find_symbol(name).map(|s| g.variable(s));
-    /// system.lagrangian = g.parse("(r'^2 + r^2*phi'^2)/2", &scope, &[])?;
-    /// system.graph = g;
+    /// system.lagrangian = system.expression("(r'^2 + r^2*phi'^2)/2")?;
     /// let frame = Frame::new(&system, None).expect("a sum of squares");
     /// let g = &system.graph;
     /// assert_eq!(g.plain(frame.velocities[1].start), "r*phi'");

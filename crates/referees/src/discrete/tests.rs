@@ -99,10 +99,8 @@ fn oscillators_keep_time_by_all_three() {
 fn a_nonlinear_constraint_has_its_order_too() {
     // z'² = a²(x'² + y'²) in the potential −x y, so that the run bends.
     let mut scene = scene("appell-hamel");
-    let g = &scene.system.graph;
-    let bend = g.mul(g.variable(g.symbol("x")), g.variable(g.symbol("y")));
-    let lagrangian = g.add(scene.system.lagrangian, bend);
-    scene.system.lagrangian = lagrangian;
+    let bend = scene.system.expression("x*y").unwrap();
+    scene.system.lagrangian = scene.system.graph.add(scene.system.lagrangian, bend);
     let (system, start) = (scene.system, scene.start);
     let discrete = Discrete::chetaev(&system, &start, 0.5).unwrap();
     let mut maggi = crate::maggi::Maggi::new(&system).unwrap();
