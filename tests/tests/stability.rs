@@ -170,22 +170,7 @@ fn a_motion_ends_where_the_run_for_its_estimate_ends() {
     assert!(stuck.end() <= *t && stuck.end() >= 0.99 * t, "ends at {}, says {t}", stuck.end());
 }
 
-const NEARLY_ONE: &str = r#"
-title = "Two constraints that are nearly one"
-[coordinates]
-x = { start = 0.3 }
-y = { start = -0.5 }
-z = { start = 0 }
-w = { start = 0 }
-[system]
-lagrangian = "(x'^2 + y'^2 + z'^2 + w'^2)/2"
-constraints = ["z' - y*x'", "SECOND"]
-[start.velocities]
-"x'" = 1.0
-"y'" = 0.5
-[run]
-duration = 3
-"#;
+const NEARLY_ONE: &str = include_str!("scenes/nearly-one.toml");
 
 /// `f₂ = f₁ + d (ż + ẇ − xẏ)`, or the bracket alone.
 fn nearly_one(d: Option<f64>) -> Scene {

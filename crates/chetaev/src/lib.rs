@@ -45,8 +45,14 @@ use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Symbol, Vanishing};
 
 /// Entry of the table of formulations.
-pub const FORMULATION: Formulation =
-    Formulation { name: "chetaev", title: "Chetaev", needs_removal: false, starts_multipliers: false, derive };
+pub const FORMULATION: Formulation = Formulation {
+    name: "chetaev",
+    title: "Chetaev",
+    needs_removal: false,
+    starts_multipliers: false,
+    parameter: None,
+    derive,
+};
 
 /// Derives the Chetaev equations with states `(q, v)` and unknowns `(a, λ)`.
 ///

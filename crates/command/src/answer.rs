@@ -24,10 +24,7 @@ impl From<String> for Answer {
 
 impl Answer {
     /// Prints the text, all of it. A reader that has seen enough and closes the pipe is no error.
-    ///
-    /// # Errors
-    /// Whatever else keeps it from being written, for example a full disk.
-    pub fn print(&self) -> Result<()> {
+    pub(crate) fn print(&self) -> Result<()> {
         let mut out = stdout().lock();
         match out.write_all(self.text.as_bytes()).and_then(|()| out.flush()) {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write the answer"),
@@ -38,10 +35,7 @@ impl Answer {
 
 impl Output {
     /// Writes the files to the folder that was asked for, if one was; then what is to be printed.
-    ///
-    /// # Errors
-    /// Where files cannot be made or written.
-    pub fn answer(
+    pub(crate) fn answer(
         &self,
         files: impl FnOnce() -> Result<Vec<File>>,
         text: impl FnOnce() -> String,
@@ -58,6 +52,6 @@ impl Output {
 }
 
 /// JSON for readers, with an end of line.
-pub fn pretty(value: &Value) -> String {
+pub(crate) fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }

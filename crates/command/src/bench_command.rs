@@ -15,10 +15,7 @@ use validation::scaling::{FORMULATIONS, Limits, TRAILERS, measure};
 const REPEATS: usize = 5;
 
 /// Measures error against run time.
-///
-/// # Errors
-/// Where a scene cannot be read or the page cannot be written.
-pub fn run(arguments: &BenchArguments) -> Result<String> {
+pub(crate) fn run(arguments: &BenchArguments) -> Result<String> {
     if !(arguments.seconds > 0.0 && arguments.seconds.is_finite()) {
         bail!("--seconds is {}; it must be above 0", arguments.seconds);
     }
@@ -37,10 +34,7 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
 }
 
 /// Measures how cost grows with the length of a train of trailers.
-///
-/// # Errors
-/// Where a train has no equations, or the page cannot be written.
-pub fn scaling(arguments: &ScalingArguments) -> Result<String> {
+pub(crate) fn scaling(arguments: &ScalingArguments) -> Result<String> {
     let limits = Limits { trailers: arguments.longest, seconds: arguments.seconds, repeats: arguments.repeats.into() };
     let bar = parallel::progress(FORMULATIONS.len() * TRAILERS.len(), arguments.output.quiet);
     let lines = measure(&limits, &mut |name, trailers| {

@@ -81,6 +81,8 @@ pub enum Command {
     Ensemble(EnsembleArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
+    /// Prove that no multipliers make the vakonomic motion of a scene Chetaev's, in a certificate that others can check.
+    Prove(ProveArguments),
     /// Put the claims T1 to T14 to the test on random systems.
     Random(RandomArguments),
     /// Measure error against run time, by every method at every tolerance.
@@ -104,10 +106,7 @@ pub struct SceneArguments {
 
 impl SceneArguments {
     /// The scene.
-    ///
-    /// # Errors
-    /// [`NotFound`], with the place in the file where there is one.
-    pub fn find(&self) -> Result<Scene, NotFound> {
+    pub(crate) fn find(&self) -> Result<Scene, NotFound> {
         catalogue::find(&self.scene, &self.set.overrides)
     }
 }
@@ -186,6 +185,19 @@ pub struct CompareArguments {
     /// Tolerance of the looser of the two runs of every motion.
     #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
     pub tolerance: f64,
+}
+
+/// `deltaq prove`.
+#[derive(Args, Debug)]
+pub struct ProveArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// File for the certificate, which `validation/proof/verify.py` checks; `-` for the terminal.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Output format of the answer; a certificate is JSON.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
 }
 
 /// `deltaq random`.

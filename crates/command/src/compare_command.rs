@@ -9,11 +9,8 @@ use crate::solve_command::check_tolerance;
 use validation::catalogue;
 use validation::report::write_all;
 
-/// Runs the command: returns the pages, or writes pages and pictures to a folder and says so.
-///
-/// # Errors
-/// Bad input, with its place; then nothing is written.
-pub fn run(arguments: &CompareArguments) -> Result<String> {
+/// Runs the command: returns the pages, or writes pages and pictures to a folder and says so; on bad input nothing is written.
+pub(crate) fn run(arguments: &CompareArguments) -> Result<String> {
     check_tolerance(arguments.tolerance)?;
     let settings = Settings { tolerance: arguments.tolerance, ..protocol() };
     let mut all = Vec::new();

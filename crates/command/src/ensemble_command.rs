@@ -24,10 +24,7 @@ use validation::report::{File, write_all};
 const CHUNK: usize = 4096;
 
 /// Runs the command.
-///
-/// # Errors
-/// Bad input: the scene, what varies, the formulation, the times; no member that can be started.
-pub fn run(arguments: &EnsembleArguments) -> Result<Answer> {
+pub(crate) fn run(arguments: &EnsembleArguments) -> Result<Answer> {
     let settings = Settings { method: Method::Taylor, ..settings(&arguments.motion)? };
     let base = arguments.motion.scene.find()?;
     let members = Members::of(arguments, &base)?;

@@ -1,5 +1,6 @@
 //! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` ends with 0 only where its trajectory can be
-//! trusted, and with 3 where the integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members.
+//! trusted, and with 3 where the integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members;
+//! `prove` ends with 3 where there is no certificate.
 
 mod answer;
 mod bench_command;
@@ -8,6 +9,7 @@ mod columns;
 mod compare_command;
 mod ensemble_command;
 mod main_job;
+mod prove_command;
 mod random_command;
 mod show_command;
 mod solve_command;
@@ -77,6 +79,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments)?,
         Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments)?,
+        Some(Command::Prove(arguments)) => return prove_command::run(&arguments),
         Some(Command::Random(arguments)) => return random_command::run(&arguments),
         Some(Command::Stability(arguments)) => return stability_command::run(&arguments),
         Some(Command::Ensemble(arguments)) => return ensemble_command::run(&arguments),

@@ -32,10 +32,7 @@ pub struct SceneReport {
 }
 
 /// Compares all formulations of a scene, the control among them, and writes its page and pictures.
-///
-/// # Errors
-/// Where the scene cannot be compared.
-pub fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
+pub(crate) fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
     let name = scene.name.clone();
     let choices = choices(&scene);
     let control = substitution::run(&scene, &choices, settings).into_iter().collect();
@@ -174,11 +171,8 @@ fn in_the_sources() -> bool {
     here.ancestors().any(|folder| folder.join("validation/scenes").is_dir() && folder.join("crates/command").is_dir())
 }
 
-/// Runs the main job and returns what to tell the user.
-///
-/// # Errors
-/// Where a scene is unknown or cannot be compared, or a report cannot be written. Nothing is written then.
-pub fn run(arguments: &JobArguments) -> Result<String> {
+/// Runs the main job and returns what to tell the user. Where it fails, nothing is written.
+pub(crate) fn run(arguments: &JobArguments) -> Result<String> {
     let clock = Instant::now();
     let out = match &arguments.out {
         Some(folder) => folder.clone(),
@@ -239,10 +233,7 @@ pub fn run(arguments: &JobArguments) -> Result<String> {
 }
 
 /// Computes the verdicts again and compares them with the committed ones.
-///
-/// # Errors
-/// Where they differ, with the place and the command that mends it.
-pub fn check(arguments: &ReportsArguments) -> Result<String> {
+pub(crate) fn check(arguments: &ReportsArguments) -> Result<String> {
     const MEND: &str = "`cargo run --release` writes the reports anew";
     let path = arguments.out.join("verdicts.json");
     let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}; {MEND}", path.display()))?;
@@ -284,10 +275,12 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
 }
 
 /// References of all scenes over all processors, then measurements one after the other.
-///
-/// # Errors
-/// Where a scene cannot be read.
-pub fn bench_all(names: &[&str], overrides: &[(String, f64)], effort: &Effort, quiet: bool) -> Result<Vec<Bench>> {
+pub(crate) fn bench_all(
+    names: &[&str],
+    overrides: &[(String, f64)],
+    effort: &Effort,
+    quiet: bool,
+) -> Result<Vec<Bench>> {
     let prepared = parallel::try_map(names, quiet, |_| "references".into(), |name| bench::prepare(name, overrides))?;
     let bar = parallel::progress(names.len(), quiet);
     let benches = prepared.into_iter().map(|prepared| {

@@ -16,10 +16,7 @@ use validation::report::File;
 const COUNTEREXAMPLES: usize = 5;
 
 /// Puts random systems to the test.
-///
-/// # Errors
-/// Where the log or a scene file cannot be read or written.
-pub fn run(arguments: &RandomArguments) -> Result<Answer> {
+pub(crate) fn run(arguments: &RandomArguments) -> Result<Answer> {
     let kinds = arguments.kind.map_or(Kind::ALL.to_vec(), |kind| vec![kind]);
     let batch = Batch { seed: arguments.seed, kinds };
     match arguments.index {

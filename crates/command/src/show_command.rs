@@ -14,7 +14,7 @@ use crate::cli::ShowArguments;
 use validation::catalogue;
 
 /// The built-in scenes, a line each.
-pub fn list() -> String {
+pub(crate) fn list() -> String {
     let line = |&(name, text): &(&str, &str)| match Scene::parse(name, text) {
         Ok(scene) => format!("{name:<24} {} ({})\n", scene.title, scene.source),
         Err(error) => format!("{name:<24} {error}\n"),
@@ -23,10 +23,7 @@ pub fn list() -> String {
 }
 
 /// Equations of every formulation and its further forms, what was left out, and whether the constraints are integrable.
-///
-/// # Errors
-/// Bad input, with its place.
-pub fn run(arguments: &ShowArguments) -> Result<String> {
+pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
     let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };

@@ -20,10 +20,7 @@ use validation::stability::Stepping;
 const SAMPLES: usize = 200;
 
 /// Runs the command.
-///
-/// # Errors
-/// Bad input: the scene, the formulation, the removal, the constants, the times.
-pub fn run(arguments: &SolveArguments) -> Result<Answer> {
+pub(crate) fn run(arguments: &SolveArguments) -> Result<Answer> {
     let mut settings = settings(&arguments.motion)?;
     if let Stepping::Adaptive(method) = arguments.method {
         settings.method = method;

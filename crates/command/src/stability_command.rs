@@ -10,10 +10,7 @@ use validation::report::StabilityReport;
 use validation::stability::{CASES, LONG_RUNS};
 
 /// Runs the stiff and extreme cases.
-///
-/// # Errors
-/// Where a case is unknown, or a reference cannot be had.
-pub fn run(arguments: &StabilityArguments) -> Result<Answer> {
+pub(crate) fn run(arguments: &StabilityArguments) -> Result<Answer> {
     let known: Vec<&str> = CASES.iter().map(|case| case.name).chain([LONG_RUNS]).collect();
     if let Some(unknown) = arguments.cases.iter().find(|name| !known.contains(&name.as_str())) {
         bail!("unknown case `{unknown}`; known: {}", known.join(", "));

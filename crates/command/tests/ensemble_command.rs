@@ -4,16 +4,11 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::support::{self, deltaq};
+use crate::support::{self, deltaq, refused};
 
 #[track_caller]
 fn answer(arguments: &[&str], code: i32) -> (String, String) {
     support::answer(&[&["ensemble"], arguments].concat(), code)
-}
-
-#[track_caller]
-fn refused(arguments: &[&str], words: &[&str]) {
-    support::refused(&[&["ensemble"], arguments].concat(), words);
 }
 
 /// Names of the columns and the cells of every row; causes, which are quoted, stand last.
@@ -114,33 +109,13 @@ fn the_answer_does_not_depend_on_threads_and_is_written_whole() {
 #[test]
 fn faults_have_their_place() {
     let folder = tempfile::tempdir().expect("a folder");
-    let sledge = ["sledge", "-f", "chetaev"];
     let file = |text: &str, words: &[&str]| {
         let path = write(folder.path(), "m.csv", text);
-        refused(&[&sledge[..], &["--members", &path]].concat(), words);
+        refused(&["ensemble", "sledge", "-f", "chetaev", "--members", &path], words);
     };
     file("g,phi\n9,1\n9,one\n", &["m.csv:3:3", "`one`", "phi"]);
     file("g,phi\n9,1,2\n", &["m.csv:2:5", "more numbers than the 2"]);
     file("g,gg\n9,1\n", &["m.csv:1:3", "`gg`", "alpha"]);
     file("duration\n9\n", &["m.csv:1:1", "--set"]);
     file("mu1\n9\n", &["m.csv:1:1", "vakonomic"]);
-    refused(&sledge, &["--vary"]);
-    refused(&[&sledge[..], &["--members", "nowhere.csv"]].concat(), &["nowhere.csv"]);
-    for (bad, word) in
-        [("g", "NAME="), ("g=1..2", "NAME="), ("g=1..2:0", "1000000"), ("g=1..x:3", "`x`"), ("g=1..inf:3", "inf")]
-    {
-        refused(&[&sledge[..], &["--vary", bad]].concat(), &[word]);
-    }
-    let vary = [&sledge[..], &["--vary", "g=1..2:3"]].concat();
-    refused(&[&vary[..], &["--vary", "g=1..2:3"]].concat(), &["varies already"]);
-    refused(&[&vary[..], &["--vary", "k=1..2:999999"]].concat(), &["2999997 members", "1000000"]);
-    refused(&[&vary[..], &["--set", "g=2"]].concat(), &["--set fixes it"]);
-    refused(&[&vary[..], &["--times", "11"]].concat(), &["outside of the run"]);
-    refused(&[&vary[..], &["--times", "2,1"]].concat(), &["ascending"]);
-    refused(&["sledge", "-f", "newton", "--vary", "g=1..2:3"], &["newton"]);
-    refused(&["sledge", "-f", "removed-constraint", "--vary", "g=1..2:3"], &["natural at a horizon"]);
-    refused(&["sledge", "-f", "chetaev", "--vary", "y'=1..2:3"], &["none of 3 members", "contradict"]);
-    for tolerance in ["0", "-1", "1", "nan", "inf"] {
-        refused(&[&vary[..], &[&format!("--tolerance={tolerance}")]].concat(), &["olerance"]);
-    }
 }

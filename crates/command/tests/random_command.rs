@@ -80,12 +80,3 @@ fn one_system_is_shown_and_written() {
     assert!(bulk["open"].as_array().expect("a list").iter().all(|r| r["index"] != 15));
     assert!(one["record"]["open"].as_array().expect("a list").is_empty());
 }
-
-#[test]
-fn bad_options_are_bad_input() {
-    for arguments in [&["--count", "0"][..], &["--kind", "cubic"], &["--index", "1", "--count", "3"], &["--seed", "-1"]]
-    {
-        refused(&[&["random"], arguments].concat(), &[]);
-    }
-    refused(&["random", "--count", "2", "--log", "no/such/folder/log"], &["no/such/folder/log"]);
-}

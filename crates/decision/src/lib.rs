@@ -36,7 +36,7 @@
 //! fractions for these, and sines, cosines and exponentials of fractions, they lie in `Q(i)(T, S)`, `T = e^{i/N}`, `S = e^{1/N}` independent
 //! (Lindemann, Weierstrass); `T ↦ τ`, `S ↦ σ`, `i ↦ √−1` into the field of `p ≈ 2^60` elements is a homomorphism where nothing divided by is 0. A minor of `[O | y₀]` that is not zero
 //! there is not zero. So rank `[O | y₀]` = h + 1 at some order proves that *this very start* has no constants, and, the minor being analytic on `f = 0`,
-//! that *almost no* start has. Where at a random start the rank of both stays from one order to the next, all later coefficients follow from
+//! that *almost no* start has. [`Question::certificate`] writes down what others need to check that. Where at a random start the rank of both stays from one order to the next, all later coefficients follow from
 //! the earlier ones, and almost every start *has* constants; so has this one, if its own rank is that one. Square roots of products of small primes
 //! have images, too, and multiples of π/2 inside of sines and cosines; logarithms, other roots and π elsewhere have none: no proof, and
 //! [`Finding::NotApplicable`] says why. Numbers are the decimals that they are written as; one that is π/2 or a multiple to all its digits is read as that.
@@ -53,6 +53,7 @@
 //! Sources: A. D. Lewis, *Nonholonomic and constrained variational mechanics*, J. Geom. Mech. 12 (2020) 165; J. Cortés, M. de León, D. Martín de
 //! Diego, S. Martínez 2003; O. Fernandez, A. Bloch 2008; M. Crampin, T. Mestdag 2010; M. Jóźwikowski, W. Respondek 2019.
 
+mod certificate;
 mod curve;
 mod decide;
 mod error;
@@ -67,12 +68,13 @@ mod series;
 mod start;
 mod transport;
 
+pub use certificate::Certificate;
 pub use curve::{Curve, Flow, Known, Point};
 pub use decide::{AffineSet, Decision, DecisionSettings, Verdict, decide, decide_flow};
 pub use error::DecisionError;
 pub use exact::Flaw;
 pub use family::Family;
 pub use leading::LeadingDifference;
-pub use proof::{Certificate, Finding, NoConstants, Proof, Question, StartNumber};
+pub use proof::{Finding, NoConstants, Proof, Question};
 pub use section::Section;
 pub use start::{ExactStart, NoExactStart};

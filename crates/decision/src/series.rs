@@ -31,6 +31,8 @@ pub(crate) struct SeriesStart<C> {
 pub(crate) struct CurveSeries<C> {
     /// Parameters, `t`, `q`, `v`, `a`: what a family asks for.
     pub(crate) inputs: Vec<Jet<C>>,
+    /// The unknowns of an instant, order by order.
+    pub(crate) unknowns: Vec<Vec<C>>,
     /// Determinant of the equations of the first instant.
     pub(crate) determinant: C,
 }
@@ -146,7 +148,7 @@ impl Dynamics {
             let mut inputs = start.parameters.clone();
             inputs.push(time(&start.time, orders)?);
             inputs.extend(point);
-            return Ok(CurveSeries { inputs, determinant: solve.determinant });
+            return Ok(CurveSeries { inputs, determinant: solve.determinant, unknowns: solve.solved.clone() });
         }
     }
 }
@@ -159,7 +161,6 @@ pub(crate) struct MismatchSeries<C> {
     /// The same as accelerations of the coordinates, n rows.
     pub(crate) accelerations: Vec<Vec<C>>,
     pub(crate) width: usize,
-    pub(crate) determinant: C,
 }
 
 impl Family {
@@ -229,11 +230,6 @@ impl Family {
             }
             sum.into_iter().map(|x| -x).collect()
         });
-        Ok(MismatchSeries {
-            accelerations: accelerations.collect(),
-            determinant: solve.determinant,
-            orders: unknowns,
-            width,
-        })
+        Ok(MismatchSeries { accelerations: accelerations.collect(), orders: unknowns, width })
     }
 }

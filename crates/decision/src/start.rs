@@ -48,6 +48,8 @@ pub struct ExactStart {
     spare: Vec<usize>,
     constraints: Program,
     problem: Option<NoExactStart>,
+    /// Whether velocities are projected ones, not those written.
+    pub(crate) projected: bool,
 }
 
 impl ExactStart {
@@ -93,7 +95,9 @@ impl ExactStart {
         outputs.extend(g.jacobian(&system.constraints, &v).entries());
         let constraints = Program::new(g, &inputs, &outputs)?;
         let spare = independent_columns(system, state, &constraints);
-        Ok(ExactStart { system: system.clone(), time: state.t, values, numbers, supplied, spare, constraints, problem })
+        let projected = completion.projected.is_some();
+        let (system, time) = (system.clone(), state.t);
+        Ok(ExactStart { system, time, values, numbers, supplied, spare, constraints, problem, projected })
     }
 
     /// Names of velocities that are solved from the constraints although they were given: their decimals miss the constraints by round-off.
@@ -134,6 +138,11 @@ impl ExactStart {
             }
             Err(fault) => Err(fault),
         }
+    }
+
+    /// Places of the velocities that are solved from the constraints, where [`Self::series`] has `completed` these.
+    pub(crate) fn open(&self, completed: &[String]) -> &[usize] {
+        if completed.is_empty() { &self.supplied } else { &self.spare }
     }
 
     /// Random integers for positions and velocities, the others from the constraints. Where these are squares, the start is on that part of `f = 0`

@@ -53,7 +53,7 @@ pub(crate) fn vakonomic(scene: &Scene) -> Family {
 }
 
 pub(crate) fn removed(scene: &Scene, removal: &Removal) -> Family {
-    let derivation = Derivation { removal: Some(removal), start: None };
+    let derivation = Derivation { removal: Some(removal), ..Derivation::default() };
     let equations = removed_constraint::derive(&without_forces(&scene.system), &derivation).expect("equations");
     Family::new(&scene.system, &equations, false).expect("a family")
 }

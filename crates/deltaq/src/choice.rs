@@ -25,7 +25,9 @@ pub struct Choice {
 /// without, which [`solve_choice`] refuses with the reason.
 pub fn choices(scene: &Scene) -> Vec<Choice> {
     let mut choices = Vec::new();
-    for formulation in FORMULATIONS {
+    let parameters: Vec<String> = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
+    let suits = |entry: &&Formulation| entry.parameter.is_none_or(|name| parameters.iter().any(|p| p == name));
+    for formulation in FORMULATIONS.iter().filter(suits) {
         let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
         if removals.is_empty() {
             choices.push(without_removal(formulation, scene));
@@ -77,8 +79,21 @@ pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError>
 fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Result<Equations, SolveError> {
     let formulation: &Formulation = formulation(choice.formulation).unwrap_or(&FORMULATIONS[0]);
     let removal = choice.removal.as_ref();
-    let equations = (formulation.derive)(system, &Derivation { removal, start })?;
+    let derived = |all_costates: bool| (formulation.derive)(system, &Derivation { removal, start, all_costates });
+    let mut equations = derived(false)?;
+    if let ConstantsRule::Given(values) = &choice.constants
+        && gives_constant_costates(&equations, values)
+    {
+        equations = derived(true)?;
+    }
     Ok(equations.leave_out_unneeded())
+}
+
+/// Whether `values`, one a memory variable, give a costate that was left out another value than zero.
+fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
+    let kept = |i: usize| equations.free_constants.iter().any(|c| c.memory == Some(i));
+    let memory = equations.removal.as_ref().map_or(0, |removal| removal.memory.len());
+    values.len() == memory && values.iter().enumerate().any(|(i, &x)| x != 0.0 && !kept(i))
 }
 
 /// [`derive()`], from constraints that are independent at `start` where those of the system nearly are not ([`Recombination`]).

@@ -22,6 +22,7 @@ mod equations_text;
 mod error;
 mod error_estimate;
 mod fit;
+mod fits;
 mod gap;
 mod growth;
 mod integrability;
@@ -29,6 +30,7 @@ mod membership;
 mod metric;
 mod motion;
 mod prepared;
+mod runs;
 mod settings;
 mod single_run;
 mod start_values;
@@ -40,7 +42,7 @@ pub use choice::{
     Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
     solve_choice,
 };
-pub use comparison::{Comparison, Fit, FittedMotion, Pair, Run, compare};
+pub use comparison::{Comparison, compare};
 pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;
@@ -49,15 +51,17 @@ pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate};
 pub use fit::best_fit;
+pub use fits::{Fit, FittedMotion};
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };
-pub use growth::{Growth, LeadingTerm, growth, leading_term};
+pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
-pub use membership::{Answer, Membership, membership};
+pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve};
 pub use prepared::Prepared;
+pub use runs::{Decided, Pair, Run};
 pub use settings::{Setting, Settings, TIGHTER, setting};
 pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};

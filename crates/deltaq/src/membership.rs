@@ -1,15 +1,18 @@
-//! Is Chetaev's motion vakonomic for some choice of the multipliers? Decided, not searched, and a no is proved.
+//! Is the motion of one formulation a motion of another, for some values of its free constants? Decided, not searched, and a no is proved.
 
 use decision::{
-    Decision, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question, Section, Verdict, decide_flow,
+    Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question,
+    Section, Verdict, decide_flow,
 };
-use equations::Derivation;
-use mechanics::System;
+use equations::{Derivation, Equations};
+use mechanics::{ConstantsRule, Removal, System};
+use nalgebra::{DMatrix, DVector};
 use scene::Scene;
+use symbolic::Expr;
 
-use crate::SolveError;
+use crate::{Choice, LeadingTerm, Metric, SolveError, choices, formulation};
 
-/// The set of all `μ₀` with which the vakonomic motion is Chetaev's: what was computed and what was proved about it.
+/// The set of all constants with which a formulation has a given motion: what was computed and what was proved about it.
 ///
 /// Forces act on both by `∫ (δL + Q·δq) dt = 0`.
 #[derive(Clone, Debug)]
@@ -18,14 +21,14 @@ pub struct Membership {
     pub decision: Decision,
     /// What the Taylor coefficients of the mismatch prove.
     pub proof: Proof,
-    /// `μ₀ = φ(q, v)` for every start, where that was found and verified.
+    /// `c = φ(q, v)` for every start, where that was found and verified.
     pub section: Option<Section>,
 }
 
 /// What is known of the set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// It is empty: at this order a Taylor coefficient of the mismatch is not zero, whatever `μ₀` is.
+    /// It is empty: at this order a Taylor coefficient of the mismatch is not zero, whatever the constants are.
     NoneProved {
         /// The order.
         order: usize,
@@ -66,27 +69,165 @@ impl Membership {
     }
 }
 
+/// A motion of a scene and a family of motions through the same start.
+pub struct Pairing<'a> {
+    scene: &'a Scene,
+    curve: Equations,
+    constants: Vec<f64>,
+    family: Family,
+}
+
+impl<'a> Pairing<'a> {
+    /// The motion of `curve`, whose free constants must be given or zero, and the motions of `family` for all values of its constants.
+    ///
+    /// # Errors
+    /// [`SolveError::Derivation`] where one of the two is refused; [`SolveError::Decision`] for equations that are not affine in their costates.
+    pub fn new(scene: &'a Scene, curve: &Choice, family: &Choice) -> Result<Self, SolveError> {
+        let system = &scene.system;
+        let (equations, carries_forces) = as_derived(system, family)?;
+        let family = Family::new(system, &equations, carries_forces)?;
+        let (equations, _) = as_derived(system, curve)?;
+        let reason = "its constants are found by a search, and have no exact values".to_owned();
+        let constants = match &curve.constants {
+            ConstantsRule::Zero => vec![0.0; equations.free_constants.len()],
+            ConstantsRule::Given(values) => values.clone(),
+            ConstantsRule::Natural { .. } => {
+                return Err(DecisionError::Unsuited { formulation: equations.formulation, reason }.into());
+            }
+        };
+        Ok(Pairing { scene, curve: equations, constants, family })
+    }
+
+    /// Decides for which constants of the family the motion is one of its own, up to `end`.
+    ///
+    /// # Errors
+    /// [`SolveError::Decision`] where the motion cannot be followed.
+    pub fn decide(&self, end: f64) -> Result<Membership, SolveError> {
+        let (system, start) = (&self.scene.system, &self.scene.start);
+        let flow = Flow::new(system, &self.curve, start, &self.constants, end)?;
+        let decision = decide_flow(&self.family, &flow, &DecisionSettings::default())?;
+        let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
+        let exact = self.exact_start()?;
+        let proof = question.prove(&exact);
+        // an identity would be one at almost every start
+        let sought = self.constants.is_empty() && !matches!(proof.almost_every_start, Finding::None(_));
+        let section = if sought { question.section(system, &exact, start)? } else { None };
+        Ok(Membership { decision, proof, section })
+    }
+
+    /// The certificate that no constants do, for others to check; the reason in words where there is none.
+    ///
+    /// # Errors
+    /// [`SolveError::Decision`] where an expression cannot be evaluated.
+    pub fn certificate(&self) -> Result<Result<Certificate, String>, SolveError> {
+        let question = Question::new(&self.scene.system, &self.curve, &self.constants, &self.family)?;
+        Ok(question.certificate(&self.exact_start()?))
+    }
+
+    /// How the motion of the family with `constants` leaves the other one; `None` where no Taylor coefficient up to the twelfth stands out.
+    ///
+    /// # Errors
+    /// [`SolveError::Decision`] where an expression cannot be evaluated.
+    pub fn leading_term(&self, constants: &[f64]) -> Result<Option<LeadingTerm>, SolveError> {
+        let (system, start) = (&self.scene.system, &self.scene.start);
+        let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
+        let exact = self.exact_start()?;
+        let Some(term) = question.leading_difference(system, start, Some(&exact), constants) else { return Ok(None) };
+        let length = Metric::new(system)?.length(start.t, &start.q, &start.v, &term.coefficient);
+        let (exponent, reach) = (term.exponent as u32, term.reach);
+        Ok(Some(LeadingTerm { exponent, coefficient: term.coefficient, length, reach, proved: term.exact }))
+    }
+
+    /// Names of the constants of the family.
+    pub fn constants(&self) -> &[String] {
+        self.family.constants()
+    }
+
+    fn exact_start(&self) -> Result<ExactStart, DecisionError> {
+        let scene = self.scene;
+        ExactStart::new(&scene.system, &scene.start, &scene.completion, scene.removals.first())
+    }
+}
+
+/// The equations of a choice with nothing left out, forces apart where its principle has no place for them; and whether they contain forces.
+fn as_derived(system: &System, choice: &Choice) -> Result<(Equations, bool), SolveError> {
+    let entry = formulation(choice.formulation).unwrap_or(&chetaev::FORMULATION);
+    let carries_forces = [chetaev::FORMULATION.name, kappa::FORMULATION.name].contains(&entry.name);
+    let forces = if carries_forces { system.forces.clone() } else { vec![system.graph.zero(); system.dimension()] };
+    let derivation = Derivation { removal: choice.removal.as_ref(), start: None, all_costates: true };
+    Ok(((entry.derive)(&System { forces, ..system.clone() }, &derivation)?, carries_forces))
+}
+
 /// Decides whether Chetaev's motion of a scene up to `end` is vakonomic; `None` where there is no constraint.
 ///
 /// # Errors
-/// [`SolveError::Derivation`] where one of the two is refused; [`SolveError::Decision`] where the motion cannot be followed.
+/// As [`Pairing::new`] and [`Pairing::decide`].
 pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveError> {
-    let system = &scene.system;
-    if system.constraints.is_empty() {
-        return Ok(None);
+    principal(scene)?.map(|pairing| pairing.decide(end)).transpose()
+}
+
+/// The certificate that no `μ₀` makes the vakonomic motion Chetaev's; the reason in words where there is none.
+///
+/// # Errors
+/// As [`Pairing::new`] and [`Pairing::certificate`].
+pub fn certificate(scene: &Scene) -> Result<Result<Certificate, String>, SolveError> {
+    principal(scene)?.map_or(Ok(Err("nothing is constrained".into())), |pairing| pairing.certificate())
+}
+
+/// Chetaev's motion and the vakonomic family.
+fn principal(scene: &Scene) -> Result<Option<Pairing<'_>>, SolveError> {
+    let choices = choices(scene);
+    let named = |name: &str| choices.iter().find(|choice| choice.formulation == name);
+    match (named(chetaev::FORMULATION.name), named(vakonomic::FORMULATION.name)) {
+        (Some(curve), Some(family)) if !scene.system.constraints.is_empty() => {
+            Pairing::new(scene, curve, family).map(Some)
+        }
+        _ => Ok(None),
     }
-    let curve = chetaev::derive(system, &Derivation::default())?;
-    let without_forces = System { forces: vec![system.graph.zero(); system.dimension()], ..system.clone() };
-    let family = Family::new(system, &vakonomic::derive(&without_forces, &Derivation::default())?, false)?;
-    let flow = Flow::new(system, &curve, &scene.start, &[], end)?;
-    let decision = decide_flow(&family, &flow, &DecisionSettings::default())?;
-    let question = Question::new(system, &curve, &[], &family)?;
-    let start = ExactStart::new(system, &scene.start, &scene.completion, scene.removals.first())?;
-    let proof = question.prove(&start);
-    // an identity would be one at almost every start
-    let section = match proof.almost_every_start {
-        Finding::None(_) => None,
-        _ => question.section(system, &start, &scene.start)?,
+}
+
+/// The costates with which the motion of a removal by coordinates is the vakonomic motion with `multipliers`:
+///
+/// ```text
+/// P₀ = −∂(L + μ₀·f)/∂ẇ        (for f = ẇ − B: μ₀ = −P₀ − L_ẇ) .
+/// ```
+///
+/// `None` where some parameter or memory variable is no coordinate: then the two families differ.
+///
+/// # Errors
+/// [`SolveError::Compile`] where an expression has no value at the start.
+pub fn costates_of(scene: &Scene, removal: &Removal, multipliers: &[f64]) -> Result<Option<Vec<f64>>, SolveError> {
+    let Some((momenta, jacobian)) = along_memory(scene, removal)? else { return Ok(None) };
+    let pull = jacobian.transpose() * DVector::from_column_slice(multipliers);
+    Ok(Some(momenta.iter().zip(&pull).map(|(p, pull)| -p - pull).collect()))
+}
+
+/// The multipliers with which the vakonomic motion is that of a removal by coordinates with `costates`, one a memory variable: the inverse of
+/// [`costates_of`].
+///
+/// # Errors
+/// [`SolveError::Compile`] where an expression has no value at the start.
+pub fn multipliers_of(scene: &Scene, removal: &Removal, costates: &[f64]) -> Result<Option<Vec<f64>>, SolveError> {
+    let Some((momenta, jacobian)) = along_memory(scene, removal)? else { return Ok(None) };
+    let pull = DVector::from_iterator(momenta.len(), momenta.iter().zip(costates).map(|(p, c)| -p - c));
+    Ok(jacobian.transpose().lu().solve(&pull).map(|mu| mu.as_slice().to_vec()))
+}
+
+/// `L_ẇ` and `∂f/∂ẇ` (h×h) at the start, where all parameters and memory variables are coordinates.
+fn along_memory(scene: &Scene, removal: &Removal) -> Result<Option<(Vec<f64>, DMatrix<f64>)>, SolveError> {
+    let system = scene.system.clone();
+    let g = &system.graph;
+    let memory: Option<Vec<usize>> = removal.memory.iter().map(|w| w.coordinate).collect();
+    let Some(memory) = memory.filter(|memory| {
+        memory.len() == system.constraints.len() && removal.parameters.iter().all(|u| u.coordinate.is_some())
+    }) else {
+        return Ok(None);
     };
-    Ok(Some(Membership { decision, proof, section }))
+    let rates: Vec<_> = memory.iter().map(|&i| system.coordinates[i].velocity).collect();
+    let mut values = system.parameter_values();
+    values.extend(system.values_at(&scene.start));
+    let numbers = |es: &[Expr]| es.iter().map(|&e| g.evaluate(e, &values)).collect::<Result<Vec<f64>, _>>();
+    let momenta = numbers(&g.gradient(system.lagrangian, &rates))?;
+    let jacobian = numbers(g.jacobian(&system.constraints, &rates).entries())?;
+    Ok(Some((momenta, DMatrix::from_row_slice(rates.len(), rates.len(), &jacobian))))
 }

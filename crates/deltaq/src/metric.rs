@@ -1,19 +1,15 @@
 //! The kinetic metric: how far two configurations are apart.
 
-use std::collections::HashMap;
-
 use mechanics::System;
 use nalgebra::DMatrix;
-use symbolic::{CompileError, Graph, Matrix, Symbol, Tape, Workspace};
+use symbolic::{CompileError, Evaluator, Symbol};
 
 /// The length `sqrt(Δqᵀ M Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
 #[derive(Clone)]
 pub struct Metric {
-    tape: Tape,
-    registers: Workspace<f64>,
+    program: Evaluator<f64>,
     dimension: usize,
     inputs: Vec<f64>,
-    values: Vec<f64>,
 }
 
 impl Metric {
@@ -36,14 +32,8 @@ impl Metric {
         inputs.extend(parameters);
         let mut values = system.parameter_values();
         values.retain(|symbol, _| !parameters.contains(symbol));
-        let tape = system.graph.compile(&inputs, &outputs, &values)?;
-        Ok(Metric {
-            registers: tape.workspace(),
-            dimension: system.dimension(),
-            inputs: vec![0.0; inputs.len()],
-            values: vec![0.0; outputs.len()],
-            tape,
-        })
+        let program = Evaluator::new(system.graph.compile(&inputs, &outputs, &values)?);
+        Ok(Metric { program, dimension: system.dimension(), inputs: vec![0.0; inputs.len()] })
     }
 
     /// Values of the parameters that vary.
@@ -56,19 +46,19 @@ impl Metric {
         self.inputs.len() - 1 - 2 * self.dimension
     }
 
-    fn load(&mut self, t: f64, q: &[f64], v: &[f64]) {
+    /// `M`, row-major, and `f`.
+    fn at(&mut self, t: f64, q: &[f64], v: &[f64]) -> (&[f64], &[f64]) {
         let n = self.dimension;
         self.inputs[0] = t;
         self.inputs[1..=n].copy_from_slice(q);
         self.inputs[1 + n..=2 * n].copy_from_slice(v);
-        self.tape.evaluate(&self.inputs, &mut self.registers, &mut self.values);
+        self.program.evaluate(&self.inputs).split_at(n * n)
     }
 
     /// `sqrt(|Δqᵀ M Δq|)` with `M` at `(t, q, v)`.
     pub fn length(&mut self, t: f64, q: &[f64], v: &[f64], difference: &[f64]) -> f64 {
-        self.load(t, q, v);
         let n = self.dimension;
-        let rows = self.values[..n * n].chunks_exact(n);
+        let rows = self.at(t, q, v).0.chunks_exact(n);
         let square: f64 =
             rows.zip(difference).map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>()).sum();
         square.abs().sqrt()
@@ -82,29 +72,16 @@ impl Metric {
     /// Upper triangular `R` with `RᵀR = M` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`; where `M` is not positive
     /// definite, the square roots of its diagonal instead.
     pub(crate) fn factor(&mut self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
-        self.load(t, q, v);
         let n = self.dimension;
-        let mass = DMatrix::from_row_slice(n, n, &self.values[..n * n]);
+        let mass = DMatrix::from_row_slice(n, n, self.at(t, q, v).0);
         let diagonal = DMatrix::from_diagonal(&mass.diagonal().map(|m| m.abs().sqrt()));
         mass.cholesky().map_or(diagonal, |c| c.l().transpose())
     }
 
     /// `max |fᵢ(t, q, v)|`, 0 where there is no constraint.
     pub fn constraint_residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> f64 {
-        self.load(t, q, v);
-        let n = self.dimension;
-        self.values[n * n..].iter().fold(0.0, |a, f| a.max(f.abs()))
+        self.at(t, q, v).1.iter().fold(0.0, |a, f| a.max(f.abs()))
     }
-}
-
-/// The numbers in a matrix of expressions at given values of all its symbols.
-pub(crate) fn numbers(
-    graph: &Graph,
-    matrix: &Matrix,
-    values: &HashMap<Symbol, f64>,
-) -> Result<DMatrix<f64>, CompileError> {
-    let entries: Result<Vec<f64>, CompileError> = matrix.entries().iter().map(|&e| graph.evaluate(e, values)).collect();
-    Ok(DMatrix::from_row_slice(matrix.rows(), matrix.columns(), &entries?))
 }
 
 pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {

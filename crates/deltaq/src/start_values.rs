@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use equations::Equations;
 use mechanics::complete_removal_start;
-use symbolic::{Expr, Symbol, Tape, Workspace};
+use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::{Setting, SolveError};
 
@@ -12,11 +12,9 @@ use crate::{Setting, SolveError};
 /// `t, q, v`, what belongs to a removal, the free constants → the states, guesses for the unknowns of the instant.
 #[derive(Clone)]
 pub(crate) struct StartValues {
-    tape: Tape,
-    workspace: Workspace<f64>,
+    program: Evaluator<f64>,
     symbols: Vec<Symbol>,
     pub(crate) inputs: Vec<f64>,
-    outputs: Vec<f64>,
     states: usize,
     unknowns: usize,
 }
@@ -33,16 +31,9 @@ impl StartValues {
         inputs.resize(symbols.len(), 0.0);
         let mut outputs: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
         outputs.extend(equations.blocks.iter().flat_map(|b| b.guess.iter().copied()));
-        let tape = equations.tape(&symbols, &outputs)?;
-        Ok(StartValues {
-            workspace: tape.workspace(),
-            outputs: vec![0.0; outputs.len()],
-            states: equations.states.len(),
-            unknowns: equations.unknowns().len(),
-            tape,
-            symbols,
-            inputs,
-        })
+        let program = Evaluator::new(equations.tape(&symbols, &outputs)?);
+        let (states, unknowns) = (equations.states.len(), equations.unknowns().len());
+        Ok(StartValues { program, symbols, inputs, states, unknowns })
     }
 
     /// The place of a symbol in `inputs`.
@@ -69,8 +60,7 @@ impl StartValues {
 
     /// The states, and the guess for the unknowns of the instant; that is empty unless the derivation has one for each.
     pub(crate) fn evaluate(&mut self) -> (&[f64], &[f64]) {
-        self.tape.evaluate(&self.inputs, &mut self.workspace, &mut self.outputs);
-        let (states, guess) = self.outputs.split_at(self.states);
+        let (states, guess) = self.program.evaluate(&self.inputs).split_at(self.states);
         (states, if guess.len() == self.unknowns { guess } else { &[] })
     }
 }

@@ -184,11 +184,6 @@ impl Compiled {
         self.jacobian.is_some()
     }
 
-    /// Products of series, and linear terms, that an order of [`Compiled::taylor`] takes; `None` if [`Compiled::with_series`] was not called.
-    pub fn series_work(&self) -> Option<(usize, usize)> {
-        self.series.as_ref().map(Series::work)
-    }
-
     /// Whether [`Compiled::with_series`] was called.
     pub fn has_series(&self) -> bool {
         self.series.is_some()

@@ -10,6 +10,8 @@ pub struct Derivation<'a> {
     pub removal: Option<&'a Removal>,
     /// The start of the motion, for forms that choose pivots by their size there.
     pub start: Option<&'a State>,
+    /// Whether costates that never move are kept, with free constants of their own. The rules "zero" and "natural" make them zero.
+    pub all_costates: bool,
 }
 
 /// A system for which a formulation has no equations.
@@ -31,6 +33,14 @@ pub enum DerivationError {
     RemovalMissing {
         /// Name of the formulation.
         formulation: &'static str,
+    },
+    /// A parameter of the formulation is not among those of the system.
+    #[error("{formulation}: a parameter `{parameter}` is needed; give it in the scene, or set it: {parameter}=1")]
+    ParameterMissing {
+        /// Name of the formulation.
+        formulation: &'static str,
+        /// Name of the parameter.
+        parameter: &'static str,
     },
     /// The constraints cannot be solved for the velocities.
     #[error("{formulation}: {error}")]
@@ -70,6 +80,8 @@ pub struct Formulation {
     pub needs_removal: bool,
     /// Whether its free constants are multipliers `μ₀` at the start, one a constraint.
     pub starts_multipliers: bool,
+    /// The parameter of the system that it needs beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
+    pub parameter: Option<&'static str>,
     /// The derivation.
     pub derive: fn(&System, &Derivation) -> Result<Equations, DerivationError>,
 }

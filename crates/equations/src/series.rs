@@ -26,10 +26,6 @@ impl Series {
         Ok(Series { tape, workspace, left: plan.left.clone(), places, inputs })
     }
 
-    pub(crate) fn work(&self) -> (usize, usize) {
-        self.tape.work()
-    }
-
     /// Takes `t, y`, constants and the unknowns of blocks that are left.
     pub(crate) fn tape(equations: &Equations, plan: &Plan) -> Result<SeriesTape, CompileError> {
         let steady = |symbol: Symbol| (symbol, SeriesInput::Steady);

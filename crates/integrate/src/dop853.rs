@@ -7,7 +7,7 @@ use crate::dop853_tableau::*;
 use crate::options::Options;
 use crate::problem::Start;
 use crate::status::StopCause;
-use crate::stepper::{Attempt, Stepper, shortest_step};
+use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
 
 const SAFETY: f64 = 0.9;
@@ -62,11 +62,6 @@ impl<'s, 'p> Dop853<'s, 'p> {
             next: 0.0,
             failed: false,
         })
-    }
-
-    #[cfg(test)]
-    pub(crate) fn set_step(&mut self, step: f64) {
-        self.step = step;
     }
 
     /// Hairer's starting step: a hundredth of |y|/|F|, then from an estimate of the second derivative.
@@ -173,16 +168,11 @@ impl Stepper for Dop853<'_, '_> {
         if self.step == 0.0 {
             self.choose_first_step();
         }
-        let remaining = self.end - self.t;
-        // A last step a little longer than wanted is better than a tiny one after it.
-        let last = 1.01 * self.step.abs() >= remaining.abs();
-        let h = if last { remaining } else { self.step };
-        let limit = shortest_step(self.t);
-        if self.step.abs() <= limit && !last {
-            return Attempt::GaveUp(StopCause::StepTooSmall { step: self.step.abs(), limit });
-        }
-        self.taken = h;
-        self.taken_to = if last { self.end } else { self.t + h };
+        let (h, to) = match next_step(self.t, self.end, self.step, 1.01) {
+            Ok(step) => step,
+            Err(cause) => return Attempt::GaveUp(cause),
+        };
+        (self.taken, self.taken_to) = (h, to);
         if let Err(failure) = self.stages(h) {
             return Attempt::Failed(failure);
         }

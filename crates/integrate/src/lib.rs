@@ -71,8 +71,6 @@ mod dop853;
 #[cfg(test)]
 mod dop853_order_conditions;
 mod dop853_tableau;
-#[cfg(test)]
-mod dop853_tests;
 mod error;
 mod events;
 mod lanes;

@@ -17,7 +17,7 @@ use crate::options::Options;
 use crate::problem::Start;
 use crate::radau5_tableau::{ERROR, NODES};
 use crate::status::StopCause;
-use crate::stepper::{Attempt, Stepper, shortest_step};
+use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System, check_finite};
 
 /// Below this the error estimate measures round-off.
@@ -182,14 +182,11 @@ impl Stepper for Radau5<'_, '_> {
     }
 
     fn attempt(&mut self) -> Attempt {
-        let remaining = self.end - self.t;
-        let last = 1.0001 * self.step.abs() >= remaining.abs();
-        let h = if last { remaining } else { self.step };
-        let limit = shortest_step(self.t);
-        if self.step.abs() <= limit && !last {
-            return Attempt::GaveUp(StopCause::StepTooSmall { step: self.step.abs(), limit });
-        }
-        (self.taken, self.taken_to) = (h, if last { self.end } else { self.t + h });
+        let (h, to) = match next_step(self.t, self.end, self.step, 1.0001) {
+            Ok(step) => step,
+            Err(cause) => return Attempt::GaveUp(cause),
+        };
+        (self.taken, self.taken_to) = (h, to);
         if let Err(failure) = self.prepare(h) {
             return Attempt::Failed(failure);
         }

@@ -48,6 +48,20 @@ pub(crate) enum Attempt {
     GaveUp(StopCause),
 }
 
+/// Length and end of the next step of a method that wants to go `step` (of either sign) from `t`; a last step up to `stretch` times as long
+/// is better than a tiny one after it.
+pub(crate) fn next_step(t: f64, end: f64, step: f64, stretch: f64) -> Result<(f64, f64), StopCause> {
+    let remaining = end - t;
+    if stretch * step.abs() >= remaining.abs() {
+        return Ok((remaining, end));
+    }
+    let limit = shortest_step(t);
+    if step.abs() <= limit {
+        return Err(StopCause::StepTooSmall { step: step.abs(), limit });
+    }
+    Ok((step, t + step))
+}
+
 /// The shortest step that still moves the time `t` by more than its own round-off.
 pub(crate) fn shortest_step(t: f64) -> f64 {
     (10.0 * f64::EPSILON * t.abs()).max(1e-300)

@@ -28,7 +28,7 @@ use crate::dense::Basis;
 use crate::options::Options;
 use crate::problem::Start;
 use crate::status::StopCause;
-use crate::stepper::{Attempt, Stepper, shortest_step};
+use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
 use crate::taylor_step::{Ends, first_powers, longest_step, once, order};
 
@@ -220,14 +220,11 @@ impl Stepper for Taylor<'_, '_> {
     }
 
     fn attempt(&mut self) -> Attempt {
-        let remaining = self.end - self.t;
-        let last = self.step >= remaining.abs();
-        let limit = shortest_step(self.t);
-        if self.step <= limit && !last {
-            return Attempt::GaveUp(StopCause::StepTooSmall { step: self.step, limit });
-        }
-        self.taken = if last { remaining } else { self.step * remaining.signum() };
-        self.taken_to = if last { self.end } else { self.t + self.taken };
+        let step = self.step * (self.end - self.t).signum();
+        (self.taken, self.taken_to) = match next_step(self.t, self.end, step, 1.0) {
+            Ok(step) => step,
+            Err(cause) => return Attempt::GaveUp(cause),
+        };
         self.evaluate(self.taken / self.unit);
         Attempt::Candidate { t: self.taken_to, rejected: 0 }
     }

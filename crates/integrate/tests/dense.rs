@@ -1,23 +1,20 @@
 //! The dense output of every method.
 
 use crate::problems::*;
-use integrate::{DenseError, Method, Options, Projection, Start, Status, integrate};
+use integrate::{DenseError, Method, Options, Projection};
 
 #[test]
 fn it_is_continuous_also_where_states_are_projected() {
     for method in Method::ALL {
         for projection in [Projection::EveryStep, Projection::Off] {
             let options = Options { method, projection, ..Options::with_tolerance(1e-5) };
-            let start = Start { t: 0.0, y: vec![1.0, 0.0] };
             let mut case = oscillator().with_projection(onto_circle);
-            let solution = integrate(&mut case, &start, 10.0, &options).unwrap();
+            let solution = run(&mut case, 0.0, &[1.0, 0.0], 10.0, &options);
             let times = solution.dense.step_times();
             assert_eq!(times.len(), solution.work.steps + 1);
             assert_eq!((times[0], times[times.len() - 1]), (0.0, 10.0));
             for &t in &times[1..] {
-                let (mut before, mut at) = ([0.0; 2], [0.0; 2]);
-                solution.dense.evaluate(t.next_down(), &mut before);
-                solution.dense.evaluate(t, &mut at);
+                let [before, at]: [[f64; 2]; 2] = [t.next_down(), t].map(|t| state(&solution, t));
                 assert!(distance(&before, &at) < 1e-14, "{method:?}: jump at {t}: {before:?} {at:?}");
                 if projection == Projection::EveryStep {
                     assert!((at[0].hypot(at[1]) - 1.0).abs() < 4e-16, "{method:?}: off the circle at {t}");
@@ -33,16 +30,10 @@ fn it_is_as_good_as_the_steps() {
     // and the measure is the tolerance.
     for method in Method::ALL {
         let options = Options { method, ..Options::with_tolerance(1e-7) };
-        let start = Start { t: 0.0, y: vec![1.0, 0.0] };
-        let solution = integrate(&mut oscillator(), &start, 10.0, &options).unwrap();
-        let error = |t: f64| {
-            let mut y = [0.0; 2];
-            solution.dense.evaluate(t, &mut y);
-            distance(&y, &[t.cos(), -t.sin()])
-        };
+        let solution = run(&mut oscillator(), 0.0, &[1.0, 0.0], 10.0, &options);
+        let error = |t: f64| distance(&state::<2>(&solution, t), &circle(t));
         let ends = solution.dense.step_times().iter().map(|&t| error(t)).fold(0.0, f64::max);
-        let between = (0..=20_000).map(|i| error(f64::from(i) * 5e-4)).fold(0.0, f64::max);
-        println!("{method:?} {ends:e} {between:e}");
+        let between = largest_error(&solution, 20_000, circle);
         let ends = if method == Method::Radau5 { ends.max(1e-7) } else { ends };
         assert!(between < 3.0 * ends, "{method:?}: {between:e} between, {ends:e} at the ends of the steps");
     }
@@ -51,8 +42,7 @@ fn it_is_as_good_as_the_steps() {
 #[test]
 fn questions_it_cannot_answer() {
     for (from, to) in [(1.0, 3.0), (3.0, 1.0)] {
-        let start = Start { t: from, y: vec![1.0, 0.0] };
-        let solution = integrate(&mut oscillator(), &start, to, &Options::with_tolerance(1e-9)).unwrap();
+        let solution = run(&mut oscillator(), from, &[1.0, 0.0], to, &Options::with_tolerance(1e-9));
         let (dense, mut y) = (&solution.dense, [7.0; 2]);
         assert_eq!((dense.start(), dense.end(), dense.dimension()), (from, to, 2));
         for t in [0.9, 3.1, f64::NAN, f64::INFINITY] {
@@ -75,22 +65,15 @@ fn questions_it_cannot_answer() {
 fn backward_integration_returns_to_the_start() {
     for method in Method::ALL {
         let options = Options { method, ..Options::with_tolerance(1e-9) };
-        let start = Start { t: 0.5, y: vec![1.0] };
-        let there = integrate(&mut nonautonomous(), &start, 4.0, &options).unwrap();
-        assert_eq!((&there.status, there.dense.end()), (&Status::Completed, 4.0));
-        let turn = Start { t: 4.0, y: there.dense.end_state().to_vec() };
-        let back = integrate(&mut nonautonomous(), &turn, 0.5, &options).unwrap();
-        assert_eq!((&back.status, back.dense.end()), (&Status::Completed, 0.5));
+        let there = run(&mut nonautonomous(), 0.5, &[1.0], 4.0, &options);
+        let back = run(&mut nonautonomous(), 4.0, there.dense.end_state(), 0.5, &options);
         let missed = (back.dense.end_state()[0] - 1.0).abs();
         let limit = if method == Method::TrBdf2 { 1e-4 } else { 1e-6 };
-        println!("{method:?} {missed:e} {:?}", back.work);
         assert!(missed < limit, "{method:?}: misses the start by {missed:e}");
-        let (mut a, mut b) = ([0.0], [0.0]);
         for i in 0..=35 {
             let t = 0.5 + 0.1 * f64::from(i);
-            there.dense.evaluate(t, &mut a);
-            back.dense.evaluate(t, &mut b);
-            assert!((a[0] - b[0]).abs() < limit, "{method:?} at {t}");
+            let ([a], [b]) = (state(&there, t), state(&back, t));
+            assert!((a - b).abs() < limit, "{method:?} at {t}");
         }
     }
 }

@@ -1,14 +1,7 @@
 //! DOP853: orders, accuracy at the round-off plateau, counters.
 
 use crate::problems::*;
-use integrate::{Dense, DenseError, Options, Solution, Start, Status, integrate};
-
-fn run(case: &mut Case, y: &[f64], end: f64, options: &Options) -> Solution {
-    let solution = integrate(case, &Start { t: 0.0, y: y.to_vec() }, end, options).unwrap();
-    assert_eq!(solution.status, Status::Completed);
-    assert_eq!(solution.dense.end().to_bits(), end.to_bits());
-    solution
-}
+use integrate::{Dense, DenseError, Options, Solution};
 
 /// The largest error at 40 points a step, and at the ends of the steps alone.
 fn errors(solution: &Solution, reference: impl Fn(f64, &mut [f64])) -> (f64, f64) {
@@ -36,14 +29,13 @@ fn the_oscillator_gives_order_eight() {
     let points: Vec<(f64, f64)> = [1e-5, 1e-7, 1e-9, 1e-11]
         .iter()
         .map(|&tolerance| {
-            let solution = run(&mut oscillator(), &[1.0, 0.0], 50.0, &Options::with_tolerance(tolerance));
+            let solution = run(&mut oscillator(), 0.0, &[1.0, 0.0], 50.0, &Options::with_tolerance(tolerance));
             let (everywhere, ends) = errors(&solution, |t, y| (y[0], y[1]) = (t.cos(), -t.sin()));
             assert!(everywhere < 3.0 * ends, "{tolerance:e}: {everywhere:e} within the steps, {ends:e} at their ends");
             (solution.work.steps as f64, ends)
         })
         .collect();
     let order = -slope(&points);
-    println!("{order} {points:?}");
     assert!((7.6..8.6).contains(&order), "order {order} from {points:?}");
 }
 
@@ -51,13 +43,12 @@ fn the_oscillator_gives_order_eight() {
 fn a_nonautonomous_problem_gives_order_eight_at_the_steps_and_seven_between() {
     let (mut at_ends, mut between) = (Vec::new(), Vec::new());
     for tolerance in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {
-        let solution = run(&mut nonautonomous(), &[1.0], 40.0, &Options::with_tolerance(tolerance));
+        let solution = run(&mut nonautonomous(), 0.0, &[1.0], 40.0, &Options::with_tolerance(tolerance));
         let (everywhere, ends) = errors(&solution, |t, y| y[0] = t.sin().exp());
         at_ends.push((solution.work.steps as f64, ends));
         between.push((solution.work.steps as f64, everywhere));
     }
     let orders = (-slope(&at_ends), -slope(&between));
-    println!("{orders:?} {at_ends:?} {between:?}");
     assert!((7.2..9.5).contains(&orders.0), "order {} at the ends of the steps: {at_ends:?}", orders.0);
     assert!((6.7..8.7).contains(&orders.1), "order {} between: {between:?}", orders.1);
 }
@@ -68,12 +59,11 @@ fn the_arenstorf_orbit_closes() {
         .iter()
         .map(|&tolerance| {
             let options = Options::with_tolerance(tolerance);
-            let solution = run(&mut arenstorf(), &ARENSTORF_START, ARENSTORF_PERIOD, &options);
+            let solution = run(&mut arenstorf(), 0.0, &ARENSTORF_START, ARENSTORF_PERIOD, &options);
             (solution.work.steps as f64, distance(solution.dense.end_state(), &ARENSTORF_START))
         })
         .collect();
     let order = -slope(&points);
-    println!("{order} {points:?}");
     assert!(order > 7.5, "order {order} from {points:?}");
     assert!(points[4].1 < 1e-8, "{points:?}");
 }
@@ -82,13 +72,11 @@ fn the_arenstorf_orbit_closes() {
 fn round_off_is_a_plateau_and_no_trap() {
     for tolerance in [1e-14, 1e-15, 1e-16, 1e-18] {
         let options = Options::with_tolerance(tolerance);
-        let solution = run(&mut oscillator(), &[1.0, 0.0], 20.0, &options);
+        let solution = run(&mut oscillator(), 0.0, &[1.0, 0.0], 20.0, &options);
         let (everywhere, _) = errors(&solution, |t, y| (y[0], y[1]) = (t.cos(), -t.sin()));
-        println!("{tolerance:e} {:?} {everywhere:e}", solution.work);
         assert!(everywhere < 6.0 * tolerance.max(4e-15), "{tolerance:e}: {everywhere:e}");
         assert!(solution.work.steps < 500 && solution.work.rejected < 20, "{:?}", solution.work);
-        let solution = run(&mut arenstorf(), &ARENSTORF_START, ARENSTORF_PERIOD, &options);
-        println!("{tolerance:e} {:?}", solution.work);
+        let solution = run(&mut arenstorf(), 0.0, &ARENSTORF_START, ARENSTORF_PERIOD, &options);
         assert!(solution.work.steps < 2000 && solution.work.rejected < 200, "{:?}", solution.work);
     }
 }
@@ -97,29 +85,21 @@ fn round_off_is_a_plateau_and_no_trap() {
 fn ends_alone_cost_three_evaluations_a_step_less_and_say_so() {
     let everywhere = Options::with_tolerance(1e-10);
     let ends = Options { dense: Dense::EndOnly, ..everywhere.clone() };
-    let (a, b) =
-        (run(&mut oscillator(), &[1.0, 0.0], 10.0, &everywhere), run(&mut oscillator(), &[1.0, 0.0], 10.0, &ends));
+    let [a, b] = [&everywhere, &ends].map(|options| run(&mut oscillator(), 0.0, &[1.0, 0.0], 10.0, options));
     assert_eq!(a.dense.end_state(), b.dense.end_state());
     assert_eq!(a.work.evaluations, b.work.evaluations + 3 * a.work.steps);
     assert_eq!(b.work.evaluations, 2 + 12 * b.work.steps + 11 * b.work.rejected);
-    let mut y = [0.0; 2];
-    b.dense.evaluate(0.0, &mut y);
-    assert_eq!(y, [1.0, 0.0]);
-    b.dense.evaluate(10.0, &mut y);
-    assert_eq!(y, b.dense.end_state());
+    assert_eq!(state(&b, 0.0), [1.0, 0.0]);
+    assert_eq!(state::<2>(&b, 10.0), b.dense.end_state());
     let not_stored = DenseError::NotStored { t: 5.0, start: 0.0, end: 10.0 };
-    assert_eq!(b.dense.try_evaluate(5.0, &mut y), Err(not_stored));
+    assert_eq!(b.dense.try_evaluate(5.0, &mut [0.0; 2]), Err(not_stored));
 }
 
 #[test]
 fn slopes_match_where_steps_meet() {
-    let solution = run(&mut oscillator(), &[1.0, 0.0], 10.0, &Options::with_tolerance(1e-6));
+    let solution = run(&mut oscillator(), 0.0, &[1.0, 0.0], 10.0, &Options::with_tolerance(1e-6));
     let times = solution.dense.step_times();
-    let state = |t: f64| {
-        let mut y = [0.0; 2];
-        solution.dense.evaluate(t, &mut y);
-        y
-    };
+    let state = |t: f64| state::<2>(&solution, t);
     let d = 1e-4;
     for t in &times[1..times.len() - 1] {
         let (before, at, after) = (state(t - d), state(*t), state(t + d));

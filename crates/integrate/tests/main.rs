@@ -6,6 +6,5 @@ mod dop853;
 mod events;
 mod methods;
 mod problems;
-mod stiff;
 mod stops;
 mod taylor;

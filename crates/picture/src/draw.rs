@@ -3,21 +3,20 @@
 use super::axis::TICK_SIZE;
 use super::frame::{Frame, Framed, LEGEND_ROW, TITLE_SIZE};
 use super::layout::{self, Entry, LABEL_SIZE, Measured, SWATCH, WIDTH};
-use super::plots::Plots;
-use super::style::{Cap, INK, INKS, Stroke, Style};
+use super::style::{INK, INKS, Stroke, Style};
 use super::text::{escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
-use super::{Curve, PictureError};
+use super::{Curve, Picture, PictureError};
 
 /// What a file should not pass, in bytes.
 const BUDGET: usize = 60_000;
 
-pub(super) fn document(plots: &Plots) -> Result<String, PictureError> {
+pub(super) fn document(plots: &Picture) -> Result<String, PictureError> {
     let measured: Vec<Vec<Measured>> = plots
         .panels
         .iter()
         .map(|panel| {
-            let measure = |curve| Measured::new(curve, plots.x, panel.y);
+            let measure = |curve| Measured::new(curve, &plots.x, &panel.y);
             panel.curves.iter().map(measure).collect()
         })
         .collect();
@@ -35,7 +34,7 @@ pub(super) fn document(plots: &Plots) -> Result<String, PictureError> {
 
 /// The whole document at one coarseness.
 fn sheet(
-    plots: &Plots,
+    plots: &Picture,
     measured: &[Vec<Measured>],
     ranges: &layout::Ranges,
     legend: &[Entry],
@@ -44,7 +43,7 @@ fn sheet(
     let frame = Frame::new(plots, ranges, legend);
     let framed = frame.plots(plots, measured, legend);
     let mut out = String::new();
-    let title = escape(plots.title);
+    let title = escape(&plots.title);
     out.push_str(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
          aria-label=\"{title}\" class=\"picture\" color=\"{}\" \
@@ -81,7 +80,7 @@ fn sheet(
 }
 
 /// What the picture shows, for readers who do not see it.
-fn description(plots: &Plots, legend: &[Entry]) -> String {
+fn description(plots: &Picture, legend: &[Entry]) -> String {
     let vertical: Vec<&str> = plots.panels.iter().map(|panel| panel.y.label.as_str()).collect();
     let curves: Vec<String> = legend.iter().map(Entry::text).collect();
     format!("{} over {}. Curves: {}.", vertical.join(", "), plots.x.label, curves.join("; "))
@@ -164,22 +163,13 @@ fn axes(out: &mut String, plot: &Framed) {
 
 /// Names of the thresholds, at their right ends.
 fn thresholds(out: &mut String, plot: &Framed) {
-    let named: Vec<(&str, f64)> = plot
-        .plot
-        .curves
-        .iter()
-        .zip(plot.measured)
-        .filter(|(curve, _)| curve.style == Style::Threshold)
-        .filter_map(|(curve, measured)| {
-            let end = measured.runs.last().and_then(|run| run.last()).map(|point| point.1);
-            let at = measured.level.or(end)?;
-            plot.y.contains(at).then(|| (curve.label.as_str(), plot.down(at)))
-        })
-        .collect();
-    let wanted: Vec<f64> = named.iter().map(|(_, y)| *y).collect();
-    let places = layout::spread(&wanted, 14.0, plot.extent.height);
-    for ((label, _), y) in named.iter().zip(places) {
-        text(out, (plot.extent.width + 6.0, y + 4.3), "start", &fit(label, TICK_SIZE, 150.0));
+    let threshold = |(curve, _): &(&Curve, &Measured)| curve.style == Style::Threshold;
+    for (curve, measured) in plot.plot.curves.iter().zip(plot.measured).filter(threshold) {
+        let end = measured.runs.last().and_then(|run| run.last()).filter(|point| plot.y.contains(point.1));
+        if let Some(&(_, at)) = end {
+            let y = plot.down(at).min(plot.extent.height);
+            text(out, (plot.extent.width + 6.0, y + 4.3), "start", &fit(&curve.label, TICK_SIZE, 150.0));
+        }
     }
 }
 
@@ -205,16 +195,8 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
     order.sort_by_key(|(curve, _)| curve.style.depth());
     let place = |&(x, y): &(f64, f64)| (plot.across(x), plot.down(y));
     for (curve, measured) in order {
-        let trace = match measured.level {
-            Some(level) => Trace {
-                lines: vec![vec![(0.0, plot.down(level)), (plot.extent.width, plot.down(level))]],
-                dots: Vec::new(),
-            },
-            None => {
-                let runs: Vec<Vec<Place>> = measured.runs.iter().map(|run| run.iter().map(place).collect()).collect();
-                Trace::new(&runs, plot.extent, coarseness)
-            }
-        };
+        let runs: Vec<Vec<Place>> = measured.runs.iter().map(|run| run.iter().map(place).collect()).collect();
+        let trace = Trace::new(&runs, plot.extent, coarseness);
         strokes(out, curve.style, &trace);
         if let Some(entry) = plot.legend.iter().find(|entry| entry.stands_for(curve)) {
             let phase = 0.25 + 0.5 * (entry.rank % 4) as f64 / 4.0;
@@ -228,17 +210,14 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
 
 fn strokes(out: &mut String, style: Style, trace: &Trace) {
     let path = trace.path();
-    for Stroke { colour, width, dash, cap, opacity } in style.strokes() {
+    for Stroke { colour, width, dash, round } in style.strokes() {
         if !path.is_empty() {
             out.push_str(&format!("<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\""));
             if !dash.is_empty() {
                 out.push_str(&format!(" stroke-dasharray=\"{dash}\""));
             }
-            if cap == Cap::Round {
+            if round {
                 out.push_str(" stroke-linecap=\"round\"");
-            }
-            if opacity < 1.0 {
-                out.push_str(&format!(" stroke-opacity=\"{opacity}\""));
             }
             out.push_str(" stroke-linejoin=\"round\"/>\n");
         }

@@ -2,11 +2,10 @@
 
 use super::axis::{self, Direction, Interval, TICK_SIZE, Ticks};
 use super::layout::{self, Entry, Measured, WIDTH};
-use super::plots::{Plot, Plots};
 use super::style::Style;
 use super::text::{width, wrap};
 use super::trace::{Extent, Place};
-use super::{Aspect, Curve};
+use super::{Curve, Panel, Picture};
 
 /// Font size of the headline, in pixels.
 pub(super) const TITLE_SIZE: f64 = 15.0;
@@ -31,7 +30,7 @@ pub(super) struct Frame {
 
 /// A plot with its place in the document.
 pub(super) struct Framed<'a> {
-    pub(super) plot: &'a Plot<'a>,
+    pub(super) plot: &'a Panel,
     pub(super) measured: &'a [Measured],
     pub(super) corner: Place,
     pub(super) extent: Extent,
@@ -45,7 +44,7 @@ pub(super) struct Framed<'a> {
 }
 
 impl Frame {
-    pub(super) fn new(plots: &Plots, ranges: &layout::Ranges, legend: &[Entry]) -> Self {
+    pub(super) fn new(plots: &Picture, ranges: &layout::Ranges, legend: &[Entry]) -> Self {
         let (mut x, mut y) = (ranges.x, ranges.y.clone());
         let threshold =
             |curve: &Curve| (curve.style == Style::Threshold).then(|| width(&curve.label, TICK_SIZE) + 10.0);
@@ -56,29 +55,26 @@ impl Frame {
             .fold(18.0, f64::max)
             .min(160.0);
         // With equal aspect the vertical range depends on the width, and so the labels must not.
-        let left = match plots.aspect {
-            Aspect::Equal => 74.0,
-            Aspect::Fill => y
-                .iter()
-                .zip(&plots.panels)
-                .flat_map(|(&y, panel)| axis::ticks(panel.y.scale, y, plots.height, Direction::Vertical).labelled)
-                .map(|tick| width(&tick.label, TICK_SIZE) + 36.0)
-                .fold(60.0, f64::max),
-        };
+        let ticks = y
+            .iter()
+            .zip(&plots.panels)
+            .flat_map(|(&y, panel)| axis::ticks(panel.y.scale, y, plots.height, Direction::Vertical).labelled);
+        let widths = ticks.map(|tick| width(&tick.label, TICK_SIZE) + 36.0);
+        let left = if plots.equal { 74.0 } else { widths.fold(60.0, f64::max) };
         let columns = plots.columns as f64;
         let column = WIDTH / columns;
         let box_width = (column - left - right).max(40.0);
         let mut height = plots.height;
-        if plots.aspect == Aspect::Equal {
+        if plots.equal {
             height = (box_width * (y[0].span() / x.span())).clamp(240.0, 480.0);
             let unit = (x.span() / box_width).max(y[0].span() / height);
             x = x.with_span(unit * box_width);
             y[0] = y[0].with_span(unit * height);
         }
-        let title = wrap(plots.title, BOLD * TITLE_SIZE, WIDTH - left - 8.0);
+        let title = wrap(&plots.title, BOLD * TITLE_SIZE, WIDTH - left - 8.0);
         let legend_top = 8.0 + 20.0 * title.len() as f64;
         let (_, legend_rows) = layout::place_legend(legend, WIDTH - left - 8.0);
-        let has_factor = |(&y, panel): (&Interval, &Plot)| {
+        let has_factor = |(&y, panel): (&Interval, &Panel)| {
             let ticks = axis::ticks(panel.y.scale, y, height, Direction::Vertical);
             ticks.factor.is_some()
         };
@@ -102,7 +98,7 @@ impl Frame {
 
     pub(super) fn plots<'a>(
         &self,
-        plots: &'a Plots<'a>,
+        plots: &'a Picture,
         measured: &'a [Vec<Measured>],
         legend: &'a [Entry],
     ) -> Vec<Framed<'a>> {

@@ -1,10 +1,9 @@
 //! Where things stand: points in the measures of their axes, ranges, legend.
 
 use super::axis::{self, Interval, LeftOut};
-use super::plots::Plots;
 use super::style::{Mark, Style};
 use super::text::{fit, width};
-use super::{Aspect, Axis, Curve, PictureError};
+use super::{Axis, Curve, Picture, PictureError};
 
 /// Width of every picture in pixels.
 pub(super) const WIDTH: f64 = 720.0;
@@ -18,8 +17,6 @@ pub(super) const SWATCH: f64 = 42.0;
 pub(super) struct Measured {
     /// Points that are joined by a line.
     pub(super) runs: Vec<Vec<(f64, f64)>>,
-    /// Height of a line across the whole panel.
-    pub(super) level: Option<f64>,
     pub(super) not_finite: usize,
     pub(super) not_positive: usize,
 }
@@ -27,23 +24,13 @@ pub(super) struct Measured {
 impl Measured {
     pub(super) fn new(curve: &Curve, x: &Axis, y: &Axis) -> Self {
         let mut measured = Self::default();
-        if let Some(level) = curve.level() {
-            match axis::measure(y.scale, level) {
-                Ok(level) => measured.level = Some(level),
-                Err(reason) => measured.leave_out(reason),
-            }
-            return measured;
-        }
         let mut run = Vec::new();
         for &(at_x, at_y) in &curve.points {
             match (axis::measure(x.scale, at_x), axis::measure(y.scale, at_y)) {
                 (Ok(at_x), Ok(at_y)) => run.push((at_x, at_y)),
-                (Err(LeftOut::NotFinite), _) | (_, Err(LeftOut::NotFinite)) => {
-                    measured.leave_out(LeftOut::NotFinite);
-                    measured.runs.push(std::mem::take(&mut run));
-                }
-                _ => {
-                    measured.leave_out(LeftOut::NotPositive);
+                (x, y) => {
+                    let not_finite = [x.err(), y.err()].contains(&Some(LeftOut::NotFinite));
+                    *if not_finite { &mut measured.not_finite } else { &mut measured.not_positive } += 1;
                     measured.runs.push(std::mem::take(&mut run));
                 }
             }
@@ -51,13 +38,6 @@ impl Measured {
         measured.runs.push(run);
         measured.runs.retain(|run| !run.is_empty());
         measured
-    }
-
-    fn leave_out(&mut self, reason: LeftOut) {
-        match reason {
-            LeftOut::NotFinite => self.not_finite += 1,
-            LeftOut::NotPositive => self.not_positive += 1,
-        }
     }
 
     fn points(&self) -> impl Iterator<Item = (f64, f64)> {
@@ -72,30 +52,25 @@ pub(super) struct Ranges {
 }
 
 /// Ranges as given, or from the points that the range of the other axis lets be seen.
-pub(super) fn ranges(plots: &Plots, measured: &[Vec<Measured>]) -> Result<Ranges, PictureError> {
-    let given_x = axis::given(plots.x)?;
-    let given_y = plots.panels.iter().map(|panel| axis::given(panel.y)).collect::<Result<Vec<_>, _>>()?;
+pub(super) fn ranges(plots: &Picture, measured: &[Vec<Measured>]) -> Result<Ranges, PictureError> {
+    let given_x = axis::given(&plots.x)?;
+    let given_y = plots.panels.iter().map(|panel| axis::given(&panel.y)).collect::<Result<Vec<_>, _>>()?;
     let nothing = |axis: &Axis, curves: &mut dyn Iterator<Item = &Measured>| {
         let (not_finite, not_positive) =
             curves.fold((0, 0), |sum, curve| (sum.0 + curve.not_finite, sum.1 + curve.not_positive));
-        PictureError::NothingToDraw {
-            title: plots.title.to_owned(),
-            axis: axis.label.clone(),
-            not_finite,
-            not_positive,
-        }
+        PictureError::NothingToDraw { title: plots.title.clone(), axis: axis.label.clone(), not_finite, not_positive }
     };
+    if plots.panels.is_empty() {
+        return Err(nothing(&plots.x, &mut std::iter::empty()));
+    }
     let seen = |limit: Option<Interval>, at: f64| limit.is_none_or(|limit| limit.contains(at));
-    let margin = match plots.aspect {
-        Aspect::Fill => 0.02,
-        Aspect::Equal => 0.05,
-    };
+    let margin = if plots.equal { 0.05 } else { 0.02 };
     let all_x = measured.iter().zip(&given_y).flat_map(|(curves, &limit)| {
         curves.iter().flat_map(Measured::points).filter_map(move |(x, y)| seen(limit, y).then_some(x))
     });
     let x = given_x
         .or_else(|| axis::around(plots.x.scale, all_x, margin))
-        .ok_or_else(|| nothing(plots.x, &mut measured.iter().flatten()))?;
+        .ok_or_else(|| nothing(&plots.x, &mut measured.iter().flatten()))?;
     let y = plots
         .panels
         .iter()
@@ -103,12 +78,10 @@ pub(super) fn ranges(plots: &Plots, measured: &[Vec<Measured>]) -> Result<Ranges
         .zip(given_y)
         .map(|((panel, curves), given)| {
             let points = curves.iter().flat_map(Measured::points);
-            let all_y = points
-                .filter_map(|(x, y)| seen(given_x, x).then_some(y))
-                .chain(curves.iter().filter_map(|curve| curve.level));
+            let all_y = points.filter_map(|(x, y)| seen(given_x, x).then_some(y));
             given
                 .or_else(|| axis::around(panel.y.scale, all_y, 0.05))
-                .ok_or_else(|| nothing(panel.y, &mut curves.iter()))
+                .ok_or_else(|| nothing(&panel.y, &mut curves.iter()))
         })
         .collect::<Result<Vec<_>, _>>()?;
     Ok(Ranges { x, y })
@@ -149,7 +122,7 @@ impl Entry {
 }
 
 /// The legend: one entry for each style and label, in the order of the curves. Thresholds are named where they stand.
-pub(super) fn legend(plots: &Plots, measured: &[Vec<Measured>]) -> Vec<Entry> {
+pub(super) fn legend(plots: &Picture, measured: &[Vec<Measured>]) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for (panel, measured) in plots.panels.iter().zip(measured) {
         for (curve, measured) in panel.curves.iter().zip(measured) {
@@ -202,32 +175,4 @@ pub(super) fn place_legend(entries: &[Entry], limit: f64) -> (Vec<Placed<'_>>, u
     }
     let rows = if placed.is_empty() { 0 } else { row + 1 };
     (placed, rows)
-}
-
-/// Heights for labels that want to stand at `wanted` but must keep `distance`, between `0` and `height`.
-pub(super) fn spread(wanted: &[f64], distance: f64, height: f64) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..wanted.len()).collect();
-    order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]));
-    let mut places = wanted.to_vec();
-    for pair in order.windows(2) {
-        places[pair[1]] = places[pair[1]].max(places[pair[0]] + distance);
-    }
-    let mut limit = height;
-    for &i in order.iter().rev() {
-        places[i] = places[i].min(limit);
-        limit = places[i] - distance;
-    }
-    places
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn labels_keep_their_distance() {
-        assert_eq!(spread(&[50.0, 52.0, 100.0], 14.0, 100.0), [50.0, 64.0, 100.0]);
-        assert_eq!(spread(&[99.0, 98.0], 14.0, 100.0), [100.0, 86.0]);
-        assert!(spread(&[], 14.0, 100.0).is_empty());
-    }
 }

@@ -1,8 +1,8 @@
 //! Pictures for the reports: curves over two axes, written as SVG.
 //!
-//! [`Picture`] is one plot: plane motions over one another (with [`Aspect::Equal`]), or a gap over time on two
-//! logarithmic axes with its thresholds and its error floor. [`SmallMultiples`] is several plots over one shared
-//! horizontal axis: positions over time, one panel a coordinate.
+//! A [`Picture`] is one plot: a gap over time on two logarithmic axes with its certainty limit, or plane motions over
+//! one another ([`Picture::plane`]); or several over one shared horizontal axis ([`Picture::panels`]): positions over
+//! time, one panel a coordinate.
 //!
 //! What every picture keeps:
 //! - A [`Style`] has one colour, one dash and one width, the same everywhere. Styles are nested (wide solid below, narrow
@@ -23,14 +23,12 @@ mod axis;
 mod draw;
 mod frame;
 mod layout;
-mod plots;
 mod style;
 #[cfg(test)]
 mod tests;
 mod text;
 mod trace;
 
-use plots::{Plot, Plots};
 pub use style::Style;
 
 /// One line of a picture.
@@ -40,24 +38,8 @@ pub struct Curve {
     pub label: String,
     /// Colour, dash and width. A second label of the same style in one picture gets marks along its line.
     pub style: Style,
-    /// Points in drawing order, each in the units of the axes. A single point is drawn as a dot, except for
-    /// [`Style::Threshold`], where it is a level: a line at its height across the whole panel.
+    /// Points in drawing order, each in the units of the axes. A single point is drawn as a dot.
     pub points: Vec<(f64, f64)>,
-}
-
-impl Curve {
-    /// A horizontal line across the whole panel, named at its right end instead of in the legend.
-    pub fn threshold(label: impl Into<String>, level: f64) -> Self {
-        Self { label: label.into(), style: Style::Threshold, points: vec![(f64::NAN, level)] }
-    }
-
-    /// The height of a curve that is a level across the whole panel.
-    fn level(&self) -> Option<f64> {
-        match (self.style, self.points.as_slice()) {
-            (Style::Threshold, [(_, level)]) => Some(*level),
-            _ => None,
-        }
-    }
 }
 
 /// How values are laid along an axis.
@@ -93,29 +75,14 @@ impl Axis {
     }
 }
 
-/// How the lengths of the two axes are related.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Aspect {
-    /// Each axis fills its side of the plot.
-    Fill,
-    /// One unit is equally long on both axes; the shorter range is widened. Both axes must be linear.
-    Equal,
-}
-
-/// One plot.
+/// Curves over two axes: one panel or several, with one legend.
 ///
 /// ```
-/// use picture::{Aspect, Axis, Curve, Picture, Style};
+/// use picture::{Curve, Picture, Style};
 ///
 /// let circle = (0..=200).map(|i| (f64::from(i) / 200.0 * std::f64::consts::TAU).sin_cos());
-/// let svg = Picture {
-///     title: "Knife edge on a level plane".into(),
-///     x: Axis::linear("x (m)"),
-///     y: Axis::linear("y (m)"),
-///     curves: vec![Curve { label: "Chetaev".into(), style: Style::Chetaev, points: circle.collect() }],
-///     aspect: Aspect::Equal,
-/// }
-/// .to_svg()?;
+/// let curve = Curve { label: "Chetaev".into(), style: Style::Chetaev, points: circle.collect() };
+/// let svg = Picture::plane("Knife edge on a level plane", ["x (m)", "y (m)"], vec![curve]).to_svg()?;
 /// assert!(svg.starts_with("<svg") && svg.contains("<title>Knife edge on a level plane</title>"));
 /// assert!(svg.len() < 10_000);
 /// # Ok::<(), picture::PictureError>(())
@@ -123,18 +90,20 @@ pub enum Aspect {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Headline of the picture, and its text for readers who do not see it.
-    pub title: String,
-    /// Horizontal axis.
-    pub x: Axis,
-    /// Vertical axis.
-    pub y: Axis,
-    /// Lines, in the order of the legend.
-    pub curves: Vec<Curve>,
-    /// How the lengths of the two axes are related.
-    pub aspect: Aspect,
+    title: String,
+    /// Horizontal axis of every panel.
+    x: Axis,
+    /// Row by row.
+    panels: Vec<Panel>,
+    /// How many panels stand side by side; at least 1.
+    columns: usize,
+    /// Height of each panel in pixels, unless its axes are in one unit.
+    height: f64,
+    /// Whether one unit is equally long on both axes; the shorter range is widened.
+    equal: bool,
 }
 
-/// One plot of [`SmallMultiples`].
+/// One plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Vertical axis.
@@ -143,23 +112,10 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// Several plots over one horizontal axis, with one legend.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SmallMultiples {
-    /// Headline of the picture, and its text for readers who do not see it.
-    pub title: String,
-    /// Horizontal axis of every panel.
-    pub x: Axis,
-    /// The plots, row by row.
-    pub panels: Vec<Panel>,
-    /// How many plots stand side by side; 0 counts as 1.
-    pub columns: usize,
-}
-
 /// Why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PictureError {
-    /// No point is left to set the range of an axis that has none of its own.
+    /// No panel, or no point that is left to set the range of an axis that has none of its own.
     #[error(
         "nothing to draw in \"{title}\": no point sets the range of axis \"{axis}\" \
          ({not_finite} points are not finite, {not_positive} not positive on a logarithmic axis)"
@@ -173,12 +129,6 @@ pub enum PictureError {
         not_finite: usize,
         /// Points that are not positive on a logarithmic axis.
         not_positive: usize,
-    },
-    /// A picture without panels.
-    #[error("\"{title}\" has no panels")]
-    NoPanels {
-        /// Title of the picture.
-        title: String,
     },
     /// A range that is not finite, does not rise, is narrower than 1e-9 of its magnitude, or reaches 0 on a
     /// logarithmic axis.
@@ -194,57 +144,31 @@ pub enum PictureError {
         /// Highest value asked for.
         high: f64,
     },
-    /// [`Aspect::Equal`] with a logarithmic axis.
-    #[error("axis \"{axis}\" is logarithmic, which has no equal aspect")]
-    EqualAspectOnLog {
-        /// Label of the axis.
-        axis: String,
-    },
 }
 
 impl Picture {
-    /// A picture in which each axis fills its side.
+    /// One panel.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
-        Picture { title: title.into(), x, y, curves, aspect: Aspect::Fill }
+        Picture { height: 340.0, ..Picture::panels(title, x, vec![Panel { y, curves }], 1) }
+    }
+
+    /// One panel on whose axes, both linear, a unit is equally long.
+    pub fn plane(title: impl Into<String>, axes: [&str; 2], curves: Vec<Curve>) -> Self {
+        let [x, y] = axes.map(Axis::linear);
+        Picture { equal: true, ..Picture::new(title, x, y, curves) }
+    }
+
+    /// Panels over one horizontal axis, so many side by side.
+    pub fn panels(title: impl Into<String>, x: Axis, panels: Vec<Panel>, columns: usize) -> Self {
+        let columns = columns.min(panels.len()).max(1);
+        Picture { title: title.into(), x, panels, columns, height: 150.0, equal: false }
     }
 
     /// The picture as a complete SVG document.
     ///
     /// # Errors
-    /// Every variant of [`PictureError`] but [`PictureError::NoPanels`].
+    /// [`PictureError`], where an axis cannot be drawn.
     pub fn to_svg(&self) -> Result<String, PictureError> {
-        if self.aspect == Aspect::Equal
-            && let Some(axis) = [&self.x, &self.y].into_iter().find(|axis| axis.scale == Scale::Log)
-        {
-            return Err(PictureError::EqualAspectOnLog { axis: axis.label.clone() });
-        }
-        draw::document(&Plots {
-            title: &self.title,
-            x: &self.x,
-            panels: vec![Plot { y: &self.y, curves: &self.curves }],
-            columns: 1,
-            height: 340.0,
-            aspect: self.aspect,
-        })
-    }
-}
-
-impl SmallMultiples {
-    /// All panels as one complete SVG document.
-    ///
-    /// # Errors
-    /// Every variant of [`PictureError`] but [`PictureError::EqualAspectOnLog`].
-    pub fn to_svg(&self) -> Result<String, PictureError> {
-        if self.panels.is_empty() {
-            return Err(PictureError::NoPanels { title: self.title.clone() });
-        }
-        draw::document(&Plots {
-            title: &self.title,
-            x: &self.x,
-            panels: self.panels.iter().map(|panel| Plot { y: &panel.y, curves: &panel.curves }).collect(),
-            columns: self.columns.clamp(1, self.panels.len()),
-            height: 150.0,
-            aspect: Aspect::Fill,
-        })
+        draw::document(self)
     }
 }

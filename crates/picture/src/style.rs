@@ -22,11 +22,7 @@ pub enum Style {
     VakonomicRemovedConstraint,
     /// One of several of a kind, such as methods: four colours, and four dashes after them.
     Member(u8),
-    /// What the others are measured against (a grey band beneath them).
-    Reference,
-    /// Size of the errors, below which a gap means nothing (grey, thin, dotted).
-    ErrorFloor,
-    /// A value that is to be passed or kept (grey, thin, dashed; named at its right end).
+    /// What is to be passed or kept (grey, thin, dashed; named at its right end).
     Threshold,
 }
 
@@ -37,15 +33,8 @@ pub(super) struct Stroke {
     pub(super) width: f64,
     /// Lengths of dashes and spaces; empty for a solid line.
     pub(super) dash: &'static str,
-    pub(super) cap: Cap,
-    pub(super) opacity: f64,
-}
-
-/// End of a line and of each of its dashes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cap {
-    Flat,
-    Round,
+    /// Whether the ends of the line and of its dashes are round.
+    pub(super) round: bool,
 }
 
 /// Shape set along a curve whose style is taken already.
@@ -67,7 +56,7 @@ pub(super) const PURPLE: &str = "#CC79A7";
 pub(super) const INKS: [&str; 3] = ["#7a7f86", "#505860", "#a9b1ba"];
 
 const fn stroke(colour: &'static str, width: f64, dash: &'static str) -> Stroke {
-    Stroke { colour, width, dash, cap: Cap::Flat, opacity: 1.0 }
+    Stroke { colour, width, dash, round: false }
 }
 
 impl Style {
@@ -83,6 +72,7 @@ impl Style {
             ("vakonomic", Style::Vakonomic),
             ("removed-constraint", Style::RemovedConstraint),
             ("substitution", Style::Substituted),
+            ("kappa", Style::Member(7)),
         ];
         styles.into_iter().find(|(start, _)| name.starts_with(start)).map(|(_, style)| style)
     }
@@ -93,7 +83,7 @@ impl Style {
             Self::Chetaev => vec![stroke(BLUE, 5.4, "")],
             Self::Vakonomic => vec![stroke(VERMILION, 3.0, "12 7")],
             Self::Substituted => vec![stroke(PURPLE, 2.2, "9 4 2 4")],
-            Self::RemovedConstraint => vec![Stroke { cap: Cap::Round, ..stroke(GREEN, 3.4, "0.1 7") }],
+            Self::RemovedConstraint => vec![Stroke { round: true, ..stroke(GREEN, 3.4, "0.1 7") }],
             Self::ChetaevVakonomic => vec![stroke(BLUE, 4.8, ""), stroke(VERMILION, 4.8, "14 14")],
             Self::ChetaevRemovedConstraint => vec![stroke(BLUE, 3.2, ""), stroke(GREEN, 3.2, "8 8")],
             Self::VakonomicRemovedConstraint => vec![stroke(VERMILION, 1.8, ""), stroke(GREEN, 1.8, "4 4")],
@@ -102,8 +92,6 @@ impl Style {
                 let dash = ["", "7 3", "2 2.5", "9 3 2 3"][usize::from(n) / 4 % 4];
                 vec![stroke(colour, 2.2, dash)]
             }
-            Self::Reference => vec![Stroke { opacity: 0.4, ..stroke(INK, 9.0, "") }],
-            Self::ErrorFloor => vec![stroke(INK, 1.6, "1.5 3")],
             Self::Threshold => vec![stroke(INK, 1.0, "7 4")],
         }
     }
@@ -111,9 +99,7 @@ impl Style {
     /// Wider lines first, so that the narrower ones stand on them.
     pub(super) fn depth(self) -> u8 {
         match self {
-            Self::Reference => 0,
             Self::Threshold => 1,
-            Self::ErrorFloor => 2,
             Self::Chetaev => 3,
             Self::ChetaevVakonomic => 4,
             Self::Vakonomic => 5,

@@ -14,6 +14,9 @@ pub(crate) type Floats<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 /// Anything that numpy reads as a list of numbers.
 pub(crate) type FloatList<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
 
+/// An array that is handed back.
+pub(crate) type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+
 /// Rows of numbers: one, from an array of shape `(width,)`, or several, from one of shape `(k, width)`.
 pub(crate) struct Rows {
     values: Vec<f64>,
@@ -86,12 +89,7 @@ pub(crate) fn finite(name: &str, values: Vec<f64>) -> PyResult<Vec<f64>> {
 }
 
 /// An array of the given values without a copy: shape `tail`, or `(count, *tail)`.
-pub(crate) fn array<'py>(
-    py: Python<'py>,
-    values: Vec<f64>,
-    count: Option<usize>,
-    tail: &[usize],
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+pub(crate) fn array<'py>(py: Python<'py>, values: Vec<f64>, count: Option<usize>, tail: &[usize]) -> Array<'py> {
     let shape: Vec<usize> = count.into_iter().chain(tail.iter().copied()).collect();
     PyArray1::from_vec(py, values).reshape(shape)
 }

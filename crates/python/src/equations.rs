@@ -12,11 +12,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{FloatList, Floats, Rows, array, common, times};
+use crate::arrays::{Array, FloatList, Floats, Rows, array, common, times};
 use crate::motion::{Names, Outputs, work};
 use crate::{arguments, background, ensemble, errors};
-
-type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
 
 /// The equations of motion y' = F(t, y) of a system under one formulation.
 ///

@@ -4,13 +4,12 @@ use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{derive_at, integrability, prepare, removals, setting, solve_choice};
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{FloatList, Floats, array, at_points, finite};
+use crate::arrays::{Array, FloatList, Floats, array, at_points, finite};
 use crate::comparison::{Comparison, check_tolerance, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
@@ -224,13 +223,7 @@ impl System {
 
     /// Residuals f(q, v, t) of the constraints, shape (h,) or (k, h): q and v of shape (n,) or (k, n), t a number or of shape (k,).
     #[pyo3(signature = (t, q, v))]
-    fn constraint<'py>(
-        &self,
-        py: Python<'py>,
-        t: Floats<'_>,
-        q: Floats<'_>,
-        v: Floats<'_>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let (values, count) = at_points(&self.scene().system, [t, q, v], |system| system.constraints.clone())?;
         array(py, values, count, &[self.scene().system.constraints.len()])
     }
@@ -239,13 +232,7 @@ impl System {
     ///
     /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
     #[pyo3(signature = (t, q, v))]
-    fn mass<'py>(
-        &self,
-        py: Python<'py>,
-        t: Floats<'_>,
-        q: Floats<'_>,
-        v: Floats<'_>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let (values, count) =
             at_points(&self.scene().system, [t, q, v], |system| system.velocity_hessian().entries().to_vec())?;
         let n = self.scene().system.dimension();

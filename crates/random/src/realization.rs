@@ -3,9 +3,10 @@
 //! ```text
 //! friction     L unchanged, force −N Aᵀ f                                   → Chetaev
 //! added mass   L + ½ N f·f, started at the momenta p₀ = L_v + Aᵀ μ₀          → vakonomic with μ₀
+//! both         L + ½ N f·f and the force −κ N Aᵀ f, started at the same p₀   → d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ
 //! ```
 //!
-//! both at the rate 1/N. For the removed-constraint motion, the added mass has to sit on `ẇ − B(u̇, …)`, with `u` coordinates of their own:
+//! all at the rate 1/N. For the removed-constraint motion, the added mass has to sit on `ẇ − B(u̇, …)`, with `u` coordinates of their own:
 //! it is the vakonomic motion of that augmented system (T2), and friction there leads elsewhere.
 //!
 //! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1983.
@@ -14,7 +15,7 @@ use std::collections::HashMap;
 
 use deltaq::{Metric, Motion, Setting, Settings, SolveError, solve};
 use integrate::Method;
-use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
+use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{CompileError, Expr, Graph, Symbol};
 
@@ -30,15 +31,20 @@ const MAX_STEPS: usize = 20_000;
 const INSTANTS: usize = 12;
 
 /// What is made of a constraint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Realization {
     /// Force `−N Aᵀ f`.
     Friction,
     /// Lagrangian `L + ½ N f·f`.
     AddedMass,
+    /// Lagrangian `L + ½ N f·f` and force `−κ N Aᵀ f`.
+    Both {
+        /// `κ`, in 1/s.
+        kappa: f64,
+    },
 }
 
-/// The motion of the unconstrained system with strength `N` up to `setting.end`; `multipliers` are `μ₀`, of which only added mass makes use.
+/// The motion of the unconstrained system with strength `N` up to `setting.end`; `multipliers` are `μ₀`, which friction alone does not need.
 ///
 /// # Errors
 /// [`SolveError`] where it cannot be started.
@@ -48,8 +54,9 @@ pub fn realize(kind: Realization, strength: f64, setting: Setting, multipliers: 
             let system = with_friction(setting.system, strength);
             run(Setting { system: &system, ..setting }, Method::Bdf, setting.system.dimension())
         }
-        Realization::AddedMass => {
-            let system = with_added_mass(setting.system, strength);
+        Realization::AddedMass | Realization::Both { .. } => {
+            let kappa = if let Realization::Both { kappa } = kind { kappa } else { 0.0 };
+            let system = unconstrained(setting.system, strength, kappa * strength);
             let start = at_momentum(setting, &system, multipliers)?;
             run(Setting { system: &system, start: &start, ..setting }, Method::Dop853, system.dimension())
         }
@@ -127,22 +134,32 @@ fn run(setting: Setting, method: Method, coordinates: usize) -> Result<Motion, S
 
 /// The system without its constraints and with the force `−N Aᵀ f` in their place.
 pub fn with_friction(system: &System, strength: f64) -> System {
-    let mut other = system.clone();
-    let g = &other.graph;
-    let jacobian = g.jacobian(&system.constraints, &system.velocities());
-    let slip: Vec<Expr> = system.constraints.iter().map(|&f| g.mul(g.number(-strength), f)).collect();
-    let forces = g.transpose_vec(&jacobian, &slip);
-    (other.forces, other.constraints) = (forces, Vec::new());
-    other
+    unconstrained(system, 0.0, strength)
 }
 
 /// The system without its constraints and with the Lagrangian `L + ½ N f·f`.
 pub fn with_added_mass(system: &System, strength: f64) -> System {
+    unconstrained(system, strength, 0.0)
+}
+
+/// The system with `L + ½ mass f·f` and the force `Q − friction Aᵀ f` in the place of its constraints.
+fn unconstrained(system: &System, mass: f64, friction: f64) -> System {
     let mut other = system.clone();
     let g = &other.graph;
     let square = g.dot(&system.constraints, &system.constraints);
-    let lagrangian = g.add(system.lagrangian, g.mul(g.number(strength / 2.0), square));
-    (other.lagrangian, other.constraints) = (lagrangian, Vec::new());
+    let lagrangian = g.add(system.lagrangian, g.mul(g.number(mass / 2.0), square));
+    let slip: Vec<Expr> = system.constraints.iter().map(|&f| g.mul(g.number(-friction), f)).collect();
+    let drag = g.transpose_vec(&system.constraint_jacobian(), &slip);
+    let forces = system.forces.iter().zip(drag).map(|(&q, drag)| g.add(q, drag)).collect();
+    (other.lagrangian, other.forces, other.constraints) = (lagrangian, forces, Vec::new());
+    other
+}
+
+/// The system with the parameter `kappa` of the family between.
+pub fn with_kappa(system: &System, value: f64) -> System {
+    let mut other = system.clone();
+    let symbol = other.graph.symbol("kappa");
+    other.parameters.push(Parameter { symbol, value });
     other
 }
 

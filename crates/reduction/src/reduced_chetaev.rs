@@ -44,6 +44,7 @@ pub const REDUCED_CHETAEV: Formulation = Formulation {
     title: "Chetaev, quasi-velocities",
     needs_removal: false,
     starts_multipliers: false,
+    parameter: None,
     derive: derive_chetaev,
 };
 

@@ -53,6 +53,7 @@ pub const REDUCED_VAKONOMIC: Formulation = Formulation {
     title: "vakonomic, quasi-velocities",
     needs_removal: false,
     starts_multipliers: true,
+    parameter: None,
     derive: derive_vakonomic,
 };
 

@@ -175,6 +175,14 @@ impl Wide for DoubleDouble {
 
 impl SeriesScalar for DoubleDouble {}
 
+macro_rules! own_functions {
+    ($($name:ident)*) => { $(
+        fn $name(self) -> Self {
+            functions::$name(self)
+        }
+    )* };
+}
+
 impl Scalar for DoubleDouble {
     fn from_f64(x: f64) -> Self {
         DoubleDouble { high: x, low: 0.0 }
@@ -182,9 +190,7 @@ impl Scalar for DoubleDouble {
     fn from_ratio(numerator: i64, denominator: i64) -> Self {
         DoubleDouble::from(numerator) / DoubleDouble::from(denominator)
     }
-    fn sqrt(self) -> Self {
-        functions::sqrt(self)
-    }
+    own_functions!(sqrt sinh cosh tanh asinh acosh atanh exp log);
     fn sin(self) -> Self {
         functions::sin_cos(self).0
     }
@@ -198,15 +204,6 @@ impl Scalar for DoubleDouble {
         let (sine, cosine) = functions::sin_cos(self);
         sine / cosine
     }
-    fn sinh(self) -> Self {
-        functions::sinh(self)
-    }
-    fn cosh(self) -> Self {
-        functions::cosh(self)
-    }
-    fn tanh(self) -> Self {
-        functions::tanh(self)
-    }
     fn asin(self) -> Self {
         functions::atan2(self, functions::leg(self))
     }
@@ -215,21 +212,6 @@ impl Scalar for DoubleDouble {
     }
     fn atan(self) -> Self {
         functions::atan2(self, Self::ONE)
-    }
-    fn asinh(self) -> Self {
-        functions::asinh(self)
-    }
-    fn acosh(self) -> Self {
-        functions::acosh(self)
-    }
-    fn atanh(self) -> Self {
-        functions::atanh(self)
-    }
-    fn exp(self) -> Self {
-        functions::exp(self)
-    }
-    fn log(self) -> Self {
-        functions::log(self)
     }
     fn powf(self, exponent: Self) -> Self {
         functions::powf(self, exponent)

@@ -65,10 +65,8 @@ impl<T: Wide> Reference<T> {
     /// # Panics
     /// If there is no such time, or `q` has another length than the coordinates.
     pub fn distance(&self, i: usize, q: &[f64]) -> f64 {
-        let right = &self.points[i].coordinates;
-        assert_eq!(q.len(), right.len(), "coordinates");
-        let difference: Vec<f64> = q.iter().zip(right).map(|(&x, &r)| (T::from_f64(x) - r).to_f64()).collect();
-        crate::metric::length(&self.metric[i], &difference)
+        assert_eq!(q.len(), self.points[i].coordinates.len(), "coordinates");
+        self.distance_at(i, q.iter().map(|&x| T::from_f64(x)))
     }
 
     /// Largest distance `√|Δqᵀ M Δq|` from another reference at the same times, for example of the same motion in another form.
@@ -77,12 +75,13 @@ impl<T: Wide> Reference<T> {
     /// If the times differ.
     pub fn gap(&self, other: &Self) -> f64 {
         assert_eq!(self.times, other.times, "times");
-        let at = |i: usize| {
-            let (a, b) = (&self.points[i].coordinates, &other.points[i].coordinates);
-            let difference: Vec<f64> = a.iter().zip(b).map(|(&a, &b)| (a - b).to_f64()).collect();
-            crate::metric::length(&self.metric[i], &difference)
-        };
+        let at = |i: usize| self.distance_at(i, other.points[i].coordinates.iter().copied());
         (0..self.times.len()).map(at).fold(0.0, f64::max)
+    }
+
+    fn distance_at(&self, i: usize, q: impl Iterator<Item = T>) -> f64 {
+        let difference: Vec<f64> = q.zip(&self.points[i].coordinates).map(|(x, &r)| (x - r).to_f64()).collect();
+        crate::metric::length(&self.metric[i], &difference)
     }
 }
 
@@ -213,31 +212,21 @@ impl<'a, T: Wide> Runs<'a, T> {
         Ok(instant)
     }
 
-    fn extrapolation(&self, tolerance: f64) -> Result<Vec<Point<T>>, ReferenceError> {
-        let mut points = Vec::with_capacity(self.times.len());
-        let start = (self.question.start.t, &self.start.states[..]);
-        extrapolation::integrate(&mut self.instant()?, start, self.times, tolerance, |instant, t, y| {
-            points.push(instant.point(T::from_f64(t), y)?);
-            Ok(())
-        })?;
-        Ok(points)
-    }
-
-    fn taylor(&self, tolerance: f64) -> Result<Vec<Point<T>>, ReferenceError> {
-        let mut points = Vec::with_capacity(self.times.len());
-        let mut instant = self.instant()?;
-        let mut taylor = Taylor::new(self.question.equations, &instant, tolerance)?;
-        let start = (self.question.start.t, &self.start.states[..]);
-        taylor.integrate(&mut instant, start, self.times, |instant, t, y| {
-            points.push(instant.point(T::from_f64(t), y)?);
-            Ok(())
-        })?;
-        Ok(points)
-    }
-
     /// Both methods at one tolerance.
     fn pair(&self, tolerance: f64) -> Result<Pair<T>, ReferenceError> {
-        Ok(Pair { taylor: self.taylor(tolerance)?, extrapolation: self.extrapolation(tolerance)? })
+        let mut pair = Pair { taylor: Vec::new(), extrapolation: Vec::new() };
+        let start = (self.question.start.t, &self.start.states[..]);
+        let into = |points: &mut Vec<Point<T>>, instant: &mut Instant<T>, t: f64, y: &[T]| {
+            points.push(instant.point(T::from_f64(t), y)?);
+            Ok(())
+        };
+        let mut instant = self.instant()?;
+        let mut taylor = Taylor::new(self.question.equations, &instant, tolerance)?;
+        taylor.integrate(&mut instant, start, self.times, |instant, t, y| into(&mut pair.taylor, instant, t, y))?;
+        extrapolation::integrate(&mut self.instant()?, start, self.times, tolerance, |instant, t, y| {
+            into(&mut pair.extrapolation, instant, t, y)
+        })?;
+        Ok(pair)
     }
 
     /// The tighter pair of runs, compared with each other and with the looser pair.

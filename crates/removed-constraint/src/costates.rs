@@ -23,9 +23,9 @@ struct Costate {
 impl Costates {
     /// Finds the costates that `removal` needs for the rewritten Lagrangian.
     ///
-    /// A memory variable that neither `L` nor a rate `B` with a costate of its own contains is a mere quadrature: its costate is zero at the free
-    /// end and does not move. The set of those is the largest consistent one.
-    pub(crate) fn new(g: &Graph, removal: &Removal, lagrangian: Expr) -> Self {
+    /// A memory variable that neither `L` nor a rate `B` with a costate of its own contains is a mere quadrature: its costate does not move, and
+    /// is zero where it starts from zero or ends there. The set of those is the largest consistent one; `all` keeps them.
+    pub(crate) fn new(g: &Graph, removal: &Removal, lagrangian: Expr, all: bool) -> Self {
         let memory = &removal.memory;
         let named = |stem: &str| -> Vec<Symbol> {
             memory.iter().map(|w| fresh_symbol(g, &format!("{stem}_{}", g.name(w.symbol)))).collect()
@@ -33,9 +33,8 @@ impl Costates {
         let (starts, symbols) = (named("P0"), named("P"));
         let mut zero = vec![true; memory.len()];
         let mut generating_function = lagrangian;
-        while let Some(i) =
-            (0..memory.len()).find(|&i| zero[i] && !g.is_zero(g.derivative(generating_function, memory[i].symbol)))
-        {
+        let moves = |i: usize, generating| all || !g.is_zero(g.derivative(generating, memory[i].symbol));
+        while let Some(i) = (0..memory.len()).find(|&i| zero[i] && moves(i, generating_function)) {
             zero[i] = false;
             let term = g.mul(g.variable(symbols[i]), memory[i].rate);
             generating_function = g.add(generating_function, term);

@@ -41,8 +41,9 @@
 //!
 //! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇` (or `p`) of a parameter that `G` does not contain.
 //!
-//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is a quadrature; its costate is
-//! zero at the free end, does not move, and takes its terms with it.
+//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is a quadrature; its costate does
+//! not move. Zero at the start or at the free end it is zero throughout, and takes its terms with it; given, it stays
+//! ([`Derivation::all_costates`]).
 //!
 //! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the principle of removal of constraint*, 2017.
 
@@ -62,6 +63,7 @@ pub const FORMULATION: Formulation = Formulation {
     title: "removed constraint",
     needs_removal: true,
     starts_multipliers: false,
+    parameter: None,
     derive,
 };
 
@@ -79,7 +81,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
 /// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u_x'*cos(phi), y' = u_x'*sin(phi)
 /// let removal = mechanics::Removal::by_quasi_velocities(&system, &start)?;
-/// let derivation = equations::Derivation { removal: Some(&removal), start: None };
+/// let derivation = equations::Derivation { removal: Some(&removal), ..Default::default() };
 /// let equations = removed_constraint::derive(&system, &derivation)?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
 /// assert_eq!(line(0), "u_x'' - phi'*P_x*sin(phi) - cos(phi)");
@@ -98,7 +100,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     let g = &system.graph;
     let mut equations = Equations::new(FORMULATION.name, &system);
     let lagrangian = removal.rewrite(&system, system.lagrangian);
-    let costates = Costates::new(g, removal, lagrangian);
+    let costates = Costates::new(g, removal, lagrangian, derivation.all_costates);
     let generating = costates.generating_function; // G
     let parameters = classify(g, removal, generating);
     let highest: Vec<Symbol> = parameters.iter().map(|p| p.highest).collect();

@@ -7,7 +7,7 @@ use symbolic::{Expr, Symbol};
 
 use super::names::{Names, check_symbols};
 use super::overrides::Overrides;
-use super::section::{Section, Source, Text, Value};
+use super::section::{Entry, Section, Source, Text, Value};
 use crate::{SceneError, SceneErrorKind, Unavailable};
 
 /// A scene half read: its names, and the system as far as it is known.
@@ -53,11 +53,11 @@ impl Context<'_> {
         Err(self.source.error(&text.span, SceneErrorKind::NotFinite { what: what.into(), value }))
     }
 
-    /// `value` as it is written.
-    pub(super) fn written(&self, value: &Value) -> Result<Expr, SceneError> {
-        match value {
-            Value::Number(x) => Ok(self.system.graph.number(*x)),
-            Value::Expression(text) => self.parse(text),
+    /// What stands at `entry`, as it is written.
+    pub(super) fn written(&self, entry: &Entry) -> Result<Expr, SceneError> {
+        match entry.value()? {
+            Value::Number(x) => Ok(self.system.graph.number(x)),
+            Value::Expression(text) => self.parse(&text),
         }
     }
 

@@ -196,11 +196,7 @@ impl<'a> Reader<'a, '_> {
                 let expected = "parameter, rate or memory variable of this removal that is not a coordinate";
                 return Err(entry.unknown_name(expected, &known));
             };
-            let e = match entry.value()? {
-                Value::Number(x) => g.number(x),
-                Value::Expression(text) => self.context.parse(&text)?,
-            };
-            start.insert(*symbol, e);
+            start.insert(*symbol, self.context.written(&entry)?);
         }
         Ok(start)
     }

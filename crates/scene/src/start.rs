@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use symbolic::Symbol;
 
 use super::context::Context;
-use super::section::{Section, Value};
+use super::section::Section;
 use crate::{SceneError, SceneErrorKind};
 use mechanics::{Completion, Quantity, Removal, StartData, StartError, State, complete_start};
 
@@ -25,7 +25,7 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
             place = velocities.span.clone();
             given = rates(context, &velocities, removals.first())?;
             for (entry, (symbol, _)) in velocities.entries().zip(&given) {
-                written.push((*symbol, context.written(&entry.value()?)?));
+                written.push((*symbol, context.written(&entry)?));
             }
         }
         if let Some(section) = start.section("guess")? {
@@ -72,8 +72,8 @@ fn rates(context: &Context, section: &Section, removal: Option<&Removal>) -> Res
             let expected = "velocity of a coordinate, nor rate of a parameter of the first removal; as in \"x'\" = 1";
             return Err(entry.unknown_name(expected, &known));
         };
-        let value: Value = entry.value()?;
-        rates.push((*symbol, context.evaluate(&value, &entry.path, &values, "parameters, coordinates and t")?));
+        let known = "parameters, coordinates and t";
+        rates.push((*symbol, context.evaluate(&entry.value()?, &entry.path, &values, known)?));
     }
     Ok(rates)
 }

@@ -5,9 +5,12 @@ use symbolic::{Expr, Graph};
 use super::context::Context;
 use super::names::{Names, Role};
 use super::overrides::Overrides;
-use super::section::{Entry, Section, Source, Value};
+use super::section::{Entry, Section, Source};
 use crate::{SceneError, SceneErrorKind};
 use mechanics::{Parameter, System};
+
+/// The parameter that can be set in a scene that does not name it.
+const KAPPA: &str = "kappa";
 
 /// Reads everything that makes the system, and the positions at the start.
 pub(super) fn build<'a>(
@@ -55,13 +58,19 @@ fn parameters(
     names: &mut Names,
 ) -> Result<Vec<Parameter>, SceneError> {
     let mut parameters = Vec::new();
-    let Some(section) = root.section("parameters")? else { return Ok(parameters) };
-    for entry in section.entries() {
+    let section = root.section("parameters")?;
+    for entry in section.iter().flat_map(Section::entries) {
         names.check(source, graph, entry.key, &entry.key_span)?;
         let given = entry.number()?;
         let symbol = graph.symbol(entry.key);
         parameters.push(Parameter { symbol, value: overrides.get(entry.key).unwrap_or(given) });
         names.insert(entry.key, Role::Parameter, graph.variable(symbol), &[]);
+    }
+    // a number of the family between, which is no part of the system: any scene takes it
+    if let Some(value) = overrides.get(KAPPA) {
+        let symbol = graph.symbol(KAPPA);
+        parameters.push(Parameter { symbol, value });
+        names.insert(KAPPA, Role::Parameter, graph.variable(symbol), &[]);
     }
     Ok(parameters)
 }
@@ -70,10 +79,7 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
     let Some(section) = context.root.section("definitions")? else { return Ok(()) };
     for entry in section.entries() {
         context.names.check(context.source, &context.system.graph, entry.key, &entry.key_span)?;
-        let e = match entry.value()? {
-            Value::Number(x) => context.system.graph.number(x),
-            Value::Expression(text) => context.parse(&text)?,
-        };
+        let e = context.written(&entry)?;
         context.names.insert(entry.key, Role::Definition, e, &[]);
     }
     Ok(())
@@ -93,10 +99,7 @@ fn read_system(context: &mut Context) -> Result<(), SceneError> {
             let Some(i) = known.iter().position(|name| name == entry.key) else {
                 return Err(entry.unknown_name("coordinate", &known));
             };
-            context.system.forces[i] = match entry.value()? {
-                Value::Number(x) => context.system.graph.number(x),
-                Value::Expression(text) => context.parse(&text)?,
-            };
+            context.system.forces[i] = context.written(&entry)?;
         }
     }
     Ok(())
@@ -149,7 +152,7 @@ fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneEr
         let value = start.value()?;
         let (x, written) = match context.overrides.get(entry.key) {
             Some(x) => (x, context.system.graph.number(x)),
-            None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&value)?),
+            None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&start)?),
         };
         values.insert(symbol, x);
         context.positions.push(x);

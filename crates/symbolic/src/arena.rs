@@ -200,6 +200,19 @@ impl Arena {
         })
     }
 
+    /// `es` with `change` made to every node in them, children first.
+    pub(crate) fn rewritten(&mut self, es: &[Expr], mut change: impl FnMut(&mut Self, Expr) -> Expr) -> Vec<Expr> {
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for n in self.reachable(es, |_| true) {
+            let rebuilt = self.rebuild(n, &image);
+            let new = change(self, rebuilt);
+            if new != n {
+                image.insert(n, new);
+            }
+        }
+        es.iter().map(|e| image.get(e).copied().unwrap_or(*e)).collect()
+    }
+
     /// `e` with its children replaced by what `image` says, simplified again.
     pub(crate) fn rebuild(&mut self, e: Expr, image: &FxHashMap<Expr, Expr>) -> Expr {
         let of = |c: &Expr| image.get(c).copied().unwrap_or(*c);

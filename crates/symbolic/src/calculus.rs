@@ -28,12 +28,7 @@ impl Graph {
     /// Of a sum, only the terms that contain a symbol are looked at for it.
     #[track_caller]
     pub fn gradient(&self, e: Expr, symbols: &[Symbol]) -> Vec<Expr> {
-        let mut gradient = vec![self.zero(); symbols.len()];
-        let found = self.arena.borrow_mut().gradient(e, &Places::new(symbols));
-        for (place, derivative) in found {
-            gradient[place] = self.perhaps_spoiled(derivative);
-        }
-        gradient
+        self.jacobian(&[e], symbols).row(0).to_vec()
     }
 
     /// The derivatives of `e` by those of `symbols` that occur in it, with the symbols in the order given.

@@ -3,7 +3,6 @@
 use crate::arena::{Arena, Node};
 use crate::number::{Number, Rational};
 use crate::{Expr, Graph};
-use rustc_hash::FxHashMap;
 
 /// Terms beyond which [`Graph::expand`] leaves a product as it is.
 const TERM_LIMIT: usize = 10_000;
@@ -52,17 +51,11 @@ impl Arena {
     }
 
     fn expand_once(&mut self, e: Expr, limit: usize) -> Expr {
-        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
-        for n in self.reachable(&[e], |_| true) {
-            let mut new = self.rebuild(n, &image);
-            if let Node::Product(factors) = self.node(new).clone() {
-                new = self.expand_product(new, &factors, limit);
-            }
-            if new != n {
-                image.insert(n, new);
-            }
-        }
-        image.get(&e).copied().unwrap_or(e)
+        let product = |arena: &mut Arena, e: Expr| match arena.node(e).clone() {
+            Node::Product(factors) => arena.expand_product(e, &factors, limit),
+            _ => e,
+        };
+        self.rewritten(&[e], product)[0]
     }
 
     fn expand_product(&mut self, whole: Expr, factors: &[(Expr, Rational)], limit: usize) -> Expr {

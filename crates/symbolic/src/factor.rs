@@ -3,7 +3,6 @@
 use crate::arena::{Arena, Node};
 use crate::number::{Number, Rational};
 use crate::{Expr, Function, Graph, Symbol};
-use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
 impl Graph {
@@ -78,15 +77,7 @@ impl Arena {
     }
 
     fn collected(&mut self, es: &[Expr], constants: &dyn Fn(Symbol) -> bool) -> Vec<Expr> {
-        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
-        for n in self.reachable(es, |_| true) {
-            let new = self.rebuild(n, &image);
-            let new = self.collected_sum(new, constants);
-            if new != n {
-                image.insert(n, new);
-            }
-        }
-        es.iter().map(|e| image.get(e).copied().unwrap_or(*e)).collect()
+        self.rewritten(es, |arena, e| arena.collected_sum(e, constants))
     }
 
     /// One sum, whose terms are done.

@@ -267,14 +267,4 @@ impl Graph {
         }
         product
     }
-
-    /// a b
-    ///
-    /// # Panics
-    /// If `b` does not have as many rows as `a` has columns.
-    pub fn mat_mul(&self, a: &Matrix, b: &Matrix) -> Matrix {
-        assert_eq!(a.columns(), b.rows(), "the product of two matrices that do not fit");
-        let columns: Vec<Vec<Expr>> = (0..b.columns()).map(|j| b.column(j)).collect();
-        Matrix::from_fn(a.rows(), b.columns(), |i, j| self.dot(a.row(i), &columns[j]))
-    }
 }

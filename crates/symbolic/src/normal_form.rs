@@ -42,17 +42,11 @@ impl Arena {
 
     /// tan = sin/cos, and sines and cosines of sums by the addition theorems; likewise hyperbolic ones.
     fn with_split_angles(&mut self, e: Expr) -> Expr {
-        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
-        for n in self.reachable(&[e], |_| true) {
-            let mut new = self.rebuild(n, &image);
-            if let Node::Call(function, argument) = *self.node(new) {
-                new = self.split_call(function, argument).unwrap_or(new);
-            }
-            if new != n {
-                image.insert(n, new);
-            }
-        }
-        image.get(&e).copied().unwrap_or(e)
+        let split = |arena: &mut Arena, e: Expr| match *arena.node(e) {
+            Node::Call(function, argument) => arena.split_call(function, argument).unwrap_or(e),
+            _ => e,
+        };
+        self.rewritten(&[e], split)[0]
     }
 
     fn split_call(&mut self, function: Function, argument: Expr) -> Option<Expr> {
@@ -120,21 +114,13 @@ impl Arena {
 
     /// sin² = 1 − cos², sinh² = cosh² − 1, in every power of at least 2.
     fn without_even_sines(&mut self, e: Expr) -> Expr {
-        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
-        for n in self.reachable(&[e], |_| true) {
-            let mut new = self.rebuild(n, &image);
-            if let Node::Product(factors) = self.node(new).clone() {
-                let mut replaced = Vec::with_capacity(factors.len());
-                for (base, exponent) in factors.iter() {
-                    self.replace_even_sine(*base, *exponent, &mut replaced);
-                }
-                new = self.power_product(Number::ONE, replaced);
-            }
-            if new != n {
-                image.insert(n, new);
-            }
-        }
-        image.get(&e).copied().unwrap_or(e)
+        let without = |arena: &mut Arena, e: Expr| {
+            let Node::Product(factors) = arena.node(e).clone() else { return e };
+            let mut replaced = Vec::with_capacity(factors.len());
+            factors.iter().for_each(|&(base, exponent)| arena.replace_even_sine(base, exponent, &mut replaced));
+            arena.power_product(Number::ONE, replaced)
+        };
+        self.rewritten(&[e], without)[0]
     }
 
     fn replace_even_sine(&mut self, base: Expr, exponent: Rational, factors: &mut Vec<(Expr, Rational)>) {

@@ -61,6 +61,15 @@ pub trait Scalar:
     }
 }
 
+macro_rules! own_functions {
+    ($($name:ident)*) => { $(
+        #[inline]
+        fn $name(self) -> f64 {
+            f64::$name(self)
+        }
+    )* };
+}
+
 impl Scalar for f64 {
     #[inline]
     fn from_f64(x: f64) -> f64 {
@@ -69,54 +78,10 @@ impl Scalar for f64 {
     fn from_ratio(numerator: i64, denominator: i64) -> f64 {
         numerator as f64 / denominator as f64
     }
-    #[inline]
-    fn sqrt(self) -> f64 {
-        f64::sqrt(self)
-    }
-    #[inline]
-    fn sin(self) -> f64 {
-        f64::sin(self)
-    }
-    #[inline]
-    fn cos(self) -> f64 {
-        f64::cos(self)
-    }
+    own_functions!(sqrt sin cos tan sinh cosh tanh asin acos atan asinh acosh atanh exp);
     #[inline]
     fn sin_cos(self) -> (f64, f64) {
         f64::sin_cos(self)
-    }
-    fn tan(self) -> f64 {
-        f64::tan(self)
-    }
-    fn sinh(self) -> f64 {
-        f64::sinh(self)
-    }
-    fn cosh(self) -> f64 {
-        f64::cosh(self)
-    }
-    fn tanh(self) -> f64 {
-        f64::tanh(self)
-    }
-    fn asin(self) -> f64 {
-        f64::asin(self)
-    }
-    fn acos(self) -> f64 {
-        f64::acos(self)
-    }
-    fn atan(self) -> f64 {
-        f64::atan(self)
-    }
-    fn asinh(self) -> f64 {
-        f64::asinh(self)
-    }
-    fn acosh(self) -> f64 {
-        f64::acosh(self)
-    }
-    fn atanh(self) -> f64 {
-        f64::atanh(self)
-    }
-    fn exp(self) -> f64 {
-        f64::exp(self)
     }
     fn log(self) -> f64 {
         f64::ln(self)

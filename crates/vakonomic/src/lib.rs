@@ -55,8 +55,14 @@ use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
 
 /// Entry of the table of formulations: the multiplier form.
-pub const FORMULATION: Formulation =
-    Formulation { name: "vakonomic", title: "vakonomic", needs_removal: false, starts_multipliers: true, derive };
+pub const FORMULATION: Formulation = Formulation {
+    name: "vakonomic",
+    title: "vakonomic",
+    needs_removal: false,
+    starts_multipliers: true,
+    parameter: None,
+    derive,
+};
 
 /// The same motion in costate (Hamiltonian) form.
 pub const COSTATE_FORM: Formulation = Formulation {
@@ -64,6 +70,7 @@ pub const COSTATE_FORM: Formulation = Formulation {
     title: "vakonomic, costate form",
     needs_removal: false,
     starts_multipliers: true,
+    parameter: None,
     derive: derive_costate_form,
 };
 

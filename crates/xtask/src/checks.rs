@@ -24,64 +24,60 @@ pub(crate) struct Check {
 /// A check that did not fail: what was looked at, if that needs saying.
 pub(crate) struct Outcome(pub(crate) String);
 
-/// All checks, cheap ones first.
+/// All checks, cheap ones first: name, what it is about, what mends it.
 pub(crate) fn all() -> Vec<Check> {
+    let check = |name, about, mend, run: fn() -> Result<Outcome>| Check { name, about, mend, run };
     vec![
-        Check { name: "fmt", about: "sources are formatted", mend: "cargo fmt --all", run: fmt },
-        Check {
-            name: "lengths",
-            about: "no Rust source is over 400 lines",
-            mend: "split the file by what its parts know",
-            run: sources::lengths,
-        },
-        Check {
-            name: "paths",
-            about: "no file names a place on one machine or a private registry",
-            mend: "write the path relative to the root of the project",
-            run: sources::paths,
-        },
-        Check {
-            name: "build",
-            about: "libraries, programs, tests and the Python module compile, each once",
-            mend: "cargo build --release --workspace --all-targets",
-            run: build,
-        },
-        Check {
-            name: "lint",
-            about: "clippy and rustdoc find nothing",
-            mend: "cargo clippy --release --workspace --all-targets; cargo doc --workspace --no-deps",
-            run: lint::check,
-        },
-        Check {
-            name: "tests",
-            about: "unit, crate, property and verification tests",
-            mend: "cargo test --release --package PACKAGE TEST, with the names from above",
-            run: tests,
-        },
-        Check {
-            name: "doctests",
-            about: "examples in the documentation",
-            mend: "cargo test --release --doc --package PACKAGE, with the name from above",
-            run: doctests,
-        },
-        Check {
-            name: "deny",
-            about: "licences, sources and advisories of every dependency, and how many packages are compiled",
-            mend: "do without the package (cargo tree --workspace --invert PACKAGE), or say in deny.toml why not",
-            run: dependencies::check,
-        },
-        Check {
-            name: "python",
-            about: "the Python module does what its tests say",
-            mend: "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
-            run: python::check,
-        },
-        Check {
-            name: "reports",
-            about: "the committed reports are those a fresh run writes",
-            mend: "cargo run --release, then look at what changed and commit it",
-            run: reports,
-        },
+        check("fmt", "sources are formatted", "cargo fmt --all", fmt),
+        check("lengths", "no Rust source is over 400 lines", "split the file by what its parts know", sources::lengths),
+        check(
+            "paths",
+            "no file names a place on one machine or a private registry",
+            "write the path relative to the root of the project",
+            sources::paths,
+        ),
+        check(
+            "build",
+            "libraries, programs, tests and the Python module compile, each once",
+            "cargo build --release --workspace --all-targets",
+            build,
+        ),
+        check(
+            "lint",
+            "clippy and rustdoc find nothing",
+            "cargo clippy --release --workspace --all-targets; cargo doc --workspace --no-deps",
+            lint::check,
+        ),
+        check(
+            "tests",
+            "unit, crate, property and verification tests",
+            "cargo test --release --package PACKAGE TEST, with the names from above",
+            tests,
+        ),
+        check(
+            "doctests",
+            "examples in the documentation",
+            "cargo test --release --doc --package PACKAGE, with the name from above",
+            doctests,
+        ),
+        check(
+            "deny",
+            "licences, sources and advisories of every dependency, and how many packages are compiled",
+            "do without the package (cargo tree --workspace --invert PACKAGE), or say in deny.toml why not",
+            dependencies::check,
+        ),
+        check(
+            "python",
+            "the Python module does what its tests say",
+            "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
+            python::check,
+        ),
+        check(
+            "reports",
+            "the committed reports are those a fresh run writes",
+            "cargo run --release, then look at what changed and commit it",
+            reports,
+        ),
     ]
 }
 

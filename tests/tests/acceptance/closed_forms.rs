@@ -5,7 +5,8 @@ use referees::closed_forms::{AppellHamel, Disc, Heisenberg, Particle, Pendulum, 
 use super::support::{at, chetaev, common_times, error, gap, index, must, must_exceed, parameter, scene, vakonomic};
 use scene::Scene;
 
-fn sledge(scene: &Scene) -> Sledge {
+/// The closed form from the start of a scene.
+pub fn sledge(scene: &Scene) -> Sledge {
     let (q, v) = (&scene.start.q, &scene.start.v);
     Sledge {
         gravity_along: parameter(scene, "g") * parameter(scene, "alpha").sin(),

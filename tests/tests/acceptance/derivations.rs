@@ -2,18 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use deltaq::FORMULATIONS;
-use equations::{Derivation, Equations, Role};
+use equations::{Equations, Role};
 use mechanics::Removal;
 use scene::Scene;
 
-use super::support::{constrained_scenes, regular_removals, scenes};
+use super::support::{self, constrained_scenes, regular_removals, scenes};
 
-/// A formulation's equations as it derived them, nothing left out.
 fn derived(scene: &Scene, name: &str, removal: Option<&Removal>) -> Equations {
-    let entry = FORMULATIONS.iter().find(|f| f.name == name).expect("in the table");
-    (entry.derive)(&scene.system, &Derivation { removal, start: None })
-        .unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name))
+    support::derived(scene, name, removal, None).unwrap_or_else(|e| panic!("{}, {name}: {e}", scene.name))
 }
 
 /// Every formulation of a scene, removals included.
@@ -81,29 +77,7 @@ fn first_order_is_said_where_no_second_rate_is_needed() {
     }
 }
 
-const GUARDED: &str = r#"
-title = "Singular in three ways"
-[parameters]
-k = 2
-[coordinates]
-x = { start = 1 }
-y = { start = 0.5 }
-z = { start = 0 }
-w = { start = 0.7 }
-s = { start = 0 }
-[system]
-lagrangian  = "(x'^2 + y'^2 + z'^2 + w'^2)/2 + z/y + w/k"
-constraints = ["x*z' - k*y'", "(3 + y)*s' - x'"]
-[start.velocities]
-"x'" = 1
-"y'" = 1
-"w'" = 0.1
-[removal.by-hand]
-parameters = ["x", "y", "u"]
-rates = { z = "k*y'/x", w = "u'/(2 + w)", s = "x'/(3 + y)" }
-[run]
-duration = 1
-"#;
+const GUARDED: &str = include_str!("../scenes/guarded.toml");
 
 /// `y` comes from `L`; `x` and `2 + w` from rates that `L` needs, `3 + y` from the rate of a quadrature; `k` is a parameter and cannot vanish on the way.
 #[test]
@@ -114,26 +88,7 @@ fn what_the_equations_divide_by_is_watched() {
     assert_eq!(guards, ["w + 2", "x", "y", "y + 3"].map(String::from).into());
 }
 
-const DRIVEN: &str = r#"
-title = "Driven oscillator, and a parameter of second order"
-[coordinates]
-x = { start = 1 }
-y = { start = 0.2 }
-[system]
-lagrangian  = "(x'^2 + y'^2)/2 + x*cos(t)"
-constraints = []
-[start.velocities]
-"x'" = 0.4
-"y'" = 1
-[removal.second-order]
-parameters = ["u", "w"]
-direct = { x = "u + u'/2", y = "w" }
-[removal.by-rate]
-parameters = ["u", "y"]
-rates = { x = "u'*(2 + y)" }
-[run]
-duration = 1
-"#;
+const DRIVEN: &str = include_str!("../scenes/driven-oscillator.toml");
 
 #[test]
 fn what_depends_on_time_has_no_energy() {

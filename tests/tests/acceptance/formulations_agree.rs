@@ -1,6 +1,7 @@
 //! Formulations that must agree: two forms of one, all of them on integrable constraints, and rewritten constraints (T1, T4).
 
-use mechanics::Removal;
+use deltaq::Choice;
+use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 use symbolic::Matrix;
 
@@ -161,26 +162,7 @@ fn units_do_not_matter() {
 }
 
 /// Found by random systems (seed 2, index 8808): `∂²𝓛/∂v²` is nearly singular in `q4'`, the equations for `(v, μ)` have another root close by.
-const NEAR_A_FOLD: &str = r#"
-title = "Near a fold of the costate form"
-[coordinates]
-q1 = { start = 0.25 }
-q2 = { start = 0 }
-q3 = { start = 0 }
-q4 = { start = 0 }
-[system]
-lagrangian = "11*q1'^2/16 + 7*q2'^2/8 + 11*q3'^2/16 + q4'^2/2"
-constraints = ["q3'^2 - 9*(3*sin(q1) + 8)^2*(q1'^2 + q2'^2 + q4'^2)/1024"]
-[start.velocities]
-"q1'" = 0.625
-"q2'" = -0.375
-"q3'" = 0.6060893314407467
-"q4'" = -0.125
-[vakonomic]
-multipliers = [0.75]
-[run]
-duration = 1.5
-"#;
+const NEAR_A_FOLD: &str = include_str!("../scenes/near-a-fold.toml");
 
 #[test]
 fn costate_form_keeps_to_its_branch_near_a_fold() {
@@ -192,4 +174,34 @@ fn costate_form_keeps_to_its_branch_near_a_fold() {
     // read off backwards, far from where it was read last: the start velocities come out again
     let start = at(&mut costate, 0.0);
     must("near a fold: velocities read at the start", largest_difference(&start.velocities, &scene.start.v), 1e-11);
+}
+
+/// `P₀ = −∂(L + μ₀·f)/∂ẇ` for removals by coordinates, with every costate kept, those too that never move; and back.
+#[test]
+fn removals_by_coordinates_are_the_vakonomic_family() {
+    let mut seen = 0;
+    for (name, duration) in
+        [("heisenberg", 2.0), ("disc", 2.0), ("sledge", 0.5), ("three-cylinders", 0.5), ("turntable", 2.0)]
+    {
+        let scene = scene(name, &[("duration", duration)]);
+        let mu0: Vec<f64> = (0..scene.system.constraints.len()).map(|i| 0.7 - 0.45 * i as f64).collect();
+        for removal in deltaq::removals(&scene).expect("removals") {
+            let Some(costates) = deltaq::costates_of(&scene, &removal, &mu0).expect("values") else { continue };
+            seen += 1;
+            let back = deltaq::multipliers_of(&scene, &removal, &costates).expect("values").expect("regular");
+            must(&format!("{name} ({}): μ₀ and back", removal.name), largest_difference(&mu0, &back), 1e-12);
+            let choice = Choice {
+                label: removal.name.clone(),
+                formulation: "removed-constraint",
+                removal: Some(removal.clone()),
+                constants: ConstantsRule::Given(costates),
+            };
+            let mut removed = deltaq::solve_choice(&scene, &choice, &tight()).expect("a motion");
+            let mut other = vakonomic(&scene, &mu0);
+            let end = removed.end().min(other.end());
+            let (one, two) = (at(&mut removed, end).coordinates, at(&mut other, end).coordinates);
+            must(&format!("{name} ({}), t = {end}", removal.name), largest_difference(&one, &two), 1e-8);
+        }
+    }
+    assert!(seen >= 5, "only {seen} removals by coordinates");
 }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use reduction::Frame;
 use scene::Scene;
 
-use super::support::{equations, known_gap, motion_of, must, scene, some_multipliers, tight};
+use super::support::{derived, equations, known_gap, motion_of, must, scene, some_multipliers, tight};
 use super::{reduced_form, reduced_vakonomic};
 
 /// A body of revolution in Euler angles, and a plane in polar coordinates; numbers `x` from −1 to 1.
@@ -80,9 +80,8 @@ fn rates_in_a_frame_are_those_by_maggi_and_those_of_the_costate_form() {
     let outcome = proptest::test_runner::TestRunner::new(config).run(&strategy, |(kind, x)| {
         let text = text(kind, &x);
         let scene = Scene::parse("frame", &text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
-        let derivation = equations::Derivation { removal: None, start: Some(&scene.start) };
-        let form = deltaq::formulation("chetaev-reduced").expect("in the table");
-        let reduced = (form.derive)(&scene.system, &derivation).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let reduced = derived(&scene, "chetaev-reduced", None, Some(&scene.start));
+        let reduced = reduced.map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = reduced_form::differences(&scene, &reduced, &scene.start);
         let others = reduced_vakonomic::differences(&scene, &some_multipliers(&scene));
         let [mut chetaev, mut any] = framed.get();

@@ -5,8 +5,8 @@ use scene::Scene;
 use symbolic::Expr;
 
 use super::support::{
-    at, chetaev, common_times, equations, motion_of, must, must_exceed, number, numbers, regular_removals, removed,
-    scene, scenes, some_multipliers, state_at, tight, values,
+    chetaev, common_times, equations, motion_of, must, must_exceed, number, numbers, regular_removals, removed, scene,
+    scenes, some_multipliers, state_at, tight, values,
 };
 
 /// How long the motions are followed, s. Appell and Hamel's comes to rest before.
@@ -22,25 +22,20 @@ fn must_keep(what: &str, scene: &Scene, motion: &mut Motion, needed: &[&str]) {
         assert!(names.iter().any(|n| n == name), "{what}: {name} is not among the invariants {names:?}");
     }
     let times = common_times(&[motion]);
-    let start = at(motion, times[0]).invariants;
     let system = scene.system.clone();
     let momenta = system.graph.gradient(system.lagrangian, &system.velocities());
     let mut metric = Metric::new(&system).expect("compiles");
     let (mut kinetic, mut momentum) = (0.0_f64, 0.0_f64);
-    let mut drift = vec![0.0_f64; start.len()];
     for &t in &times {
-        let now = at(motion, t);
-        kinetic = kinetic.max(0.5 * metric.length(t, &now.coordinates, &now.velocities, &now.velocities).powi(2));
-        let values = values(&system, &state_at(motion, t));
+        let state = state_at(motion, t);
+        kinetic = kinetic.max(0.5 * metric.length(t, &state.q, &state.v, &state.v).powi(2));
+        let values = values(&system, &state);
         momentum = numbers(&system.graph, &momenta, &values).iter().fold(momentum, |a, p| a.max(p.abs()));
-        for (i, x) in now.invariants.iter().enumerate() {
-            drift[i] = drift[i].max((x - start[i]).abs());
-        }
     }
     let end = times[times.len() - 1];
-    for (i, name) in names.iter().enumerate() {
-        let scale = start[i].abs().max(if name == "energy" { kinetic } else { momentum });
-        must(&format!("{what}, {name}, to {end:.2} s"), drift[i] / scale, 1e-10);
+    for (name, start, drift) in motion.invariant_drift(&times).expect("readable") {
+        let scale = start.abs().max(if name == "energy" { kinetic } else { momentum });
+        must(&format!("{what}, {name}, to {end:.2} s"), drift / scale, 1e-10);
     }
 }
 

@@ -1,8 +1,16 @@
 //! How vakonomic and Chetaev motions part: exponent and leading coefficient, measured and predicted (T5).
 
-use deltaq::{Metric, compare_motions, growth, leading_term};
+use deltaq::{LeadingTerm, Metric, Pairing, choices, compare_motions, growth};
+use scene::Scene;
 
 use super::support::{at, chetaev, must, scene, vakonomic};
+
+fn leading_term(scene: &Scene, mu0: &[f64]) -> LeadingTerm {
+    let choices = choices(scene);
+    let pairing = Pairing::new(scene, &choices[0], &choices[1]).expect("affine in the multipliers");
+    let predicted = pairing.leading_term(mu0).expect("compiles");
+    predicted.unwrap_or_else(|| panic!("{}: nothing predicted", scene.name))
+}
 
 #[test]
 fn leading_term_is_the_predicted_one() {
@@ -12,9 +20,7 @@ fn leading_term_is_the_predicted_one() {
         // 0.05: the terms of second and third order are of one size within the first tenth of a second
         for (mu0, exponent) in [(vec![0.0; h], 3), (vec![1.0; h], 2), (vec![0.05; h], 2)] {
             let mut reference = chetaev(&scene);
-            let reaction = at(&mut reference, scene.start.t).multipliers;
-            let predicted = leading_term(&scene.system, &scene.start, &mu0, &reaction).expect("compiles");
-            let predicted = predicted.unwrap_or_else(|| panic!("{name}: nothing predicted"));
+            let predicted = leading_term(&scene, &mu0);
             assert_eq!(predicted.exponent, exponent, "{name}, μ₀ = {mu0:?}");
             let mut other = vakonomic(&scene, &mu0);
             let mut metric = Metric::new(&scene.system).expect("compiles");
@@ -38,8 +44,7 @@ fn leading_term_shows_without_a_fit() {
     let scene = scene("sledge", &[("duration", 0.1)]);
     for (mu0, exponent) in [(0.0, 3), (0.05, 2)] {
         let (mut one, mut two) = (chetaev(&scene), vakonomic(&scene, &[mu0]));
-        let reaction = at(&mut one, 0.0).multipliers;
-        let predicted = leading_term(&scene.system, &scene.start, &[mu0], &reaction).expect("compiles").expect("there");
+        let predicted = leading_term(&scene, &[mu0]);
         let mut ratio = |t: f64| -> Vec<f64> {
             let (a, b) = (at(&mut one, t).coordinates, at(&mut two, t).coordinates);
             b.iter().zip(&a).map(|(b, a)| (b - a) / t.powi(exponent)).collect()

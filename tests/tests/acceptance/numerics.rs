@@ -2,25 +2,18 @@
 
 use deltaq::{Motion, Settings};
 use integrate::Method;
-use referees::closed_forms::Sledge;
 
+use validation::trailer::{self, Coordinates};
+
+use super::closed_forms::sledge;
 use super::support::{
-    at, equations, jacobian_error, linear_scenes, motion_of, must, parameter, regular_removals, scene, scenes,
-    some_multipliers,
+    all_equations, at, equations, jacobian_error, linear_scenes, motion_of, must, scene, scenes, some_multipliers,
 };
 
 #[test]
 fn every_method_reaches_the_closed_form_of_the_sledge() {
     let scene = scene("sledge", &[]);
-    let (q, v) = (&scene.start.q, &scene.start.v);
-    let exact = Sledge {
-        gravity_along: parameter(&scene, "g") * parameter(&scene, "alpha").sin(),
-        x: q[0],
-        y: q[1],
-        phi: q[2],
-        speed: v[0].hypot(v[1]),
-        omega: v[2],
-    };
+    let exact = sledge(&scene);
     let end = exact.at(10.0);
     let size = end.x.hypot(end.y);
     // tolerance of the looser run, and what the tighter run, at a hundredth of it, may be wrong by over its own tolerance
@@ -48,22 +41,24 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
 fn jacobians_are_exact_for_every_formulation_on_every_scene() {
     let mut count = 0;
     for scene in scenes() {
-        let mu0 = some_multipliers(&scene);
-        for (name, constants) in [("chetaev", &[][..]), ("vakonomic", &mu0), ("vakonomic-costate", &mu0)] {
-            let equations = equations(&scene.system, name, None);
-            let (error, size) = jacobian_error(&scene, &equations, constants);
-            must(&format!("{}, {name}: Jacobian", scene.name), error / size, 1e-8);
-            count += 1;
-        }
-        for removal in regular_removals(&scene) {
-            let equations = equations(&scene.system, "removed-constraint", Some(&removal));
-            let constants = vec![0.1; equations.free_constants.len()];
+        for (name, equations, constants) in all_equations(&scene) {
             let (error, size) = jacobian_error(&scene, &equations, &constants);
-            must(&format!("{}, removal {}: Jacobian", scene.name, removal.name), error / size, 1e-8);
+            must(&format!("{}, {name}: Jacobian", scene.name), error / size, 1e-8);
             count += 1;
         }
     }
     assert!(count >= 3 * scenes().len() + 2 * linear_scenes().len(), "{count}");
+}
+
+/// Through the definitions, and through those that wait for the unknowns.
+#[test]
+fn jacobians_of_reduced_forms_are_exact() {
+    for scene in [scene("disc", &[]), trailer::scene(4, Coordinates::Maximal).expect("parses")] {
+        for (form, constants) in [("chetaev-reduced", vec![]), ("vakonomic-reduced", some_multipliers(&scene))] {
+            let (error, size) = jacobian_error(&scene, &equations(&scene.system, form, None), &constants);
+            must(&format!("{}, {form}: Jacobian", scene.name), error / size, 1e-7);
+        }
+    }
 }
 
 #[test]

@@ -9,8 +9,8 @@ use symbolic::{Expr, Symbol};
 use validation::trailer::{self, Coordinates};
 
 use super::support::{
-    at, chetaev, common_times, constraint_residual, equations, for_all_linear, jacobian_error, known_gap,
-    linear_scenes, motion_of, must, scene, tight,
+    at, chetaev, common_times, constraint_residual, derived, equations, for_all_linear, known_gap, linear_scenes,
+    motion_of, must, scene, tight,
 };
 
 pub fn reduced(scene: &Scene) -> Equations {
@@ -71,9 +71,8 @@ fn reduced_rates_are_those_by_maggi_on_every_scene() {
 fn reduced_rates_are_those_by_maggi_on_random_systems() {
     let worst = std::cell::Cell::new(0.0_f64);
     for_all_linear(1894, |scene| {
-        let derivation = equations::Derivation { removal: None, start: Some(&scene.start) };
-        let form = deltaq::formulation("chetaev-reduced").expect("in the table");
-        let equations = (form.derive)(&scene.system, &derivation).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let equations = derived(scene, "chetaev-reduced", None, Some(&scene.start));
+        let equations = equations.map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = differences(scene, &equations.leave_out_unneeded(), &scene.start);
         worst.set(worst.get().max(rates));
         prop_assert!(rates < 1e-8 && velocities < 1e-10, "{rates:e}, {velocities:e}\n{}", scene.to_toml());
@@ -138,18 +137,7 @@ fn the_train_with_three_trailers_is_the_scene() {
 }
 
 #[test]
-fn the_jacobian_goes_through_the_definitions() {
-    for scene in [scene("disc", &[]), train(4, Coordinates::Maximal)] {
-        let equations = reduced(&scene);
-        let (worst, _) = jacobian_error(&scene, &equations, &[]);
-        must(&format!("{}: exact Jacobian against central differences", scene.name), worst, 1e-7);
-    }
-}
-
-#[test]
 fn constraints_that_are_not_linear_are_refused() {
-    let scene = scene("appell-hamel", &[]);
-    let form = deltaq::formulation("chetaev-reduced").expect("in the table");
-    let error = (form.derive)(&scene.system, &equations::Derivation::default()).err().expect("refused").to_string();
+    let error = derived(&scene("appell-hamel", &[]), "chetaev-reduced", None, None).err().expect("refused").to_string();
     assert!(error.contains("not linear in the velocities"), "{error}");
 }

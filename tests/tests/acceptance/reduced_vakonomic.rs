@@ -2,8 +2,8 @@
 
 use std::cell::Cell;
 
-use deltaq::{Settings, formulation};
-use equations::{Compiled, Derivation, Equations, Outputs, Plan};
+use deltaq::Settings;
+use equations::{Compiled, Equations, Outputs, Plan};
 use integrate::Method;
 use proptest::prop_assert;
 use reduction::Frame;
@@ -11,13 +11,12 @@ use scene::Scene;
 use validation::trailer::{self, Coordinates};
 
 use super::support::{
-    TIGHT, at, constraint_residual, equations, for_all_linear, jacobian_error, known_gap, linear_scenes, motion_of,
-    must, scene, some_multipliers, start, tight, vakonomic,
+    TIGHT, at, constraint_residual, derived, equations, for_all_linear, known_gap, linear_scenes, motion_of, must,
+    scene, some_multipliers, start, tight, vakonomic,
 };
 
 fn raw(scene: &Scene, name: &str) -> Equations {
-    let derivation = Derivation { removal: None, start: Some(&scene.start) };
-    (formulation(name).expect("in the table").derive)(&scene.system, &derivation).unwrap_or_else(|e| panic!("{e}"))
+    derived(scene, name, None, Some(&scene.start)).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Rates and outputs at the start.
@@ -142,32 +141,8 @@ fn multipliers_and_series_follow_along_the_motion() {
     }
 }
 
-#[test]
-fn the_jacobian_goes_through_what_waits_for_the_unknowns() {
-    for scene in [scene("disc", &[]), trailer::scene(4, Coordinates::Maximal).expect("parses")] {
-        let equations = equations(&scene.system, "vakonomic-reduced", None);
-        let mu = some_multipliers(&scene);
-        let (worst, largest) = jacobian_error(&scene, &equations, &mu);
-        must(&format!("{}: exact Jacobian against central differences", scene.name), worst / largest, 1e-7);
-    }
-}
-
 /// `L` quartic in the velocities: `w` by Newton's method.
-const QUARTIC: &str = r#"
-title = "Sledge whose momentum grows faster than its speed"
-[coordinates]
-x   = { start = 0 }
-y   = { start = 0 }
-phi = { start = 0.3 }
-[system]
-lagrangian  = "(x'^2 + y'^2 + phi'^2)/2 + (x'^2 + y'^2)^2/8 + phi'^4/9 + x"
-constraints = ["y'*cos(phi) - x'*sin(phi)"]
-[start.velocities]
-"phi'" = 1
-"x'" = 0.5
-[run]
-duration = 1
-"#;
+const QUARTIC: &str = include_str!("../scenes/quartic.toml");
 
 #[test]
 fn a_lagrangian_that_is_not_quadratic_is_solved_by_newton() {
@@ -198,9 +173,7 @@ fn a_train_takes_two_unknowns_whatever_its_length() {
 
 #[test]
 fn forces_and_constraints_that_are_not_linear_are_refused() {
-    let form = formulation("vakonomic-reduced").expect("in the table");
-    let refusal =
-        |scene: &Scene| (form.derive)(&scene.system, &Derivation::default()).err().expect("refused").to_string();
+    let refusal = |scene: &Scene| derived(scene, "vakonomic-reduced", None, None).err().expect("refused").to_string();
     let error = refusal(&scene("appell-hamel", &[]));
     assert!(error.contains("not linear in the velocities"), "{error}");
     let pulled = QUARTIC.replace("[start.velocities]", "[system.forces]\nx = \"1\"\n[start.velocities]");

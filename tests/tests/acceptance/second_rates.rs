@@ -10,28 +10,12 @@
 //! Newton's motion only where the free constant `p₀` is `ẋ₀`.
 
 use deltaq::Motion;
-use equations::{Derivation, DerivationError, Role};
+use equations::{DerivationError, Role};
 use scene::Scene;
 
-use super::support::{at, complete, equations, must, must_exceed, removed, scene};
+use super::support::{at, complete, derived, equations, must, must_exceed, removed, scene};
 
-const OSCILLATOR: &str = r#"
-title = "Oscillator in a parameter of second order"
-[parameters]
-epsilon = 0.5
-[coordinates]
-x = { start = 0.8 }
-[system]
-lagrangian = "x'^2/2 - x^2/2"
-constraints = []
-[start.velocities]
-"x'" = -0.3
-[removal.second-order]
-parameters = ["u"]
-direct = { x = "u + epsilon*u'" }
-[run]
-duration = 3
-"#;
+const OSCILLATOR: &str = include_str!("../scenes/oscillator.toml");
 
 const EPSILON: f64 = 0.5;
 const POSITION: f64 = 0.8;
@@ -59,10 +43,10 @@ fn exact(t: f64, momentum: f64) -> (f64, f64) {
 #[test]
 fn the_one_free_constant_is_the_momentum() {
     let scene = oscillator();
-    let derived = equations(&scene.system, "removed-constraint", Some(&scene.removals[0]));
-    let names = deltaq::constant_names(&derived);
+    let equations = equations(&scene.system, "removed-constraint", Some(&scene.removals[0]));
+    let names = deltaq::constant_names(&equations);
     assert_eq!(names, ["p0_u"]);
-    let roles: Vec<Role> = derived.states.iter().map(|y| y.role).collect();
+    let roles: Vec<Role> = equations.states.iter().map(|y| y.role).collect();
     for role in [Role::DisplacementParameter, Role::ParameterRate, Role::ParameterSecondRate, Role::ParameterMomentum] {
         assert!(roles.contains(&role), "{role:?} is not among {roles:?}");
     }
@@ -125,9 +109,7 @@ fn energy_of_second_order_is_constant() {
 fn a_singular_highest_hessian_is_refused_with_its_rank() {
     let scene = scene("three-cylinders", &[]);
     let paper = super::support::removal(&scene, "paper");
-    let derivation = Derivation { removal: Some(paper), start: None };
-    let entry = deltaq::formulation("removed-constraint").expect("in the table");
-    match (entry.derive)(&scene.system, &derivation) {
+    match derived(&scene, "removed-constraint", Some(paper), None) {
         Err(DerivationError::SingularHighestHessian { formulation, removal, second_rates, rank, size }) => {
             assert_eq!((formulation, removal.as_str()), ("removed-constraint", "paper"));
             assert_eq!((rank, size), (1, 2));
@@ -138,32 +120,13 @@ fn a_singular_highest_hessian_is_refused_with_its_rank() {
     }
 }
 
-const HALF_BLIND: &str = r#"
-title = "Two coordinates from one parameter of second order, and one that does nothing"
-[coordinates]
-x = { start = 0.8 }
-y = { start = 0 }
-[system]
-lagrangian = "(x'^2 + y'^2)/2 - x^2/2"
-constraints = []
-[start.velocities]
-"x'" = -0.3
-"y'" = -0.3
-[removal.half-blind]
-parameters = ["u", "w"]
-direct = { x = "u + u'", y = "u'" }
-start = { u = 0.8, w = 0, "w'" = 0 }
-[run]
-duration = 3
-"#;
+const HALF_BLIND: &str = include_str!("../scenes/half-blind.toml");
 
 /// One parameter has its second rate in `L`, the other not: the Hessian in `(ü, ẇ)` has rank 1.
 #[test]
 fn a_singular_highest_hessian_is_refused_where_only_some_parameters_are_of_second_order() {
     let scene = Scene::parse("half-blind", HALF_BLIND).unwrap_or_else(|e| panic!("{e}"));
-    let derivation = Derivation { removal: Some(&scene.removals[0]), start: None };
-    let entry = deltaq::formulation("removed-constraint").expect("in the table");
-    match (entry.derive)(&scene.system, &derivation) {
+    match derived(&scene, "removed-constraint", scene.removals.first(), None) {
         Err(DerivationError::SingularHighestHessian { rank, size, .. }) => assert_eq!((rank, size), (1, 2)),
         Err(other) => panic!("{other}"),
         Ok(_) => panic!("not refused"),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use deltaq::{Choice, Metric, Motion, Settings, derive, formulation, setting, solve};
-use equations::{Compiled, Equations, Outputs};
+use equations::{Compiled, Derivation, DerivationError, Equations, Outputs};
 use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
@@ -13,6 +13,8 @@ use symbolic::{Expr, Graph, Matrix, Symbol};
 
 /// The tolerance of the looser of the two runs of every motion; what is measured has a hundredth of it.
 pub const TIGHT: f64 = 1e-12;
+
+type Derived = Result<Equations, DerivationError>;
 
 /// Instants at which motions are compared.
 pub const INSTANTS: usize = 200;
@@ -72,6 +74,26 @@ fn choice(name: &str, removal: Option<&Removal>, constants: ConstantsRule) -> Ch
 pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Equations {
     let derived = derive(system, &choice(name, removal, ConstantsRule::Zero));
     derived.unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// The derivation itself, with nothing left out.
+pub fn derived(scene: &Scene, name: &str, removal: Option<&Removal>, start: Option<&State>) -> Derived {
+    let entry = formulation(name).unwrap_or_else(|| panic!("no formulation {name}"));
+    (entry.derive)(&scene.system, &Derivation { removal, start, ..Default::default() })
+}
+
+/// The equations of every formulation and regular removal of a scene, with their name and some constants.
+pub fn all_equations(scene: &Scene) -> Vec<(String, Equations, Vec<f64>)> {
+    let mu = some_multipliers(scene);
+    let of =
+        |(name, constants): (&str, &[f64])| (name.to_string(), equations(&scene.system, name, None), constants.into());
+    let plain = [("chetaev", &[][..]), ("vakonomic", &mu), ("vakonomic-costate", &mu)].map(of);
+    let removed = regular_removals(scene).into_iter().map(|removal| {
+        let equations = equations(&scene.system, "removed-constraint", Some(&removal));
+        let constants = vec![0.1; equations.free_constants.len()];
+        (format!("removal {}", removal.name), equations, constants)
+    });
+    plain.into_iter().chain(removed).collect()
 }
 
 /// A motion that must come about; it may stop early.

@@ -6,7 +6,7 @@ use integrate::{Method, Projection};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use super::support::{equations, known_gap, motion_of, must, regular_removals, scenes, some_multipliers};
+use super::support::{all_equations, equations, known_gap, motion_of, must, scenes, some_multipliers};
 
 const ORDER: usize = 24;
 
@@ -44,17 +44,9 @@ fn defect(scene: &Scene, equations: Equations, constants: &[f64]) -> f64 {
 fn the_series_of_every_formulation_satisfies_its_equations_on_every_scene() {
     let mut count = 0;
     for scene in scenes() {
-        let mu0 = some_multipliers(&scene);
-        for (name, constants) in [("chetaev", &[][..]), ("vakonomic", &mu0), ("vakonomic-costate", &mu0)] {
-            let defect = defect(&scene, equations(&scene.system, name, None), constants);
-            must(&format!("{}, {name}: slope of the series", scene.name), defect, 1e-10);
-            count += 1;
-        }
-        for removal in regular_removals(&scene) {
-            let equations = equations(&scene.system, "removed-constraint", Some(&removal));
-            let constants = vec![0.1; equations.free_constants.len()];
+        for (name, equations, constants) in all_equations(&scene) {
             let defect = defect(&scene, equations, &constants);
-            must(&format!("{}, removal {}: slope of the series", scene.name, removal.name), defect, 1e-10);
+            must(&format!("{}, {name}: slope of the series", scene.name), defect, 1e-10);
             count += 1;
         }
     }

@@ -1,7 +1,5 @@
 //! Discrete variational principles against the motions of deltaq: no equation of motion stands between `L`, `f` and the referee.
 
-mod flip;
-mod flipped;
 mod orders;
 mod random;
 mod scenes;

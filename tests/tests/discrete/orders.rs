@@ -5,6 +5,7 @@ use discrete::Composition;
 use mechanics::ConstantsRule;
 use scene::Scene;
 use validation::catalogue::find;
+use validation::scaling::exponent;
 
 /// An error under this times the size of the motion is round-off; what is over [`COARSE`] says nothing of the order yet.
 const PLATEAU: f64 = 2e-13;
@@ -29,15 +30,6 @@ fn end_of(mut motion: Motion, t: f64) -> Vec<f64> {
     assert!(motion.is_complete(), "{:?}", motion.ending);
     let now = motion.at(t).unwrap();
     [now.coordinates, now.velocities].concat()
-}
-
-/// The slope of log error over log step, of the [`POINTS`] finest grids over the plateau, by least squares.
-fn slope(points: &[(f64, f64)]) -> f64 {
-    let n = points.len() as f64;
-    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(h, e)| (h.ln(), e.ln())).unzip();
-    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
-    let top: f64 = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum();
-    top / x.iter().map(|x| (x - mx).powi(2)).sum::<f64>()
 }
 
 fn measure(scene: &Scene, choice: &Choice, composition: Composition) {
@@ -69,7 +61,7 @@ fn measure(scene: &Scene, choice: &Choice, composition: Composition) {
     let what = format!("{}, {}, order {}", scene.name, choice.label, composition.order());
     let last = &points[points.len().saturating_sub(POINTS)..];
     assert!(last.len() == POINTS, "{what}: {points:?}");
-    let (order, nominal) = (slope(last), f64::from(composition.order()));
+    let (order, nominal) = (exponent(last).expect("three points").value, f64::from(composition.order()));
     let (first, end) = (last[0], last[POINTS - 1]);
     println!("{what}: {order:.3}, from {:.1e} at h = {:.4} to {:.1e} at h = {:.4}", first.1, first.0, end.1, end.0);
     let limit = if nominal < 8.0 { 0.1 } else { 0.3 };

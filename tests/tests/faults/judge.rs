@@ -12,7 +12,7 @@ pub struct Findings {
 }
 
 /// Over this a finding is one.
-const LIMIT: f64 = 1e-6;
+const LIMIT: f64 = 1e-7;
 
 impl Findings {
     pub fn new() -> Findings {

@@ -1,14 +1,15 @@
 //! What equations hand over, in numbers, at a few random states.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 
 use equations::{Compiled, Equations, Outputs, Plan};
 use mechanics::{Removal, State, complete_removal_start};
 use scene::Scene;
-use symbolic::{CompileError, Symbol};
+use symbolic::{CompileError, Evaluator, Symbol};
 
 use super::judge::distance;
-use super::truth::{Function, Point, Truth, slope};
+use super::truth::{Point, Truth, slope};
 
 /// A state in which equations are read, and the free constants that lead to it.
 #[derive(Clone)]
@@ -129,9 +130,9 @@ pub fn worst_for(equations: &Equations, form: &Plan, sample: &Sample, y: &[f64])
     let condition = form.condition.filter(|_| equations.definitions.is_empty())?;
     let known = equations.known_symbols();
     let tape = equations.graph.compile_with(&known, &form.definitions, &[condition], &equations.parameters).ok()?;
-    let function = Function::new(tape);
+    let function = RefCell::new(Evaluator::new(tape));
     let at = |s: f64| -> Vec<f64> { y.iter().enumerate().map(|(i, y)| y + s * noise(i, 5)).collect() };
-    let size = |s: f64| function.at(&[&[sample.point.t][..], &at(s), constants].concat())[0];
+    let size = |s: f64| function.borrow_mut().evaluate(&[&[sample.point.t][..], &at(s), constants].concat())[0];
     let grid = (-400..=400).map(|i| 0.005 * f64::from(i)).filter(|s| size(*s).is_finite());
     let (mut best, mut step) = (grid.max_by(|a, b| size(*a).total_cmp(&size(*b)))?, 0.0025);
     while step > 1e-9 && size(best) < 1e13 {
@@ -270,9 +271,7 @@ impl<'a> Reader<'a> {
 fn evaluated(equations: &Equations, known: &[(Symbol, f64)], wanted: &[symbolic::Expr]) -> Result<Vec<f64>, String> {
     let (symbols, inputs): (Vec<Symbol>, Vec<f64>) = known.iter().copied().unzip();
     let tape = equations.tape(&symbols, wanted).map_err(|e| e.to_string())?;
-    let mut values = vec![0.0; wanted.len()];
-    tape.evaluate(&inputs, &mut tape.workspace(), &mut values);
-    Ok(values)
+    Ok(Evaluator::new(tape).evaluate(&inputs).to_vec())
 }
 
 fn largest(a: &[f64]) -> f64 {

@@ -4,24 +4,22 @@ use mechanics::Removal;
 use scene::Scene;
 use symbolic::faults;
 
-use super::Way;
 use super::judge::{Findings, distance};
 use super::reading::{noise, samples};
 use super::removed::Parametrized;
 use super::road::{STATES, Stage, Trial};
 use super::truth::{Point, Truth, slope, slopes};
 
-/// Finds the removal of a way anew, with faults.
-pub fn trial(way: &Way) -> Option<Trial> {
-    let find = match way.removal.as_ref()?.name.as_str() {
+/// Finds a removal anew, with faults.
+pub fn trial(scene: &Scene, removal: &Removal) -> Option<Trial<'static>> {
+    let find = match removal.name.as_str() {
         "coordinates" => Removal::by_coordinates,
         "quasi-velocities" => Removal::by_quasi_velocities,
         _ => return None,
     };
-    let scene = way.scene.clone();
     let truth = Truth::new(&scene.system);
     // a removal writes into the graph of its system
-    let own = scene.clone();
+    let (scene, own) = (scene.clone(), scene.clone());
     let (removal, chances) = faults::chances(|| find(&own.system, &own.start));
     let (sound, numbers) = judge(&own, &truth, &removal.ok()?).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     let (name, count) = (format!("{}, removal", scene.name), chances.len());

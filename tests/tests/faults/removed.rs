@@ -1,12 +1,14 @@
 //! The judge of the removed-constraint equations, from the values of `L`, of `q(ü, u̇, u, w, t)` with its
 //! rate and of `B` alone.
 
+use std::cell::RefCell;
+
 use mechanics::{Removal, System};
-use symbolic::Symbol;
+use symbolic::{Evaluator, Symbol};
 
 use super::judge::{Findings, common};
 use super::reading::{Instant, Reading, Sample};
-use super::truth::{Function, Truth, slope, slopes};
+use super::truth::{Truth, slope, slopes};
 
 pub struct Parametrized {
     /// Numbers of parameters and of memory variables.
@@ -17,7 +19,7 @@ pub struct Parametrized {
     parameters: Vec<String>,
     memory: Vec<String>,
     /// `q, q̇, B` from `t` and the variables
-    function: Function,
+    function: RefCell<Evaluator<f64>>,
 }
 
 impl Parametrized {
@@ -30,20 +32,20 @@ impl Parametrized {
         let inputs = [&[system.time][..], &variables].concat();
         let rates: Vec<_> = removal.memory.iter().map(|w| w.rate).collect();
         let outputs = [&removal.coordinates[..], &removal.velocities(&system), &rates].concat();
-        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values()).map_err(|e| e.to_string())?;
+        let function = system.evaluator(&inputs, &outputs).map_err(|e| e.to_string())?;
         Ok(Parametrized {
             m: removal.parameters.len(),
             k: removal.memory.len(),
             parameters: removal.parameters.iter().map(|u| system.graph.name(u.symbol)).collect(),
             memory: removal.memory.iter().map(|w| system.graph.name(w.symbol)).collect(),
             variables,
-            function: Function::new(tape),
+            function: RefCell::new(function),
         })
     }
 
     /// `q, q̇, B`
     pub fn at<'a>(&self, truth: &Truth, values: &'a mut Vec<f64>, t: f64, x: &[f64]) -> [&'a [f64]; 3] {
-        *values = self.function.at(&[&[t][..], x].concat());
+        *values = self.function.borrow_mut().evaluate(&[&[t][..], x].concat()).to_vec();
         let (q, rest) = values.split_at(truth.n);
         let (v, rates) = rest.split_at(truth.n);
         [q, v, rates]

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use mechanics::System;
 use nalgebra::{DMatrix, DVector};
-use symbolic::{Symbol, Tape, Workspace};
+use symbolic::{Evaluator, Symbol};
 
 /// An instant of a curve, with multipliers of `f`.
 #[derive(Clone, Debug)]
@@ -25,24 +25,6 @@ impl Point {
             v: self.v.iter().zip(a).map(|(v, a)| v + s * a).collect(),
             mu: self.mu.iter().zip(rate).map(|(mu, rate)| mu + s * rate).collect(),
         }
-    }
-}
-
-/// A tape with its registers.
-pub struct Function {
-    tape: Tape,
-    registers: RefCell<Workspace<f64>>,
-}
-
-impl Function {
-    pub fn new(tape: Tape) -> Function {
-        Function { registers: RefCell::new(tape.workspace()), tape }
-    }
-
-    pub fn at(&self, inputs: &[f64]) -> Vec<f64> {
-        let mut values = vec![0.0; self.tape.outputs()];
-        self.tape.evaluate(inputs, &mut self.registers.borrow_mut(), &mut values);
-        values
     }
 }
 
@@ -80,7 +62,7 @@ pub struct Truth {
     pub linear: bool,
     names: Vec<String>,
     /// `L, f, Q` from `t, q, v`
-    function: Function,
+    function: RefCell<Evaluator<f64>>,
 }
 
 impl Truth {
@@ -88,7 +70,7 @@ impl Truth {
         let system = system.clone();
         let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
         let outputs = [&[system.lagrangian][..], &system.constraints, &system.forces].concat();
-        let tape = system.graph.compile(&inputs, &outputs, &system.parameter_values()).expect("compiles");
+        let function = system.evaluator(&inputs, &outputs).expect("compiles");
         Truth {
             n: system.dimension(),
             h: system.constraints.len(),
@@ -96,7 +78,7 @@ impl Truth {
             velocities: system.velocities(),
             linear: system.constraints_linear_in_velocity(),
             names: system.coordinates.iter().map(|c| c.name.clone()).collect(),
-            function: Function::new(tape),
+            function: RefCell::new(function),
         }
     }
 
@@ -106,7 +88,7 @@ impl Truth {
     }
 
     fn values(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        self.function.at(&[&[t][..], q, v].concat())
+        self.function.borrow_mut().evaluate(&[&[t][..], q, v].concat()).to_vec()
     }
 
     pub fn lagrangian(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {

@@ -2,7 +2,6 @@
 
 use deltaq::Motion;
 use equations::{Compiled, Equations, Plan};
-use integrate::{EvaluationError, Options, Problem, Start, integrate};
 use nalgebra::DMatrix;
 use proptest::test_runner::TestCaseError;
 use random::{Case, Kind, Recipe, Which, recipes_of};
@@ -119,24 +118,6 @@ fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
     assert!(count > 50, "{count}");
 }
 
-/// Equations in the plain form, as the time integrator sees them.
-struct Plain<'a>(&'a mut Compiled);
-
-impl Problem for Plain<'_> {
-    fn dimension(&self) -> usize {
-        self.0.dimension()
-    }
-    fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
-        self.0.rates(t, y, rates).map_err(|e| EvaluationError { reason: e.to_string() })
-    }
-    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
-        self.0.jacobian(t, y, jacobian).map_err(|e| EvaluationError { reason: e.to_string() })
-    }
-    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, EvaluationError> {
-        self.0.project(t, y).map_err(|e| EvaluationError { reason: e.to_string() })
-    }
-}
-
 #[test]
 fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
     for (name, formulation) in [("trailer", "vakonomic"), ("ball-in-cone", "removed-constraint")] {
@@ -146,15 +127,10 @@ fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
         let mut motion = deltaq::solve_choice(&scene, choice, &deltaq::Settings::default()).expect("a motion");
         let (evaluations, fallbacks) = (motion.work.evaluations, motion.form.fallbacks);
         assert!(fallbacks > 0 && 20 * fallbacks < evaluations, "{name}: {fallbacks} of {evaluations}");
-        let mut plain = Compiled::plain(&motion.equations).expect("compiles");
-        plain.set_constants(&motion.constants);
-        let (t, end) = (motion.start(), motion.end());
-        let start = Start { t, y: motion.states_at(t).expect("readable") };
-        let solution = integrate(&mut Plain(&mut plain), &start, end, &Options::with_tolerance(1e-13)).expect("a call");
-        let mut y = vec![0.0; start.y.len()];
+        let plain = deltaq::Settings { tolerance: 1e-11, plain: true, ..deltaq::Settings::default() };
+        let mut plain = deltaq::solve_choice(&scene, choice, &plain).expect("a motion");
         for t in motion.grid(20) {
-            solution.dense.evaluate(t, &mut y);
-            let other = plain.outputs(t, &y).expect("regular").coordinates;
+            let other = plain.at(t).expect("readable").coordinates;
             let allowed = motion.difference_of_runs(t).expect("readable").iter().fold(1e-11_f64, |a, d| a.max(d.abs()));
             let ours = motion.at(t).expect("readable").coordinates;
             let gap = ours.iter().zip(&other).fold(0.0_f64, |a, (x, y)| a.max((x - y).abs()));

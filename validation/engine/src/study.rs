@@ -107,20 +107,7 @@ impl Study {
             }
             targets.push(target);
         }
-        Study {
-            name: scene.name.clone(),
-            title: scene.title.clone(),
-            setup: mapping.setup,
-            residual: mapping.residual,
-            duration: scene.duration,
-            scale: 0.0,
-            targets,
-            apart: Vec::new(),
-            hard: Vec::new(),
-            yielding: Vec::new(),
-            shipped: Vec::new(),
-        }
-        .measured(ladder)
+        Study::measured([&scene.name, &scene.title], mapping.setup, scene.duration, targets, ladder)
     }
 
     /// A homogeneous ball (1 kg, 0.1 m) from rest on a plane of slope 0.3 rad, 1 s, against its closed solution: it goes
@@ -145,35 +132,31 @@ impl Study {
             poses: poses.collect(),
             remark: Some("all formulations agree: the constraint is integrable".into()),
         };
-        Study {
-            name: "incline".into(),
-            title: "Homogeneous ball on an incline".into(),
-            setup,
-            residual: setup.slip(setup.pose.centre, setup.velocity, setup.spin).length(),
-            duration,
-            scale: 0.0,
-            targets: vec![closed],
-            apart: Vec::new(),
-            hard: Vec::new(),
-            yielding: Vec::new(),
-            shipped: Vec::new(),
-        }
-        .measured(ladder)
+        Study::measured(["incline", "Homogeneous ball on an incline"], setup, duration, vec![closed], ladder)
     }
 
-    fn measured(mut self, ladder: Ladder) -> Result<Study, EngineError> {
-        let first = &self.targets[0].poses;
-        let still = vec![self.setup.pose; first.len()];
-        self.scale = self.distance(first, &still);
-        self.apart = self.targets.iter().map(|t| self.distance(first, &t.poses) / self.scale).collect();
-        let study = &self;
+    fn measured(
+        [name, title]: [&str; 2],
+        setup: Setup,
+        duration: f64,
+        targets: Vec<Target>,
+        ladder: Ladder,
+    ) -> Result<Study, EngineError> {
+        let residual = setup.slip(setup.pose.centre, setup.velocity, setup.spin).length();
+        let (name, title) = (name.into(), title.into());
+        let gyration = setup.ball.gyration;
+        let first = &targets[0].poses;
+        let scale = distance(first, &vec![setup.pose; first.len()], gyration);
+        let apart = targets.iter().map(|t| distance(first, &t.poses, gyration) / scale).collect();
+        let [hard, yielding, shipped] = Default::default();
+        let study = Study { name, title, setup, residual, duration, scale, targets, apart, hard, yielding, shipped };
+        let levels = |contacts| study.levels(ladder, contacts);
         let [hard, yielding, shipped] = std::thread::scope(|scope| {
             let kinds = [Contacts::HARD, Contacts::YIELDING, Contacts::AsShipped];
-            let threads = kinds.map(|contacts| scope.spawn(move || study.levels(ladder, contacts)));
+            let threads = kinds.map(|contacts| scope.spawn(move || levels(contacts)));
             threads.map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
         });
-        (self.hard, self.yielding, self.shipped) = (hard?, yielding?, shipped?);
-        Ok(self)
+        Ok(Study { hard: hard?, yielding: yielding?, shipped: shipped?, ..study })
     }
 
     fn levels(&self, ladder: Ladder, contacts: Contacts) -> Result<Vec<Level>, EngineError> {
@@ -198,16 +181,8 @@ impl Study {
     }
 
     fn to_targets(&self, poses: &[Pose]) -> Vec<f64> {
-        self.targets.iter().map(|target| self.distance(poses, &target.poses) / self.scale).collect()
-    }
-
-    /// Largest distance over the times that both reach, m; NaN where there is none but the start.
-    fn distance(&self, one: &[Pose], two: &[Pose]) -> f64 {
-        if one.len().min(two.len()) < 2 {
-            return f64::NAN;
-        }
         let gyration = self.setup.ball.gyration;
-        one.iter().zip(two).map(|(a, b)| a.distance(b, gyration)).fold(0.0, f64::max)
+        self.targets.iter().map(|target| distance(poses, &target.poses, gyration) / self.scale).collect()
     }
 
     /// What the runs show.
@@ -232,6 +207,14 @@ impl Study {
             shipped: smallest(&distances(&self.shipped)),
         }
     }
+}
+
+/// Largest distance over the times that both reach, m; NaN where there is none but the start.
+fn distance(one: &[Pose], two: &[Pose], gyration: f64) -> f64 {
+    if one.len().min(two.len()) < 2 {
+        return f64::NAN;
+    }
+    one.iter().zip(two).map(|(a, b)| a.distance(b, gyration)).fold(0.0, f64::max)
 }
 
 /// The end of a [`Study`].

@@ -8,7 +8,7 @@ use symbolic::{Evaluator, Symbol};
 use super::context::Context;
 
 /// A free function and its first two derivatives at an instant.
-pub type Jet = [f64; 3];
+pub(super) type Jet = [f64; 3];
 
 /// Steps of the quadrature.
 const STEPS: usize = 400;
@@ -17,18 +17,15 @@ const STEPS: usize = 400;
 const SIZE: f64 = 2e-3;
 
 /// An action `∫ L dt` over curves of a context's free functions, with integrals in `L`.
-pub struct Action {
+pub(super) struct Action {
     evaluator: Evaluator<f64>,
     /// Values of the integrals at the start.
-    pub start: Vec<f64>,
+    pub(super) start: Vec<f64>,
 }
 
 impl Action {
     /// The action of `lagrangian` in `functions`, with the integrals named, each from `t₀` on; every one has to be there that `L` or an integrand needs.
-    ///
-    /// # Errors
-    /// Where an expression has no value.
-    pub fn new(
+    pub(super) fn new(
         context: &Context,
         lagrangian: &str,
         functions: &[&str],
@@ -51,12 +48,12 @@ impl Action {
     }
 
     /// The action over `[t₀, t₁]`, by the rule of Simpson on the integrals and on `L` at once.
-    pub fn value(&mut self, curve: &dyn Fn(f64) -> Vec<Jet>, span: [f64; 2]) -> f64 {
+    pub(super) fn value(&mut self, curve: &dyn Fn(f64) -> Vec<Jet>, span: [f64; 2]) -> f64 {
         self.weighted(curve, &|_| 1.0, span)
     }
 
     /// The same with `L` times a weight.
-    pub fn weighted(
+    pub(super) fn weighted(
         &mut self,
         curve: &dyn Fn(f64) -> Vec<Jet>,
         weight: &dyn Fn(f64) -> f64,
@@ -93,7 +90,7 @@ impl Action {
     }
 
     /// `dI/dε` at `ε = 0` along `curve + ε variation`: central differences at two sizes, extrapolated to zero.
-    pub fn derivative(
+    pub(super) fn derivative(
         &mut self,
         curve: &dyn Fn(f64) -> Vec<Jet>,
         variation: &dyn Fn(f64) -> Vec<Jet>,
@@ -115,7 +112,7 @@ impl Action {
 }
 
 /// Variation number `k` on `[t₀, t₁]`: `16 s²(1 − s)² Tₖ(2s − 1)`, which vanishes at both ends with its first derivative.
-pub fn bump(k: usize, [start, end]: [f64; 2], t: f64) -> Jet {
+pub(super) fn bump(k: usize, [start, end]: [f64; 2], t: f64) -> Jet {
     let length = end - start;
     let s = (t - start) / length;
     let z = 2.0 * s - 1.0;
@@ -137,7 +134,7 @@ pub fn bump(k: usize, [start, end]: [f64; 2], t: f64) -> Jet {
 }
 
 /// Number of variations.
-pub const BUMPS: usize = 4;
+pub(super) const BUMPS: usize = 4;
 
 #[cfg(test)]
 mod tests {

@@ -18,10 +18,7 @@ const STEP: f64 = 2.5e-4;
 
 /// The largest residual of each formula along the removed-constraint motion of a scene by its first removal. Names are coordinates with
 /// primes (second derivatives are differences of velocities), parameters, `t`, and `t1`, the horizon of the constants.
-///
-/// # Errors
-/// Where there is no motion, or a formula has another name in it.
-pub fn along(context: &Context, scene: &str, lines: &[String]) -> Result<Vec<f64>> {
+pub(super) fn along(context: &Context, scene: &str, lines: &[String]) -> Result<Vec<f64>> {
     let scene = catalogue::find(scene, &[])?;
     let removal = scene.removals.first().context("no removal")?;
     let derived = equations(&scene.system, "removed-constraint", Some(removal))?;

@@ -9,55 +9,17 @@ use crate::catalogue;
 use random::equations;
 use random::realization::augmented_start;
 
-/// The horizon of the sledge measured against a vakonomic motion.
-#[derive(Clone, Debug)]
-pub struct Horizon {
-    /// `t₁`.
-    pub horizon: f64,
-    /// `C = P_x(t₀) = g t₁ sin α`.
-    pub constant: f64,
-    /// Multiplier of the closest vakonomic motion that was found.
-    pub multiplier: f64,
-    /// The gap to it.
-    pub gap: f64,
-}
-
-/// A motion measured against that of its augmented system.
-#[derive(Clone, Debug)]
-pub struct Augmented {
-    /// The scene.
-    pub scene: String,
-    /// `C_i = P_i(t₀)` as given.
-    pub constants: Vec<f64>,
-    /// Largest difference of any coordinate.
-    pub gap: f64,
-}
-
 /// What was found on the constants.
 #[derive(Clone, Debug)]
 pub struct Constants {
-    /// Duration of the sledge's motions.
-    pub duration: f64,
-    /// `t₁ = −u̇₀/(g sin α cos φ₀)`.
-    pub matching: f64,
-    /// `g t₁ sin α sin φ₀` there.
-    pub multiplier: f64,
-    /// Gap of the two motions with these.
-    pub gap: f64,
-    /// Other horizons after the best fit.
-    pub horizons: Vec<Horizon>,
-    /// Two values of `C`, their common `(q₀, v₀)` checked, and the gap: `C`, `C`, difference at the start, gap.
-    pub two: [f64; 4],
+    /// Numbers by the name that the page has for them.
+    pub numbers: Vec<(&'static str, f64)>,
+    /// Horizons of the sledge: `t₁`, `C = P_x(t₀) = g t₁ sin α`, the multiplier of the closest vakonomic motion that was found, the gap to it.
+    pub horizons: Vec<[f64; 4]>,
     /// The natural constants at `t₁` = [`HORIZONS`], as the boundary-value problem finds them.
     pub natural: Vec<[f64; 2]>,
-    /// Largest difference of the two natural motions from `t₀` to the first of these horizons.
-    pub natural_gap: f64,
-    /// Planar body, `P(t₀) = 0`: gap to Newton's motion, rotation off at the end.
-    pub body_zero: [f64; 2],
-    /// Planar body, `P(t₀) = −(ẋ₀, ẏ₀)`: gap to Newton's motion.
-    pub body_right: f64,
-    /// Bridge to augmented systems.
-    pub augmented: Vec<Augmented>,
+    /// Bridge to augmented systems: the scene, `C_i = P_i(t₀)` as given, the largest difference of any coordinate.
+    pub augmented: Vec<(&'static str, Vec<f64>, f64)>,
 }
 
 /// Horizons at which natural constants are taken.
@@ -91,7 +53,7 @@ impl Constants {
             let fitted = best_fit(setting(&sledge), &family, &mut target, &guesses, metric, &settings)?;
             let mut fitted = fitted.context("no fit")?;
             let gap = compare_motions(&mut target, &mut fitted, metric)?.largest;
-            horizons.push(Horizon { horizon, constant: pull * horizon, multiplier: fitted.constants[0], gap });
+            horizons.push([horizon, pull * horizon, fitted.constants[0], gap]);
         }
         let (mut one, mut two) = (with(0.0)?, with(pull * DURATION)?);
         let (start, other) = (one.at(0.0)?, two.at(0.0)?);
@@ -114,19 +76,26 @@ impl Constants {
         ] {
             augmented.push(on_augmented(name, removal, &constants)?);
         }
-        Ok(Constants {
-            duration: DURATION,
-            matching,
-            multiplier,
-            gap,
-            horizons,
-            two: [0.0, pull * DURATION, apart, two_gap],
-            natural,
-            natural_gap,
-            body_zero,
-            body_right,
-            augmented,
-        })
+        let numbers = vec![
+            ("duration", DURATION),
+            // t₁ = −u̇₀/(g sin α cos φ₀), g t₁ sin α sin φ₀ there, and the gap of the two motions with these
+            ("matching", matching),
+            ("multiplier", multiplier),
+            ("gap", gap),
+            // two values of C, how far their starts are apart, and the gap
+            ("one", 0.0),
+            ("two", pull * DURATION),
+            ("apart", apart),
+            ("gap_two", two_gap),
+            ("t_one", HORIZONS[0]),
+            ("t_two", HORIZONS[1]),
+            ("gap_natural", natural_gap),
+            // P(t₀) = 0: gap to Newton's motion, rotation off at the end; P(t₀) = −(ẋ₀, ẏ₀): gap
+            ("body", body_zero[0]),
+            ("rotation", body_zero[1]),
+            ("body_right", body_right),
+        ];
+        Ok(Constants { numbers, horizons, natural, augmented })
     }
 }
 
@@ -145,7 +114,7 @@ fn planar_body() -> Result<([f64; 2], f64)> {
 }
 
 /// The removed-constraint motion with `P(t₀)` against the vakonomic motion of the augmented system with `μ = −P − L_ẇ`.
-fn on_augmented(name: &str, of: &str, costates: &[f64]) -> Result<Augmented> {
+fn on_augmented(name: &'static str, of: &str, costates: &[f64]) -> Result<(&'static str, Vec<f64>, f64)> {
     let scene = catalogue::find(name, &[("duration".into(), 1.0)])?;
     let removal = removal(&scene, of)?;
     let setting = setting(&scene);
@@ -160,7 +129,7 @@ fn on_augmented(name: &str, of: &str, costates: &[f64]) -> Result<Augmented> {
         let small = removed.at(t)?.coordinates;
         gap = gap.max(difference(&small, &bridge.at(t)?.coordinates[..small.len()]));
     }
-    Ok(Augmented { scene: name.into(), constants: removed.constants.clone(), gap })
+    Ok((name, removed.constants, gap))
 }
 
 fn motion(scene: &Scene, formulation: &str, removal: Option<&Removal>, rule: ConstantsRule) -> Result<Motion> {

@@ -18,9 +18,9 @@ const DEPTH: usize = 60;
 
 /// Names and what they stand for, on one graph.
 #[derive(Clone)]
-pub struct Context {
+pub(super) struct Context {
     /// Where the expressions live.
-    pub graph: Graph,
+    pub(super) graph: Graph,
     constants: BTreeSet<String>,
     functions: BTreeSet<String>,
     integrals: HashMap<String, String>,
@@ -33,10 +33,7 @@ pub struct Context {
 
 impl Context {
     /// Reads a context: `constants`, `functions`, `integrals`, `definitions`, `partials`.
-    ///
-    /// # Errors
-    /// Where the data are not of that form.
-    pub fn read(data: &Table) -> Result<Context> {
+    pub(super) fn read(data: &Table) -> Result<Context> {
         let context = Context {
             graph: Graph::new(),
             constants: words(data, "constants")?.into_iter().collect(),
@@ -60,72 +57,57 @@ impl Context {
     }
 
     /// Adds what code knows: the expression that a name stands for.
-    pub fn add(&self, name: &str, e: Expr) {
+    pub(super) fn add(&self, name: &str, e: Expr) {
         self.found.borrow_mut().insert(name.into(), e);
     }
 
     /// Adds an integral from `t₀`, by its integrand.
-    pub fn add_integral(&mut self, name: &str, integrand: &str) {
+    pub(super) fn add_integral(&mut self, name: &str, integrand: &str) {
         self.integrals.insert(name.into(), integrand.into());
         self.found.get_mut().remove(name);
         self.found.get_mut().remove(&format!("{name}'"));
     }
 
     /// Adds a constant.
-    pub fn add_constant(&mut self, name: &str) {
+    pub(super) fn add_constant(&mut self, name: &str) {
         self.constants.insert(name.into());
     }
 
     /// `text` as it stands, names as symbols: what is printed. `left = right` gives both sides, anything else has 0 on the right.
-    ///
-    /// # Errors
-    /// Where it cannot be read or a name stands for nothing.
-    pub fn sides(&self, text: &str) -> Result<[Expr; 2]> {
+    pub(super) fn sides(&self, text: &str) -> Result<[Expr; 2]> {
         let (left, right) = text.split_once('=').unwrap_or((text, "0"));
         Ok([self.raw(left)?, self.raw(right)?])
     }
 
     /// An expression as it stands.
-    ///
-    /// # Errors
-    /// As [`Context::sides`].
-    pub fn raw(&self, text: &str) -> Result<Expr> {
+    pub(super) fn raw(&self, text: &str) -> Result<Expr> {
         let g = &self.graph;
         self.parse(text, |name| Ok(self.meaning(name, 0)?.map(|_| g.variable(g.symbol(name)))))
     }
 
     /// A raw expression with every name replaced by what it stands for.
-    ///
-    /// # Errors
-    /// As [`Context::sides`].
-    pub fn resolved(&self, raw: Expr) -> Result<Expr> {
+    pub(super) fn resolved(&self, raw: Expr) -> Result<Expr> {
         self.resolve_deep(raw, 0)
     }
 
     /// [`Context::raw`] and [`Context::resolved`] in one.
-    ///
-    /// # Errors
-    /// As [`Context::sides`].
-    pub fn expression(&self, text: &str) -> Result<Expr> {
+    pub(super) fn expression(&self, text: &str) -> Result<Expr> {
         self.resolved(self.raw(text)?)
     }
 
     /// A resolved expression with the symbols in `zero` put to zero.
-    pub fn in_the_end(&self, e: Expr) -> Expr {
+    pub(super) fn in_the_end(&self, e: Expr) -> Expr {
         let g = &self.graph;
         g.substitute(e, &self.zero.iter().map(|name| (g.symbol(name), g.zero())).collect())
     }
 
     /// `de/dt` of a resolved expression along the rates.
-    ///
-    /// # Errors
-    /// Where an integrand is faulty.
-    pub fn rate(&self, e: Expr) -> Result<Expr> {
+    pub(super) fn rate(&self, e: Expr) -> Result<Expr> {
         self.rate_deep(e, 0)
     }
 
     /// A raw expression as LaTeX. Partial derivatives `F_u1` are written `F_{\dot u}`, their time derivatives with `d/dt` before them.
-    pub fn latex(&self, raw: Expr) -> String {
+    pub(super) fn latex(&self, raw: Expr) -> String {
         let g = &self.graph;
         let mut text = g.latex(raw);
         let mut replaced: Vec<(String, String)> =
@@ -274,10 +256,7 @@ impl Context {
     /// ```text
     /// K_u = d²/dt² G_ü − d/dt G_u̇ + G_u ,      costate_w = Ṗ + G_w   (zero where P is the right one).
     /// ```
-    ///
-    /// # Errors
-    /// Where the data are not of that form, or an expression in them is faulty.
-    pub fn add_kernels(&self, action: &Table) -> Result<()> {
+    pub(super) fn add_kernels(&self, action: &Table) -> Result<()> {
         let g = &self.graph;
         let name = action.get("lagrangian").and_then(Value::as_str).context("action: `lagrangian` is missing")?;
         let lagrangian = self.expression(name)?;
@@ -329,7 +308,7 @@ impl Context {
 }
 
 /// A list of words.
-pub(crate) fn words(data: &Table, key: &str) -> Result<Vec<String>> {
+pub(super) fn words(data: &Table, key: &str) -> Result<Vec<String>> {
     let Some(value) = data.get(key) else { return Ok(Vec::new()) };
     let list = value.as_array().with_context(|| format!("`{key}` has to be a list"))?;
     list.iter()
@@ -338,7 +317,7 @@ pub(crate) fn words(data: &Table, key: &str) -> Result<Vec<String>> {
 }
 
 /// Names with texts, in order.
-pub(crate) fn texts(data: &Table, key: &str) -> Result<Vec<(String, String)>> {
+pub(super) fn texts(data: &Table, key: &str) -> Result<Vec<(String, String)>> {
     let Some(value) = data.get(key) else { return Ok(Vec::new()) };
     let table = value.as_table().with_context(|| format!("`{key}` has to be a table"))?;
     let text = |(name, v): (&String, &Value)| {

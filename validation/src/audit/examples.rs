@@ -12,7 +12,6 @@ use std::collections::HashMap;
 use anyhow::{Context as _, Result};
 use equations::Equations;
 use mechanics::{Removal, System};
-use scene::Scene;
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
 use crate::catalogue;
@@ -23,10 +22,6 @@ use super::constants::removal;
 /// An example written out.
 #[derive(Clone, Debug)]
 pub struct Example {
-    /// The scene.
-    pub scene: String,
-    /// The removal.
-    pub removal: String,
     /// Named quantities: name, what it is, both LaTeX.
     pub quantities: Vec<(String, String)>,
     /// The equations as LaTeX.
@@ -43,7 +38,10 @@ const SHORT: usize = 6;
 /// # Errors
 /// Where it cannot be derived.
 pub fn cone() -> Result<Example> {
-    example("ball-in-cone", "paper")
+    let scene = catalogue::find("ball-in-cone", &[])?;
+    let removal = removal(&scene, "paper")?;
+    let derived = equations(&scene.system, "removed-constraint", Some(removal))?;
+    Writer::new(&scene.system, removal, derived).write()
 }
 
 /// Why the equations for the paper's `u` and `θ` of example 3 cannot be integrated.
@@ -56,13 +54,6 @@ pub fn refusal() -> Result<String> {
         Err(error) => Ok(error.to_string()),
         Ok(_) => anyhow::bail!("the paper's parametrization of example 3 is not refused"),
     }
-}
-
-fn example(name: &str, of: &str) -> Result<Example> {
-    let scene: Scene = catalogue::find(name, &[])?;
-    let removal = removal(&scene, of)?;
-    let derived = equations(&scene.system, "removed-constraint", Some(removal))?;
-    Writer::new(&scene.system, removal, derived).write(name, of)
 }
 
 /// Quantities that got a name, with what they stand for.
@@ -107,7 +98,7 @@ impl<'a> Writer<'a> {
         e
     }
 
-    fn write(mut self, scene: &str, of: &str) -> Result<Example> {
+    fn write(mut self) -> Result<Example> {
         let (system, removal) = (self.system.clone(), self.removal);
         let mut momenta = Vec::new();
         let velocities = removal.velocities(&self.system);
@@ -137,7 +128,7 @@ impl<'a> Writer<'a> {
                 rates.push((p, force));
             }
         }
-        self.finish(scene, of, balances, rates)
+        self.finish(balances, rates)
     }
 
     /// `Σ p_i ∂V_i/∂z + Σ L_{q_i} ∂q_i/∂z + Σ P_k ∂B_k/∂z`, long coefficients named.
@@ -180,8 +171,6 @@ impl<'a> Writer<'a> {
 
     fn finish(
         self,
-        scene: &str,
-        of: &str,
         balances: Vec<(&mechanics::DisplacementParameter, Expr, Expr)>,
         rates: Vec<(Symbol, Expr)>,
     ) -> Result<Example> {
@@ -215,13 +204,7 @@ impl<'a> Writer<'a> {
                 lines.push(format!("{} = {}", g.latex_symbol(c.position), g.latex(removal.coordinates[i])));
             }
         }
-        Ok(Example {
-            scene: scene.into(),
-            removal: of.into(),
-            quantities: self.quantities,
-            equations: lines,
-            residuals,
-        })
+        Ok(Example { quantities: self.quantities, equations: lines, residuals })
     }
 
     /// Names replaced by what they stand for, velocities and coordinates by the parametrization.

@@ -8,10 +8,7 @@ use super::context::Context;
 type Vector = [Expr; 3];
 
 /// Definitions of the geometry `name`: slips (velocities of the point of contact, zero where a body rolls), energies.
-///
-/// # Errors
-/// Where there is no such geometry or the context lacks a name that it needs.
-pub(crate) fn definitions(name: &str, context: &Context) -> Result<Vec<(String, Expr)>> {
+pub(super) fn definitions(name: &str, context: &Context) -> Result<Vec<(String, Expr)>> {
     match name {
         "incline" => incline(context),
         "cone" => ball_in_cone(context, ContactAt::Distance),

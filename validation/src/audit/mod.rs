@@ -9,9 +9,7 @@ mod geometry;
 mod paper;
 mod stationarity;
 
-pub use action::{Action, BUMPS, Jet, bump};
-pub use constants::{Augmented, Constants, HORIZONS, Horizon};
-pub use context::Context;
+pub use constants::{Constants, HORIZONS};
 pub use examples::{Example, cone, refusal};
 pub use paper::{Finding, Form, Line, Paper, Variant, Verdict, Which};
-pub use stationarity::{READINGS, Reading, STATEMENT, Stationarity};
+pub use stationarity::{Reading, STATEMENT, Stationarity};

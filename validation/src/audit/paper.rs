@@ -162,10 +162,7 @@ impl Paper {
     }
 
     /// A context by name.
-    ///
-    /// # Errors
-    /// Where there is none.
-    pub fn context(&self, name: &str) -> Result<&Context> {
+    pub(super) fn context(&self, name: &str) -> Result<&Context> {
         self.contexts.get(name).with_context(|| format!("no context `{name}`"))
     }
 

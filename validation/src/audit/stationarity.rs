@@ -19,7 +19,7 @@ use random::equations;
 
 /// Readings of (34), each as what has to be zero, with `P = C − ∫ L_λ dt`. (The fourth, second operator on `L` and first on `β`, divides by `P`, which is
 /// zero at `t₁`.)
-pub const READINGS: [(&str, &str); 4] = [
+const READINGS: [(&str, &str); 4] = [
     (STATEMENT, "K_u"),
     ("(34), first operator on L, second on β", "L_u2'' - L_u1' + L_u0 - P*(beta_u1' - beta_u0) + beta_u1*L_lambda"),
     ("(34), first operator on both", "L_u2'' - L_u1' + L_u0 - P*(beta_u2'' - beta_u1' + beta_u0) + beta_u1*L_lambda"),
@@ -164,25 +164,7 @@ impl Problem for Law {
 }
 
 /// The same system as a scene.
-const SCENE: &str = r#"
-title = "A removal of second order"
-[parameters]
-epsilon = 0.5
-[coordinates]
-x = { start = 0 }
-y = { start = 0 }
-[system]
-lagrangian = "(x'^2 + y'^2)/2 - (x^2 + y^2)/2"
-constraints = ["y' - x'^2/2"]
-[start.velocities]
-"x'" = 0.1
-[removal.second-order]
-parameters = ["u"]
-direct = { x = "u + epsilon*u'" }
-rates = { y = "(u' + epsilon*u'')^2/2" }
-[run]
-duration = 1
-"#;
+const SCENE: &str = include_str!("second-order.toml");
 
 /// How far the motion of the crate `removed-constraint` is from this one, both from the same start and constants.
 fn gap_to_derivation(

@@ -1,7 +1,7 @@
 //! The referee's scripts, and how they are run.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use super::python_environment::{self, NotRun, files};
 
@@ -18,18 +18,12 @@ const SCRIPTS: [(&str, &str); 6] = [
 ];
 
 /// The interpreter of the referee's environment.
-///
-/// # Errors
-/// [`NotRun`].
-pub fn interpreter() -> Result<PathBuf, NotRun> {
+pub(super) fn interpreter() -> Result<PathBuf, NotRun> {
     python_environment::interpreter(REQUIREMENTS)
 }
 
 /// Runs the scripts on a job; the text of their answer.
-///
-/// # Errors
-/// [`NotRun`].
-pub fn answer(interpreter: &Path, job: &str) -> Result<String, NotRun> {
+pub(super) fn answer(interpreter: &Path, job: &str) -> Result<String, NotRun> {
     let folder = tempfile::tempdir().map_err(files("the scripts"))?;
     for (name, text) in SCRIPTS {
         std::fs::write(folder.path().join(name), text).map_err(files("the scripts"))?;
@@ -43,11 +37,8 @@ pub fn answer(interpreter: &Path, job: &str) -> Result<String, NotRun> {
         .output()
         .map_err(|_| NotRun::NoPython)?;
     if !output.status.success() {
-        return Err(NotRun::NoAnswer { status: output.status.to_string(), last_line: last_line(&output) });
+        let complaint = String::from_utf8_lossy(&output.stderr).lines().last().unwrap_or_default().to_string();
+        return Err(NotRun::NoAnswer(output.status.to_string(), complaint));
     }
     std::fs::read_to_string(&answer).map_err(files("the answer"))
-}
-
-fn last_line(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).lines().last().unwrap_or_default().to_string()
 }

@@ -9,34 +9,18 @@ pub enum NotRun {
     /// No interpreter.
     #[error("there is no `python3`, version 3.11 or later")]
     NoPython,
-    /// `python3 -m venv` failed.
-    #[error("`python3 -m venv` ended with {status}")]
-    NoEnvironment {
-        /// How it ended.
-        status: String,
-    },
-    /// The packages could not be installed.
-    #[error("pip could not install the required packages ({status}): is there a package index?")]
-    NoPackages {
-        /// How it ended.
-        status: String,
-    },
-    /// A folder or a file could not be written.
-    #[error("cannot write {what}: {kind}")]
-    Files {
-        /// What.
-        what: &'static str,
-        /// What the file system says.
-        kind: std::io::ErrorKind,
-    },
-    /// The scripts ended without an answer.
-    #[error("the scripts ended with {status}: {last_line}")]
-    NoAnswer {
-        /// How they ended.
-        status: String,
-        /// Last line of what they complained of.
-        last_line: String,
-    },
+    /// `python3 -m venv` failed: how it ended.
+    #[error("`python3 -m venv` ended with {0}")]
+    NoEnvironment(String),
+    /// The packages could not be installed: how pip ended.
+    #[error("pip could not install the required packages ({0}): is there a package index?")]
+    NoPackages(String),
+    /// A folder or a file could not be written, and what the file system says.
+    #[error("cannot write {0}: {1}")]
+    Files(&'static str, std::io::ErrorKind),
+    /// The scripts ended without an answer: how, and the last line of what they complained of.
+    #[error("the scripts ended with {0}: {1}")]
+    NoAnswer(String, String),
 }
 
 /// Files that cargo writes into the folder that it builds into; the first one only where it made that folder itself.
@@ -63,14 +47,11 @@ fn hash(text: &str) -> u64 {
 }
 
 pub(super) fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
-    move |error| NotRun::Files { what, kind: error.kind() }
+    move |error| NotRun::Files(what, error.kind())
 }
 
 /// The interpreter of the environment with the packages of `requirements`, made now if it is not there yet. What is half made is never seen: it is built beside its place and
 /// moved there when it is complete.
-///
-/// # Errors
-/// [`NotRun`].
 pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     let target = target();
     let place = target.join(format!("casadi-{:016x}", hash(requirements)));
@@ -89,7 +70,7 @@ pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     let run = |command: &mut Command| command.output().map_err(|_| NotRun::NoPython);
     let made = run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
     if !made.status.success() {
-        return Err(NotRun::NoEnvironment { status: made.status.to_string() });
+        return Err(NotRun::NoEnvironment(made.status.to_string()));
     }
     let list = building.path().join("requirements.txt");
     std::fs::write(&list, requirements).map_err(files("the requirements"))?;
@@ -98,7 +79,7 @@ pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     let installed =
         run(pip.args(options).args(["--retries", "1", "--timeout", "20", "--only-binary", ":all:", "-r"]).arg(&list))?;
     if !installed.status.success() {
-        return Err(NotRun::NoPackages { status: installed.status.to_string() });
+        return Err(NotRun::NoPackages(installed.status.to_string()));
     }
     // Another process may have been quicker; its environment is as good.
     let moved = std::fs::rename(&folder, &place);

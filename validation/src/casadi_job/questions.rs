@@ -166,7 +166,7 @@ impl Question {
 /// The equations as derived, nothing left out; `None` where the formulation refuses.
 fn equations(scene: &Scene, choice: &Choice) -> Option<Equations> {
     let formulation = formulation(choice.formulation)?;
-    (formulation.derive)(&scene.system, &Derivation { removal: choice.removal.as_ref(), start: None }).ok()
+    (formulation.derive)(&scene.system, &Derivation { removal: choice.removal.as_ref(), ..Derivation::default() }).ok()
 }
 
 fn is_automatic(scene: &Scene, choice: &Choice) -> bool {

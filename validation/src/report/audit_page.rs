@@ -1,16 +1,16 @@
 //! The pages about the paper's equations.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 use symbolic::Vanishing;
 
 use crate::audit::{
-    Constants, Example, Finding, Form, HORIZONS, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
+    Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
 use crate::report::numbers::{enumerate, short};
-use crate::report::{File, Table};
+use crate::report::{File, Table, fill};
 
 /// Below this `dI/dε` counts as zero: differences of the perturbed action are good to about 1e-9.
 const STATIONARY: f64 = 1e-8;
@@ -86,159 +86,71 @@ impl AuditReport {
     }
 
     fn page(&self) -> String {
-        let mut page = format!("# The paper's equations, each checked\n\n**{}**\n\n", self.headline());
-        page += "The equations of Gao 2017 ([doi:10.3969/j.issn.1673-9833.2017.05.001](https://doi.org/10.3969/j.issn.1673-9833.2017.05.001)), in their order. \
-                 A *residual* is left side minus right side once every name is replaced by what it stands for: velocities of points of contact and energies that come from positions and \
-                 rotations, motions that roll, variations of an action. It is zero by simplification (0), or at 32 random points up to round-off (0 at 32 points), or it is not zero, \
-                 and then its value at a random point of coordinates, velocities and parameters of order 1 stands here. Verdicts are computed from residuals; \
-                 what is printed below is what was evaluated.\n\n\
-                 - **holds**: zero as printed.\n- **misprint**: not zero as printed, zero as corrected.\n- **incomplete**: true in a special case or of a name that is not explained; zero as completed.\n\n\
-                 Sections: [all verdicts](#all-verdicts), [what the constants of integration are](#what-the-constants-of-integration-are), \
-                 [is the action stationary?](#is-the-action-stationary), [equation by equation](#equation-by-equation). Examples 2 and 3, whose motions the paper leaves to the reader, \
-                 are written out in [paper-examples.md](paper-examples.md).\n\n";
         let columns = ["equation", "about", "verdict", ">residual, printed", ">residual, corrected", "checked"];
-        let mut table = Table::new(columns);
+        let mut verdicts = Table::new(columns);
         for f in &self.findings {
             let word = if f.verdict == Verdict::Holds { "holds".into() } else { format!("**{}**", f.verdict.word()) };
             let [printed, corrected] = [&f.printed, &f.corrected].map(form_residual);
-            table.row(&[&f.number, &f.title, &word, &printed, &corrected, &checked(f)]);
+            verdicts.row(&[&f.number, &f.title, &word, &printed, &corrected, &checked(f)]);
         }
-        let _ = write!(page, "## All verdicts\n\n{table}");
-        page += &self.constants_section();
-        page += &self.stationarity_section();
-        page += "\n## Equation by equation\n";
-        for f in &self.findings {
-            page += &equation(f);
-        }
-        page
-    }
-
-    fn constants_section(&self) -> String {
-        let c = &self.constants;
-        let mut text = String::from("\n## What the constants of integration are\n\n");
-        text += "The paper says of $t_1$ in example 1 and of $C_i$, $D_e$, $E_{ile}$ in (35) that the initial conditions determine them. They do not: they are the initial values \
-                 $P_i(t_0)$ of costates, in the statement $G = L + P\\cdot B$, $\\dot P = -G_w$, and no coordinate or velocity at $t_0$ says anything about them. Numbers, all computed for this page:\n\n";
-        let _ = writeln!(
-            text,
-            "- **One start, two motions.** Sledge, the same $(q_0, v_0)$ (they differ by {}), $C = {}$ and $C = {}$: within {} s the motions get {} apart.",
-            short(c.two[2]),
-            short(c.two[0]),
-            short(c.two[1]),
-            short(c.duration),
-            short(c.two[3])
-        );
-        let _ = writeln!(
-            text,
-            "- **What the variational principle asks for** is $P(t_1) = 0$, $C_i = \\int_{{t_0}}^{{t_1}} \\partial G/\\partial w_i\\,dt$. For the sledge that is $C = g\\,t_1\\sin\\alpha$, and $t_1$ is the end of the time over which the action is taken: \
-             the boundary-value problem gives {}. The motion depends on when it is to end: with $t_1 = {}$ s and $t_1 = {}$ s it is already {} apart within the sledge scene's {} s.",
-            enumerate(
-                &c.natural
-                    .iter()
-                    .map(|[t, x]| format!("$C = {}$ for $t_1 = {}$ s", short(*x), short(*t)))
-                    .collect::<Vec<_>>()
-            ),
-            short(HORIZONS[0]),
-            short(HORIZONS[1]),
-            short(c.natural_gap),
-            short(c.duration)
-        );
-        let _ = writeln!(
-            text,
-            "- **They are multipliers.** The removed-constraint motion is the vakonomic motion of the augmented system, whose coordinates are $(q, u)$ and whose constraints are $\\dot w = B$, with multipliers \
-             $\\mu_0 = -P(t_0) - \\partial L/\\partial\\dot w$. Largest difference of any coordinate within 1 s: {}.",
-            enumerate(
-                &c.augmented
-                    .iter()
-                    .map(|a| {
-                        let constants: Vec<String> = a.constants.iter().map(|x| short(*x)).collect();
-                        format!("{} for `{}`, $C = ({})$", short(a.gap), a.scene, constants.join(", "))
-                    })
-                    .collect::<Vec<_>>()
-            )
-        );
-        let _ = writeln!(
-            text,
-            "- **For one choice the sledge's motion is vakonomic.** With $t_1 = -\\dot u_0/(g\\sin\\alpha\\cos\\varphi_0) = {}$ s it is the vakonomic motion with $\\mu_0 = g\\,t_1\\sin\\alpha\\sin\\varphi_0 = {}$: gap {} over {} s. For other $t_1$, with the best $\\mu_0$ that was found:\n",
-            short(c.matching),
-            short(c.multiplier),
-            short(c.gap),
-            short(c.duration)
-        );
-        let mut table = Table::new([">$t_1$, s", ">$C$", ">best $\\mu_0$", ">gap that is left"]);
-        for h in &c.horizons {
-            table.cells([h.horizon, h.constant, h.multiplier, h.gap].map(short));
-        }
-        // within the item of the list
-        text.extend(table.to_string().lines().map(|line| format!("  {line}\n")));
-        let _ = writeln!(
-            text,
-            "\n- **Without any constraint they matter too.** `planar-body`, on which nothing is constrained, its velocities written along turning axes: with $P(t_0) = 0$ it is {} from Newton's motion and its rotation, on which no torque acts, is {} rad off at the end; \
-             with $P(t_0) = -(\\dot x_0, \\dot y_0)$ the gap is {}. The principle gives Newton's motion for one choice of its constants and not for others, and does not say which.",
-            short(c.body_zero[0]),
-            short(c.body_zero[1]),
-            short(c.body_right)
-        );
-        text
-    }
-
-    fn stationarity_section(&self) -> String {
-        let s = &self.stationarity;
-        let mut text = String::from("\n## Is the action stationary?\n\n");
-        text += "A system with $\\ddot u$ in $\\beta$: $\\dot y = \\tfrac12\\dot x^2$, $L = \\tfrac12(\\dot x^2 + \\dot y^2 - x^2 - y^2)$, removed by $x = u + \\tfrac12\\dot u$, $\\lambda = y$, $\\beta = \\tfrac12\\dot x^2$. Each reading of (34) is solved for the highest derivative and integrated over $[0, 1]$ with the natural constant, \
-                 $P(1) = 0$. Then the action itself, nested integral included, is perturbed along it, $u + \\varepsilon\\,\\delta u$, for four $\\delta u$ of size 1 that vanish at both ends with their first derivatives. No derivation is used in that.\n\n";
-        let mut table =
-            Table::new(["motion of", ">order in $u$", "$dI/d\\varepsilon$, four $\\delta u$", "stationary"]);
+        let (c, s) = (&self.constants, &self.stationarity);
+        let natural = c.natural.iter().map(|[t, x]| format!("$C = {}$ for $t_1 = {}$ s", short(*x), short(*t)));
+        let augmented = c.augmented.iter().map(|(scene, constants, gap)| {
+            let constants: Vec<String> = constants.iter().map(|x| short(*x)).collect();
+            format!("{} for `{}`, $C = ({})$", short(*gap), scene, constants.join(", "))
+        });
+        let mut horizons = Table::new([">$t_1$, s", ">$C$", ">best $\\mu_0$", ">gap that is left"]);
+        c.horizons.iter().for_each(|h| horizons.cells(h.map(short)));
+        let columns = ["motion of", ">order in $u$", "$dI/d\\varepsilon$, four $\\delta u$", "stationary"];
+        let mut readings = Table::new(columns);
         for r in &s.readings {
-            let numbers: Vec<String> = r.derivatives.iter().map(|d| two_digits(*d)).collect();
             let word = if r.largest() < STATIONARY { "yes" } else { "**no**" };
-            table.row(&[&r.name, &r.order, &numbers.join(", "), &word]);
+            readings.row(&[&r.name, &r.order, &list(&r.derivatives), &word]);
         }
-        let _ = writeln!(
-            text,
-            "{table}\n({STATEMENT}: $\\frac{{d^2}}{{dt^2}}G_{{\\ddot u}} - \\frac{{d}}{{dt}}G_{{\\dot u}} + G_u = 0$, $\\dot P = -G_w$. The motion that `removed-constraint` derives from the same start and constants differs by {}.)\n",
-            short(s.gap)
-        );
-        text += "The same for the $\\delta I$ of example 1, along a curve that is no motion; $u$ and $\\varphi$ are varied together:\n\n";
         let columns = [">$dI/d\\varepsilon$ measured", ">from $\\delta I$ as printed", ">as corrected"];
-        let mut table = Table::new(columns);
-        for numbers in &s.sledge {
-            table.cells(numbers.map(|x| format!("{x:.8}")));
-        }
-        text + &table.to_string()
+        let mut sledge = Table::new(columns);
+        s.sledge.iter().for_each(|numbers| sledge.cells(numbers.map(|x| format!("{x:.8}"))));
+        let headline = self.headline();
+        let natural = enumerate(&natural.collect::<Vec<_>>());
+        let augmented = enumerate(&augmented.collect::<Vec<_>>());
+        // within the item of the list
+        let horizons = horizons.to_string().lines().map(|line| format!("  {line}\n")).collect::<String>();
+        let gap_derived = short(s.gap);
+        let equations = self.findings.iter().map(equation).collect::<String>();
+        let numbers: Vec<(&str, String)> = c.numbers.iter().map(|&(name, x)| (name, short(x))).collect();
+        let mut values: Vec<(&str, &dyn Display)> = numbers.iter().map(|(name, text)| (*name, text as _)).collect();
+        values.extend::<[(&str, &dyn Display); 10]>([
+            ("headline", &headline),
+            ("verdicts", &verdicts),
+            ("natural", &natural),
+            ("augmented", &augmented),
+            ("horizons", &horizons),
+            ("readings", &readings),
+            ("statement", &STATEMENT),
+            ("gap_derived", &gap_derived),
+            ("sledge", &sledge),
+            ("equations", &equations),
+        ]);
+        fill(include_str!("pages/paper-audit.md"), &values)
     }
 
     fn examples(&self) -> String {
-        let mut page = String::from(
-            "# Examples 2 and 3 of the paper, written out\n\nThe paper leaves their motions to the reader. These are the removed-constraint equations, with the misprints of [paper-audit.md](paper-audit.md) corrected.\n\n## Example 2: ball in a cone\n\nScene [ball-in-cone](scenes/ball-in-cone.md); displacement parameters $\\varphi, \\chi, \\theta$; memory $r$ with costate $P_r$, and $\\gamma$, which $L$ does not contain. Momenta and slopes, $\\dot r$ and $\\dot\\gamma$ by (10) and (12):\n\n",
-        );
-        let c = &self.cone;
-        for (name, meaning) in &c.quantities {
-            let _ = writeln!(page, "```math\n{name} = {meaning}\n```");
-        }
-        page += "\nEquations of motion:\n\n";
-        for line in &c.equations {
-            let _ = writeln!(page, "```math\n{line}\n```");
-        }
-        let _ = writeln!(
-            page,
-            "\nEach balance and the equation of $P_r$, minus what `removed-constraint` derives and what is integrated: {}. Free constant: $P_r(t_0)$.",
-            residuals(&c.residuals)
-        );
-        let _ = write!(
-            page,
-            "\n## Example 3: three cylinders\n\nScene [three-cylinders](scenes/three-cylinders.md). The paper's $u$ is not fit for equations of motion: $\\ddot u$ comes in as $\\frac{{d}}{{dt}}(\\dot u/\\dot\\theta)$ only, and the equations cannot be solved for the highest derivatives ({}). With $W = \\dot u/\\dot\\theta$, a function of the configuration by (25), they can, and (24) with (28) becomes short: one integral $\\kappa$ is all that is left of three, and it is $C$ plus half the integral in (27). (The scene's removal keeps the paper's three.)\n",
-            self.refusal
-        );
-        for group in &self.written {
-            let _ = writeln!(page, "\n{} (left minus right: {}):\n", group.words, form_residual(&group.form));
-            if !group.words.starts_with("The paper's three") {
-                for line in &group.form.lines {
-                    let _ = writeln!(page, "```math\n{}\n```", line.latex);
-                }
-            }
-        }
-        page += "\n$V$ is the velocity of the centre along the axis of the upper cylinder, $U$ across it, $\\Omega/R$ its rate of roll, $M$ the momentum of $\\theta$. $W$ and $\\theta$ are the displacement parameters, $\\kappa$ is memory with costate $P$. Free constant: $P(t_0)$; with the paper's three integrals there are three, of which this is one: what $P_{\\varphi_1}$ and $P_{\\varphi_2}$ have beyond the values above is constant and adds $c_1\\dot\\varphi_1 + c_2\\dot\\varphi_2$ to $G$.\n";
-        page
+        let quantities = self.cone.quantities.iter().map(|(name, meaning)| math(&format!("{name} = {meaning}")));
+        let written = self.written.iter().map(|group| {
+            let head = format!("\n{} (left minus right: {}):\n\n", group.words, form_residual(&group.form));
+            let shown = !group.words.starts_with("The paper's three");
+            head + &group.form.lines.iter().filter(|_| shown).map(|line| math(&line.latex)).collect::<String>()
+        });
+        fill(
+            include_str!("pages/paper-examples.md"),
+            &[
+                ("quantities", &quantities.collect::<String>()),
+                ("cone", &self.cone.equations.iter().map(|line| math(line)).collect::<String>()),
+                ("residuals", &residuals(&self.cone.residuals)),
+                ("refusal", &self.refusal),
+                ("written", &written.collect::<String>()),
+            ],
+        )
     }
 }
 
@@ -263,7 +175,6 @@ fn equation(f: &Finding) -> String {
         text += &table.to_string();
     }
     if let Some([printed, corrected]) = &f.along {
-        let list = |numbers: &[f64]| numbers.iter().map(|x| two_digits(*x)).collect::<Vec<_>>().join(", ");
         let _ = writeln!(
             text,
             "\nAlong the computed motion of the scene, largest residuals: {} as printed, {} as corrected (second derivatives are differences of velocities).",
@@ -282,6 +193,14 @@ fn equation(f: &Finding) -> String {
     text
 }
 
+fn list(numbers: &[f64]) -> String {
+    numbers.iter().map(|x| two_digits(*x)).collect::<Vec<_>>().join(", ")
+}
+
+fn math(latex: &str) -> String {
+    format!("```math\n{latex}\n```\n")
+}
+
 fn blocks(words: &str, form: &Form) -> String {
     let mut text = String::new();
     if form.lines.is_empty() {
@@ -290,9 +209,7 @@ fn blocks(words: &str, form: &Form) -> String {
     if !words.is_empty() {
         let _ = writeln!(text, "{words}\n");
     }
-    for line in form.lines.iter().map(|l| &l.latex).chain(&form.integrals) {
-        let _ = writeln!(text, "```math\n{line}\n```");
-    }
+    text.extend(form.lines.iter().map(|l| &l.latex).chain(&form.integrals).map(|line| math(line)));
     let _ = writeln!(text, "\nResidual {}.\n", form_residual(form));
     text
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
 use crate::report::numbers::{enumerate, short};
 use crate::report::{File, Table};
-use picture::{Axis, Curve, Panel, PictureError, SmallMultiples, Style};
+use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
 
 /// The error at which formulations are compared in the headline.
 const HEADLINE_TARGET: f64 = 1e-10;
@@ -200,19 +200,8 @@ fn picture(bench: &Bench) -> Result<String, PictureError> {
         let drawn = curves.iter().any(|curve| !curve.points.is_empty());
         drawn.then(|| Panel { y: Axis::log(shortened(&entry.label)), curves })
     };
-    SmallMultiples {
-        title: format!("{}: error over run time", bench.title),
-        x: Axis::log("run time (ms)"),
-        panels: bench.entries.iter().filter_map(panel).collect(),
-        columns: 2,
-    }
-    .to_svg()
-    .map_err(|error| match error {
-        PictureError::NoPanels { title } => {
-            PictureError::NothingToDraw { title, axis: "run time (ms)".into(), not_finite: 0, not_positive: 0 }
-        }
-        other => other,
-    })
+    let panels = bench.entries.iter().filter_map(panel).collect();
+    Picture::panels(format!("{}: error over run time", bench.title), Axis::log("run time (ms)"), panels, 2).to_svg()
 }
 
 /// What fits beside a panel.

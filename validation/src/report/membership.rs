@@ -1,18 +1,19 @@
-//! Words for the decision: is there a `μ₀` with which the vakonomic motion is Chetaev's?
+//! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
-use deltaq::{Answer, Comparison, Membership};
+use deltaq::{Answer, Comparison, Decided, Membership, SolveError};
 use serde_json::{Value, json};
 
+use crate::report::Table;
 use crate::report::numbers::{precise, short};
 
 /// Is the answer for a scene of this kind?
 pub(crate) fn is(comparison: &Comparison, wanted: fn(&Answer) -> bool) -> bool {
-    matches!(&comparison.membership, Some(Ok(membership)) if wanted(&membership.answer()))
+    matches!(comparison.membership(), Some(Ok(membership)) if wanted(&membership.answer()))
 }
 
-/// The answer in a few words.
+/// The answer for Chetaev's motion and the multipliers, in a few words.
 pub(crate) fn words(comparison: &Comparison) -> String {
-    match &comparison.membership {
+    match comparison.membership() {
         None => "–".into(),
         Some(Err(_)) => "undecided".into(),
         Some(Ok(membership)) => match membership.answer() {
@@ -26,47 +27,77 @@ pub(crate) fn words(comparison: &Comparison) -> String {
     }
 }
 
-/// Sentences for the head of the page of a scene.
+/// Sentences for the head of the page of a scene, about multipliers and Chetaev's motion.
 pub(crate) fn sentences(comparison: &Comparison) -> Vec<String> {
-    let membership = match &comparison.membership {
-        None => return Vec::new(),
-        Some(Err(error)) => return vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
-        Some(Ok(membership)) => membership,
+    let Some(outcome) = comparison.membership() else { return Vec::new() };
+    let membership = match outcome {
+        Err(error) => return vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
+        Ok(membership) => membership,
     };
-    let decision = &membership.decision;
-    let point: Vec<String> = decision.set.point.iter().map(|c| precise(*c)).collect();
-    let which = match decision.set.dimension() {
-        0 => format!("μ₀ = ({})", point.join(", ")),
-        d if d == decision.constants.len() => "every μ₀".to_owned(),
-        d => format!("every μ₀ of a set of dimension {d} around ({})", point.join(", ")),
-    };
-    let mismatch = format!(
-        "the least mismatch of accelerations is {} of the motion's own",
-        short(decision.least / decision.acceleration)
-    );
-    let mut sentences = vec![match membership.answer() {
-        Answer::NoneProved { order } => {
-            format!("No μ₀ makes the vakonomic motion Chetaev's: proved (order {order}); {mismatch}.")
-        }
-        Answer::None { unproved } => {
-            format!("No μ₀ makes the vakonomic motion Chetaev's: {mismatch}; there is no proof, since {unproved}.")
-        }
-        Answer::SomeProved => {
-            let section = membership.section.as_ref();
-            let reason = section.map_or("proved by ranks that grow no more".to_owned(), |section| {
-                format!("an identity, μ₀ = ({}), for all starts", section.expressions.join(", "))
-            });
-            format!("With {which} the vakonomic motion is the Chetaev motion: {reason}.")
-        }
-        Answer::Some { order } => {
-            format!("With {which} the vakonomic motion is the Chetaev motion, {}.", how_far(membership, order))
-        }
-        Answer::Undecided => {
-            format!("Whether some μ₀ gives Chetaev's motion is undecided: round-off hides it, {mismatch}.")
-        }
-    }];
+    let mut sentences = vec![sentence(membership)];
     sentences.extend(least_gap(comparison, &membership.answer()));
     sentences
+}
+
+/// The answer for Chetaev's motion and the vakonomic family, in a sentence.
+pub fn sentence(membership: &Membership) -> String {
+    let reason = reason(membership);
+    match membership.answer() {
+        Answer::NoneProved { .. } | Answer::None { .. } => {
+            format!("No μ₀ makes the vakonomic motion Chetaev's: {reason}.")
+        }
+        Answer::Undecided => format!("Whether some μ₀ gives Chetaev's motion is undecided: {reason}."),
+        Answer::SomeProved | Answer::Some { .. } => {
+            format!("With {} the vakonomic motion is the Chetaev motion: {reason}.", constants(membership, "μ₀"))
+        }
+    }
+}
+
+/// Which families have which motions.
+pub(crate) fn table(comparison: &Comparison) -> Table {
+    let mut table = Table::new(["family", "has the motion", "for", "because"]);
+    for decided in &comparison.decided {
+        let [family, curve] = [decided.family, decided.curve].map(|i| &comparison.runs[i].choice);
+        let c = if family.removal.is_some() { "P(t₀)" } else { "μ₀" };
+        let (which, reason) = match &decided.outcome {
+            Err(error) => ("undecided".into(), error.to_string()),
+            Ok(membership) => match membership.answer() {
+                Answer::NoneProved { .. } | Answer::None { .. } => (format!("**no** {c}"), reason(membership)),
+                Answer::SomeProved | Answer::Some { .. } => (constants(membership, c), reason(membership)),
+                Answer::Undecided => ("undecided".into(), reason(membership)),
+            },
+        };
+        table.row(&[&family.label, &curve.label, &which, &reason]);
+    }
+    table
+}
+
+/// The set that was found.
+fn constants(membership: &Membership, c: &str) -> String {
+    let set = &membership.decision.set;
+    let point: Vec<String> = set.point.iter().map(|c| precise(*c)).collect();
+    match set.dimension() {
+        0 => format!("{c} = ({})", point.join(", ")),
+        d if d == membership.decision.constants.len() => format!("every {c}"),
+        d => format!("every {c} of a set of dimension {d} around ({})", point.join(", ")),
+    }
+}
+
+fn reason(membership: &Membership) -> String {
+    let decision = &membership.decision;
+    let part = short(decision.least / decision.acceleration);
+    let mismatch = format!("the least mismatch of accelerations is {part} of the motion's own");
+    match membership.answer() {
+        Answer::NoneProved { order } => format!("proved (order {order}); {mismatch}"),
+        Answer::None { unproved } => format!("{mismatch}; there is no proof, since {unproved}"),
+        Answer::SomeProved => {
+            membership.section.as_ref().map_or("proved by ranks that grow no more".into(), |section| {
+                format!("an identity, ({}), for all starts", section.expressions.join(", "))
+            })
+        }
+        Answer::Some { order } => how_far(membership, order),
+        Answer::Undecided => format!("round-off hides it, {mismatch}"),
+    }
 }
 
 /// What a search over `μ₀` leaves of the gap, where there is none that leaves nothing.
@@ -81,10 +112,25 @@ fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
     Some(format!("The least gap that a search found is {gap}, at μ₀ = ({constants})."))
 }
 
-/// For machines: the answer, its order and the dimension of the set.
-pub(crate) fn value(comparison: &Comparison) -> Value {
-    let Some(membership) = &comparison.membership else { return Value::Null };
-    let Ok(membership) = membership else { return json!({ "answer": "undecided" }) };
+/// For machines: every family and motion asked about, with the answer.
+pub(crate) fn values(comparison: &Comparison) -> Value {
+    let label = |i: usize| comparison.runs[i].choice.label.clone();
+    let of = |decided: &Decided| {
+        let mut value = value(Some(&decided.outcome));
+        value["family"] = label(decided.family).into();
+        value["motion"] = label(decided.curve).into();
+        value
+    };
+    comparison.decided.iter().map(of).collect()
+}
+
+/// For machines: the answer, its order and the dimension of the set; null where there is no constraint.
+pub fn value(outcome: Option<&Result<Membership, SolveError>>) -> Value {
+    let membership = match outcome {
+        None => return Value::Null,
+        Some(Err(error)) => return json!({ "answer": "undecided", "because": error.to_string() }),
+        Some(Ok(membership)) => membership,
+    };
     let dimension = membership.decision.set.dimension();
     match membership.answer() {
         Answer::NoneProved { order } => json!({ "answer": "none", "proved": true, "order": order }),

@@ -3,6 +3,7 @@
 mod audit_page;
 mod bench_page;
 mod files;
+mod fill;
 mod membership;
 mod numbers;
 mod overview;
@@ -20,6 +21,8 @@ mod verdicts;
 pub use audit_page::AuditReport;
 pub use bench_page::{bench_files, bench_headline, bench_json, bench_table, ensemble_text};
 pub use files::{File, write_all};
+pub use fill::fill;
+pub use membership::{sentence as membership_sentence, value as membership_value};
 pub use overview::overview;
 pub use pictures::pictures;
 pub use random_page::{random_files, random_headline, random_verdicts};

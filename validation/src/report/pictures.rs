@@ -6,7 +6,7 @@ use anyhow::Result;
 use deltaq::{Comparison, Run};
 
 use crate::report::File;
-use picture::{Aspect, Axis, Curve, Panel, Picture, SmallMultiples, Style};
+use picture::{Axis, Curve, Panel, Picture, Style};
 use random::substitution;
 
 /// Instants drawn of a motion.
@@ -47,30 +47,21 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
         y: Axis::linear(format!("{} ({})", c.name, c.unit)),
         curves: curves(&|now| (now.t, now.q[i])),
     });
-    let multiples = SmallMultiples {
-        title: format!("{}: coordinates over time", comparison.scene.title),
-        x: Axis::linear("t (s)"),
-        panels: panels.collect(),
-        columns: if coordinates.len() > 1 { 2 } else { 1 },
-    };
-    add("coordinates", multiples.to_svg()?);
+    let title = |what: &str| format!("{}: {what}", comparison.scene.title);
+    let columns = if coordinates.len() > 1 { 2 } else { 1 };
+    let over_time = Picture::panels(title("coordinates over time"), Axis::linear("t (s)"), panels.collect(), columns);
+    add("coordinates", over_time.to_svg()?);
 
     let place = |name: &str| coordinates.iter().position(|c| c.name == name);
     if let (Some(x), Some(y)) = (place("x"), place("y")) {
-        let picture = Picture {
-            title: format!("{}: path in the plane", comparison.scene.title),
-            x: Axis::linear(format!("x ({})", coordinates[x].unit)),
-            y: Axis::linear(format!("y ({})", coordinates[y].unit)),
-            curves: curves(&|now| (now.q[x], now.q[y])),
-            aspect: Aspect::Equal,
-        };
-        add("path", picture.to_svg()?);
+        let axes = [x, y].map(|i| format!("{} ({})", coordinates[i].name, coordinates[i].unit));
+        let curves = curves(&|now| (now.q[x], now.q[y]));
+        add("path", Picture::plane(title("path in the plane"), [&axes[0], &axes[1]], curves).to_svg()?);
     }
     let gaps = gap_curves(comparison);
     if !gaps.is_empty() {
-        let title = format!("{}: gap to the Chetaev motion", comparison.scene.title);
         let (x, y) = (Axis::log("t − t₀ (s)"), Axis::log("gap, kinetic metric"));
-        add("gap", Picture::new(title, x, y, gaps).to_svg()?);
+        add("gap", Picture::new(title("gap to the Chetaev motion"), x, y, gaps).to_svg()?);
     }
     Ok(files)
 }

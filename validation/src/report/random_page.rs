@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use crate::report::numbers::{enumerate, or_dash, short};
 use crate::report::{File, Table};
-use picture::{Axis, Curve, Panel, Picture, Scale, SmallMultiples, Style};
+use picture::{Axis, Curve, Panel, Picture, Scale, Style};
 use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.
@@ -289,11 +289,7 @@ fn exponents(summary: &Summary) -> Result<String> {
             curves: vec![Curve { label: names.grows.trim_start_matches("growth exponent, ").into(), style, points }],
         }
     });
-    let multiples = SmallMultiples {
-        title: "Nonintegrable random systems: how the gap begins".into(),
-        x: Axis { range: Some((LOWEST, LOWEST + WIDTH * BINS as f64)), ..Axis::linear("exponent of t") },
-        panels: panels.collect(),
-        columns: 2,
-    };
-    Ok(multiples.to_svg()?)
+    let x = Axis { range: Some((LOWEST, LOWEST + WIDTH * BINS as f64)), ..Axis::linear("exponent of t") };
+    let title = "Nonintegrable random systems: how the gap begins";
+    Ok(Picture::panels(title, x, panels.collect(), 2).to_svg()?)
 }

@@ -1,20 +1,18 @@
 //! The page about realizations.
 
-use std::fmt::Write;
-
 use anyhow::{Context, Result};
-use deltaq::{Metric, Motion, Setting, SolveError, choices, setting, solve_choice};
+use deltaq::{Metric, Motion, Setting, Settings, SolveError, choices, setting, solve, solve_choice};
 use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
 use crate::report::numbers::short;
-use crate::report::{File, Table};
+use crate::report::{File, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use random::parallel;
-use random::realization::{Realization, distance, realize, realize_removal};
-use random::{Case, Kind, draw_recipe, free_constants};
+use random::realization::{Realization, distance, realize, realize_removal, with_kappa};
+use random::{Case, Kind, draw_recipe, equations, free_constants};
 
 /// `N`.
 const STRENGTHS: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
@@ -24,6 +22,9 @@ const SCENES: [(&str, f64); 3] = [("sledge", 3.0), ("disc", 3.0), ("ball-in-cone
 
 /// Multipliers of the start where a scene has none, one after the other.
 const MULTIPLIERS: [f64; 2] = [0.4, -0.3];
+
+/// Friction over mass where both act, in 1/s.
+const KAPPA: f64 = 0.5;
 
 /// Random systems on the page: seed and number.
 const SEED: u64 = 8;
@@ -62,6 +63,7 @@ pub struct RealizationReport {
 
 const FRICTION: &str = "friction, to Chetaev";
 const ADDED_MASS: &str = "added mass, to vakonomic";
+const BOTH: &str = "mass and friction, to κ = 0.5";
 const AUGMENTED: &str = "added mass on the augmented system, to removed constraint";
 
 impl RealizationReport {
@@ -100,7 +102,7 @@ impl RealizationReport {
         let within = rates.iter().filter(|r| RATE.contains(r)).count();
         let (least, most) = rates.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
         format!(
-            "Friction leads to Chetaev, added mass to the vakonomic motion, added mass on the augmented system to the removed-constraint motion: \
+            "Friction leads to Chetaev, added mass to the vakonomic motion, both together to the motion between them with κ = friction over mass, added mass on the augmented system to the removed-constraint motion: \
              {within} of {} measured rates are 1 within 0.05 in 1/N (from {} to {}).",
             rates.len(),
             short(least),
@@ -136,40 +138,34 @@ impl RealizationReport {
     }
 
     fn page(&self) -> String {
-        let mut page = format!("# What nature would have to do\n\n**{}**\n\n", self.headline());
-        page += "A constraint is an idealization. Take it away, and let something strong take its place, of strength $N$:\n\n\
-                 - **Friction**: the force $-N A^T f$ on the unconstrained system. As $N \\to \\infty$ the motion tends to Chetaev's.\n\
-                 - **Added mass**: $L + \\tfrac12 N f\\cdot f$, started at the momenta $L_v + A^T\\mu_0$. It tends to the vakonomic motion with that $\\mu_0$.\n\
-                 - **Added mass on the augmented system**: the displacement parameters $u$ of a removal become coordinates of their own, without mass, and the added mass \
-                 sits on $\\dot w - B(\\dot u, \\dots)$, started at $\\mu = -P - L_{\\dot w}$. It tends to the removed-constraint motion with that $P(t_0)$, because that is the vakonomic \
-                 motion of the augmented system. So this formulation has a realization too, but only with coordinates that the mechanism itself does not have; where every $u$ is a function of the \
-                 configuration, it is added mass on the constraint itself, with the $\\mu_0$ that belongs to $P(t_0)$.\n\n\
-                 Distances are the largest in the kinetic metric over the second half of the run; the rate is that from $N = 10^3$ to $10^4$. The limits are integrated as everywhere \
-                 else in these reports; the realizations are Newton's equations of an unconstrained system, those with friction by an implicit method.\n";
-        for (name, approaches) in &self.scenes {
-            let _ = writeln!(page, "\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n");
+        let scene = |(name, approaches): &(String, Vec<Approach>)| {
             let mut table = Table::new(["realization", ">$N = 10^2$", ">$10^3$", ">$10^4$", ">$10^5$", ">rate"]);
             for a in approaches {
                 let cells = a.distances.iter().map(|d| if d.is_nan() { "stops".into() } else { short(*d) });
                 let rate = a.rate().map_or("too close to tell".into(), short);
                 table.cells([a.name.to_string()].into_iter().chain(cells).chain([rate]));
             }
-            page += &table.to_string();
-        }
-        let _ = writeln!(
-            page,
-            "\n## Random systems\n\n{COUNT} systems of seed {SEED}, constraints linear or affine and not integrable:\n"
-        );
+            format!("\n## {name}\n\n![Distance over strength](realization-{name}.svg)\n\n{table}")
+        };
         let columns = ["realization", ">least rate", ">median", ">largest", ">systems", ">too close to tell"];
-        let mut table = Table::new(columns);
-        for name in [FRICTION, ADDED_MASS, AUGMENTED] {
+        let mut random = Table::new(columns);
+        for name in [FRICTION, ADDED_MASS, BOTH, AUGMENTED] {
             let (rates, open) = self.random_rates(name);
             if let (Some(least), Some(most)) = (rates.first(), rates.last()) {
                 let [least, median, most] = [*least, rates[rates.len() / 2], *most].map(short);
-                table.row(&[&name, &least, &median, &most, &rates.len(), &open]);
+                random.row(&[&name, &least, &median, &most, &rates.len(), &open]);
             }
         }
-        page + &table.to_string()
+        fill(
+            include_str!("pages/realization.md"),
+            &[
+                ("headline", &self.headline()),
+                ("scenes", &self.scenes.iter().map(scene).collect::<String>()),
+                ("count", &COUNT),
+                ("seed", &SEED),
+                ("random", &random),
+            ],
+        )
     }
 }
 
@@ -234,9 +230,14 @@ fn approaches(
     metric: &mut Metric,
 ) -> Result<Vec<Approach>> {
     let plain = |kind| move |strength| realize(kind, strength, setting, multipliers);
+    let system = with_kappa(setting.system, KAPPA);
+    let (rule, settings) = (ConstantsRule::Given(multipliers.to_vec()), Settings::default());
+    let mut between =
+        solve(Setting { system: &system, ..setting }, equations(&system, "kappa", None)?, &rule, &settings)?;
     Ok(vec![
         approach(FRICTION, Style::Chetaev, chetaev, metric, &plain(Realization::Friction))?,
         approach(ADDED_MASS, Style::Vakonomic, vakonomic, metric, &plain(Realization::AddedMass))?,
+        approach(BOTH, Style::Substituted, &mut between, metric, &plain(Realization::Both { kappa: KAPPA }))?,
         approach(AUGMENTED, Style::RemovedConstraint, removed, metric, &|strength| {
             realize_removal(strength, setting, removal, costates)
         })?,

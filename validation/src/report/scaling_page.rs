@@ -6,7 +6,7 @@ use anyhow::Result;
 
 use crate::report::numbers::{or_dash, short};
 use crate::report::{File, Table};
-use crate::scaling::{Cost, Exponent, FROM, Line, Point};
+use crate::scaling::{Exponent, FROM, Line, Point};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Largest exponents that are asked for: of one right-hand side, and of the derivation.
@@ -39,12 +39,13 @@ pub fn scaling_files(lines: &[Line]) -> Result<Vec<File>> {
 /// Whether the forms in quasi-velocities grow as is asked for.
 fn answer(lines: &[Line]) -> String {
     let said = |line: &Line| {
-        let judged = |cost, limit| {
-            let exponent = line.exponent(cost)?;
+        let judged = |cost: fn(&Point) -> f64, limit| {
+            let exponent = line.exponent(|p| Some(cost(p)))?;
             let met = if exponent.value <= limit { "met" } else { "**missed**" };
             Some(format!("{} (at most {limit}: {met})", fitted(exponent)))
         };
-        let (side, derivation) = (judged(Cost::RightHandSide, RIGHT_HAND_SIDE)?, judged(Cost::Derivation, DERIVATION)?);
+        let (side, derivation) =
+            (judged(|p| p.right_hand_side, RIGHT_HAND_SIDE)?, judged(|p| p.derivation, DERIVATION)?);
         Some(format!(
             "- **`{}`**: a right-hand side grows as nᵖ with p = {side}, the derivation with p = {derivation}.\n",
             line.formulation
@@ -63,7 +64,13 @@ pub fn scaling_text(lines: &[Line]) -> String {
     let mut table = Table::new(columns.into_iter().chain([">solve, s"]));
     for line in lines {
         let longest = line.points.last().map_or(0, |p| p.trailers);
-        let costs = [Cost::Derivation, Cost::Expressions, Cost::RightHandSide, Cost::Operations, Cost::Solve];
+        let costs: [fn(&Point) -> Option<f64>; 5] = [
+            |p| Some(p.derivation),
+            |p| Some(p.expressions as f64),
+            |p| Some(p.right_hand_side),
+            |p| Some(p.operations as f64),
+            |p| p.solve,
+        ];
         let costs = costs.map(|cost| line.exponent(cost).map_or("–".into(), fitted));
         table.cells([line.formulation.to_string(), longest.to_string()].into_iter().chain(costs));
     }

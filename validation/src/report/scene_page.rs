@@ -116,13 +116,20 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
     let growth = tables::growth(comparison);
     if !growth.is_empty() {
         let _ = writeln!(page, "\n### How the gaps start\n\n{growth}");
-        page += "Predicted for constraints linear in $v$, with $C = f_q^T - \\dot A^T$ and $\\Pi = M^{-1} - M^{-1}A^T(AM^{-1}A^T)^{-1}AM^{-1}$: \
-                 $q_{vak} - q_{chet} = \\tfrac12 \\Pi C \\mu_0 t^2 + O(t^3)$, for $\\mu_0 = 0$ it is $-\\tfrac16 \\Pi C \\lambda_0 t^3 + O(t^4)$.\n";
+        page += "Predicted from the Taylor coefficients $y_k$ of the difference of accelerations along the first motion: with $y_k$ the first that is not zero, \
+                 $\\Delta q = y_k t^{k+2}/((k+1)(k+2)) + O(t^{k+3})$. Of the vakonomic motion and Chetaev's, for constraints linear in $v$, it is $\\tfrac12 \\Pi C \\mu_0 t^2$, and \
+                 $-\\tfrac16 \\Pi C \\lambda_0 t^3$ for $\\mu_0 = 0$, with $C = f_q^T - \\dot A^T$ and $\\Pi = M^{-1} - M^{-1}A^T(AM^{-1}A^T)^{-1}AM^{-1}$. \
+                 Proved: in exact numbers every lower coefficient is zero and this one is not, so that the two motions differ.\n";
     }
     let fits = tables::fits(comparison);
     if !fits.is_empty() {
         let _ = writeln!(page, "\n### With the best free constants\n\n{fits}");
-        page += "Two formulations differ as theories only if they do so for every choice of the constants that the start leaves free.\n";
+        page += "Two formulations differ as theories only if they do so for every choice of the constants that the start leaves free. By identity: for a removal by \
+                 coordinates $P(t_0) = -\\partial(L + \\mu_0\\cdot f)/\\partial\\dot w$ gives the vakonomic motion, and nothing is searched.\n";
+    }
+    if !comparison.decided.is_empty() {
+        let _ = writeln!(page, "\n## Which family has which motion\n\n{}", membership::table(comparison));
+        page += "Decided for this start over the whole run, and proved where it says so: constants $\\mu_0$ or $P(t_0)$, all costates kept.\n";
     }
     let _ = writeln!(page, "\n## What stays constant\n\n{}", tables::invariants(comparison)?);
     page += &equations(comparison);

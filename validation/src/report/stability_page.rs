@@ -8,8 +8,10 @@ use integrate::Method;
 use serde_json::{Map, Value, json};
 
 use crate::report::numbers::short;
-use crate::report::{File, Table};
-use crate::stability::{CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Verdict, long_runs, run, tolerance};
+use crate::report::{File, Table, fill};
+use crate::stability::{
+    CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
+};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Lines of the pictures, method by method.
@@ -118,44 +120,27 @@ impl StabilityReport {
     fn page(&self) -> String {
         let tolerances: Vec<String> =
             Method::ALL.iter().map(|&method| format!("{} {:.0e}", method.name(), tolerance(method))).collect();
-        let mut page = format!("# Stiff and extreme cases\n\n**{}**\n\n", self.headline());
-        let _ = writeln!(
-            page,
-            "Does a wrong trajectory ever come back in silence? Every method answers every question; each answer is compared, at 201 times, with a reference that \
-             does not share the failure that the case is about.\n\n\
-             - a number: *accurate*, the largest true error over the largest distance from the start. The error is under ten times the motion's own estimate (or under \
-             1e-7, or under ten times the tolerance), and that estimate is under 1e-3.\n\
-             - a number, *said so*: the same, but the estimate is over 1e-3, or the run says that it is no estimate: `deltaq solve` ends with exit code 3 and the reason.\n\
-             - *to t = …*: stopped there, with a cause; what comes before is accurate in the same sense. *refused*: an error before the start.\n\
-             - **wrong**: anything else.\n\n\
-             A run may take {MAX_STEPS} steps, and is refused where it needs more: that is the budget of this page, not a limit of the methods. Tolerances of the looser of the two \
-             runs: {}. Errors are distances in the kinetic metric. `deltaq stability --case NAME` prints every answer with its cause.",
-            tolerances.join(", ")
-        );
-        for case in CASES.iter().filter(|case| self.has(case.name)) {
-            self.section(&mut page, case);
-        }
-        if !self.runs.is_empty() {
-            self.long_runs(&mut page);
-        }
-        page
+        let cases = CASES.iter().filter(|case| self.has(case.name)).map(|case| self.section(case));
+        fill(
+            include_str!("pages/stability.md"),
+            &[
+                ("headline", &self.headline()),
+                ("max_steps", &MAX_STEPS),
+                ("tolerances", &tolerances.join(", ")),
+                ("cases", &cases.collect::<String>()),
+                ("long_runs", &self.long_runs()),
+            ],
+        )
     }
 
     fn has(&self, case: &str) -> bool {
         self.cells.iter().any(|cell| cell.case == case)
     }
 
-    fn long_runs(&self, page: &mut String) {
-        let _ = writeln!(
-            page,
-            "\n## million-steps\n\nWhat a long run loses. *Leapfrog* takes {MILLION} equal steps of order 2 that keep the structure of the motion (`--method leapfrog`); the others go as far, \
-             with projection, in as many steps as their tolerance asks for. The \
-             vakonomic and the removed-constraint sledge turn ever faster, so that equal steps do for a time only.\n\n\
-             *Energy*: largest |E − E₀|, in parts of the largest v·Mv. *Trend*: how far the mean energies of ten parts of the run are apart; what is left of the energy error is \
-             an oscillation. *Constraint*: largest |f|/(|∂f/∂v||v|). All read off at 20001 times, where the other methods have polynomials that no projection was applied to. *Places* have a verdict as above for the \
-             sledge, whose *reference* is that of `sledge-long`. None reaches as far for the vakonomic disc: there the verdict is on *energy and constraint*, whose error has to be under ten times \
-             the difference of the two runs' energies (or under 1e-7).\n"
-        );
+    fn long_runs(&self) -> String {
+        if self.runs.is_empty() {
+            return String::new();
+        }
         let columns = ["scene", "formulation", ">duration", "method", ">steps", ">energy", ">trend", ">constraint"];
         let mut table = Table::new(columns.into_iter().chain(["judged", ">error", ">estimate"]));
         for run in &self.runs {
@@ -171,22 +156,23 @@ impl StabilityReport {
             let judgement = [judged.into(), words(&run.verdict), estimate];
             table.cells(run_of.into_iter().chain([run.steps.to_string()]).chain(lost).chain(judgement));
         }
-        *page += &table.to_string();
+        fill(include_str!("pages/million-steps.md"), &[("million", &MILLION), ("table", &table)])
     }
 
-    fn section(&self, page: &mut String, case: &Case) {
+    fn section(&self, case: &Case) -> String {
         let cells: Vec<&Cell> = self.cells.iter().filter(|cell| cell.case == case.name).collect();
-        let _ = writeln!(page, "\n## {}\n\n{}\n\n*Reference*: {}.\n", case.name, case.about, case.reference);
+        let Texts { about, reference, variable } = &case.texts;
+        let mut page = format!("\n## {}\n\n{about}\n\n*Reference*: {reference}.\n\n", case.name);
         if DRAWN.iter().any(|(name, _)| *name == case.name) {
-            let _ = writeln!(page, "![Error over {}]({})\n", case.variable, picture_name(case.name));
+            let _ = writeln!(page, "![Error over {variable}]({})\n", picture_name(case.name));
         }
         let methods = Method::ALL.iter().map(|method| format!(">{}", method.name()));
-        let mut table = Table::new([format!(">{}", case.variable), "formulation".into()].into_iter().chain(methods));
+        let mut table = Table::new([format!(">{variable}"), "formulation".into()].into_iter().chain(methods));
         for line in cells.chunks(Method::ALL.len()) {
             let words = line.iter().map(|cell| words(&cell.verdict));
             table.cells([short(line[0].point), line[0].formulation.clone()].into_iter().chain(words));
         }
-        *page += &table.to_string();
+        page += &table.to_string();
         let mut causes: BTreeMap<String, usize> = BTreeMap::new();
         for cell in &cells {
             if let Verdict::Refused { cause, .. } = &cell.verdict {
@@ -197,6 +183,7 @@ impl StabilityReport {
             let list: Vec<String> = causes.iter().map(|(cause, count)| format!("{count} × {cause}")).collect();
             let _ = writeln!(page, "\nCauses: {}.", list.join("; "));
         }
+        page
     }
 
     fn picture(&self, name: &str, formulation: &str) -> Result<String> {
@@ -223,7 +210,7 @@ fn picture_name(case: &str) -> String {
 }
 
 fn variable(case: &str) -> &'static str {
-    CASES.iter().find(|c| c.name == case).map_or("", |c| c.variable)
+    CASES.iter().find(|c| c.name == case).map_or("", |c| &c.texts.variable)
 }
 
 fn words(verdict: &Verdict) -> String {

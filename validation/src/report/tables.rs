@@ -100,26 +100,27 @@ fn names(comparison: &Comparison, pair: &Pair) -> String {
 /// How gaps start: measured, and predicted where a prediction exists. Empty where nothing could be fitted.
 pub(crate) fn growth(comparison: &Comparison) -> Table {
     let columns = ["pair", "exponent", "leading coefficient", "fitted over", "predicted exponent"];
-    let mut table = Table::new(columns.into_iter().chain(["predicted coefficient", "off by"]));
+    let mut table = Table::new(columns.into_iter().chain(["predicted coefficient", "off by", "proved"]));
     for pair in &comparison.pairs {
         let Some(growth) = &pair.growth else { continue };
-        let (exponent, length, off) = match &pair.predicted {
-            None => ("–".into(), "–".into(), "–".into()),
+        let [exponent, length, off, proved] = match &pair.predicted {
+            None => ["–"; 4].map(String::from),
             Some(p) => {
-                (p.exponent.to_string(), precise(p.length), format!("{} %", short(100.0 * growth.deviation_from(p))))
+                let off = format!("{} %", short(100.0 * growth.deviation_from(p)));
+                [p.exponent.to_string(), precise(p.length), off, if p.proved { "yes" } else { "no" }.into()]
             }
         };
         let measured = [format!("{:.3}", growth.exponent), precise(growth.length)];
         let over = format!("{} … {} s", short(growth.from), short(growth.to));
-        table.row(&[&names(comparison, pair), &measured[0], &measured[1], &over, &exponent, &length, &off]);
+        table.row(&[&names(comparison, pair), &measured[0], &measured[1], &over, &exponent, &length, &off, &proved]);
     }
     table
 }
 
 /// What the best free constants leave of a gap.
 pub(crate) fn fits(comparison: &Comparison) -> Table {
-    let columns = ["motion", "fitted to", "best free constants", "largest gap before", "largest gap left"];
-    let mut table = Table::new(columns.into_iter().chain(["verdict after the fit"]));
+    let columns = ["motion", "fitted to", "by", "best free constants", "largest gap before", "largest gap left"];
+    let mut table = Table::new(columns.into_iter().chain(["verdict after"]));
     for fit in &comparison.fits {
         let label = |i: usize| comparison.runs[i].choice.label.clone();
         let before = comparison.pair(fit.run, fit.target).map(|p| p.gap.largest);
@@ -131,15 +132,13 @@ pub(crate) fn fits(comparison: &Comparison) -> Table {
                 (constants.join(", "), short(fitted.gap.largest), verdict_words(&fitted.gap))
             }
         };
-        table.row(&[&label(fit.run), &label(fit.target), &constants, &or_dash(before), &left, &verdict]);
+        let how = if fit.by_identity { "identity" } else { "search" };
+        table.row(&[&label(fit.run), &label(fit.target), &how, &constants, &or_dash(before), &left, &verdict]);
     }
     table
 }
 
 /// Drift of what should be constant, and how far the constraint was left.
-///
-/// # Errors
-/// Where a motion cannot be read off.
 pub(crate) fn invariants(comparison: &mut Comparison) -> Result<Table> {
     let mut metric = deltaq::Metric::new(&comparison.scene.system)?;
     let columns = ["motion", "largest constraint residual", "constant by theory: largest deviation"];

@@ -56,14 +56,14 @@ fn scene(comparison: &Comparison) -> Value {
         .iter()
         .map(|f| {
             let verdict = f.fitted.as_ref().map(|m| word(&m.gap.verdict));
-            json!({ "run": label(f.run), "target": label(f.target), "verdict": verdict })
+            json!({ "run": label(f.run), "target": label(f.target), "verdict": verdict, "by identity": f.by_identity })
         })
         .collect();
     json!({
         "integrability": comparison.integrability.to_string(),
         "runs": runs,
         "pairs": pairs,
-        "multipliers": membership::value(comparison),
+        "decided": membership::values(comparison),
         "fits": fits,
     })
 }

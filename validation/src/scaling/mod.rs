@@ -94,33 +94,11 @@ pub struct Line {
     pub ended: Option<String>,
 }
 
-/// Costs that are fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cost {
-    /// Seconds of the derivation.
-    Derivation,
-    /// Expressions made.
-    Expressions,
-    /// Seconds of one right-hand side.
-    RightHandSide,
-    /// Operations of one right-hand side.
-    Operations,
-    /// Seconds of the solve.
-    Solve,
-}
-
 impl Line {
     /// The exponent of a cost over n from [`FROM`] on; none with fewer than three points.
-    pub fn exponent(&self, cost: Cost) -> Option<Exponent> {
-        let of = |p: &Point| match cost {
-            Cost::Derivation => Some(p.derivation),
-            Cost::Expressions => Some(p.expressions as f64),
-            Cost::RightHandSide => Some(p.right_hand_side),
-            Cost::Operations => Some(p.operations as f64),
-            Cost::Solve => p.solve,
-        };
+    pub fn exponent(&self, cost: impl Fn(&Point) -> Option<f64>) -> Option<Exponent> {
         let points = self.points.iter().filter(|p| p.trailers >= FROM);
-        exponent(&points.filter_map(|p| Some((p.trailers as f64, of(p)?))).collect::<Vec<(f64, f64)>>())
+        exponent(&points.filter_map(|p| Some((p.trailers as f64, cost(p)?))).collect::<Vec<(f64, f64)>>())
     }
 }
 
@@ -197,7 +175,10 @@ fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
         Some(removal) => removal.constants.clone(),
         None => default_constants(entry, scene),
     };
-    let derived = (entry.derive)(&system, &Derivation { removal: removal.as_ref(), start: Some(&scene.start) })?;
+    let derived = (entry.derive)(
+        &system,
+        &Derivation { removal: removal.as_ref(), start: Some(&scene.start), ..Default::default() },
+    )?;
     let equations = derived.leave_out_unneeded();
     let known = match &constants {
         ConstantsRule::Given(_) => &constants,

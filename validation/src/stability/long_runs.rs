@@ -79,29 +79,15 @@ pub struct Long {
 /// The long motions: those of the sledge have a reference. Its vakonomic and its removed-constraint motion turn ever faster, as `g t/k`, so that equal steps
 /// do for a time only.
 pub const LONG: [Long; 4] = [
-    Long {
-        scene: "sledge",
-        formulation: "chetaev",
-        duration: 20_000.0,
-        constants: None,
-        reference: Some(sledge_reference),
-    },
-    Long {
-        scene: "sledge",
-        formulation: "vakonomic",
-        duration: 50.0,
-        constants: None,
-        reference: Some(sledge_reference),
-    },
-    Long {
-        scene: "sledge",
-        formulation: "removed-constraint",
-        duration: 50.0,
-        constants: None,
-        reference: Some(sledge_reference),
-    },
+    sledge("chetaev", 20_000.0),
+    sledge("vakonomic", 50.0),
+    sledge("removed-constraint", 50.0),
     Long { scene: "disc", formulation: "vakonomic", duration: 5_000.0, constants: Some(0.1), reference: None },
 ];
+
+const fn sledge(formulation: &'static str, duration: f64) -> Long {
+    Long { scene: "sledge", formulation, duration, constants: None, reference: Some(sledge_reference) }
+}
 
 /// What became of a long run.
 #[derive(Clone, Debug, Serialize)]

@@ -25,5 +25,5 @@ mod reference;
 pub use cases::CASES;
 pub use judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 pub use long_runs::{LONG, LONG_RUNS, Long, LongRun, MILLION, Stepping, long_runs};
-pub use question::{Case, Cell, MAX_STEPS, Question, Subject, run, tolerance};
+pub use question::{Case, Cell, MAX_STEPS, Question, Subject, Texts, run, tolerance};
 pub use reference::{Known, Reference};

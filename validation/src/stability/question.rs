@@ -5,7 +5,7 @@ use deltaq::{Metric, Motion, Setting, Settings, TIGHTER, solve};
 use equations::Equations;
 use integrate::Method;
 use mechanics::{ConstantsRule, State, System};
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::reference::{Known, Reference};
@@ -28,14 +28,21 @@ pub fn tolerance(method: Method) -> f64 {
 pub struct Case {
     /// Name for the command line and the page.
     pub name: &'static str,
-    /// What is made hard, and what could go wrong, for the page.
-    pub about: &'static str,
-    /// What the answers are compared with, for the page.
-    pub reference: &'static str,
-    /// What the points are values of.
-    pub variable: &'static str,
+    /// For the page.
+    pub texts: Texts,
     /// The questions, point by point.
     pub questions: fn() -> Vec<Question>,
+}
+
+/// What the page says of a case.
+#[derive(Deserialize)]
+pub struct Texts {
+    /// What is made hard, and what could go wrong.
+    pub about: String,
+    /// What the answers are compared with.
+    pub reference: String,
+    /// What the points are values of.
+    pub variable: String,
 }
 
 /// A system with its start, ready for a formulation.
@@ -104,6 +111,16 @@ pub fn run(cases: &[&Case], quiet: bool) -> Result<Vec<Cell>> {
 }
 
 impl Question {
+    /// All coordinates are compared.
+    pub(super) fn new(
+        point: f64,
+        formulation: &str,
+        subject: impl Fn() -> Result<Subject, String> + Send + Sync + 'static,
+        reference: Reference,
+    ) -> Question {
+        Question { point, formulation: formulation.into(), subject: Box::new(subject), reference, compared: usize::MAX }
+    }
+
     /// The answer of every method.
     ///
     /// # Errors

@@ -20,10 +20,7 @@ pub struct Members {
 
 impl Members {
     /// Those of the file, each combined with all values of the ranges, of which the last one changes fastest.
-    ///
-    /// # Errors
-    /// Bad input, with the place; a name that is not one of `scene`.
-    pub fn of(arguments: &EnsembleArguments, scene: &Scene) -> Result<Members> {
+    pub(crate) fn of(arguments: &EnsembleArguments, scene: &Scene) -> Result<Members> {
         let mut members = match &arguments.members {
             Some(path) => Members::read(path)?,
             None => Members { names: Vec::new(), rows: vec![Vec::new()], places: Vec::new() },
@@ -68,7 +65,7 @@ impl Members {
     }
 
     /// Where the name is from, of which a fault of the scene says that it means nothing.
-    pub fn place(&self, name: &str) -> &str {
+    pub(crate) fn place(&self, name: &str) -> &str {
         self.names.iter().position(|known| known == name).map_or("--set", |i| &self.places[i])
     }
 }

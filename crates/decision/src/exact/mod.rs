@@ -7,7 +7,7 @@ mod rational;
 
 pub(crate) use jet::{Jet, ORDERS};
 pub(crate) use linear::{inverse, subtract_product};
-pub(crate) use modular::{Modular, ORDER, PRIME};
+pub(crate) use modular::{Modular, PRIME};
 pub(crate) use rational::Exact;
 
 /// Why a number has no image in the finite field.

@@ -6,6 +6,7 @@
 //! `T = e^{i/N} ↦ τ = h^{1/N}` is a homomorphism of rings wherever nothing that is divided by has the image 0.
 
 use std::ops::{Add, Mul, Neg, Sub};
+use std::sync::LazyLock;
 
 use super::Flaw;
 use super::rational::Exact;
@@ -20,6 +21,8 @@ const CIRCLE: u64 = 500_365_693_788_483_288;
 const NEPER: u64 = 871_121_100_965_325_420;
 /// `√−1`.
 const IMAGINARY: u64 = 304_924_282_205_937_375;
+/// The least common multiple of 1 … 40.
+const COMMON: u64 = 5_342_931_457_063_200;
 /// A number without a square root.
 const NO_SQUARE: u64 = 53;
 /// `p − 1 = 2^4 · odd`.
@@ -42,6 +45,10 @@ fn reduce(x: u128) -> u64 {
     if t >= PRIME { t - PRIME } else { t }
 }
 
+/// Inverses of small numbers, by which series divide at every order.
+static OVER: LazyLock<[Modular; 32]> =
+    LazyLock::new(|| std::array::from_fn(|d| Modular::new(d as u64).inverse().unwrap_or(Modular::ZERO)));
+
 impl Modular {
     pub(crate) const ZERO: Modular = Modular(0);
 
@@ -62,14 +69,14 @@ impl Modular {
         Self::new(IMAGINARY)
     }
 
-    /// The image of `e^i`.
-    pub(crate) fn circle() -> Self {
-        Self::new(CIRCLE)
-    }
-
-    /// The image of `e`.
-    pub(crate) fn neper() -> Self {
-        Self::new(NEPER)
+    /// `N` in decimals, and the image `τ` of `e^{i/N}`: `N = 10^38 · lcm(1, …, 40)`, of which the denominators of angles are divisors.
+    pub(crate) fn turn() -> (String, Self) {
+        let root = |base: Self, parts: i128| {
+            let part = Exact { numerator: 1, denominator: parts, quarters: 0 };
+            Self::rational_power(base.value(), part).unwrap_or(base)
+        };
+        let turn = root(root(Self::new(CIRCLE), 10_i128.pow(38)), COMMON.into());
+        (format!("{COMMON}{:038}", 0), turn)
     }
 
     pub(crate) fn is_zero(self) -> bool {
@@ -84,7 +91,11 @@ impl Modular {
     /// The image of a fraction; `None` where its denominator is a multiple of `p`.
     pub(crate) fn fraction(x: Exact) -> Option<Self> {
         let numerator = Self::integer(x.numerator);
-        if x.denominator == 1 { Some(numerator) } else { Some(numerator * Self::integer(x.denominator).inverse()?) }
+        let over = match usize::try_from(x.denominator).ok().and_then(|d| OVER.get(d)) {
+            Some(&over) => over,
+            None => Self::integer(x.denominator).inverse()?,
+        };
+        Some(numerator * over)
     }
 
     pub(crate) fn power(self, mut exponent: u64) -> Self {

@@ -2,54 +2,57 @@
 
 mod jet;
 
-use integrate::{EvaluationError, Problem};
+use std::rc::Rc;
+
+use integrate::{EvaluationError, Options, Problem, Solution, Start, Status, integrate};
 pub use jet::{Jet, solution};
 
-type Rates = fn(f64, &[f64], &mut [f64]) -> Result<(), EvaluationError>;
-type Series = fn(&Jet, &[Jet]) -> Vec<Jet>;
-type Jacobian = fn(f64, &[f64], &mut [f64]);
+type Rates = Rc<dyn Fn(&Jet, &[Jet]) -> Vec<Jet>>;
+type Refusal = fn(f64, &[f64]) -> Option<String>;
 type Events = fn(f64, &[f64], &mut [f64]) -> Result<(), EvaluationError>;
 type Projection = fn(f64, &mut [f64]) -> Result<f64, EvaluationError>;
 
-/// A problem put together from functions; counts its own evaluations.
+/// A problem put together from functions; counts its own evaluations. Rates are written once, for power series: their order 0 are
+/// the rates, and order 1 along each component is the Jacobian.
 #[derive(Clone)]
 pub struct Case {
     pub dimension: usize,
     pub rates: Rates,
-    /// The same rates for power series.
-    pub series: Option<Series>,
-    pub jacobian: Jacobian,
+    /// Why there are no rates at a point.
+    pub refusal: Refusal,
+    pub taylor: bool,
     pub events: (usize, Events),
     pub projection: Projection,
+    /// So many accepted states are refused; the others are written down.
+    pub refuse: usize,
+    pub accepted: Vec<(f64, Vec<f64>)>,
     pub evaluations: usize,
     pub jacobians: usize,
 }
 
 impl Case {
-    pub fn new(dimension: usize, rates: Rates, jacobian: Jacobian) -> Self {
-        let events: (usize, Events) = (0, |_, _, _| Ok(()));
+    pub fn new(dimension: usize, rates: impl Fn(&Jet, &[Jet]) -> Vec<Jet> + 'static) -> Self {
         Self {
             dimension,
-            rates,
-            series: None,
-            jacobian,
-            events,
+            rates: Rc::new(rates),
+            refusal: |_, _| None,
+            taylor: true,
+            events: (0, |_, _, _| Ok(())),
             projection: |_, _| Ok(0.0),
+            refuse: 0,
+            accepted: Vec::new(),
             evaluations: 0,
             jacobians: 0,
         }
     }
-    pub fn with_series(mut self, series: Series) -> Self {
-        self.series = Some(series);
-        self
+    pub fn with_refusal(self, refusal: Refusal) -> Self {
+        Self { refusal, ..self }
     }
-    pub fn with_events(mut self, number: usize, events: Events) -> Self {
-        self.events = (number, events);
-        self
+    pub fn with_events(self, number: usize, events: Events) -> Self {
+        Self { events: (number, events), ..self }
     }
-    pub fn with_projection(mut self, projection: Projection) -> Self {
-        self.projection = projection;
-        self
+    pub fn with_projection(self, projection: Projection) -> Self {
+        Self { projection, ..self }
     }
 }
 
@@ -59,29 +62,44 @@ impl Problem for Case {
     }
     fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
         self.evaluations += 1;
-        (self.rates)(t, y, rates)
+        if let Some(reason) = (self.refusal)(t, y) {
+            return Err(EvaluationError { reason });
+        }
+        let point: Vec<Jet> = y.iter().map(|&y| Jet(vec![y])).collect();
+        for (rate, jet) in rates.iter_mut().zip((self.rates)(&Jet(vec![t]), &point)) {
+            *rate = jet.0[0];
+        }
+        Ok(())
     }
     fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError> {
         self.jacobians += 1;
-        (self.jacobian)(t, y, jacobian);
+        for column in 0..y.len() {
+            let along = |(i, &y): (usize, &f64)| Jet(vec![y, f64::from(u8::from(i == column))]);
+            let point: Vec<Jet> = y.iter().enumerate().map(along).collect();
+            for (row, rate) in (self.rates)(&Jet(vec![t, 0.0]), &point).iter().enumerate() {
+                jacobian[row * y.len() + column] = rate.0[1];
+            }
+        }
         Ok(())
     }
     fn has_taylor(&self) -> bool {
-        self.series.is_some()
+        self.taylor
     }
     fn taylor(&mut self, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) -> Result<(), EvaluationError> {
-        let mut rates = vec![0.0; y.len()];
-        self.rates(t, y, &mut rates)?;
-        solution(self.series.expect("a series"), t, y, unit, coefficients);
-        // Where the rates are not what the series says, as behind a wall, the rates count.
-        let orders = coefficients.len() / y.len();
-        for (row, rate) in coefficients.chunks_exact_mut(orders).zip(rates) {
-            row[1] += 0.0 * rate;
-        }
+        self.rates(t, y, &mut vec![0.0; y.len()])?;
+        solution(&*self.rates, t, y, unit, coefficients);
         Ok(())
     }
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<f64, EvaluationError> {
         (self.projection)(t, y)
+    }
+    fn accepted(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationError> {
+        if self.refuse > 0 {
+            self.refuse -= 1;
+            return Err(EvaluationError { reason: "not yet".into() });
+        }
+        self.accepted.push((t, y.to_vec()));
+        Ok(())
     }
     fn events(&self) -> usize {
         self.events.0
@@ -91,64 +109,59 @@ impl Problem for Case {
     }
 }
 
+/// The run from `y` at `t`, whatever its end.
+#[track_caller]
+pub fn attempt(problem: &mut dyn Problem, t: f64, y: &[f64], end: f64, options: &Options) -> Solution {
+    integrate(problem, &Start { t, y: y.to_vec() }, end, options).unwrap()
+}
+
+/// The same, to its end.
+#[track_caller]
+pub fn run(problem: &mut dyn Problem, t: f64, y: &[f64], end: f64, options: &Options) -> Solution {
+    let solution = attempt(problem, t, y, end, options);
+    assert_eq!(solution.status, Status::Completed, "{options:?}");
+    assert_eq!(solution.dense.end().to_bits(), end.to_bits());
+    solution
+}
+
+/// The state at `t`.
+pub fn state<const N: usize>(solution: &Solution, t: f64) -> [f64; N] {
+    let mut y = [0.0; N];
+    solution.dense.evaluate(t, &mut y);
+    y
+}
+
+/// The largest distance from `exact` at so many equidistant times from 0 on.
+pub fn largest_error<const N: usize>(solution: &Solution, count: u32, exact: impl Fn(f64) -> [f64; N]) -> f64 {
+    let time = |i: u32| solution.dense.end() * f64::from(i) / f64::from(count);
+    (0..=count).map(|i| distance(&state::<N>(solution, time(i)), &exact(time(i)))).fold(0.0, f64::max)
+}
+
 /// y₀' = y₁, y₁' = −y₀; from (1, 0): (cos t, −sin t).
 pub fn oscillator() -> Case {
-    Case::new(
-        2,
-        |_, y, r| {
-            (r[0], r[1]) = (y[1], -y[0]);
-            Ok(())
-        },
-        |_, _, j| j.copy_from_slice(&[0.0, 1.0, -1.0, 0.0]),
-    )
-    .with_series(|_, y| vec![y[1].clone(), -&y[0]])
+    Case::new(2, |_, y| vec![y[1].clone(), -&y[0]])
+}
+
+/// What it does from (1, 0).
+pub fn circle(t: f64) -> [f64; 2] {
+    [t.cos(), -t.sin()]
 }
 
 /// y' = y cos t; from 1 at 0: exp(sin t).
 pub fn nonautonomous() -> Case {
-    Case::new(
-        1,
-        |t, y, r| {
-            r[0] = y[0] * t.cos();
-            Ok(())
-        },
-        |t, _, j| j[0] = t.cos(),
-    )
-    .with_series(|t, y| vec![&y[0] * &t.cos()])
+    Case::new(1, |t, y| vec![&y[0] * &t.cos()])
 }
 
 /// y' = y²; from 1 at 0: 1/(1 − t).
 pub fn blow_up() -> Case {
-    Case::new(
-        1,
-        |_, y, r| {
-            r[0] = y[0] * y[0];
-            Ok(())
-        },
-        |_, y, j| j[0] = 2.0 * y[0],
-    )
-    .with_series(|_, y| vec![&y[0] * &y[0]])
+    Case::new(1, |_, y| vec![&y[0] * &y[0]])
 }
 
-/// The restricted three-body problem; [`ARENSTORF_START`] is periodic with [`ARENSTORF_PERIOD`]. For explicit methods.
+/// The restricted three-body problem; [`ARENSTORF_START`] is periodic with [`ARENSTORF_PERIOD`].
 ///
 /// Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, (0.1) of section II.0.
 pub fn arenstorf() -> Case {
-    Case::new(
-        4,
-        |_, y, r| {
-            let mu = 0.012277471;
-            let nu = 1.0 - mu;
-            let d1 = ((y[0] + mu).powi(2) + y[1].powi(2)).powf(1.5);
-            let d2 = ((y[0] - nu).powi(2) + y[1].powi(2)).powf(1.5);
-            (r[0], r[1]) = (y[2], y[3]);
-            r[2] = y[0] + 2.0 * y[3] - nu * (y[0] + mu) / d1 - mu * (y[0] - nu) / d2;
-            r[3] = y[1] - 2.0 * y[2] - nu * y[1] / d1 - mu * y[1] / d2;
-            Ok(())
-        },
-        |_, _, j| j.fill(f64::NAN),
-    )
-    .with_series(|_, y| {
+    Case::new(4, |_, y| {
         let mu = 0.012277471;
         let nu = 1.0 - mu;
         let (a, b) = (&y[0] + &y[0].number(mu), &y[0] - &y[0].number(nu));
@@ -192,30 +205,18 @@ pub fn onto_circle(_t: f64, y: &mut [f64]) -> Result<f64, EvaluationError> {
 
 /// Robertson's reactions, from (1, 0, 0).
 pub fn robertson() -> Case {
-    Case::new(
-        3,
-        |_, y, r| {
-            r[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
-            r[2] = 3e7 * y[1] * y[1];
-            r[1] = -r[0] - r[2];
-            Ok(())
-        },
-        |_, y, j| {
-            j[..3].copy_from_slice(&[-0.04, 1e4 * y[2], 1e4 * y[1]]);
-            j[3..6].copy_from_slice(&[0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]]);
-            j[6..].copy_from_slice(&[0.0, 6e7 * y[1], 0.0]);
-        },
-    )
+    Case::new(3, |_, y| {
+        let first = &(&y[0] * -0.04) + &(&(&y[1] * &y[2]) * 1e4);
+        let third = &(&y[1] * &y[1]) * 3e7;
+        let second = -&(&first + &third);
+        vec![first, second, third]
+    })
 }
 
 /// Van der Pol's oscillator with μ = 1000, in the time of the slow motion; from (2, 0).
 pub fn van_der_pol() -> Case {
-    Case::new(
-        2,
-        |_, y, r| {
-            (r[0], r[1]) = (y[1], 1e6 * ((1.0 - y[0] * y[0]) * y[1] - y[0]));
-            Ok(())
-        },
-        |_, y, j| j.copy_from_slice(&[0.0, 1.0, 1e6 * (-2.0 * y[0] * y[1] - 1.0), 1e6 * (1.0 - y[0] * y[0])]),
-    )
+    Case::new(2, |_, y| {
+        let friction = &y[0].number(1.0) - &(&y[0] * &y[0]);
+        vec![y[1].clone(), &(&(&friction * &y[1]) - &y[0]) * 1e6]
+    })
 }

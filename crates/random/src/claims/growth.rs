@@ -1,11 +1,10 @@
 //! T5: how the divergence begins.
 
-use decision::{ExactStart, Family, Question};
-use deltaq::{LeadingTerm, SolveError, growth};
+use deltaq::{Pairing, choices, growth};
 
 use super::CheckError;
 use crate::Case;
-use crate::case::{Which, as_derived};
+use crate::case::Which;
 
 /// Deviation of the measured exponent from the predicted one, beyond its own uncertainty.
 const EXPONENT: f64 = 1e-2;
@@ -24,19 +23,14 @@ const WITHIN: f64 = 0.5;
 
 /// `q_vak − q_chet = y_k t^{k+2}/((k+1)(k+2))` with the first coefficient `y_k` of the mismatch that is not zero, for every `f` and `μ₀`.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
-    let (scene, multipliers) = (&case.scene, &case.scene.multipliers);
-    let (system, start) = (&scene.system, &scene.start);
-    if system.constraints.is_empty() {
+    if case.scene.system.constraints.is_empty() {
         return Ok(());
     }
-    let family = Family::new(system, &as_derived(system, "vakonomic")?, false).map_err(SolveError::from)?;
-    let chetaev = as_derived(system, "chetaev")?;
-    let question = Question::new(system, &chetaev, &[], &family).map_err(SolveError::from)?;
-    let exact = ExactStart::new(system, start, &scene.completion, None).map_err(SolveError::from)?;
-    let Some(term) = question.leading_difference(system, start, Some(&exact), multipliers) else { return Ok(()) };
-    let length = case.metric.length(start.t, &start.q, &start.v, &term.coefficient);
-    let predicted = LeadingTerm { exponent: term.exponent as u32, coefficient: term.coefficient, length };
-    if length * scene.duration.min(term.reach).powi(term.exponent as i32) < VISIBLE {
+    let multipliers = case.scene.multipliers.clone();
+    let choices = choices(&case.scene);
+    let predicted = Pairing::new(&case.scene, &choices[0], &choices[1])?.leading_term(&multipliers)?;
+    let Some(predicted) = predicted else { return Ok(()) };
+    if predicted.length * case.scene.duration.min(predicted.reach).powi(predicted.exponent as i32) < VISIBLE {
         return Ok(());
     }
     let without = multipliers.iter().all(|&mu| mu == 0.0);
@@ -45,8 +39,8 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let claim = "the leading divergence is the predicted one";
     match growth(&mut case.vakonomic, &mut case.chetaev, &mut case.metric, &limit)? {
         None => case.found.undecided(5, claim, "the gap does not stand out from the errors near the start"),
-        Some(measured) if measured.to > WITHIN * term.reach => {
-            let note = format!("seen from t = {:.1e}, and leading until {:.1e}", measured.from, term.reach);
+        Some(measured) if measured.to > WITHIN * predicted.reach => {
+            let note = format!("seen from t = {:.1e}, and leading until {:.1e}", measured.from, predicted.reach);
             case.found.undecided(5, claim, note);
         }
         Some(measured) if measured.uncertainty > UNCERTAIN => {

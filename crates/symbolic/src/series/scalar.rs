@@ -103,40 +103,6 @@ pub trait Task<T> {
 ///
 /// The bodies of the methods serve every type. For `f64` they take the processor's vector instructions, found when
 /// the program runs; sums are added up in the same order with and without them, so that results do not depend on the processor.
-///
-/// ```
-/// use symbolic::{Scalar, SeriesScalar};
-/// #[derive(Clone, Copy)]
-/// struct Own(f64);
-/// # use std::ops::*;
-/// # impl Add for Own { type Output = Own; fn add(self, o: Own) -> Own { Own(self.0 + o.0) } }
-/// # impl Sub for Own { type Output = Own; fn sub(self, o: Own) -> Own { Own(self.0 - o.0) } }
-/// # impl Mul for Own { type Output = Own; fn mul(self, o: Own) -> Own { Own(self.0 * o.0) } }
-/// # impl Div for Own { type Output = Own; fn div(self, o: Own) -> Own { Own(self.0 / o.0) } }
-/// # impl Neg for Own { type Output = Own; fn neg(self) -> Own { Own(-self.0) } }
-/// # impl Scalar for Own {
-/// #     fn from_f64(x: f64) -> Own { Own(x) }
-/// #     fn from_ratio(a: i64, b: i64) -> Own { Own(a as f64 / b as f64) }
-/// #     fn sqrt(self) -> Own { Own(self.0.sqrt()) }
-/// #     fn sin(self) -> Own { Own(self.0.sin()) }
-/// #     fn cos(self) -> Own { Own(self.0.cos()) }
-/// #     fn tan(self) -> Own { Own(self.0.tan()) }
-/// #     fn sinh(self) -> Own { Own(self.0.sinh()) }
-/// #     fn cosh(self) -> Own { Own(self.0.cosh()) }
-/// #     fn tanh(self) -> Own { Own(self.0.tanh()) }
-/// #     fn asin(self) -> Own { Own(self.0.asin()) }
-/// #     fn acos(self) -> Own { Own(self.0.acos()) }
-/// #     fn atan(self) -> Own { Own(self.0.atan()) }
-/// #     fn asinh(self) -> Own { Own(self.0.asinh()) }
-/// #     fn acosh(self) -> Own { Own(self.0.acosh()) }
-/// #     fn atanh(self) -> Own { Own(self.0.atanh()) }
-/// #     fn exp(self) -> Own { Own(self.0.exp()) }
-/// #     fn log(self) -> Own { Own(self.0.ln()) }
-/// #     fn powf(self, e: Own) -> Own { Own(self.0.powf(e.0)) }
-/// #     fn atan2(self, x: Own) -> Own { Own(self.0.atan2(x.0)) }
-/// # }
-/// impl SeriesScalar for Own {}
-/// ```
 pub trait SeriesScalar: Scalar {
     /// Coefficients of a series are looked at in groups of so many; a series is followed by as many places that may be read.
     const GROUP: usize = 1;

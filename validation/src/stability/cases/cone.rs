@@ -4,30 +4,8 @@ use mechanics::State;
 use nalgebra::Vector3;
 use scene::{Scene, SceneError};
 
-use super::powers;
-use crate::stability::question::{Case, Question};
+use crate::stability::question::Question;
 use crate::stability::reference::Reference;
-
-const REFERENCE: &str = "hand-derived equations without Euler angles: Chetaev by Newton's laws with the ball's angular velocity as state, the others by the Lie-Poisson \
-                         equations of its angular momentum; double run of DOP853; r and gamma are compared, the centre's place";
-
-pub(super) const APEX: Case = Case {
-    name: "cone-apex",
-    about: "The ball in the cone, thrown towards the apex (ṙ = −0.3 m/s) from a distance d of where its centre would be on the axis; the metric of \
-            gamma vanishes there.",
-    reference: REFERENCE,
-    variable: "d (m)",
-    questions: apex,
-};
-
-pub(super) const CHART: Case = Case {
-    name: "cone-chart",
-    about: "The ball in the cone, with θ̇ = −0.5 rad/s from a small nutation θ: the Euler angles φ and χ are hardly told apart, and turn fast where θ is \
-            least. The ball itself rolls on quietly.",
-    reference: REFERENCE,
-    variable: "θ (rad)",
-    questions: chart,
-};
 
 const RADIUS: f64 = 0.1;
 const HALF_ANGLE: f64 = 0.6;
@@ -41,25 +19,18 @@ const COMPARED: usize = 2;
 /// The two forms of the vakonomic equations have the same equations of one instant near the apex; one of them will do.
 const NAMES: [&str; 3] = ["chetaev", "vakonomic", "removed-constraint"];
 
-fn apex() -> Vec<Question> {
-    let of = |d: f64| {
-        let r = RADIUS / HALF_ANGLE.tan() + d;
-        questions(d, vec![("r".into(), r), ("r'".into(), -0.3), ("duration".into(), 1.0)])
-    };
-    powers(-8, 0, 1).flat_map(of).collect()
+pub(super) fn apex(d: f64) -> Vec<Question> {
+    questions(d, &[("r", RADIUS / HALF_ANGLE.tan() + d), ("r'", -0.3), ("duration", 1.0)])
 }
 
-fn chart() -> Vec<Question> {
-    let of = |theta: f64| {
-        // no spin about the ball's axis that a small θ would blow up
-        let speed = RADIUS * -0.5 * 0.4_f64.sin();
-        let overrides = [("theta", theta), ("theta'", -0.5), ("r'", speed), ("duration", 1.0)];
-        questions(theta, overrides.map(|(name, x)| (name.to_string(), x)).to_vec())
-    };
-    powers(-8, 0, 1).flat_map(of).collect()
+pub(super) fn chart(theta: f64) -> Vec<Question> {
+    // no spin about the ball's axis that a small θ would blow up
+    let speed = RADIUS * -0.5 * 0.4_f64.sin();
+    questions(theta, &[("theta", theta), ("theta'", -0.5), ("r'", speed), ("duration", 1.0)])
 }
 
-fn questions(point: f64, overrides: Vec<(String, f64)>) -> Vec<Question> {
+fn questions(point: f64, overrides: &[(&str, f64)]) -> Vec<Question> {
+    let overrides: Vec<(String, f64)> = overrides.iter().map(|&(name, x)| (name.into(), x)).collect();
     let scene = move || -> Result<Scene, SceneError> {
         Scene::parse_with("ball-in-cone", include_str!("../../../scenes/ball-in-cone.toml"), &overrides)
     };

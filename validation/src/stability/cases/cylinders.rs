@@ -3,39 +3,8 @@
 use mechanics::{State, System};
 use scene::{Scene, SceneError};
 
-use super::powers;
-use crate::stability::question::{Case, Question};
+use crate::stability::question::Question;
 use crate::stability::reference::Reference;
-
-const REFERENCE: &str = "Chetaev: Maggi's equations, which have no multipliers, on the constraints times sin θ. Vakonomic: the costate form, derived by the same code, from equivalent \
-     constraints that are regular here: (15) times sin θ, and (17) as ẋ cos θ + ẏ sin θ = 2a φ̇₂ sin(θ − α). Both by double run of DOP853. The \
-     removed-constraint motion is not judged: the parameter W of its removal has no value in these limits, and no other road to it is known here";
-
-pub(super) const TURN: Case = Case {
-    name: "cylinders-turn",
-    about: "The three cylinders over 1 s from a slow turn θ̇ of the upper one: a parametrization by u' = θ̇ W breaks where θ̇ = 0, the \
-            constraints do not.",
-    reference: REFERENCE,
-    variable: "θ̇ (rad/s)",
-    questions: || powers(-8, 0, 2).flat_map(|rate| questions(rate, vec![("theta'".into(), rate)])).collect(),
-};
-
-pub(super) const HEADING: Case = Case {
-    name: "cylinders-heading",
-    about: "The three cylinders over 1 s from a heading θ near 0, where constraint (15) divides by sin θ. The singularity is one of \
-            the system: below θ = 0.1 the motion runs into it, and the reference stops there too.",
-    reference: REFERENCE,
-    variable: "θ (rad)",
-    questions: || powers(-2, 0, 1).flat_map(|theta| questions(theta, vec![("theta".into(), theta)])).collect(),
-};
-
-pub(super) const ANGLE: Case = Case {
-    name: "cylinders-angle",
-    about: "The three cylinders over 1 s from a heading near that of a lower cylinder, sin(θ − α) → 0, where constraints (16) and (17) become one.",
-    reference: REFERENCE,
-    variable: "θ − α (rad)",
-    questions: || powers(-8, 0, 2).flat_map(|gap| questions(gap, vec![("theta".into(), 0.9 + gap)])).collect(),
-};
 
 const TEXT: &str = include_str!("../../../scenes/three-cylinders.toml");
 
@@ -54,7 +23,8 @@ const LAST: [&str; 2] = [
     "x'*cos(theta) + y'*sin(theta) - 2*a*phi2'*sin(theta - alpha)",
 ];
 
-fn questions(point: f64, overrides: Vec<(String, f64)>) -> Vec<Question> {
+pub(super) fn questions(point: f64, name: &str, start: f64) -> Vec<Question> {
+    let overrides = [(name.to_string(), start)];
     let scene = move |second: &str, last: &str| -> Result<Scene, SceneError> {
         let system = TEXT.split("[removal").next().unwrap_or_default();
         let run = TEXT.find("[run]").map_or("", |place| &TEXT[place..]);

@@ -3,55 +3,16 @@
 use scene::Scene;
 
 use super::FORMULATIONS;
-use crate::stability::question::{Case, Question};
+use crate::stability::question::Question;
 use crate::stability::reference::Reference;
-
-pub(super) const CASE: Case = Case {
-    name: "dependent",
-    about: "A point in four dimensions with f₁ = ż − yẋ and f₂ = f₁ + d (ż + ẇ − xẏ): the rows of A are at an angle of about d. The values of d are \
-            powers of 2, so that 1 + d is exact and the constraints are equivalent to ż = yẋ, ẇ = xẏ − yẋ for every d.",
-    reference: "hand-derived equations in x and y alone, with d eliminated; double run of DOP853",
-    variable: "d",
-    questions,
-};
-
-/// Exponents of `d`: 10⁻² … 10⁻¹⁴, nearly.
-const EXPONENTS: [i32; 9] = [-7, -13, -20, -23, -26, -30, -33, -40, -46];
-
-fn questions() -> Vec<Question> {
-    let of = |exponent: &i32| {
-        let d = 2.0_f64.powi(*exponent);
-        super::questions(d, move || scene(d), &FORMULATIONS, reference)
-    };
-    EXPONENTS.iter().flat_map(of).collect()
-}
 
 const START: [f64; 4] = [0.3, -0.5, 1.0, 0.5];
 
-/// The scene with `d`.
-pub(super) fn scene(d: f64) -> Result<Scene, scene::SceneError> {
-    let [x, y, dx, dy] = START;
-    let text = format!(
-        r#"
-title = "Two constraints that are nearly one"
-[parameters]
-d = {d:?}
-[coordinates]
-x = {{ start = {x:?} }}
-y = {{ start = {y:?} }}
-z = {{ start = 0 }}
-w = {{ start = 0 }}
-[system]
-lagrangian = "(x'^2 + y'^2 + z'^2 + w'^2)/2"
-constraints = ["z' - y*x'", "(1 + d)*z' - y*x' + d*w' - d*x*y'"]
-[start.velocities]
-"x'" = {dx:?}
-"y'" = {dy:?}
-[run]
-duration = 5
-"#
-    );
-    Scene::parse("dependent", &text)
+/// With `d = 2^exponent`.
+pub(super) fn questions(exponent: i32) -> Vec<Question> {
+    let d = 2.0_f64.powi(exponent);
+    let scene = move || Scene::parse_with("dependent", include_str!("dependent.toml"), &[("d".into(), d)]);
+    super::questions(d, scene, &FORMULATIONS, reference)
 }
 
 /// With `X = (1, 0, y, −y)` and `Y = (0, 1, 0, x)`, a basis of the kernel of `A`, and their products `G = [1 + 2y², −xy; −xy, 1 + x²]`:

@@ -5,29 +5,12 @@ use mechanics::{ConstantsRule, State};
 use referees::closed_forms::Particle;
 use scene::Scene;
 
-use super::{FORMULATIONS, powers};
+use super::FORMULATIONS;
 use crate::catalogue;
-use crate::stability::question::{Case, Question, Subject};
+use crate::stability::question::{Question, Subject};
 use crate::stability::reference::Reference;
 use random::equations;
 use random::realization::{at_momentum, with_added_mass};
-
-pub(super) const ADDED: Case = Case {
-    name: "added-mass",
-    about: "The particle without its constraint, with ½N f² added to L and started at the momenta of μ₀ = 0.4 (T8). The mass matrix has condition N, \
-            and f is a difference of terms that agree to N digits.",
-    reference: "hand-derived Hamilton equations of y alone, the momenta of x and z constant, everything divided by N; double run of DOP853",
-    variable: "N",
-    questions: added,
-};
-
-pub(super) const RATIO: Case = Case {
-    name: "mass-ratio",
-    about: "The particle with L = ½(ẋ² + ẏ² + m ż²).",
-    reference: "Chetaev: closed form in z√m and y√m; the others: hand-derived Hamilton equations of y alone, double run of DOP853",
-    variable: "m",
-    questions: ratio,
-};
 
 /// `μ₀` of the added mass.
 const MULTIPLIER: f64 = 0.4;
@@ -35,24 +18,14 @@ const MULTIPLIER: f64 = 0.4;
 /// The scene's start.
 const START: ([f64; 3], [f64; 3]) = ([0.0, -1.0, 0.0], [1.0, 0.5, -1.0]);
 
-fn added() -> Vec<Question> {
-    let question = |strength: f64| {
-        let subject = Box::new(move || massive(strength));
-        // from the start that f64 can hold: μ₀ = N f₀, and f₀ is a difference of velocities
-        let start = massive(strength).map(|subject| subject.start);
-        let (q, v, multiplier) = start.map_or((START.0, START.1, MULTIPLIER), |State { q, v, .. }| {
-            ([q[0], q[1], q[2]], [v[0], v[1], v[2]], strength * (-q[1]).mul_add(v[0], v[2]))
-        });
-        let reference = Reduced { z_mass: 1.0, weakness: 1.0 / strength }.from((q, v), multiplier);
-        Question {
-            point: strength,
-            formulation: "Newton, with added mass".into(),
-            subject,
-            reference,
-            compared: usize::MAX,
-        }
-    };
-    powers(0, 12, 1).map(question).collect()
+pub(super) fn added(strength: f64) -> Vec<Question> {
+    // from the start that f64 can hold: μ₀ = N f₀, and f₀ is a difference of velocities
+    let start = massive(strength).map(|subject| subject.start);
+    let (q, v, multiplier) = start.map_or((START.0, START.1, MULTIPLIER), |State { q, v, .. }| {
+        ([q[0], q[1], q[2]], [v[0], v[1], v[2]], strength * (-q[1]).mul_add(v[0], v[2]))
+    });
+    let reference = Reduced { z_mass: 1.0, weakness: 1.0 / strength }.from((q, v), multiplier);
+    vec![Question::new(strength, "Newton, with added mass", move || massive(strength), reference)]
 }
 
 fn massive(strength: f64) -> Result<Subject, String> {
@@ -71,11 +44,7 @@ fn massive(strength: f64) -> Result<Subject, String> {
     })
 }
 
-fn ratio() -> Vec<Question> {
-    powers(-8, 8, 4).flat_map(of_ratio).collect()
-}
-
-fn of_ratio(mass: f64) -> Vec<Question> {
+pub(super) fn ratio(mass: f64) -> Vec<Question> {
     let text = include_str!("../../../scenes/particle.toml").replace("z'^2)/2", &format!("{mass:?}*z'^2)/2"));
     super::questions(
         mass,

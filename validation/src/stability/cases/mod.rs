@@ -9,31 +9,46 @@ mod sledge;
 mod units;
 mod viscous;
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
 use deltaq::{Choice, choices, derive_at, formulation};
 use mechanics::ConstantsRule;
 use scene::{Scene, SceneError};
 
-use super::question::{Case, Question, Subject};
+use super::question::{Case, Question, Subject, Texts};
 use super::reference::Reference;
 
 /// All cases, in the order of the page.
-pub const CASES: &[Case] = &[
-    viscous::CASE,
-    mass::ADDED,
-    mass::RATIO,
-    sledge::GYRATION,
-    sledge::LONG,
-    cone::APEX,
-    cone::CHART,
-    cylinders::TURN,
-    cylinders::HEADING,
-    cylinders::ANGLE,
-    dependent::CASE,
-    units::LENGTH,
-    units::TIME,
-    units::MASS,
-    blow_up::CASE,
-    blow_up::MOVING,
+pub static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
+    let texts = toml::from_str::<HashMap<String, Texts>>(include_str!("cases.toml"));
+    let mut texts = texts.unwrap_or_else(|error| panic!("cases.toml: {error}"));
+    let case = |(name, questions)| {
+        let texts = texts.remove(name).unwrap_or_else(|| panic!("cases.toml has nothing on {name}"));
+        Case { name, texts, questions }
+    };
+    QUESTIONS.into_iter().map(case).collect()
+});
+
+/// Names and questions.
+const QUESTIONS: [(&str, fn() -> Vec<Question>); 16] = [
+    ("viscous", || powers(0, 10, 1).flat_map(viscous::questions).collect()),
+    ("added-mass", || powers(0, 12, 1).flat_map(mass::added).collect()),
+    ("mass-ratio", || powers(-8, 8, 4).flat_map(mass::ratio).collect()),
+    ("sledge-k", || powers(-4, 4, 1).flat_map(|k| sledge::questions(k, k, 10.0)).collect()),
+    ("sledge-long", || powers(0, 3, 1).flat_map(|end| sledge::questions(end, sledge::RADIUS, end)).collect()),
+    ("cone-apex", || powers(-8, 0, 1).flat_map(cone::apex).collect()),
+    ("cone-chart", || powers(-8, 0, 1).flat_map(cone::chart).collect()),
+    ("cylinders-turn", || powers(-8, 0, 2).flat_map(|rate| cylinders::questions(rate, "theta'", rate)).collect()),
+    ("cylinders-heading", || powers(-2, 0, 1).flat_map(|at| cylinders::questions(at, "theta", at)).collect()),
+    ("cylinders-angle", || powers(-8, 0, 2).flat_map(|gap| cylinders::questions(gap, "theta", 0.9 + gap)).collect()),
+    // 10⁻² … 10⁻¹⁴, nearly
+    ("dependent", || [-7, -13, -20, -23, -26, -30, -33, -40, -46].into_iter().flat_map(dependent::questions).collect()),
+    ("unit-of-length", || powers(-12, 12, 4).flat_map(|unit| units::questions(unit, [1, 0, -2, -1])).collect()),
+    ("unit-of-time", || powers(-12, 12, 4).flat_map(|unit| units::questions(unit, [0, 1, 2, 1])).collect()),
+    ("unit-of-mass", || powers(-12, 12, 4).flat_map(|unit| units::questions(unit, [0, 0, -1, 0])).collect()),
+    ("blow-up", || powers(-2, 2, 1).flat_map(|y| blow_up::questions(y, 0.0, &FORMULATIONS)).collect()),
+    ("blow-up-across", || powers(-2, 2, 1).flat_map(|y| blow_up::questions(y, 1.0, &["chetaev"])).collect()),
 ];
 
 /// What is known of the sledge of the scene, in a formulation.
@@ -80,14 +95,7 @@ fn questions(
             let scene = scene().map_err(|error| error.to_string())?;
             subject(&scene, &choice(&scene, name)?)
         };
-        let title = formulation(name).map_or(name, |f| f.title);
-        Question {
-            point,
-            formulation: title.into(),
-            subject: Box::new(subject),
-            reference: reference(name),
-            compared: usize::MAX,
-        }
+        Question::new(point, formulation(name).map_or(name, |f| f.title), subject, reference(name))
     };
     names.iter().map(one).collect()
 }

@@ -3,39 +3,11 @@
 use referees::closed_forms;
 use scene::Scene;
 
-use super::{FORMULATIONS, powers};
-use crate::stability::question::{Case, Question};
+use super::FORMULATIONS;
+use crate::stability::question::Question;
 use crate::stability::reference::Reference;
 
-const REFERENCE: &str = "Chetaev: closed form; the others: hand-derived equations for the heading alone with the momenta p_x = p_x(0) + g t sin α, p_y as \
-                         functions of time, double run of DOP853";
-
-pub(super) const GYRATION: Case = Case {
-    name: "sledge-k",
-    about: "The sledge over 10 s with radius of gyration k: the vakonomic and the removed-constraint sledge oscillate at a rate that grows \
-            as t/k.",
-    reference: REFERENCE,
-    variable: "k",
-    questions: by_gyration,
-};
-
-pub(super) const LONG: Case = Case {
-    name: "sledge-long",
-    about: "The sledge of the scene for a long time.",
-    reference: REFERENCE,
-    variable: "duration",
-    questions: by_duration,
-};
-
-fn by_gyration() -> Vec<Question> {
-    powers(-4, 4, 1).flat_map(|k| questions(k, k, 10.0)).collect()
-}
-
-fn by_duration() -> Vec<Question> {
-    powers(0, 3, 1).flat_map(|duration| questions(duration, RADIUS, duration)).collect()
-}
-
-fn questions(point: f64, k: f64, duration: f64) -> Vec<Question> {
+pub(super) fn questions(point: f64, k: f64, duration: f64) -> Vec<Question> {
     let scene = move || {
         let overrides = [("k".into(), k), ("duration".into(), duration)];
         Scene::parse_with("sledge", include_str!("../../../scenes/sledge.toml"), &overrides)

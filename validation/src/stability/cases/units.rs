@@ -4,59 +4,20 @@ use deltaq::formulation;
 use mechanics::ConstantsRule;
 
 use super::sledge::Sledge;
-use super::{FORMULATIONS, choice, powers};
+use super::{FORMULATIONS, choice};
 use crate::catalogue;
-use crate::stability::question::{Case, Question, Subject};
+use crate::stability::question::{Question, Subject};
 use crate::stability::reference::Reference;
 use random::{Scaling, equations};
 
-const REFERENCE: &str = "that of the sledge in metres and seconds, its times and coordinates converted";
-
-pub(super) const LENGTH: Case = Case {
-    name: "unit-of-length",
-    about: "The sledge over 10 s, lengths in a unit of so many metres.",
-    reference: REFERENCE,
-    variable: "unit (m)",
-    questions: || {
-        points(|unit| Scaling {
-            lengths: vec![unit, unit, 1.0],
-            time: 1.0,
-            action: unit.powi(-2),
-            constraint: 1.0 / unit,
-        })
-    },
-};
-
-pub(super) const TIME: Case = Case {
-    name: "unit-of-time",
-    about: "The sledge over 10 s, times in a unit of so many seconds.",
-    reference: REFERENCE,
-    variable: "unit (s)",
-    questions: || points(|unit| Scaling { lengths: vec![1.0; 3], time: unit, action: unit * unit, constraint: unit }),
-};
-
-pub(super) const MASS: Case = Case {
-    name: "unit-of-mass",
-    about: "The sledge over 10 s, masses in a unit of so many times its own.",
-    reference: REFERENCE,
-    variable: "unit",
-    questions: || points(|unit| Scaling { lengths: vec![1.0; 3], time: 1.0, action: 1.0 / unit, constraint: 1.0 }),
-};
-
-fn points(scaling: impl Fn(f64) -> Scaling) -> Vec<Question> {
-    powers(-12, 12, 4).flat_map(|unit| questions(unit, &scaling(unit))).collect()
-}
-
-fn questions(unit: f64, scaling: &Scaling) -> Vec<Question> {
-    let one = |name: &'static str| Question {
-        point: unit,
-        formulation: formulation(name).map_or(name, |f| f.title).into(),
-        subject: {
-            let scaling = scaling.clone();
-            Box::new(move || subject(&scaling, name))
-        },
-        reference: in_time_unit(Sledge { k: 0.7 }.reference(name), scaling.time),
-        compared: usize::MAX,
+/// Powers of the unit by which lengths, times, the action and the constraint are scaled.
+pub(super) fn questions(unit: f64, [length, time, action, constraint]: [i32; 4]) -> Vec<Question> {
+    let [length, time, action, constraint] = [length, time, action, constraint].map(|power| unit.powi(power));
+    let scaling = Scaling { lengths: vec![length, length, 1.0], time, action, constraint };
+    let one = |name: &'static str| {
+        let (scaling, reference) = (scaling.clone(), in_time_unit(Sledge { k: 0.7 }.reference(name), time));
+        let title = formulation(name).map_or(name, |f| f.title);
+        Question::new(unit, title, move || subject(&scaling, name), reference)
     };
     FORMULATIONS.into_iter().map(one).collect()
 }

@@ -2,31 +2,15 @@
 
 use nalgebra::Complex;
 
-use super::powers;
 use crate::catalogue;
-use crate::stability::question::{Case, Question, Subject};
+use crate::stability::question::{Question, Subject};
 use crate::stability::reference::Reference;
 use random::equations;
 use random::realization::with_friction;
 
-pub(super) const CASE: Case = Case {
-    name: "viscous",
-    about: "The sledge without its constraint, with friction −N Aᵀf across the blade instead (T8): the slip decays within 1/N. An explicit method \
-            has to follow that for 10 s; an implicit one may step over it, and must not step over the motion. The stiff direction turns with the blade: \
-            Radau5 has a Jacobian for each stage of its step where one for all does not do; the library behind the other implicit methods takes \
-            one Jacobian, that of the last point, and an iteration that contracts only for h N (h ω)² ≪ 1.",
-    reference: "closed form: across and along the blade the velocities obey a linear system with constant coefficients and a harmonic force",
-    variable: "N",
-    questions,
-};
-
 const DURATION: f64 = 10.0;
 
-fn questions() -> Vec<Question> {
-    powers(0, 10, 1).map(question).collect()
-}
-
-fn question(strength: f64) -> Question {
+pub(super) fn questions(strength: f64) -> Vec<Question> {
     let subject = move || {
         let scene = catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
         let system = with_friction(&scene.system, strength);
@@ -43,13 +27,7 @@ fn question(strength: f64) -> Question {
     };
     let motion = Slipping::new(9.81 * 0.4_f64.sin(), 0.3, 0.5, 1.1, strength);
     let reference = Reference::Closed(Box::new(move |t| motion.at(t)));
-    Question {
-        point: strength,
-        formulation: "Newton, with friction".into(),
-        subject: Box::new(subject),
-        reference,
-        compared: usize::MAX,
-    }
+    vec![Question::new(strength, "Newton, with friction", subject, reference)]
 }
 
 /// The sledge that slips, from the origin, without slip at the start. With `v` along and `s` across the blade and `φ = φ₀ + ωt`

@@ -1,0 +1,110 @@
+//! What somebody else needs to check a proof.
+
+use crate::exact::{Jet, Modular, PRIME, inverse};
+use crate::family::CostateRate;
+use crate::proof::{Echelon, Question, Ranks};
+use crate::series::order;
+use crate::start::ExactStart;
+
+/// A proof that no `μ₀` makes a Chetaev motion vakonomic; `validation/proof/verify.py` checks it.
+///
+/// With `μ = μ₀ + μ₁ s + …` the powers `s⁰ … s^K` of `Aᵀ μ̇ + (Ȧᵀ − f_qᵀ) μ = −E` are linear equations `S x = b` for `x = (μ₀, …, μ_{K+1})`. Some of their
+/// rows make `[S | −b]` a square matrix whose determinant modulo `p` is not zero. `T = e^{i/N} ↦ τ`; all other numbers are in `0..p`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Certificate {
+    /// `p`.
+    pub prime: u64,
+    /// Image of `√−1`.
+    pub imaginary: u64,
+    /// `N`, in decimals; angles at the start are multiples of `1/N`, quarter turns apart.
+    pub parts: String,
+    /// `τ`.
+    pub turn: u64,
+    /// `K`.
+    pub order: usize,
+    /// Rows of `[S | −b]`, each as a power of `s` and the number of a coordinate, from 0.
+    pub rows: Vec<(usize, usize)>,
+    /// Their determinant, not zero.
+    pub minor: u64,
+    /// What was divided by, with its image, not zero.
+    pub divided_by: Vec<(String, u64)>,
+    /// Given velocities that are solved from the constraints, which their decimals miss by round-off.
+    pub completed: Vec<String>,
+    /// Coefficients `0 … K + 2` of every coordinate along the motion.
+    pub motion: Vec<(String, Vec<u64>)>,
+    /// Coefficients `0 … K` of the h reactions `λ`.
+    pub reactions: Vec<Vec<u64>>,
+}
+
+impl Question<'_> {
+    /// The certificate that Chetaev's motion from `start` has no `μ₀`, in the family of vakonomic motions; why there is none where there is none.
+    ///
+    /// # Errors
+    /// The reason, in words.
+    pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
+        let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
+        let (curve, series) = self.series(&exact, self.orders()).map_err(|fault| fault.to_string())?;
+        let refuted = Ranks::of(&series).refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        let shape = &self.family().shape;
+        let (n, h, last) = (shape.coordinates, shape.constraints, refuted.order);
+        if shape.rates.iter().any(|rate| matches!(rate, CostateRate::Explicit(_))) || curve.unknowns[0].len() != n + h {
+            return Err("certificates are written for Chetaev's motion as a vakonomic one only".into());
+        }
+        if !refuted.full_rank {
+            return Err(
+                "coefficients of less than full rank have no minor to show: the proof is one of ranks modulo p".into(),
+            );
+        }
+        if start.projected {
+            return Err("the velocities at the start are not those of the scene, but projected ones".into());
+        }
+        let values = self.family().evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
+        let instant = shape.instant(&values);
+        let width = h * (last + 2) + 1;
+        let (mut echelon, mut rows, mut minor) = (Echelon::default(), Vec::new(), Vec::new());
+        for (k, i) in (0..=last).flat_map(|k| (0..n).map(move |i| (k, i))) {
+            let mut row = vec![Modular::ZERO; width];
+            for (l, (j, rate)) in (0..=k).flat_map(|l| shape.rates.iter().enumerate().map(move |rate| (l, rate))) {
+                let CostateRate::Unknown(place) = *rate else { continue };
+                let (now, next) = (h * (k - l) + j, h * (k - l + 1) + j);
+                let times = Modular::new((k - l) as u64 + 1);
+                row[next] = row[next] + times * instant.matrix[i * shape.unknowns + place].coefficient(l);
+                row[now] = row[now] + instant.by_costate[i * h + j].coefficient(l);
+            }
+            row[width - 1] = instant.rest[i].coefficient(k);
+            if echelon.add(row.clone()) {
+                rows.push((k, i));
+                minor.extend(row);
+            }
+        }
+        let one = Modular::one();
+        let (_, minor) = inverse(&minor, width, one).ok_or("there is no minor of full size")?;
+        let open = start.open(&completed);
+        let jacobian = order(instant.jacobian, 0);
+        let matrix: Vec<Modular> =
+            (0..h).flat_map(|i| open.iter().map(move |j| i * n + j)).map(|at| jacobian[at]).collect();
+        let (_, supplied) = inverse(&matrix, open.len(), one).ok_or("the start is not unique")?;
+        let mut divided_by = vec![
+            ("equations of motion".to_owned(), curve.determinant.value()),
+            ("constraints at the start".to_owned(), supplied.value()),
+        ];
+        let divisors = order(self.denominators.evaluator::<Jet<Modular>>().run(&curve.inputs), 0);
+        divided_by.extend(self.divisors.iter().cloned().zip(divisors.iter().map(|x| x.value())));
+        let coordinates = curve.inputs.len() - 3 * n;
+        let jet = |i: usize| (0..last + 3).map(|k| curve.inputs[coordinates + i].coefficient(k).value()).collect();
+        let (parts, turn) = Modular::turn();
+        Ok(Certificate {
+            prime: PRIME,
+            imaginary: Modular::imaginary().value(),
+            parts,
+            turn: turn.value(),
+            order: last,
+            rows,
+            minor: minor.value(),
+            divided_by,
+            completed,
+            motion: self.names.iter().enumerate().map(|(i, name)| (name.clone(), jet(i))).collect(),
+            reactions: curve.unknowns[..=last].iter().map(|z| z[n..].iter().map(|x| x.value()).collect()).collect(),
+        })
+    }
+}

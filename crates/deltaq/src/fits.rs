@@ -1,0 +1,149 @@
+//! What the free constants of one run can do to meet another.
+
+use equations::FreeConstant;
+use mechanics::ConstantsRule;
+use scene::Scene;
+
+use crate::fit::best_fit;
+use crate::gap::{Gap, Verdict, compare_motions};
+use crate::runs::{Decided, Pair, Run};
+use crate::{
+    Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of, setting,
+    solve,
+};
+
+/// The best that free constants can do.
+pub struct Fit {
+    /// Index of the run whose constants were fitted.
+    pub run: usize,
+    /// Index of the run that was to be met.
+    pub target: usize,
+    /// The fitted motion; `None` where no constants lead to a motion over the whole horizon.
+    pub fitted: Option<FittedMotion>,
+    /// Whether nothing was searched: the constants follow from those of the target ([`costates_of`], [`multipliers_of`]).
+    pub by_identity: bool,
+}
+
+/// A motion with fitted constants.
+pub struct FittedMotion {
+    /// Names and values of the constants.
+    pub constants: Vec<(String, f64)>,
+    /// The gap that remains.
+    pub gap: Gap,
+}
+
+/// Fits the free constants of one run to another wherever the two differ: vakonomic to Chetaev, the first removed-constraint run to
+/// Chetaev, to vakonomic, and to the removed-constraint runs of other removals. Between removals by coordinates and vakonomic nothing is searched.
+pub(crate) fn fits(
+    scene: &Scene,
+    runs: &mut [Run],
+    pairs: &[Pair],
+    decided: &[Decided],
+    metric: &mut Metric,
+    settings: &Settings,
+) -> Result<Vec<Fit>, SolveError> {
+    let of = |name: &str| -> Vec<usize> {
+        let motion = |r: &Run| r.choice.formulation == name && r.outcome.as_ref().is_ok_and(|m| m.end() > m.start());
+        (0..runs.len()).filter(|&i| motion(&runs[i])).collect()
+    };
+    let (chetaev, vakonomic, removed) = (of("chetaev"), of("vakonomic"), of("removed-constraint"));
+    let mut wanted: Vec<(usize, usize)> = Vec::new();
+    for &target in &chetaev {
+        wanted.extend(vakonomic.iter().chain(removed.first()).map(|&run| (run, target)));
+    }
+    if let [first, others @ ..] = &removed[..] {
+        wanted.extend(vakonomic.iter().chain(others).map(|&target| (*first, target)));
+    }
+    let mut fits = Vec::new();
+    for (run, target) in wanted {
+        let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
+        if pairs.iter().find(pair).is_some_and(|p| p.gap.verdict == Verdict::Different) {
+            let known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
+            let by_identity = known.is_some();
+            let nearest = decided.iter().find(|d| (d.family, d.curve) == (run, target));
+            let nearest = nearest.and_then(|d| Some(d.outcome.as_ref().ok()?.decision.set.point.clone()));
+            let start = known.map_or(Start::Search(nearest), Start::Known);
+            if let Some(fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
+                fits.push(Fit { run, target, fitted, by_identity });
+            }
+        }
+    }
+    Ok(fits)
+}
+
+/// The constants of a removal by coordinates with which its motion is `target`, vakonomic or of another removal by coordinates; or, where `target` is
+/// Chetaev's, with which it is the vakonomic motion that was fitted to that before.
+fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> Result<Option<Vec<f64>>, SolveError> {
+    let (Some(removal), Ok(motion)) = (&choice.removal, &target.outcome) else { return Ok(None) };
+    let multipliers = match &target.choice.removal {
+        None if target.choice.formulation == "vakonomic" => Some(motion.constants.clone()),
+        None => {
+            let fitted = before.first().and_then(|fit| fit.fitted.as_ref());
+            fitted.map(|fitted| fitted.constants.iter().map(|(_, mu)| *mu).collect())
+        }
+        Some(other) => {
+            let mut costates = vec![0.0; other.memory.len()];
+            for (constant, value) in motion.equations.free_constants.iter().zip(&motion.constants) {
+                constant.memory.into_iter().for_each(|i| costates[i] = *value);
+            }
+            multipliers_of(scene, other, &costates)?
+        }
+    };
+    multipliers.map_or(Ok(None), |multipliers| costates_of(scene, removal, &multipliers))
+}
+
+/// Where the constants of a fit come from.
+enum Start {
+    /// They are these, one a memory variable.
+    Known(Vec<f64>),
+    /// They are searched, from the least-norm element of the decided set, or the nearest miss, among others.
+    Search(Option<Vec<f64>>),
+}
+
+/// Outer `None`: there is nothing to fit. Inner `None`: no constants lead to a motion.
+fn fit_run(
+    scene: &Scene,
+    runs: &mut [Run],
+    run: usize,
+    target: usize,
+    start: Start,
+    metric: &mut Metric,
+    settings: &Settings,
+) -> Result<Option<Option<FittedMotion>>, SolveError> {
+    let Ok(motion) = &runs[run].outcome else { return Ok(None) };
+    let (mut equations, mut constants) = (motion.equations.clone(), motion.constants.clone());
+    let memory = equations.removal.as_ref().map_or(0, |removal| removal.memory.len());
+    if memory > constants.len() {
+        // costates that are zero by the rule of the run are free here
+        let choice = Choice { constants: ConstantsRule::Given(vec![1.0; memory]), ..runs[run].choice.clone() };
+        let all = derive_at(&scene.system, &scene.start, &choice)?;
+        let own = |c: &FreeConstant| {
+            let kept = equations.free_constants.iter().position(|own| own.memory == c.memory);
+            kept.map_or(0.0, |i| constants[i])
+        };
+        constants = all.free_constants.iter().map(own).collect();
+        equations = all;
+    }
+    if constants.is_empty() {
+        return Ok(None);
+    }
+    let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
+    let found = match start {
+        Start::Known(values) => {
+            let within = Setting { end: goal.end(), ..setting(scene) };
+            Some(solve(within, equations, &ConstantsRule::Given(values), settings)?)
+        }
+        Start::Search(nearest) => {
+            let mut guesses = vec![vec![0.0; constants.len()]];
+            if constants != guesses[0] {
+                guesses.push(constants);
+            }
+            guesses.extend(nearest.filter(|nearest| nearest.len() == guesses[0].len()));
+            best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?
+        }
+    };
+    let Some(mut motion) = found else { return Ok(Some(None)) };
+    let gap = compare_motions(goal, &mut motion, metric)?;
+    let names = constant_names(&motion.equations);
+    Ok(Some(Some(FittedMotion { constants: names.into_iter().zip(motion.constants.clone()).collect(), gap })))
+}

@@ -1,0 +1,80 @@
+//! Runs of a scene, pairs of them, and what is decided about them.
+
+use mechanics::ConstantsRule;
+use scene::Scene;
+
+use crate::gap::Gap;
+use crate::growth::{Growth, LeadingTerm};
+use crate::{Choice, Membership, Motion, Pairing, SolveError, constant_names, costates_of, formulation};
+
+/// A choice and what became of it.
+pub struct Run {
+    /// The choice.
+    pub choice: Choice,
+    /// The motion, or why there is none.
+    pub outcome: Result<Motion, SolveError>,
+}
+
+/// Two runs compared.
+pub struct Pair {
+    /// Index of the first run.
+    pub first: usize,
+    /// Index of the second run.
+    pub second: usize,
+    /// The gap between them.
+    pub gap: Gap,
+    /// Growth of `second − first` near the start, where it stands out from the errors.
+    pub growth: Option<Growth>,
+    /// Predicted leading term, where the first motion can be followed in Taylor series and the second has no constants found by a search.
+    pub predicted: Option<LeadingTerm>,
+}
+
+/// Whether one motion belongs to the family of another formulation.
+pub struct Decided {
+    /// Index of the run whose constants are asked for.
+    pub family: usize,
+    /// Index of the run that is to be met.
+    pub curve: usize,
+    /// What was decided, or why it cannot be.
+    pub outcome: Result<Membership, SolveError>,
+}
+
+/// The leading term of the difference of two runs.
+pub(crate) fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<LeadingTerm> {
+    let (Ok(motion), Ok(pairing)) = (&run.outcome, Pairing::new(scene, curve, &run.choice)) else { return None };
+    if matches!(run.choice.constants, ConstantsRule::Natural { .. }) {
+        return None;
+    }
+    // costates that the motion has left out are zero
+    let names = constant_names(&motion.equations);
+    let value = |name| names.iter().position(|own| own == name).map_or(0.0, |i| motion.constants[i]);
+    let constants: Vec<f64> = pairing.constants().iter().map(value).collect();
+    pairing.leading_term(&constants).ok().flatten()
+}
+
+/// Asks of Chetaev's motion whether it belongs to the other families, and of the vakonomic one whether it belongs to those of removals that have
+/// more than coordinates for their variables.
+pub(crate) fn decided(scene: &Scene, runs: &[Run]) -> Vec<Decided> {
+    let end = |i: usize| runs[i].outcome.as_ref().map_or(0.0, Motion::end);
+    let known = |i: usize| formulation(runs[i].choice.formulation).is_some();
+    let has = |i: &usize| runs[*i].outcome.is_ok() && known(*i) && !scene.system.constraints.is_empty();
+    let of = |name: &str| (0..runs.len()).filter(has).find(|&i| runs[i].choice.formulation == name);
+    let own_variables = |i: &usize| {
+        let removal = runs[*i].choice.removal.as_ref();
+        removal.is_some_and(|r| !matches!(costates_of(scene, r, &scene.multipliers), Ok(Some(_))))
+    };
+    let removed: Vec<usize> = (0..runs.len()).filter(has).filter(own_variables).collect();
+    let mut asked: Vec<(usize, usize)> = Vec::new();
+    if let Some(curve) = of("chetaev") {
+        asked.extend(of("vakonomic").into_iter().chain(of("kappa")).chain(removed.clone()).map(|i| (i, curve)));
+    }
+    if let Some(curve) = of("vakonomic") {
+        asked.extend(removed.iter().map(|&i| (i, curve)));
+    }
+    let decide = |(family, curve): (usize, usize)| Decided {
+        family,
+        curve,
+        outcome: Pairing::new(scene, &runs[curve].choice, &runs[family].choice).and_then(|p| p.decide(end(curve))),
+    };
+    asked.into_iter().map(decide).collect()
+}

@@ -1,0 +1,129 @@
+//! # The family between the vakonomic and the Chetaev formulation
+//!
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`, forces `Q` and a number `κ ≥ 0`, the parameter
+//! `kappa` of the system, in 1/s. Write `A = ∂f/∂v` (h×n) and `𝓛 = L + μ·f` with multipliers `μ(t) ∈ Rʰ`.
+//!
+//! **The equations.**
+//!
+//! ```text
+//! d/dt ∂𝓛/∂v − ∂𝓛/∂q = Q − κ Aᵀ μ ,        f(q, v, t) = 0 .
+//! ```
+//!
+//! `κ = 0` is vakonomic. As `κ → ∞` the motion tends to Chetaev's, with the error 1/κ: `μ` goes to `−λ/κ` within the time 1/κ, and what is left of
+//! the right-hand side is `Aᵀ λ`.
+//!
+//! **What it is for.** A constraint that is kept by large added mass `½ N f·f` *and* large viscous friction `−κ N Aᵀ f` together leads, as `N → ∞`,
+//! to neither of the two but to this: `μ` is the limit of `N f`. The ratio of friction to mass is `κ`.
+//!
+//! **One instant.** With the state `(q, v, μ)` the equations are linear in `(a, μ̇)`:
+//!
+//! ```text
+//! [ 𝓛_vv  Aᵀ ] [ a  ]   [ 𝓛_q + Q − κ Aᵀ μ − 𝓛_vq v − 𝓛_vt ]
+//! [ A      0 ] [ μ̇ ] = [ −(f_q v + f_t)                    ]
+//! ```
+//!
+//! **What the motion depends on.** On `(q₀, v₀)`, on `μ₀ ∈ Rʰ` and on `κ`. Large `κ` makes the equations stiff.
+//!
+//! **What stays constant.** Nothing in general: the energy `v·𝓛_v − 𝓛` changes at the rate `v·(Q − κ Aᵀ μ)`, which is zero where `Q = 0` and `A v = f`,
+//! for constraints linear in `v` and without a free term.
+//!
+//! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1992.
+
+use equations::{
+    Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,
+    StateVariable, Statement,
+};
+use mechanics::{System, fresh_symbol};
+use symbolic::{Expr, Symbol};
+
+/// Entry of the table of formulations.
+pub const FORMULATION: Formulation = Formulation {
+    name: "kappa",
+    title: "between, κ",
+    needs_removal: false,
+    starts_multipliers: true,
+    parameter: Some("kappa"),
+    derive,
+};
+
+/// Derives states `(q, v, μ)`, unknowns `(a, μ̇)`, free constants `μ₀`.
+///
+/// # Errors
+/// [`DerivationError::ParameterMissing`] where the system has no parameter `kappa`.
+///
+/// ```
+/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
+/// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
+/// # let symbol = system.graph.symbol("kappa");
+/// # system.parameters.push(mechanics::Parameter { symbol, value: 0.5 });
+/// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
+/// let equations = kappa::derive(&system, &equations::Derivation::default())?;
+/// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
+/// assert_eq!(line(0), "x'' - kappa*mu_1*sin(phi) - phi'*mu_1*cos(phi) - mu_1'*sin(phi) - 1");
+/// assert_eq!(line(2), "phi'' + mu_1*(x'*cos(phi) + y'*sin(phi))");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationError> {
+    let system = system.clone();
+    let g = &system.graph;
+    let missing = DerivationError::ParameterMissing { formulation: FORMULATION.name, parameter: "kappa" };
+    let kappa = system.parameters.iter().find(|p| g.name(p.symbol) == "kappa").ok_or(missing)?;
+    let mut equations = Equations::new(FORMULATION.name, &system);
+    let (q, v, a) = (system.positions(), system.velocities(), system.accelerations());
+    let fresh = |stem: &str, tail: &str| -> Vec<Symbol> {
+        (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("{stem}_{i}{tail}"))).collect()
+    };
+    let (multipliers, starts, rates) = (fresh("mu", ""), fresh("mu0", ""), fresh("mu", "'"));
+    let mu = g.variables(&multipliers);
+    let mut flow = system.flow();
+    flow.extend(multipliers.iter().copied().zip(g.variables(&rates)));
+
+    // d/dt ∂𝓛/∂v − ∂𝓛/∂q − Q + κ Aᵀ μ = 0
+    let jacobian = system.constraint_jacobian();
+    let augmented = g.add(system.lagrangian, g.dot(&mu, &system.constraints));
+    let (momenta, gradient) = (g.gradient(augmented, &v), g.gradient(augmented, &q));
+    let pull = g.transpose_vec(&jacobian, &mu);
+    let mut residuals: Vec<Expr> = (0..q.len())
+        .map(|i| {
+            let inertia = g.sub(g.total_derivative(momenta[i], &flow), gradient[i]);
+            g.sum(&[inertia, g.neg(system.forces[i]), g.mul(g.variable(kappa.symbol), pull[i])])
+        })
+        .collect();
+    let statement = |meaning: String, left: Expr| Statement { meaning, left, right: g.zero() };
+    let balances = residuals.iter().zip(&system.coordinates);
+    equations.statements = balances.map(|(&e, c)| statement(format!("balance for {}", c.name), e)).collect();
+    equations.statements.extend(system.constraints.iter().map(|&f| statement("constraint".into(), f)));
+    // d/dt f = 0
+    residuals.extend(system.constraints.iter().map(|&f| g.total_derivative(f, &flow)));
+
+    equations.add_positions_and_velocities(&system);
+    for (i, &symbol) in multipliers.iter().enumerate() {
+        let (rate, start) = (g.variable(rates[i]), g.variable(starts[i]));
+        equations.states.push(StateVariable { symbol, role: Role::Multiplier, rate, start });
+        equations.multipliers.push(Named { name: g.name(symbol), expression: mu[i] });
+        equations.free_constants.push(FreeConstant { symbol: starts[i], natural: None, memory: None });
+    }
+    equations.blocks = vec![Block {
+        unknowns: a.iter().chain(&rates).copied().collect(),
+        residuals,
+        guess: Vec::new(),
+        regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
+    }];
+    equations.coordinates = g.variables(&q);
+    equations.velocities = g.variables(&v);
+    equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {
+        velocities: v.clone(),
+        constraints: system.constraints.clone(),
+        jacobian: jacobian.clone(),
+        metric: system.velocity_hessian(),
+    });
+    let work = g.mat_vec(&jacobian, &g.variables(&v));
+    let workless = system.constraints.iter().zip(work).all(|(&f, work)| g.is_zero(g.sub(work, f)));
+    if workless && system.is_autonomous() && !system.has_forces() {
+        let energy = g.sub(g.dot(&g.variables(&v), &momenta), augmented);
+        equations.invariants.push(Named { name: "energy".into(), expression: energy });
+    }
+    equations.graph = system.graph;
+    Ok(equations)
+}
