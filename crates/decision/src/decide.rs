@@ -10,6 +10,8 @@ use crate::transport::Transport;
 /// Gauss nodes a panel, and the least number of panels: at least 256 nodes.
 const NODES: usize = 4;
 const PANELS: usize = 64;
+/// Turns of every pair of columns until they are orthogonal: the sixth changes nothing any more.
+const SWEEPS: usize = 10;
 /// A mismatch up to this many times its noise is none.
 const CERTAIN: f64 = 10.0;
 /// What round-off leaves of the rows at best, relative to their size.
@@ -160,9 +162,12 @@ pub fn decide(
         for (i, (x, weight)) in nodes.into_iter().enumerate() {
             let t = start + width * (panel as f64 + x);
             let root = (weight * width.abs()).sqrt();
-            let (own, other) = (fine.mismatch(fine_run.as_ref(), t)?, coarse.mismatch(coarse_run.as_ref(), t)?);
+            let own = fine.mismatch(fine_run.as_ref(), t)?;
             triangle.rows_mut(above + i * n, n).copy_from(&(&own.rows * root));
-            difference += ((own.rows - other.rows) * root).norm_squared();
+            if i == panel % NODES {
+                let other = coarse.mismatch(coarse_run.as_ref(), t)?;
+                difference += (own.rows - other.rows).norm_squared() * width.abs();
+            }
             acceleration += (own.acceleration * root).powi(2);
             speed += (own.speed * root).powi(2);
         }
@@ -187,19 +192,12 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, 
     let matrix = triangle.columns(0, last).into_owned();
     let mut point = DVector::zeros(last);
     let mut directions = Vec::new();
-    if last > 0 {
-        // thin rows leave V incomplete: padded, the decomposition has all directions
-        let rows = matrix.nrows().max(last);
-        let svd = matrix.clone().resize_vertically(rows, 0.0).svd(true, true);
-        let goal = goal.clone().resize_vertically(rows, 0.0);
-        if let (Some(u), Some(v)) = (&svd.u, &svd.v_t) {
-            for (i, &sigma) in svd.singular_values.iter().enumerate() {
-                if sigma > CERTAIN * rows_noise {
-                    point += v.row(i).transpose() * (u.column(i).dot(&goal) / sigma);
-                } else {
-                    directions.push(v.row(i).iter().copied().collect());
-                }
-            }
+    let (images, preimages) = orthogonal(&matrix);
+    for (image, preimage) in images.column_iter().zip(preimages.column_iter()) {
+        if image.norm() > CERTAIN * rows_noise {
+            point += preimage * (image.dot(&goal) / image.norm_squared());
+        } else {
+            directions.push(preimage.iter().copied().collect());
         }
     }
     let least = (&matrix * &point - &goal).norm();
@@ -225,6 +223,30 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, 
         rows_noise,
         size,
     }
+}
+
+/// `A V` with orthogonal columns, and the orthogonal `V` (one-sided Jacobi): small columns come out as sharp as large ones.
+fn orthogonal(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+    let size = matrix.ncols();
+    let (mut images, mut preimages) = (matrix.clone(), DMatrix::identity(size, size));
+    for (i, j) in (0..SWEEPS).flat_map(|_| (0..size).flat_map(|i| (0..i).map(move |j| (i, j)))) {
+        let (one, two) = (images.column(i), images.column(j));
+        let (a, b, c) = (one.norm_squared(), two.norm_squared(), one.dot(&two));
+        if c.abs() <= f64::EPSILON * (a * b).sqrt() {
+            continue;
+        }
+        let cotangent = (b - a) / (2.0 * c);
+        let tangent = cotangent.signum() / (cotangent.abs() + cotangent.hypot(1.0));
+        let cosine = tangent.hypot(1.0).recip();
+        for columns in [&mut images, &mut preimages] {
+            for k in 0..columns.nrows() {
+                let (x, y) = (columns[(k, i)], columns[(k, j)]);
+                columns[(k, i)] = cosine * (x - tangent * y);
+                columns[(k, j)] = cosine * (y + tangent * x);
+            }
+        }
+    }
+    (images, preimages)
 }
 
 /// The triangular factor: the same lengths in at most as many rows as columns.

@@ -1,10 +1,11 @@
 //! How a motion of the family leaves the curve.
 
 use mechanics::{State, System};
+use nalgebra::{DMatrix, DVector};
 
 use crate::exact::{Jet, Modular};
 use crate::proof::Question;
-use crate::series::{MismatchSeries, SeriesStart};
+use crate::series::{MismatchSeries, SeriesStart, order as at_order};
 use crate::start::ExactStart;
 
 /// Orders that are looked at.
@@ -41,7 +42,7 @@ impl Question<'_> {
             positions: state.q.iter().map(|&x| Jet::of(x)).collect(),
             velocities: state.v.iter().map(|&x| Jet::of(x)).collect(),
         };
-        let (_, series) = self.series(&start, HIGHEST).ok()?;
+        let (curve, series) = self.series(&start, HIGHEST).ok()?;
         let proved = exact.and_then(|exact| self.proved_order(exact, constants));
         let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants))?;
         // decimals that stand for other numbers leave lower terms, of the size of round-off
@@ -54,7 +55,45 @@ impl Question<'_> {
         let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let meets = |k: usize| (size(&coefficient) / size(&term(k))).powf(1.0 / (k - order) as f64);
         let reach = (order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min);
+        // parameters of a removal have no series among these inputs, and constraints that are not linear no such removal
+        let coefficient = match self.family().lift {
+            Some(_) => coefficient,
+            None => {
+                let unknowns = unknowns(&series, order, constants);
+                let accelerations = self.at_costates(&at_order(&curve.inputs, 0), constants, &unknowns)?;
+                accelerations.into_iter().map(|x| x / ((order + 1) * (order + 2)) as f64).collect()
+            }
+        };
         Some(LeadingDifference { exponent: order + 2, coefficient, reach, exact: proved == Some(Some(order)) })
+    }
+
+    /// Accelerations from those unknowns of the family at which the mismatch begins. These were found with `∂R/∂z` at `η = 0`; where a constraint is
+    /// not linear in the velocities, `η` is in it: `R_η`, affine in the accelerations, tells how.
+    fn at_costates(&self, inputs: &[f64], constants: &[f64], unknowns: &[f64]) -> Option<Vec<f64>> {
+        let (family, shape) = (self.family(), &self.family().shape);
+        let mut evaluator = family.evaluator::<f64>();
+        let first = inputs.len() - shape.coordinates;
+        let values = evaluator.run(inputs).to_vec();
+        let instant = shape.instant(&values);
+        let (n, k, count) = (shape.coordinates, shape.costates, shape.accelerations.len());
+        let to_acceleration = DMatrix::from_row_slice(n, count, instant.to_acceleration);
+        let start = family.start(inputs);
+        let costates: Vec<f64> = start.chunks_exact(constants.len() + 1).map(|row| value(row, constants).0).collect();
+        let plain = DMatrix::from_row_slice(shape.unknowns, shape.unknowns, instant.matrix);
+        let mut z = DVector::zeros(shape.unknowns);
+        let mut bent = plain.clone();
+        for (column, &place) in shape.accelerations.iter().enumerate() {
+            z[place] = unknowns[column];
+            let mut moved = inputs.to_vec();
+            moved[first..].iter_mut().zip(to_acceleration.column(column).iter()).for_each(|(a, da)| *a += da);
+            let values = evaluator.run(&moved);
+            let change = shape.instant(values).by_costate.iter().zip(instant.by_costate).map(|(x, y)| x - y);
+            for (i, change) in change.enumerate() {
+                bent[(i / k, place)] += change * costates[i % k];
+            }
+        }
+        let z = bent.lu().solve(&(plain * z))?;
+        Some((to_acceleration * z.select_rows(&shape.accelerations)).as_slice().to_vec())
     }
 
     /// The first order that does not vanish, in exact numbers; `None` where these do not apply.
@@ -73,6 +112,11 @@ impl Question<'_> {
         };
         Some((0..HIGHEST).find(|&k| !vanishes(k)))
     }
+}
+
+/// Unknowns that are accelerations, at one order.
+fn unknowns(series: &MismatchSeries<f64>, order: usize, constants: &[f64]) -> Vec<f64> {
+    series.orders[order].chunks_exact(series.width).map(|row| value(row, constants).0).collect()
 }
 
 fn rows(series: &MismatchSeries<f64>, order: usize) -> impl Iterator<Item = &[f64]> {

@@ -186,10 +186,19 @@ impl<'a> Question<'a> {
         Proof { this_start, almost_every_start, completed }
     }
 
+    /// Ranks at few orders where these are `enough`, else at all.
+    fn ranks(&self, start: &SeriesStart<Modular>, enough: impl Fn(&Ranks) -> bool) -> Result<Ranks, NoSeries> {
+        let few = Ranks::of(&self.series(start, self.family.shape.constants + 3)?.1);
+        if few.refuted().is_some() || enough(&few) {
+            return Ok(few);
+        }
+        Ok(Ranks::of(&self.series(start, self.orders())?.1))
+    }
+
     fn particular(&self, start: &SeriesStart<Modular>, generic: &Finding) -> Finding {
-        let orders = self.orders();
-        let ranks = match self.series(start, orders) {
-            Ok((_, series)) => Ranks::of(&series),
+        let is_generic = |ranks: &Ranks| matches!(generic, Finding::Contained { rank, .. } if *rank == ranks.last());
+        let ranks = match self.ranks(start, is_generic) {
+            Ok(ranks) => ranks,
             Err(fault) => return Finding::NotApplicable(fault.to_string()),
         };
         if let Some(none) = ranks.refuted() {
@@ -197,23 +206,20 @@ impl<'a> Question<'a> {
         }
         // where the rank is the generic one it stays so nearby, and the jets obey one linear equation
         match generic {
-            Finding::Contained { rank, order } if *rank == ranks.last() => {
-                Finding::Contained { rank: *rank, order: *order }
-            }
-            _ => Finding::ThroughOrder { rank: ranks.last(), order: orders - 1 },
+            Finding::Contained { .. } if is_generic(&ranks) => generic.clone(),
+            _ => Finding::ThroughOrder { rank: ranks.last(), order: ranks.by_order.len() - 1 },
         }
     }
 
     fn generic(&self, start: &ExactStart) -> Finding {
-        let orders = self.orders();
         let mut found: Vec<Ranks> = Vec::new();
         for seed in SEEDS {
-            let series = match start.random(seed) {
-                Ok(exact) => self.series(&exact, orders),
+            let ranks = match start.random(seed) {
+                Ok(exact) => self.ranks(&exact, |ranks| ranks.settled().is_some()),
                 Err(fault) => return Finding::NotApplicable(fault.to_string()),
             };
-            match series {
-                Ok((_, series)) => found.push(Ranks::of(&series)),
+            match ranks {
+                Ok(ranks) => found.push(ranks),
                 Err(fault) => return Finding::NotApplicable(fault.to_string()),
             }
         }
@@ -223,7 +229,7 @@ impl<'a> Question<'a> {
         let ranks = &found[0];
         match ranks.settled() {
             Some(order) if found.iter().all(|other| other == ranks) => Finding::Contained { rank: ranks.last(), order },
-            _ => Finding::ThroughOrder { rank: ranks.last(), order: orders - 1 },
+            _ => Finding::ThroughOrder { rank: ranks.last(), order: ranks.by_order.len() - 1 },
         }
     }
 }

@@ -70,8 +70,9 @@ fn identities_over_all_starts() {
     let (proof, section) = proved(&built_in("bowl", &[]));
     assert!(section.is_some());
     assert!(matches!(proof.this_start, Finding::Contained { rank: 0, .. }), "{proof:?}");
+    // a random start on a cone has a root of its own
     let (proof, _) = proved(&built_in("appell-hamel", &[]));
-    assert!(matches!(proof.this_start, Finding::ThroughOrder { rank: 0, .. }), "{proof:?}");
+    assert!(matches!(proof.this_start, Finding::Contained { rank: 0, .. }), "{proof:?}");
 }
 
 #[test]

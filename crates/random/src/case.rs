@@ -4,7 +4,7 @@ use deltaq::{
     Choice, Ending, Gap, Membership, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict,
     compare_motions_by, derive, formulation, membership, setting,
 };
-use equations::{Derivation, Equations};
+use equations::Equations;
 use mechanics::{ConstantsRule, Removal, State, System};
 use nalgebra::DMatrix;
 use scene::Scene;
@@ -245,15 +245,6 @@ pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Resu
         constants: ConstantsRule::Zero,
     };
     derive(system, &choice)
-}
-
-/// The equations of a formulation without removal as they were derived, nothing left out.
-///
-/// # Errors
-/// [`SolveError`] where it has none for this system.
-pub fn as_derived(system: &System, name: &str) -> Result<Equations, SolveError> {
-    let entry = formulation(name).unwrap_or(&deltaq::FORMULATIONS[0]);
-    Ok((entry.derive)(system, &Derivation::default())?)
 }
 
 /// The free constants of `equations` out of costates that are given one a memory variable.

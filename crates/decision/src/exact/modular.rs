@@ -6,6 +6,7 @@
 //! `T = e^{i/N} ↦ τ = h^{1/N}` is a homomorphism of rings wherever nothing that is divided by has the image 0.
 
 use std::ops::{Add, Mul, Neg, Sub};
+use std::sync::LazyLock;
 
 use super::Flaw;
 use super::rational::Exact;
@@ -43,6 +44,10 @@ fn reduce(x: u128) -> u64 {
     let t = ((x + u128::from(m) * u128::from(PRIME)) >> 64) as u64;
     if t >= PRIME { t - PRIME } else { t }
 }
+
+/// Inverses of small numbers, by which series divide at every order.
+static OVER: LazyLock<[Modular; 32]> =
+    LazyLock::new(|| std::array::from_fn(|d| Modular::new(d as u64).inverse().unwrap_or(Modular::ZERO)));
 
 impl Modular {
     pub(crate) const ZERO: Modular = Modular(0);
@@ -86,7 +91,11 @@ impl Modular {
     /// The image of a fraction; `None` where its denominator is a multiple of `p`.
     pub(crate) fn fraction(x: Exact) -> Option<Self> {
         let numerator = Self::integer(x.numerator);
-        if x.denominator == 1 { Some(numerator) } else { Some(numerator * Self::integer(x.denominator).inverse()?) }
+        let over = match usize::try_from(x.denominator).ok().and_then(|d| OVER.get(d)) {
+            Some(&over) => over,
+            None => Self::integer(x.denominator).inverse()?,
+        };
+        Some(numerator * over)
     }
 
     pub(crate) fn power(self, mut exponent: u64) -> Self {

@@ -1,13 +1,15 @@
 //! T1, T2, T3, T11, T14: where formulations give the same motion.
 
-use deltaq::{Setting, SolveError, growth, integrability, integrals_by_ranks};
-use mechanics::{Integrability, Removal, complete_removal_start};
+use deltaq::{
+    Choice, Setting, SolveError, costates_of, derive, growth, integrability, integrals_by_ranks, multipliers_of,
+};
+use mechanics::{ConstantsRule, Integrability, Removal, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
-use symbolic::{CompileError, Symbol};
+use symbolic::Symbol;
 
 use super::CheckError;
-use crate::case::{Removed, Which, equations, free_constants};
-use crate::realization::{augmented_start, constraint_jacobian, momenta, numbers};
+use crate::case::{Which, equations, free_constants};
+use crate::realization::{augmented_start, momenta, numbers};
 use crate::{Case, Kind, Truth};
 
 /// Residual of linear equations under which they have a solution, relative to their terms.
@@ -113,57 +115,27 @@ pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// T3: `Aᵀ_w μ₀ = −P₀ − L_ẇ` is a bijection of the removed family, by coordinates and with all its costates, and the vakonomic one.
+/// T3: `A_wᵀ μ₀ = −P₀ − L_ẇ` is a bijection of the removed family, by coordinates and with all its costates, and the vakonomic one.
 pub(super) fn bijection(case: &mut Case) -> Result<(), CheckError> {
-    let system = case.scene.system.clone();
-    for i in (0..case.removed.len()).filter(|&i| is_chart(&case.removed[i].removal)).collect::<Vec<_>>() {
-        if system.constraints.is_empty() {
-            continue;
-        }
-        let Removed { removal, costates, .. } = &case.removed[i];
-        let (removal, costates) = (removal.clone(), costates.clone());
-        let Some(mu) = multipliers_of(case, &removal, &costates)? else { continue };
+    let (system, given) = (case.scene.system.clone(), case.scene.multipliers.clone());
+    for i in (0..case.removed.len()).filter(|_| !given.is_empty()).collect::<Vec<_>>() {
+        let (removal, costates) = (case.removed[i].removal.clone(), case.removed[i].costates.clone());
+        let Some(mu) = multipliers_of(&case.scene, &removal, &costates)? else { continue };
         let mut motion = case.run(equations(&system, "vakonomic", None)?, &mu)?;
         case.same(3, "coordinate removal is the vakonomic motion with mu = -P - L_w'", Which::Removed(i), &mut motion);
-        let equations = equations(&system, "removed-constraint", Some(&removal))?;
-        let kept = |k: usize| equations.free_constants.iter().any(|c| c.memory == Some(k));
-        if !(0..removal.memory.len()).all(kept) {
-            continue;
-        }
-        let a = by_memory(case, &removal)?.transpose() * DVector::from_vec(case.scene.multipliers.clone());
-        let own = memory_momenta(case, &removal)?;
-        let costates: Vec<f64> = (-a - own).iter().copied().collect();
+        let Some(costates) = costates_of(&case.scene, &removal, &given)? else { continue };
+        let choice = Choice {
+            label: removal.name.clone(),
+            formulation: "removed-constraint",
+            removal: Some(removal),
+            constants: ConstantsRule::Given(costates.clone()),
+        };
+        let equations = derive(&system, &choice)?;
         let constants = free_constants(&equations, &costates);
         let mut motion = case.run(equations, &constants)?;
         case.same(3, "vakonomic is the coordinate removal with P = -mu - L_w'", Which::Vakonomic, &mut motion);
     }
     Ok(())
-}
-
-/// `∂f/∂ẇ` at the start.
-fn by_memory(case: &Case, removal: &Removal) -> Result<DMatrix<f64>, CompileError> {
-    let columns: Vec<usize> = removal.memory.iter().filter_map(|w| w.coordinate).collect();
-    Ok(constraint_jacobian(&case.scene.system, &case.scene.start)?.select_columns(&columns))
-}
-
-/// `L_ẇ` at the start.
-fn memory_momenta(case: &Case, removal: &Removal) -> Result<DVector<f64>, CompileError> {
-    let momenta = momenta(&case.scene.system, &case.scene.start)?;
-    Ok(DVector::from_iterator(
-        removal.memory.len(),
-        removal.memory.iter().filter_map(|w| w.coordinate).map(|c| momenta[c]),
-    ))
-}
-
-/// The `μ₀` with `A_wᵀ μ₀ = −P₀ − L_ẇ` of a removal by coordinates; `None` where `A_w` is singular.
-pub(super) fn multipliers_of(
-    case: &Case,
-    removal: &Removal,
-    costates: &[f64],
-) -> Result<Option<Vec<f64>>, CompileError> {
-    let right = -DVector::from_column_slice(costates) - memory_momenta(case, removal)?;
-    let solution = by_memory(case, removal)?.transpose().lu().solve(&right);
-    Ok(solution.map(|mu| mu.iter().copied().collect()))
 }
 
 /// T11.

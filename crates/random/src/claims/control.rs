@@ -1,9 +1,8 @@
 //! T12: the deliberately wrong formulation.
 
-use deltaq::Verdict;
+use deltaq::{Verdict, multipliers_of};
 
 use super::CheckError;
-use super::agreement::multipliers_of;
 use crate::case::{Which, equations};
 use crate::{Case, Kind};
 use referees::maggi::Maggi;
@@ -48,11 +47,10 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
 fn criterion(case: &mut Case) -> Result<(), CheckError> {
     let (system, Some((removal, _))) = (case.scene.system.clone(), case.control.clone()) else { return Ok(()) };
     let reduced = removal.rewrite(&system, system.lagrangian);
-    let chart = removal.parameters.iter().all(|u| u.coordinate.is_some());
-    if !chart || removal.memory.iter().any(|w| system.graph.depends_on(reduced, w.symbol)) {
+    if removal.memory.iter().any(|w| system.graph.depends_on(reduced, w.symbol)) {
         return Ok(());
     }
-    let Some(mu) = multipliers_of(case, &removal, &vec![0.0; removal.memory.len()])? else { return Ok(()) };
+    let Some(mu) = multipliers_of(&case.scene, &removal, &vec![0.0; removal.memory.len()])? else { return Ok(()) };
     let mut motion = case.run(equations(&system, "vakonomic", None)?, &mu)?;
     case.same(12, "substitution is the vakonomic motion with c = 0", Which::Control, &mut motion);
     let Some(found) = case.membership()? else { return Ok(()) };

@@ -1,10 +1,11 @@
 //! T9: whether a motion is vakonomic for some multipliers: decided, proved, and fitted.
 
-use decision::{DecisionSettings, ExactStart, Family, Finding, Flow, Question, Verdict, decide_flow};
-use deltaq::{Answer, Settings, SolveError, best_fit, setting};
+use decision::{Finding, Verdict};
+use deltaq::{Answer, Choice, Membership, Pairing, Settings, best_fit, choices, setting};
+use mechanics::ConstantsRule;
 
 use super::CheckError;
-use crate::case::{Which, as_derived, equations};
+use crate::case::{Which, equations};
 use crate::{Case, Kind};
 
 /// Decides of every system whether its Chetaev motion is vakonomic, and finds the multipliers of a vakonomic motion in that motion.
@@ -56,15 +57,11 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
 
 /// The vakonomic motion of the scene is vakonomic, with the multipliers of the scene.
 fn planted(case: &mut Case) -> Result<(), CheckError> {
-    let scene = &case.scene;
-    let (system, multipliers) = (&scene.system, &scene.multipliers);
-    let equations = as_derived(system, "vakonomic")?;
-    let family = Family::new(system, &equations, false).map_err(SolveError::from)?;
-    let flow = Flow::new(system, &equations, &scene.start, multipliers, case.end()).map_err(SolveError::from)?;
-    let decision = decide_flow(&family, &flow, &DecisionSettings::default()).map_err(SolveError::from)?;
-    let question = Question::new(system, &equations, multipliers, &family).map_err(SolveError::from)?;
-    let exact = ExactStart::new(system, &scene.start, &scene.completion, None).map_err(SolveError::from)?;
-    let proof = question.prove(&exact).this_start;
+    let multipliers = &case.scene.multipliers;
+    let family = &choices(&case.scene)[1];
+    let curve = Choice { constants: ConstantsRule::Given(multipliers.clone()), ..family.clone() };
+    let Membership { decision, proof, .. } = Pairing::new(&case.scene, &curve, family)?.decide(case.end())?;
+    let proof = proof.this_start;
     let left = decision.mismatch_at(multipliers);
     let note =
         format!("rho {:.1e}, {left:.1e} at mu0, noise {:.1e}; {}", decision.least, decision.noise, words(&proof));
