@@ -234,7 +234,9 @@ fn along_memory(scene: &Scene, removal: &Removal) -> Result<Option<(Vec<f64>, DM
     let g = &system.graph;
     let memory: Option<Vec<usize>> = removal.memory.iter().map(|w| w.coordinate).collect();
     let Some(memory) = memory.filter(|memory| {
-        !memory.is_empty() && memory.len() == system.constraints.len() && removal.parameters.iter().all(|u| u.coordinate.is_some())
+        !memory.is_empty()
+            && memory.len() == system.constraints.len()
+            && removal.parameters.iter().all(|u| u.coordinate.is_some())
     }) else {
         return Ok(None);
     };

@@ -149,7 +149,7 @@ fn unconstrained(system: &System, mass: f64, friction: f64) -> System {
     let square = g.dot(&system.constraints, &system.constraints);
     let lagrangian = g.add(system.lagrangian, g.mul(g.number(mass / 2.0), square));
     let slip: Vec<Expr> = system.constraints.iter().map(|&f| g.mul(g.number(-friction), f)).collect();
-    let drag = g.transpose_vec(&system.constraint_jacobian(), &slip);
+    let drag = g.transpose_vec(&g.jacobian(&system.constraints, &system.velocities()), &slip);
     let forces = system.forces.iter().zip(drag).map(|(&q, drag)| g.add(q, drag)).collect();
     (other.lagrangian, other.forces, other.constraints) = (lagrangian, forces, Vec::new());
     other
