@@ -96,7 +96,7 @@ fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> 
 enum Start {
     /// They are these, one a memory variable.
     Known(Vec<f64>),
-    /// They are searched, from the least-norm element of the decided set, or the nearest miss, among others.
+    /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero where nothing was decided; and from those of the run.
     Search(Option<Vec<f64>>),
 }
 
@@ -134,11 +134,11 @@ fn fit_run(
             Some(solve(within, equations, &ConstantsRule::Given(values), settings)?)
         }
         Start::Search(nearest) => {
-            let mut guesses = vec![vec![0.0; constants.len()]];
+            let nearest = nearest.filter(|nearest| nearest.len() == constants.len());
+            let mut guesses = vec![nearest.unwrap_or_else(|| vec![0.0; constants.len()])];
             if constants != guesses[0] {
                 guesses.push(constants);
             }
-            guesses.extend(nearest.filter(|nearest| nearest.len() == guesses[0].len()));
             best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?
         }
     };
