@@ -63,7 +63,16 @@ pub(crate) fn fits(
             let nearest = decided.iter().find(|d| (d.family, d.curve) == (run, target));
             let nearest = nearest.and_then(|d| Some(d.outcome.as_ref().ok()?.decision.set.point.clone()));
             let start = known.map_or(Start::Search(nearest), Start::Known);
-            if let Some(fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
+            if let Some(mut fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
+                let before = pairs.iter().find(pair).map_or(0.0, |p| p.gap.largest);
+                if let Some(found) = &mut fitted
+                    && !by_identity
+                    && found.gap.verdict == Verdict::Different
+                    && found.gap.largest < settings.tolerance * before
+                {
+                    let because = "a search knows the constants to its tolerance, and what is left is less".into();
+                    found.gap.verdict = Verdict::Undecided { because };
+                }
                 fits.push(Fit { run, target, fitted, by_identity });
             }
         }

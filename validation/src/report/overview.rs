@@ -201,8 +201,8 @@ fn predictions(comparisons: &[Comparison]) -> Option<String> {
     }
     worst.map(|(off, name)| {
         format!(
-            "**The parting is predictable.** On {count} scenes theory gives the leading term of the gap between Chetaev and vakonomic from the start \
-             data alone; the measured one is off by at most {} % (`{name}`).",
+            "**The parting is predictable.** For {count} pairs of motions the leading term of the gap follows from the Taylor coefficients of their accelerations at the start; \
+             the measured one is off by at most {} % (`{name}`).",
             short(100.0 * off)
         )
     })
