@@ -228,8 +228,11 @@ pub fn multipliers_of(scene: &Scene, removal: &Removal, costates: &[f64]) -> Res
     Ok(jacobian.transpose().lu().solve(&pull).map(|mu| mu.as_slice().to_vec()))
 }
 
-/// `L_ẇ` and `∂f/∂ẇ` (h×h) at the start, where all parameters and memory variables are coordinates.
-fn along_memory(scene: &Scene, removal: &Removal) -> Result<Option<(Vec<f64>, DMatrix<f64>)>, SolveError> {
+/// `L_ẇ` and `∂f/∂ẇ` (h×h).
+type AlongMemory = (Vec<f64>, DMatrix<f64>);
+
+/// These at the start, where all parameters and memory variables are coordinates.
+fn along_memory(scene: &Scene, removal: &Removal) -> Result<Option<AlongMemory>, SolveError> {
     let system = scene.system.clone();
     let g = &system.graph;
     let memory: Option<Vec<usize>> = removal.memory.iter().map(|w| w.coordinate).collect();

@@ -32,8 +32,11 @@ pub enum Guards {
     Some,
 }
 
+/// Name, numbers in the place of the scene's, and guards.
+type Asked = (&'static str, &'static [(&'static str, f64)], Guards);
+
 /// Built-in scenes with what is known of their guards, and with numbers of one size where their own are not.
-const SCENES: [(&str, &[(&str, f64)], Guards); 10] = [
+const SCENES: [Asked; 10] = [
     ("sledge", &[], Guards::None),
     ("ball-in-cone", &[("a", 0.6)], Guards::Some),
     ("heisenberg", &[], Guards::None),

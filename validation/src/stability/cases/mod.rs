@@ -30,8 +30,11 @@ pub static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     QUESTIONS.into_iter().map(case).collect()
 });
 
+/// A name in the file of cases, and what makes the questions.
+type Asked = (&'static str, fn() -> Vec<Question>);
+
 /// Names and questions.
-const QUESTIONS: [(&str, fn() -> Vec<Question>); 16] = [
+const QUESTIONS: [Asked; 16] = [
     ("viscous", || powers(0, 10, 1).flat_map(viscous::questions).collect()),
     ("added-mass", || powers(0, 12, 1).flat_map(mass::added).collect()),
     ("mass-ratio", || powers(-8, 8, 4).flat_map(mass::ratio).collect()),
