@@ -60,7 +60,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
 /// let equations = kappa::derive(&system, &equations::Derivation::default())?;
 /// let line = |i: usize| equations.graph.plain(equations.statements[i].left);
-/// assert_eq!(line(0), "x'' - kappa*mu_1*sin(phi) - phi'*mu_1*cos(phi) - mu_1'*sin(phi) - 1");
+/// assert_eq!(line(0), "x'' - phi'*mu_1*cos(phi) - kappa*mu_1*sin(phi) - mu_1'*sin(phi) - 1");
 /// assert_eq!(line(2), "phi'' + mu_1*(x'*cos(phi) + y'*sin(phi))");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -30,9 +30,13 @@ def test_rates_of_the_sledge(sledge, system):
     np.testing.assert_allclose(equations.acceleration(0, y[:3], y[3:]), expected, atol=1e-14)
 
 
+def in_every_formulation(sledge):
+    return sledge.system(parameters={"g": sledge.g, "alpha": sledge.alpha, "k": sledge.k, "kappa": 0.5})
+
+
 @pytest.mark.parametrize("formulation", deltaq.FORMULATIONS)
-def test_shapes(system, formulation):
-    equations = system.equations(formulation)
+def test_shapes(sledge, formulation):
+    equations = in_every_formulation(sledge).equations(formulation)
     y = equations.initial_state()
     m = len(equations.states)
     assert y.shape == (m,) and y.dtype == np.float64
@@ -51,8 +55,9 @@ def test_shapes(system, formulation):
 
 
 @pytest.mark.parametrize("formulation", deltaq.FORMULATIONS)
-def test_jacobian_against_differences(system, formulation):
-    equations = system.equations(formulation, mu0=[0.3] if "vakonomic" in formulation else None)
+def test_jacobian_against_differences(sledge, formulation):
+    multipliers = "vakonomic" in formulation or formulation == "kappa"
+    equations = in_every_formulation(sledge).equations(formulation, mu0=[0.3] if multipliers else None)
     y = equations.initial_state()
     step = 1e-6
     rows = np.concatenate([y + step * np.eye(len(y)), y - step * np.eye(len(y))])
