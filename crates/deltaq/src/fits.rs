@@ -105,7 +105,8 @@ fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> 
 enum Start {
     /// They are these, one a memory variable.
     Known(Vec<f64>),
-    /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero where nothing was decided; and from those of the run.
+    /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
+    /// where nothing was decided; or from those of the run, where these are closer.
     Search(Option<Vec<f64>>),
 }
 
@@ -144,10 +145,7 @@ fn fit_run(
         }
         Start::Search(nearest) => {
             let nearest = nearest.filter(|nearest| nearest.len() == constants.len());
-            let mut guesses = vec![nearest.unwrap_or_else(|| vec![0.0; constants.len()])];
-            if constants != guesses[0] {
-                guesses.push(constants);
-            }
+            let guesses = [nearest.unwrap_or_else(|| vec![0.0; constants.len()]), constants];
             best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?
         }
     };

@@ -1,5 +1,6 @@
 //! How a gap starts: exponent and leading coefficient, measured and predicted.
 
+use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 
 use crate::metric::{Metric, subtract};
@@ -93,30 +94,22 @@ pub fn growth(
     let design = |s: f64| [1.0, s.ln(), s / to, (s / to).powi(2)];
     let shorter = |s: f64| [1.0, s.ln(), s / to, 0.0];
     let logarithms: Vec<f64> = differences.iter().map(|d| d.2.ln()).collect();
-    let Some(fit) = least_squares(&differences, &design, &logarithms) else { return Ok(None) };
+    let fit = least_squares(&differences, &design, &logarithms);
     let exponent = fit[1];
-    let uncertainty =
-        least_squares(&differences, &shorter, &logarithms).map_or(f64::INFINITY, |fit| (fit[1] - exponent).abs());
+    let uncertainty = (least_squares(&differences, &shorter, &logarithms)[1] - exponent).abs();
     let k = exponent.round();
     // Δq / s^k = c + c₁ s + c₂ s² + c₃ s³, coordinate by coordinate
     let powers = |s: f64| [1.0, s / to, (s / to).powi(2), (s / to).powi(3)];
     let mut coefficient = vec![0.0; q0.len()];
     for (i, c) in coefficient.iter_mut().enumerate() {
         let scaled: Vec<f64> = differences.iter().map(|(s, d, _)| d[i] / s.powf(k)).collect();
-        match least_squares(&differences, &powers, &scaled) {
-            Some(fit) => *c = fit[0],
-            None => return Ok(None),
-        }
+        *c = least_squares(&differences, &powers, &scaled)[0];
     }
     let length = metric.length(start, &q0, &v0, &coefficient);
     Ok(Some(Growth { exponent, uncertainty, coefficient, length, from, to }))
 }
 
-fn least_squares(
-    at: &[(f64, Vec<f64>, f64)],
-    design: &dyn Fn(f64) -> [f64; 4],
-    values: &[f64],
-) -> Option<DVector<f64>> {
+fn least_squares(at: &[(f64, Vec<f64>, f64)], design: &dyn Fn(f64) -> [f64; 4], values: &[f64]) -> DVector<f64> {
     let matrix = DMatrix::from_fn(at.len(), 4, |i, j| design(at[i].0)[j]);
-    matrix.svd(true, true).solve(&DVector::from_column_slice(values), 1e-14).ok()
+    SingularValues::of(&matrix).solve(&DVector::from_column_slice(values), 1e-14)
 }

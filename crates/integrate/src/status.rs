@@ -75,6 +75,14 @@ pub enum StopCause {
         /// [`crate::Options::max_steps`].
         limit: usize,
     },
+    /// Many steps hardly moved the time: they creep up to a singularity.
+    #[error("the last {steps} steps moved time by {moved:.1e} only: a singularity is near")]
+    Creeping {
+        /// How many.
+        steps: usize,
+        /// Time they took together.
+        moved: f64,
+    },
     /// [`crate::Options::interrupt`] was raised.
     #[error("interrupted")]
     Interrupted,

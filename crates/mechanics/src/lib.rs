@@ -41,6 +41,7 @@ pub mod newton;
 mod rank;
 mod removal;
 mod removal_error;
+mod singular_values;
 mod solved_constraints;
 mod start;
 mod system;
@@ -49,6 +50,7 @@ pub use integrability::{Integrability, integrability};
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use removal_error::RemovalError;
+pub use singular_values::SingularValues;
 pub use start::{
     Completion, Quantity, Recombination, RemovalStart, StartData, StartError, check_regularity, complete_removal_start,
     complete_start, project_velocity,

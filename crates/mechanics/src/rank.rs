@@ -5,6 +5,8 @@ use std::collections::{BTreeSet, HashMap};
 use nalgebra::DMatrix;
 use symbolic::{Bounded, Evaluator, Graph, Matrix, Scalar, SplitMix, Symbol};
 
+use crate::SingularValues;
+
 /// Singular values under this fraction of the largest count as zero.
 pub(crate) const RANK_LIMIT: f64 = 1e-9;
 
@@ -21,8 +23,8 @@ fn certain_rank(mut matrix: DMatrix<f64>, mut errors: DMatrix<f64>) -> usize {
             errors /= scale;
         }
     }
-    let singular = matrix.singular_values();
-    let largest = singular.iter().fold(0.0_f64, |a, &b| a.max(b));
+    let singular = SingularValues::of(&matrix).values;
+    let largest = singular.max();
     let limit = errors.norm().max(RANK_LIMIT * largest);
     singular.iter().filter(|&&s| largest > 0.0 && s > limit).count()
 }

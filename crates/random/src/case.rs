@@ -5,7 +5,7 @@ use deltaq::{
     compare_motions_by, derive, formulation, membership, setting,
 };
 use equations::Equations;
-use mechanics::{ConstantsRule, Removal, State, System};
+use mechanics::{ConstantsRule, Removal, SingularValues, State, System};
 use nalgebra::DMatrix;
 use scene::Scene;
 use symbolic::Expr;
@@ -309,7 +309,7 @@ fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, Sol
     saddle.view_mut((0, 0), (n, n)).copy_from(&hessian);
     saddle.view_mut((0, n), (n, h)).copy_from(&a.transpose());
     saddle.view_mut((n, 0), (h, n)).copy_from(&a);
-    let singular = saddle.singular_values();
+    let singular = SingularValues::of(&saddle).values;
     let (smallest, largest) = singular.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &s| (a.min(s), b.max(s)));
     Ok(1e2 * f64::EPSILON * largest / smallest)
 }

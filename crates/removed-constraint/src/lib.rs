@@ -175,7 +175,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     let mut singular = equations.coordinates.clone();
     singular.extend(removal.memory.iter().map(|w| w.rate));
     singular.push(generating);
-    equations.guards = g.denominators(&singular);
+    equations.guards = [g.denominators(&singular), g.kinks(&singular)].concat();
     equations.guards.retain(|&e| !g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s)));
     equations.removal = Some(removal.clone());
     drop(parameters);

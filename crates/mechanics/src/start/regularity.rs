@@ -109,7 +109,7 @@ impl ScaledMatrices {
         if self.constraint_jacobian.nrows() == 0 {
             return Ok(1.0);
         }
-        let values = decompose(self.constraint_jacobian.clone())?.values;
+        let values = decompose(&self.constraint_jacobian)?.values;
         let (ratio, singular_values) = ratio(&values);
         if ratio > SINGULAR_LIMIT {
             return Ok(ratio);
@@ -120,11 +120,11 @@ impl ScaledMatrices {
     fn check_mass(&self) -> Result<(), StartError> {
         let (h, n) = self.constraint_jacobian.shape();
         let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
-        let svd = decompose(padded)?;
+        let svd = decompose(&padded)?;
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&a, &b| svd.values[b].total_cmp(&svd.values[a]));
         let kernel = svd.right.select_rows(&order[h..]).transpose();
-        let (ratio, singular_values) = ratio(&decompose(kernel.tr_mul(&(&self.mass * &kernel)))?.values);
+        let (ratio, singular_values) = ratio(&decompose(&kernel.tr_mul(&(&self.mass * &kernel)))?.values);
         if ratio > SINGULAR_LIMIT {
             return Ok(());
         }

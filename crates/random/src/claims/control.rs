@@ -12,7 +12,7 @@ const PLACES: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 0.95];
 
 /// Residual of Maggi's equations on the control motion over which it is wrong, and under which it is right; between them nothing is said.
 const WRONG: f64 = 1e-6;
-const RIGHT: f64 = 3e-10;
+const RIGHT: f64 = 1e-12;
 
 /// Flagged wherever Maggi's equations say that it is wrong; called right where it is right, in Chaplygin's integrable form above all.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
