@@ -1,4 +1,5 @@
-//! Newton's method for one step, without allocation.
+//! Newton's method for one step, without allocation. A step that it does not solve at once is refused as too
+//! long: a root farther off is another motion.
 
 use std::collections::HashMap;
 

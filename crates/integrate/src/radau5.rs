@@ -1,11 +1,19 @@
-//! Radau IIA of order 5: three stages, collocation at `c = (4 − √6)/10, (4 + √6)/10, 1`, L-stable; for stiff problems.
+//! Radau IIA of order 5: three stages, collocation at `c = (4 − √6)/10, (4 + √6)/10, 1`, L-stable; for stiff
+//! problems.
 //!
-//! Newton iteration, error estimate, step control and starting values as in E. Hairer's and G. Wanner's code RADAU5: the three stages are
-//! transformed so that one real and one complex matrix of n rows are factorized, `(γ/h) − J` and `((α + iβ)/h) − J`; Jacobian and factors are
-//! kept while the iteration contracts well. Where it does not, unlike there, each stage has a Jacobian of its own ([`newton`]).
-//! Dense output is the collocation polynomial, of degree 3. The estimate has order 3 too, and unlike in RADAU5, which asks for `0.1 · tolerance^(2/3)` of it, it is held under the tolerance as it stands: so the dense output is as good as the tolerance,
-//! and the ends of the steps are better by orders. That estimate does not see what is stiff, whose polynomial may be wrong between collocation points;
-//! so a second one compares the ends of the steps with where the polynomial before leads.
+//! Ours, because the implicit methods of `diffsol` have order 5 at most in several steps and 3 in one, and
+//! take very many steps at tight tolerances.
+//!
+//! Newton iteration, error estimate, step control and starting values as in E. Hairer's and G. Wanner's code
+//! RADAU5. The three stages are transformed, so that one real and one complex matrix of n rows are
+//! factorized, `(γ/h) − J` and `((α + iβ)/h) − J`. Jacobian and factors are kept while the iteration
+//! contracts well. Where it does not, unlike there, each stage has a Jacobian of its own ([`newton`]).
+//!
+//! Dense output is the collocation polynomial, of degree 3. The estimate has order 3 too. RADAU5 asks for
+//! `0.1 · tolerance^(2/3)` of it; here it is held under the tolerance as it stands. So the dense output is as
+//! good as the tolerance, and the ends of the steps are better by orders. That estimate does not see what is
+//! stiff, whose polynomial may be wrong between collocation points; a second one compares the ends of the
+//! steps with where the polynomial before leads.
 //!
 //! E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, IV.8.
 

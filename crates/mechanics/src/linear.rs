@@ -1,7 +1,8 @@
 //! Small dense linear systems in place, without allocation: the one solve of every instant.
 //!
-//! In `f64`, and in the wide types of references. Written here and not taken from a crate because it runs once an evaluation on matrices of 1 to 20 rows, where the
-//! allocation of a general factorization costs more than the elimination.
+//! In `f64`, and in the wide types of references. Ours, because it runs in every evaluation on matrices of 1
+//! to 20 rows, where the allocation of a general factorization costs more than the elimination. What runs
+//! once is left to nalgebra.
 
 use symbolic::Scalar;
 

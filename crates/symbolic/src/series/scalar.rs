@@ -1,4 +1,9 @@
 //! The number types of power series, and where coefficients are kept.
+//!
+//! Products go forwards: a new coefficient meets all older ones, in groups of 8 at fixed places, because that
+//! needs no sum across a vector. `pulp` picks the processor's instructions; sums have one order on all, and
+//! so one result. The loops are bound by their number of instructions: linear terms put into one another, so
+//! that none waits for another, made the series of sledge and cone 9 to 26 % slower.
 
 use std::marker::PhantomData;
 
