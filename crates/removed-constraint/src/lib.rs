@@ -75,10 +75,10 @@ pub const FORMULATION: Formulation = Formulation {
 /// [`DerivationError::SingularHighestHessian`].
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-/// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
+/// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3_f64.tan(), 1.] };
 /// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u_x'*cos(phi), y' = u_x'*sin(phi)
 /// let removal = mechanics::Removal::by_quasi_velocities(&system, &start)?;
 /// let derivation = equations::Derivation { removal: Some(&removal), ..Default::default() };
