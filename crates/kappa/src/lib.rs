@@ -9,8 +9,8 @@
 //! d/dt ∂𝓛/∂v − ∂𝓛/∂q = Q − κ Aᵀ μ ,        f(q, v, t) = 0 .
 //! ```
 //!
-//! `κ = 0` is vakonomic. As `κ → ∞` the motion tends to Chetaev's, with the error 1/κ: `μ` goes to `−λ/κ` within the time 1/κ, and what is left of
-//! the right-hand side is `Aᵀ λ`.
+//! `κ = 0` is vakonomic. As `κ → ∞` the motion tends to Chetaev's, with the error 1/κ: `μ` goes to `−λ/κ`
+//! within the time 1/κ, and what is left of the right-hand side is `Aᵀ λ`.
 //!
 //! **What it is for.** A constraint that is kept by large added mass `½ N f·f` *and* large viscous friction `−κ N Aᵀ f` together leads, as `N → ∞`,
 //! to neither of the two but to this: `μ` is the limit of `N f`. The ratio of friction to mass is `κ`.
@@ -24,8 +24,8 @@
 //!
 //! **What the motion depends on.** On `(q₀, v₀)`, on `μ₀ ∈ Rʰ` and on `κ`. Large `κ` makes the equations stiff.
 //!
-//! **What stays constant.** Nothing in general: the energy `v·𝓛_v − 𝓛` changes at the rate `v·(Q − κ Aᵀ μ)`, which is zero where `Q = 0` and `A v = f`,
-//! for constraints linear in `v` and without a free term.
+//! **What stays constant.** Nothing in general: the energy `v·𝓛_v − 𝓛` changes at the rate `v·(Q − κ Aᵀ μ)`,
+//! which is zero where `Q = 0` and `A v = f`, for constraints linear in `v` and without a free term.
 //!
 //! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1992.
 

@@ -22,7 +22,7 @@ impl Removal {
     /// # let mut system = mechanics::System::new(<_>::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
     /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
     /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-    /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3_f64.tan(), 1.] };
+    /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
     /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
     /// let removal = mechanics::Removal::by_coordinates(&system, &start)?;
     /// let names: Vec<String> = removal.parameters.iter().map(|u| system.graph.name(u.symbol)).collect();
@@ -60,7 +60,7 @@ impl Removal {
     /// # let mut system = mechanics::System::new(<_>::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
     /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
     /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-    /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3_f64.tan(), 1.] };
+    /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
     /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
     /// let removal = mechanics::Removal::by_quasi_velocities(&system, &start)?;
     /// let rates: Vec<String> = removal.memory.iter().map(|w| system.graph.plain(w.rate)).collect();

@@ -90,7 +90,7 @@ impl std::fmt::Display for Integrability {
 /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-/// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3_f64.tan(), 1.] };
+/// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
 /// use mechanics::{Integrability, integrability};
 /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
 /// assert_eq!(integrability(&system, &start)?, Integrability::Nonintegrable { depth: 1 });

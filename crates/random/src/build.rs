@@ -274,8 +274,8 @@ impl<'a> Builder<'a> {
         rows
     }
 
-    /// `v_i = S(q) u̇` with `S` lower triangular and positive on its diagonal, all coordinates memory; for nonlinear constraints, and where `S = 1`,
-    /// the independent coordinates themselves.
+    /// `v_i = S(q) u̇` with `S` lower triangular and positive on its diagonal, all coordinates memory; for
+    /// nonlinear constraints, and where `S = 1`, the independent coordinates themselves.
     fn removal(&self) -> Removal {
         let g = &self.system.graph;
         let plain = self.recipe.kind == Kind::Nonlinear;

@@ -146,8 +146,8 @@ impl Case {
         self.scene.start.t + self.scene.duration
     }
 
-    /// A motion of `equations` of another system from `start`, with every block by LU factorization: what is said of the case's own motions is
-    /// said of the forms that were chosen for them, too.
+    /// A motion of `equations` of another system from `start`, with every block by LU factorization: what is
+    /// said of the case's own motions is said of the forms that were chosen for them, too.
     ///
     /// # Errors
     /// [`SolveError`].
@@ -262,8 +262,8 @@ fn some_costates(recipe: &Recipe, equations: &Equations, memory: usize) -> Vec<f
 /// The tighter run's tolerance is not under this part of [`Case::floor`].
 const FLOOR: f64 = 1e-6;
 
-/// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does not allow. `plain`: see
-/// [`Settings::plain`].
+/// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does
+/// not allow. `plain`: see [`Settings::plain`].
 fn solve(
     setting: Setting,
     equations: Equations,

@@ -63,8 +63,8 @@ pub fn realize(kind: Realization, strength: f64, setting: Setting, multipliers: 
     }
 }
 
-/// Added mass on the augmented system of a removal, started at the momenta of the removed-constraint motion with costates `P(t₀)`; its first
-/// outputs are the coordinates of `setting.system`.
+/// Added mass on the augmented system of a removal, started at the momenta of the removed-constraint motion
+/// with costates `P(t₀)`; its first outputs are the coordinates of `setting.system`.
 ///
 /// # Errors
 /// [`SolveError`] where it cannot be started.

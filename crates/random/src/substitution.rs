@@ -6,8 +6,8 @@
 //! L̃(u̇, u, w, t) = L with q, q̇ replaced by the removal,     d/dt ∂L̃/∂u̇ − ∂L̃/∂u = 0 ,     ẇ = B ,
 //! ```
 //!
-//! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form (`w` in neither `L` nor `B`),
-//! and wrong nearly everywhere else. A harness that does not notice is broken.
+//! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form
+//! (`w` in neither `L` nor `B`), and wrong nearly everywhere else. A harness that does not notice is broken.
 
 use deltaq::{Choice, Run, Settings, setting, solve};
 use equations::{Block, Equations, Role, StateVariable, Statement};

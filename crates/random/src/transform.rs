@@ -143,8 +143,8 @@ impl Rewritten {
 
 /// The augmented system of a removal: coordinates `(q, u)`, Lagrangian `L(q, q̇, t)`, constraints `q̇ = Φ(u̇, q, t)` (T2).
 ///
-/// A parameter that is a coordinate is that coordinate. The removal's `q` must be parameters or memory, and `L` of first order in `u`.
-/// The vakonomic multiplier of `ẇ_k − B_k` is `μ_k = −P_k − ∂L/∂ẇ_k`.
+/// A parameter that is a coordinate is that coordinate. The removal's `q` must be parameters or memory, and
+/// `L` of first order in `u`. The vakonomic multiplier of `ẇ_k − B_k` is `μ_k = −P_k − ∂L/∂ẇ_k`.
 pub fn augmented(system: &System, removal: &Removal) -> System {
     let mut names: Vec<String> = system.coordinates.iter().map(|c| c.name.clone()).collect();
     let g = system.graph.clone();

@@ -1,8 +1,8 @@
 //! # The removed-constraint formulation (Gao 2017)
 //!
-//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` and constraints `f(q, v, t) = 0 ∈ Rʰ`. New displacement parameters `u ∈ Rᵐ`,
-//! `m = n − h`, are introduced such that the constraints hold whatever `u(t)` is. The price is integrals over the past; as
-//! *memory variables* `w ∈ Rᵏ` they are
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` and constraints `f(q, v, t) = 0 ∈ Rʰ`. New
+//! displacement parameters `u ∈ Rᵐ`, `m = n − h`, are introduced such that the constraints hold whatever
+//! `u(t)` is. The price is integrals over the past; as *memory variables* `w ∈ Rᵏ` they are
 //!
 //! ```text
 //! ẇ = B(ü, u̇, u, w, t) ,      every qᵢ and q̇ᵢ an expression in (ü, u̇, u, w, t) .
@@ -10,8 +10,8 @@
 //!
 //! Knife edge `ẏ cos φ − ẋ sin φ = 0`: with `u̇` the speed along the blade, `ẋ = u̇ cos φ`, `ẏ = u̇ sin φ`; `u` and `φ` are free, `x` and `y` are memory.
 //!
-//! **The principle.** The system being unconstrained now, the action `∫ L dt` is stationary for all `δu` that vanish at both ends. What a
-//! variation of `u` does to `w` it does through `B`; `w(t₁)` is free.
+//! **The principle.** The system being unconstrained now, the action `∫ L dt` is stationary for all `δu` that
+//! vanish at both ends. What a variation of `u` does to `w` it does through `B`; `w(t₁)` is free.
 //!
 //! **The equations.** Take `ẇ = B` into account with costates `P ∈ Rᵏ`. With
 //!
@@ -32,18 +32,18 @@
 //! G_u̇u̇ ü = G_u − G_u̇u u̇ − G_u̇w B − G_u̇P Ṗ − G_u̇t .
 //! ```
 //!
-//! **One instant, L contains ü.** For those parameters the state also holds `ü` and the momentum `p = G_u̇ − d/dt G_ü`; then
-//! `ṗ = G_u`, and `d/dt G_ü = G_u̇ − p` is linear in the unknown `u⃛`. The Hessian of `G` in the highest rates has to be regular, else
-//! [`DerivationError::SingularHighestHessian`].
+//! **One instant, L contains ü.** For those parameters the state also holds `ü` and the momentum
+//! `p = G_u̇ − d/dt G_ü`; then `ṗ = G_u`, and `d/dt G_ü = G_u̇ − p` is linear in the unknown `u⃛`. The
+//! Hessian of `G` in the highest rates has to be regular, else [`DerivationError::SingularHighestHessian`].
 //!
-//! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice of `u`*: different
-//! parametrizations of the same constraint give different families of motions.
+//! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice
+//! of `u`*: different parametrizations of the same constraint give different families of motions.
 //!
 //! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇` (or `p`) of a parameter that `G` does not contain.
 //!
-//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is a quadrature; its costate does
-//! not move. Zero at the start or at the free end it is zero throughout, and takes its terms with it; given, it stays
-//! ([`Derivation::all_costates`]).
+//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is
+//! a quadrature; its costate does not move. Zero at the start or at the free end it is zero throughout, and
+//! takes its terms with it; given, it stays ([`Derivation::all_costates`]).
 //!
 //! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the principle of removal of constraint*, 2017.
 
@@ -67,8 +67,8 @@ pub const FORMULATION: Formulation = Formulation {
     derive,
 };
 
-/// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the order of the memory
-/// variables, then `p(t₀)` of parameters whose second rate `L` contains.
+/// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the
+/// order of the memory variables, then `p(t₀)` of parameters whose second rate `L` contains.
 ///
 /// # Errors
 /// [`DerivationError::RemovalMissing`], [`DerivationError::ForceInVariationalPrinciple`],

@@ -1,10 +1,10 @@
 //! # The vakonomic formulation (stationary action among the curves that satisfy the constraint)
 //!
-//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints `f(q, v, t) = 0 ∈ Rʰ`.
-//! Write `A = ∂f/∂v` (h×n).
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints
+//! `f(q, v, t) = 0 ∈ Rʰ`. Write `A = ∂f/∂v` (h×n).
 //!
-//! **The principle.** Among all curves with fixed ends that satisfy the constraint, the motion makes the action stationary. Varied
-//! curves satisfy the constraint too, so to first order
+//! **The principle.** Among all curves with fixed ends that satisfy the constraint, the motion makes the
+//! action stationary. Varied curves satisfy the constraint too, so to first order
 //!
 //! ```text
 //! δ ∫ L dt = 0     for all δq with   f_v δq̇ + f_q δq = 0 ,   δq = 0 at both ends.
@@ -33,19 +33,19 @@
 //! p − L_v − Aᵀ μ = 0 ,   f = 0    determine (v, μ);        q̇ = v ,   ṗ = ∂𝓛/∂q .
 //! ```
 //!
-//! These are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with `f = 0`. The constraint holds at every instant,
-//! not only by its derivative. For `L` kinetic energy the motions are the normal sub-Riemannian geodesics. The two
-//! forms are derived differently and have to agree.
+//! These are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with `f = 0`. The
+//! constraint holds at every instant, not only by its derivative. For `L` kinetic energy the motions are the
+//! normal sub-Riemannian geodesics. The two forms are derived differently and have to agree.
 //!
 //! **What the motion depends on.** On `(q₀, v₀)` *and on* `μ₀ ∈ Rʰ`: one start, a family of motions with `h` parameters.
 //!
-//! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of every coordinate that
-//! neither `L` nor `f` contains.
+//! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of
+//! every coordinate that neither `L` nor `f` contains.
 //!
 //! A generalized force has no place in a variational principle and is refused.
 //!
-//! Sources: V. V. Kozlov 1983; V. I. Arnold, V. V. Kozlov, A. I. Neishtadt, *Mathematical Aspects of Classical and Celestial
-//! Mechanics*, chapter 1.
+//! Sources: V. V. Kozlov 1983; V. I. Arnold, V. V. Kozlov, A. I. Neishtadt, *Mathematical Aspects of
+//! Classical and Celestial Mechanics*, chapter 1.
 
 use equations::{
     Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,

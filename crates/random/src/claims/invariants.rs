@@ -48,8 +48,8 @@ fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) 
     Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) })
 }
 
-/// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and with `G`, for the others wherever
-/// nothing depends on time.
+/// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and
+/// with `G`, for the others wherever nothing depends on time.
 pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     let g = &system.graph;
