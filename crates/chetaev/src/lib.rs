@@ -30,13 +30,13 @@
 //! [ A    0 ] [ λ ] = [ −(f_q v + f_t)          ]
 //! ```
 //!
-//! which has one solution when `A` has full row rank and `M` is regular on the kernel of `A`. `M` itself may be singular.
+//! with one solution if `A` has full row rank and `M` is regular on ker `A`. `M` itself may be singular.
 //!
 //! **What the motion depends on.** On `(q₀, v₀)` with `f(q₀, v₀, t₀) = 0`, and nothing else.
 //!
-//! **What stays constant.** The energy `v·L_v − L`, when nothing depends on time, `Q = 0`, and the motion itself is a virtual
-//! displacement, `A v = 0` wherever `f = 0` (for constraints homogeneous in `v`; *not* for affine ones). The
-//! momentum `∂L/∂vᵢ` of a coordinate that `L` does not contain and on which no reaction or force acts.
+//! **What stays constant.** The energy `v·L_v − L`, when nothing depends on time, `Q = 0`, and the motion
+//! itself is a virtual displacement, `A v = 0` wherever `f = 0` (constraints homogeneous in `v`; *not* affine
+//! ones). The momentum `∂L/∂vᵢ` of a coordinate not in `L` on which no reaction or force acts.
 //!
 //! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 

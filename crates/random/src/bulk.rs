@@ -123,7 +123,7 @@ impl Batch {
         Ok((records, file))
     }
 
-    /// The smallest system found on which a claim of `theorem` still fails, as a scene; `None` where it does not fail on the system itself.
+    /// The smallest system on which a claim of `theorem` still fails; `None` where the system itself passes.
     pub fn counterexample(&self, index: u64, theorem: u8) -> Option<Scene> {
         let mut tree = draw(self.seed, index, &self.kinds);
         let scene = |recipe: &Recipe| failing(recipe, theorem);

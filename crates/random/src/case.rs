@@ -58,7 +58,7 @@ pub struct Case {
     pub control: Option<(Removal, Motion)>,
     /// Why the run was shortened, if it was.
     pub shortened: Option<String>,
-    /// Gaps that the round-off of the data alone can make: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
+    /// Gaps by round-off of data: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
     pub floor: f64,
     /// What was found so far.
     pub found: Findings,
@@ -66,7 +66,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Derives and integrates all formulations. Where a motion stops early, the run is shortened until all last.
+    /// Derives and integrates all formulations. If a motion stops early, the run is shortened until all last.
     ///
     /// # Errors
     /// [`SolveError`] where a formulation has no motion from this start.
@@ -291,8 +291,8 @@ fn solve(
     }
 }
 
-/// `10² ε κ` with the condition `κ` of the saddle-point matrix `[𝓛_vv Aᵀ; A 0]` at the start: data that are known to round-off only determine
-/// accelerations, multipliers and costates to `ε κ`, and motions with them. Nearly dependent constraints have `κ ∝ 1/angle²`.
+/// `10² ε κ` with the condition `κ` of the saddle-point matrix `[𝓛_vv Aᵀ; A 0]` at the start: data with
+/// round-off give accelerations, multipliers, costates to `ε κ`. Near dependence means `κ ∝ 1/angle²`.
 fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, SolveError> {
     let h = system.constraints.len();
     if h == 0 {

@@ -8,7 +8,8 @@
 //! ẇ = B(ü, u̇, u, w, t) ,      every qᵢ and q̇ᵢ an expression in (ü, u̇, u, w, t) .
 //! ```
 //!
-//! Knife edge `ẏ cos φ − ẋ sin φ = 0`: with `u̇` the speed along the blade, `ẋ = u̇ cos φ`, `ẏ = u̇ sin φ`; `u` and `φ` are free, `x` and `y` are memory.
+//! Knife edge `ẏ cos φ − ẋ sin φ = 0`: with `u̇` the speed along the blade, `ẋ = u̇ cos φ`, `ẏ = u̇ sin φ`;
+//! `u` and `φ` are free, `x` and `y` are memory.
 //!
 //! **The principle.** The system being unconstrained now, the action `∫ L dt` is stationary for all `δu` that
 //! vanish at both ends. What a variation of `u` does to `w` it does through `B`; `w(t₁)` is free.
@@ -21,10 +22,10 @@
 //! d²/dt² ∂G/∂ü − d/dt ∂G/∂u̇ + ∂G/∂u = 0 ,      Ṗ = −∂G/∂w ,      ẇ = B .
 //! ```
 //!
-//! (Varying `w` in `∫ [L + P·(B − ẇ)] dt` gives `Ṗ = −G_w` and the boundary term `−P(t₁)·δw(t₁)`; varying `u` gives the first.) This one statement
-//! contains the paper's equations (34) and (35): its integration constants `Cᵢ` are `Pᵢ(t₀)`. They can be chosen in three ways, and a motion has to
-//! say which: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon* `P(t₁) = 0`, which is what the variational
-//! principle itself asks for: the motion at time `t` then depends on `t₁`.
+//! (Varying `w` in `∫ [L + P·(B − ẇ)] dt` gives `Ṗ = −G_w` and the boundary term `−P(t₁)·δw(t₁)`; varying `u`
+//! gives the first.) The paper's (34) and (35) are contained: their integration constants `Cᵢ` are `Pᵢ(t₀)`.
+//! A motion has to choose one of three: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon*
+//! `P(t₁) = 0`, which is what the principle itself asks for: the motion at `t` then depends on `t₁`.
 //!
 //! **One instant, L of first order.** State `(u, u̇, w, P)`, linear in the unknown `ü`:
 //!
@@ -39,13 +40,15 @@
 //! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice
 //! of `u`*: different parametrizations of the same constraint give different families of motions.
 //!
-//! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇` (or `p`) of a parameter that `G` does not contain.
+//! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇`
+//! (or `p`) of a parameter that `G` does not contain.
 //!
 //! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is
 //! a quadrature; its costate does not move. Zero at the start or at the free end it is zero throughout, and
 //! takes its terms with it; given, it stays ([`Derivation::all_costates`]).
 //!
-//! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the principle of removal of constraint*, 2017.
+//! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the
+//! principle of removal of constraint*, 2017.
 
 mod costates;
 

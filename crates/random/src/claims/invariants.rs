@@ -28,7 +28,7 @@ impl Drift {
     }
 }
 
-/// Follows `e(t, q, v, multipliers)` along a motion: the first of its multipliers, by the names in `multipliers`.
+/// Follows `e(t, q, v, multipliers)` along a motion, whose first multipliers `multipliers` names.
 fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) -> Result<Drift, SolveError> {
     let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
     let mut evaluator = system.evaluator(&symbols, &[e])?;

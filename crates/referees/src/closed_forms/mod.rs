@@ -209,7 +209,7 @@ impl TurntableBall {
 ///
 /// ```text
 /// v̇ = a ω²,  ω̇ = −m a v ω/J
-/// v = V tanh(κt + c), ω = W sech(κt + c), W² = ω₀² + m v₀²/J, V = W√(J/m), κ = aW√(m/J), sinh c = v₀√(m/J)/|ω₀|
+/// v = V tanh(κt+c), ω = W sech(κt+c), W² = ω₀² + m v₀²/J, V = W√(J/m), κ = aW√(m/J), sinh c = v₀√(m/J)/|ω₀|
 /// φ = φ₀ ± (1/a)√(J/m) (gd(κt + c) − gd(c)),   gd s = 2 atan tanh(s/2)
 /// ```
 ///
