@@ -19,8 +19,8 @@ pub(super) fn questions(exponent: i32) -> Vec<Question> {
 /// `G = [1 + 2y², −xy; −xy, 1 + x²]`:
 ///
 /// ```text
-/// Chetaev      G (ẍ, ÿ) = (−yẋẏ, 0)
-/// vakonomic    G (ẋ, ẏ) = (p·X, p·Y), ṗ_x = −ẏp_w − yẋẏ + xẏ², ṗ_y = −ẋ(p_z − p_w) + 2yẋ² − xẋẏ, ṗ_z = ṗ_w = 0
+/// Chetaev    G (ẍ, ÿ) = (−yẋẏ, 0)
+/// vakonomic  G (ẋ, ẏ) = (p·X, p·Y), ṗ_x = −ẏp_w − yẋẏ + xẏ², ṗ_y = −ẋ(p_z − p_w) + 2yẋ² − xẋẏ, ṗ_z = ṗ_w = 0
 /// ```
 ///
 /// The removed-constraint motion with `P(t₀) = 0` is the vakonomic one with `p_z = p_w = 0` (T2).
