@@ -22,10 +22,10 @@
 //! D₂S(k−1,k) + D₁S(k,k+1) = 0 ,      f_d(k,k+1) = 0 .
 //! ```
 //!
-//! **Removed constraint** ([`Discrete::removed`]). `S = Σ [ h L + P_{k+½}·(h B − (w_{k+1} − w_k))
-//! ]` is stationary in all inner `u_k` (m) and `w_k` (k), and in all `P_{k+½}` (k). At the last node `w_N` is free, `D₂S(N−1,N) =
-//! 0`: that is `P_N = 0` with `P_{k+1} = P_{k+½} − ½h G_w`, `G = L +
-//! P·B`. Not for removals that bring `ü` into `L` or `B`, or `u̇` into `q`.
+//! **Removed constraint** ([`Discrete::removed`]). `S = Σ [ h L + P_{k+½}·(h B − (w_{k+1} − w_k)) ]` is
+//! stationary in all inner `u_k` (m) and `w_k` (k), and in all `P_{k+½}` (k). At the last node `w_N` is free,
+//! `D₂S(N−1,N) = 0`: that is `P_N = 0` with `P_{k+1} = P_{k+½} − ½h G_w`, `G = L + P·B`. Not for removals
+//! that bring `ü` into `L` or `B`, or `u̇` into `q`.
 //!
 //! All three are marched with node momenta, `p_{k+1} = D₂S(k,k+1)` and `p_k + D₁S(k,k+1) = 0` (Chetaev: with
 //! the reactions), from `p₀ = L_v + Aᵀμ₀` (Chetaev: `L_v`) and `p₀ = (G_u̇, −P₀)`. Velocities and multipliers

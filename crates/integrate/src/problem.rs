@@ -60,7 +60,7 @@ pub trait Problem {
     /// Writes coefficients of the solution through `(t, y)`, component by component, as far as there is room:
     ///
     /// ```text
-    /// y_i(t + τ) = Σ_k coefficients[i m + k] (τ/unit)^k,  k = 0 … m − 1,  m = coefficients.len()/n,  unit > 0
+    /// y_i(t + τ) = Σ_k coefficients[i m + k] (τ/unit)^k,  k = 0 … m − 1,  m = coefficients.len()/n, unit > 0
     /// ```
     ///
     /// A coefficient that overflows may be written as such.

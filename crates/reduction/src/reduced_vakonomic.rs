@@ -68,8 +68,8 @@ const WHOLE: usize = 200;
 /// The equations for `w` are linear where `L` is quadratic in `v`; else Newton from the last accepted state.
 ///
 /// # Errors
-/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts; [`DerivationError::Reduction`]
-/// where a constraint is not linear in the velocities, or constraints are dependent.
+/// [`DerivationError::ForceInVariationalPrinciple`] for a generalized force; [`DerivationError::Reduction`]
+/// for constraints that are not linear in the velocities, or dependent.
 ///
 /// ```
 /// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);

@@ -79,8 +79,7 @@ fn first_order_is_said_where_no_second_rate_is_needed() {
 
 const GUARDED: &str = include_str!("../scenes/guarded.toml");
 
-/// `y` is from `L`; `x`, `2 + w` from rates in `L`, `3 + y` from a quadrature's; `k`, a parameter, cannot
-/// vanish.
+/// `y` is in `L`; `x`, `2 + w` in rates of `L`, `3 + y` in a quadrature's; `k`, a parameter, cannot vanish.
 #[test]
 fn what_the_equations_divide_by_is_watched() {
     let scene = Scene::parse("guarded", GUARDED).unwrap_or_else(|e| panic!("{e}"));

@@ -204,8 +204,8 @@ impl TurntableBall {
 
 /// Chaplygin sleigh, Chetaev.
 ///
-/// `L = ½m((ẋ − aφ̇ sin φ)² + (ẏ + aφ̇ cos φ)²) + ½Iφ̇²`, `f = ẏ cos φ − ẋ sin φ`; `(x,
-/// y)` the blade, the mass centre `a` ahead of it. With `J = I + ma²`:
+/// `L = ½m((ẋ − aφ̇ sin φ)² + (ẏ + aφ̇ cos φ)²) + ½Iφ̇²`, `f = ẏ cos φ − ẋ sin φ`; `(x, y)` the blade, the
+/// mass centre `a` ahead of it. With `J = I + ma²`:
 ///
 /// ```text
 /// v̇ = a ω²,  ω̇ = −m a v ω/J

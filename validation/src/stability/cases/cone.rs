@@ -127,8 +127,8 @@ impl Ball {
         }
     }
 
-    /// `𝓛 = ½(ṙ² + ρ²γ̇² + k²ω²) − g r cos α + μ₁(ργ̇ + a ω·e_r) + μ₂(ṙ − a ω·e_γ)`: states `(r, γ, p_r, p_γ,
-    /// π)` with `π = ∂𝓛/∂ω`, `π̇ = ω × π`.
+    /// `𝓛 = ½(ṙ² + ρ²γ̇² + k²ω²) − g r cos α + μ₁(ργ̇ + a ω·e_r) + μ₂(ṙ − a ω·e_γ)`: states
+    /// `(r, γ, p_r, p_γ, π)` with `π = ∂𝓛/∂ω`, `π̇ = ω × π`.
     fn lie_poisson(&self, first: f64, second: f64) -> Reference {
         let (rho, frame) = (centre(self.r), Frame::at(self.gamma));
         let momentum = GYRATION * self.spin + RADIUS * (first * frame.along - second * frame.around);
