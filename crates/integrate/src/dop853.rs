@@ -199,8 +199,8 @@ impl Stepper for Dop853<'_, '_> {
         &mut self.candidate
     }
 
-    // The rates at the end are those of the moved state: the polynomial then joins the next one with equal slope.
-    // The move is of the size of the local error, so that the order of the dense output is not touched.
+    // The rates at the end are those of the moved state: the next polynomial then joins with equal slope. The
+    // move is of the size of the local error: the dense output keeps its order.
     fn finish(&mut self, _moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure> {
         let n = self.y.len();
         let h = self.taken;

@@ -23,10 +23,9 @@
 //! ```
 //!
 //! (Varying `w` in `∫ [L + P·(B − ẇ)] dt` gives `Ṗ = −G_w` and the boundary term `−P(t₁)·δw(t₁)`; varying `u`
-//! gives the first.) This one statement contains the paper's equations (34) and (35): its integration
-//! constants `Cᵢ` are `Pᵢ(t₀)`. They can be chosen in three ways, and a motion has to say which: *given*,
-//! *zero at the start* `P(t₀) = 0`, or *natural at a horizon* `P(t₁) = 0`, which is what the variational
-//! principle itself asks for: the motion at time `t` then depends on `t₁`.
+//! gives the first.) The paper's (34) and (35) are contained: their integration constants `Cᵢ` are `Pᵢ(t₀)`.
+//! A motion has to choose one of three: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon*
+//! `P(t₁) = 0`, which is what the principle itself asks for: the motion at `t` then depends on `t₁`.
 //!
 //! **One instant, L of first order.** State `(u, u̇, w, P)`, linear in the unknown `ü`:
 //!
@@ -75,18 +74,18 @@ pub const FORMULATION: Formulation = Formulation {
     derive,
 };
 
-/// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the order of the memory
-/// variables, then `p(t₀)` of parameters whose second rate `L` contains.
+/// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the
+/// order of the memory variables, then `p(t₀)` of parameters whose second rate `L` contains.
 ///
 /// # Errors
 /// [`DerivationError::RemovalMissing`], [`DerivationError::ForceInVariationalPrinciple`],
 /// [`DerivationError::SingularHighestHessian`].
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-/// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
+/// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3_f64.tan(), 1.] };
 /// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u_x'*cos(phi), y' = u_x'*sin(phi)
 /// let removal = mechanics::Removal::by_quasi_velocities(&system, &start)?;
 /// let derivation = equations::Derivation { removal: Some(&removal), ..Default::default() };
