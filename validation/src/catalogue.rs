@@ -28,7 +28,7 @@ macro_rules! beside {
     ($($name:literal)*) => { &[$(($name, include_str!(concat!("../equivalence/", $name, ".toml")))),*] };
 }
 
-/// Further systems of the literature, which are asked one question only: which of their motions are vakonomic.
+/// Further systems of the literature, asked one question: which of their motions are vakonomic.
 pub const CLASSICS: &[(&str, &str)] = beside!(
     "coin-on-incline" "mobile-robot" "falling-disc" "two-wheeled-carriage" "unicycle-in-potential" "turning-knife-edge"
     "nonholonomic-oscillator" "martinet" "engel" "generalized-heisenberg" "suslov" "veselova" "chaplygin-sphere"
@@ -36,7 +36,7 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
     "snakeboard" "roller-racer" "pursuit" "isokinetic" "parallel-velocities" "sledge-with-friction"
 );
 
-/// The built-in scene of that name, or else the scene file at that path; `overrides` replace parameters and start values.
+/// The built-in scene `name`, or else the file at that path; `overrides` replace parameters and starts.
 ///
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.

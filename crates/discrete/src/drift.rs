@@ -16,7 +16,7 @@ pub struct Drift {
     pub energy: Vec<Spread>,
     /// Largest `|f_i|` at the nodes, over the same parts, in the constraints' own units.
     pub constraint: Vec<f64>,
-    /// Largest `|f_i|` on the intervals, at their midpoints with the difference quotients, over the whole run.
+    /// Largest `|f_i|` on the intervals of the whole run, at midpoints with difference quotients.
     pub discrete_constraint: f64,
     /// Why it ended before its time.
     pub stop: Option<DiscreteError>,
@@ -46,7 +46,7 @@ impl Drift {
         self.energy.iter().map(Spread::largest).fold(0.0, f64::max) / self.energy_size
     }
 
-    /// How far the mean energies of the parts are apart, relative to `energy_size`: what of the energy error is a drift and not an oscillation.
+    /// Spread of the parts' mean energies over `energy_size`: the drift in the energy error, not oscillation.
     pub fn relative_trend(&self) -> f64 {
         let means = self.energy.iter().map(|part| part.mean);
         let (low, high) = means.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), e| (a.min(e), b.max(e)));

@@ -29,7 +29,7 @@ pub(super) struct Natural {
 }
 
 impl Natural {
-    /// The nodes of the `march` from `start` to the time `end` with `P_N = 0`, by Newton's method on `P₀` with differences for the Jacobian.
+    /// Nodes of the `march` from `start` to `end` with `P_N = 0`: Newton on `P₀`, Jacobian by differences.
     ///
     /// `P_N` is the momentum of the free `w_N`: `D₂S(N−1,N) = −P_N`.
     pub(super) fn shoot(

@@ -51,7 +51,7 @@ fn vakonomic_steps_neither_gain_nor_lose_energy() {
 
 #[test]
 fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
-    // at order 8 nothing else is left: vakonomic circles, 2.5 turns in 1000 steps, and what a removal makes of them
+    // order 8 leaves nothing else: vakonomic circles, 2.5 turns in 1000 steps, and a removal's motion
     let scene = scene("heisenberg");
     let end = 0.02 * MILLION as f64;
     let circles = Discrete::vakonomic(&scene.system, &scene.start, &[0.8], end).unwrap();
@@ -66,7 +66,7 @@ fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
 
 #[test]
 fn a_motion_that_does_not_return_lets_the_energy_of_order_two_go() {
-    // what is kept elsewhere needs a reversible motion that is integrable, or a symplectic form; this one has neither, as measured
+    // it would be kept by an integrable reversible motion or a symplectic form; here is neither, as measured
     let scene = scene("trailer");
     let discrete = Discrete::chetaev(&scene.system, &scene.start, 0.01 * 100_000.0).unwrap();
     let drift = discrete.drift(100_000, PARTS).unwrap();

@@ -105,8 +105,8 @@ pub struct Work {
     pub evaluations: usize,
     /// Evaluations of ∂F/∂y.
     pub jacobians: usize,
-    /// Orders of Taylor series: one is the coefficients of one power of time, of all components. Each series counts
-    /// as one evaluation besides (its order 0).
+    /// Orders of Taylor series: one is the coefficients of one power of time, of all components. Each series
+    /// counts as one evaluation besides (its order 0).
     pub orders: usize,
 }
 

@@ -61,8 +61,8 @@ fn rates_that_are_not_finite_are_named() {
 
 #[test]
 fn a_wall_is_walked_up_to_and_reported_in_the_problems_words() {
-    // y' = −√(1 + y), y(0) = 0: y = (1 − t/2)² − 1 reaches the wall y = −1 at t = 2, with zero slope; y' = −1/y runs
-    // into y = 0 at t = 1/2, with infinite slope. Backwards alike.
+    // y' = −√(1 + y), y(0) = 0: y = (1 − t/2)² − 1 reaches the wall y = −1 at t = 2, with zero slope; y' =
+    // −1/y runs into y = 0 at t = 1/2, with infinite slope. Backwards alike.
     let gentle = Case::new(1, |_, y| vec![-&(&y[0] + &y[0].number(1.0)).powf(0.5)])
         .with_refusal(|_, y| (y[0] < -0.75).then(|| format!("depth {} under the floor −0.75", y[0])));
     let steep =

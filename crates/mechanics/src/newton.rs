@@ -1,9 +1,9 @@
 //! Newton's method for `r(x) = 0` with any number of equations and unknowns: the one Newton of the crate.
 //!
-//! Each step is the shortest `s` that minimizes `‖W (r + J s)‖` (Gauss–Newton through a singular value decomposition), damped by
-//! halving until `‖W r‖` falls. `W` scales the rows of `J` to 1, so that the units of the equations do not matter.
-//! Convergence is quadratic at a regular root; a linear system is solved by one step, and every root gets one step more for
-//! the sake of its last digits.
+//! Each step is the shortest `s` that minimizes `‖W (r + J s)‖` (Gauss–Newton through a singular value
+//! decomposition), damped by halving until `‖W r‖` falls. `W` scales the rows of `J` to 1, so that the units
+//! of the equations do not matter. Convergence is quadratic at a regular root; a linear system is solved by
+//! one step, and every root gets one step more for the sake of its last digits.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -79,7 +79,7 @@ pub struct Root {
     pub iterations: usize,
     /// Rank of `J` at `x`.
     pub rank: usize,
-    /// Orthonormal basis of the kernel of `J` at `x`, n×(n − rank): the directions that the equations leave open.
+    /// Orthonormal basis of the kernel of `J` at `x`, n×(n − rank): the directions left open.
     pub null_space: DMatrix<f64>,
 }
 
@@ -104,7 +104,7 @@ pub enum NewtonError {
 
 /// Solves `r(x) = 0` from `x0`.
 ///
-/// With fewer independent equations than unknowns the root is one near `x0`, for linear equations the nearest.
+/// With fewer independent equations than unknowns the root is near `x0`, for linear ones the nearest.
 ///
 /// # Errors
 /// [`NewtonError`]. [`NewtonError::NotConverged`] carries the least-squares point.

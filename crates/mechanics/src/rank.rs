@@ -13,8 +13,8 @@ pub(crate) const RANK_LIMIT: f64 = 1e-9;
 /// Points at which a generic rank is taken.
 const POINTS: u64 = 6;
 
-/// Numerical rank that `matrix` has at least if each entry is off by as much as the one of `errors`: the number of singular values over [`RANK_LIMIT`]
-/// times the largest, rows scaled to their largest entry, and over the norm of all errors, by which these move a singular value at most.
+/// Least numerical rank of `matrix` with entries off by `errors`: how many singular values are over
+/// [`RANK_LIMIT`] times the largest, rows scaled to their largest entry, and over the norm of the errors.
 fn certain_rank(mut matrix: DMatrix<f64>, mut errors: DMatrix<f64>) -> usize {
     for (mut row, mut errors) in matrix.row_iter_mut().zip(errors.row_iter_mut()) {
         let scale = row.amax();
@@ -29,8 +29,8 @@ fn certain_rank(mut matrix: DMatrix<f64>, mut errors: DMatrix<f64>) -> usize {
     singular.iter().filter(|&&s| largest > 0.0 && s > limit).count()
 }
 
-/// The rank that `matrix` has almost everywhere: the largest found at a few points with fixed pseudo-random coordinates,
-/// those not counted at which an entry is not finite. `constants` keep their values. An entry that is round-off of larger terms counts as zero.
+/// The rank of `matrix` almost everywhere: the largest at a few pseudo-random points where all entries are
+/// finite. `constants` keep their values. An entry that is round-off of larger terms counts as zero.
 pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, f64>) -> usize {
     if matrix.rows() == 0 || matrix.columns() == 0 {
         return 0;

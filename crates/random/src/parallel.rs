@@ -15,7 +15,7 @@ pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<
     deltaq::over_threads(0, items.len(), |index| work(&items[index]))
 }
 
-/// `work` of each item as [`map`] does it, with a progress bar that says what is worked on; the first failure, if there is one.
+/// `work` of each item as [`map`] does it, with a progress bar for the current ones; the first failure.
 ///
 /// # Errors
 /// That of the first item whose work failed.

@@ -1,6 +1,6 @@
-//! Discrete variational principles as a referee: motions from `L`, `f` and `Q` alone, and how they tend to a given one.
+//! Discrete variational principles as a referee: motions from `L`, `f`, `Q`, tending to a given one.
 //!
-//! The principles and their steps are those of the crate `discrete`, which sees no formulation; the orders measured here are those of its base step.
+//! Principles and steps are those of `discrete`, which sees no formulation; orders, of its base step.
 
 mod convergence;
 #[cfg(test)]

@@ -17,7 +17,7 @@ impl Scene {
     /// Reads a scene from text. `name` is its name and stands for the file in errors.
     ///
     /// # Errors
-    /// [`SceneError`] with the place of the first fault and what was expected there. Nothing panics, whatever the text.
+    /// [`SceneError`] with the place of the first fault and what is expected there. No text makes it panic.
     ///
     /// ```
     /// let text = r#"
@@ -47,10 +47,10 @@ impl Scene {
         Scene::parse_with(name, text, &[])
     }
 
-    /// Like [`Scene::parse`], with numbers that override those of the text before anything is evaluated: a parameter
-    /// (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or rate, `time`, `duration`, or a
-    /// multiplier (`mu1`, `mu2`, … in the order of the constraints). Parameters and coordinates of these names come first; the last
-    /// override of a name counts.
+    /// Like [`Scene::parse`], with numbers that override those of the text before anything is evaluated: a
+    /// parameter (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or rate, `time`, `duration`,
+    /// or a multiplier (`mu1`, `mu2`, … in the order of the constraints). Parameters and coordinates of these
+    /// names come first; the last override of a name counts.
     ///
     /// # Errors
     /// As [`Scene::parse`]; a fault of an override has line 0.
@@ -61,7 +61,7 @@ impl Scene {
     /// Reads a scene file of at most [`SIZE_LIMIT`] bytes.
     ///
     /// # Errors
-    /// As [`Scene::parse`]; also [`SceneErrorKind::Unreadable`], [`SceneErrorKind::TooLarge`] and [`SceneErrorKind::NotUtf8`].
+    /// As [`Scene::parse`]; [`SceneErrorKind`]s `Unreadable`, `TooLarge` and `NotUtf8`.
     pub fn load(path: &Path) -> Result<Scene, SceneError> {
         Scene::load_with(path, &[])
     }

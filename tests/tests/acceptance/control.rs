@@ -1,4 +1,4 @@
-//! The control formulation is wrong on purpose: it must be caught wherever it is wrong, and called right where it is right (T12).
+//! The control is wrong on purpose: caught wherever it is wrong, called right where it is right (T12).
 
 use deltaq::{Metric, Motion, Settings, Verdict, compare_motions};
 use random::substitution;
@@ -10,8 +10,8 @@ use super::support::{at, chetaev, complete, scenes};
 /// Parts of the run after which accelerations are compared.
 const TIMES: [f64; 4] = [0.1, 0.21, 0.33, 0.52];
 
-/// Largest difference of the control's accelerations from those by Maggi's equations at the same state, relative to the
-/// largest of these. Nothing here is taken from the control but where it is: accelerations are differences of velocities.
+/// Largest difference of the control's accelerations from Maggi's at the same state, relative to the largest
+/// of these. The control only says where it is: accelerations are differences of velocities.
 fn defect(scene: &Scene, control: &mut Motion) -> f64 {
     const STEP: f64 = 1e-4;
     let mut maggi = Maggi::new(&scene.system).expect("differentiates");

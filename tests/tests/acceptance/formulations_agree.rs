@@ -1,4 +1,4 @@
-//! Formulations that must agree: two forms of one, all of them on integrable constraints, and rewritten constraints (T1, T4).
+//! Formulations that must agree: two forms of one, all on integrable constraints, rewritten ones (T1, T4).
 
 use deltaq::Choice;
 use mechanics::{ConstantsRule, Removal};
@@ -53,7 +53,7 @@ fn integrable_constraints_leave_nothing_to_dispute() {
     }
 }
 
-/// A matrix of functions of `q`, regular at every `q`: `(2 + sin(q₁ + 0.3)) I` plus a constant strictly lower triangle.
+/// A matrix, regular at every `q`: `(2 + sin(q₁ + 0.3)) I` plus a constant strictly lower triangle.
 fn mixing(scene: &Scene) -> Matrix {
     let g = &scene.system.graph;
     let first = g.variable(scene.system.coordinates[0].position);
@@ -96,7 +96,7 @@ fn chetaev_and_vakonomic_do_not_depend_on_how_constraints_are_written() {
 fn removed_constraint_depends_on_the_choice_of_parameter() {
     let scene = scene("sledge", &[("duration", 0.6)]);
     let (arc, along) = (removal(&scene, "arc-length"), removal(&scene, "along-x"));
-    // L does not contain y, so that along-x has no constant; no constant of the arc length leads to the same motion either
+    // L has no y, so along-x has no constant; no constant of the arc length gives the same motion either
     assert!(equations(&scene.system, "removed-constraint", Some(along)).free_constants.is_empty());
     let mut by_x = complete(&scene, removed(&scene, along, &[]));
     let mut nearest = (f64::INFINITY, 0.0);
@@ -161,7 +161,7 @@ fn units_do_not_matter() {
     }
 }
 
-/// Found by random systems (seed 2, index 8808): `∂²𝓛/∂v²` is nearly singular in `q4'`, the equations for `(v, μ)` have another root close by.
+/// Random system (seed 2, index 8808): `∂²𝓛/∂v²` nearly singular in `q4'`, another root of `(v, μ)` close by.
 const NEAR_A_FOLD: &str = include_str!("../scenes/near-a-fold.toml");
 
 #[test]
@@ -176,7 +176,7 @@ fn costate_form_keeps_to_its_branch_near_a_fold() {
     must("near a fold: velocities read at the start", largest_difference(&start.velocities, &scene.start.v), 1e-11);
 }
 
-/// `P₀ = −∂(L + μ₀·f)/∂ẇ` for removals by coordinates, with every costate kept, those too that never move; and back.
+/// `P₀ = −∂(L + μ₀·f)/∂ẇ` for removals by coordinates with all costates, moving or not; and back.
 #[test]
 fn removals_by_coordinates_are_the_vakonomic_family() {
     let mut seen = 0;

@@ -14,8 +14,8 @@ fn ten_seconds(scene: &mut Scene) {
     scene.duration = if scene.name == "appell-hamel" { 1.2 } else { 10.0 };
 }
 
-/// Prints the drift of every invariant that the motion names, relative to the kinetic energy or to the largest momentum along the way;
-/// fails over 1e-10.
+/// Prints the drift of every invariant that the motion names, relative to the kinetic energy or to the
+/// largest momentum along the way; fails over 1e-10.
 fn must_keep(what: &str, scene: &Scene, motion: &mut Motion, needed: &[&str]) {
     let names: Vec<String> = motion.equations.invariants.iter().map(|i| i.name.clone()).collect();
     for name in needed {
@@ -39,7 +39,7 @@ fn must_keep(what: &str, scene: &Scene, motion: &mut Motion, needed: &[&str]) {
     }
 }
 
-/// Whether no constraint has terms of different degree in the velocities, and whether time appears; from the start data only.
+/// By start data: whether each constraint has one degree in the velocities, and whether time appears.
 fn homogeneous(scene: &Scene) -> bool {
     let system = &scene.system;
     let state = &scene.start;

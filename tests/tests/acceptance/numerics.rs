@@ -16,7 +16,7 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
     let exact = sledge(&scene);
     let end = exact.at(10.0);
     let size = end.x.hypot(end.y);
-    // tolerance of the looser run, and what the tighter run, at a hundredth of it, may be wrong by over its own tolerance
+    // tolerance of the looser run; most error of the tighter one, at a hundredth of it, in its own tolerances
     for (method, tolerance, factor) in [
         (Method::Taylor, 1e-9, 100.0),
         (Method::Dop853, 1e-9, 100.0),

@@ -1,4 +1,4 @@
-//! A body without any constraint, its velocities written along a turning frame: removal itself put to the test (T14).
+//! An unconstrained body, its velocities along a turning frame: removal itself put to the test (T14).
 
 use super::support::{at, chetaev, complete, error, must, must_exceed, removal, removed, scene};
 

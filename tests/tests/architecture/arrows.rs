@@ -36,8 +36,8 @@ const NEVER: [(&str, &str); 19] = [
     ("newcomer", "symbolic"),
 ];
 
-/// What each member may be built on, by the table in `ARCHITECTURE.md`: names in backticks, up to a colon with remarks behind it.
-/// A member that is not named there may be built on none.
+/// What each member may be built on, by the table in `ARCHITECTURE.md`: names in backticks, up to a colon
+/// with remarks behind it. A member that is not named there may be built on none.
 fn table() -> Vec<(String, Vec<String>)> {
     let text = include_str!("../../../ARCHITECTURE.md");
     let names = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<String>>();

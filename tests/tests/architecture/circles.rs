@@ -1,8 +1,8 @@
 //! No module of a crate is built, by way of others, on itself.
 //!
-//! A file and the files in its folder are one room: a child may name what its parent's file defines, and the parent may call the
-//! child. Such an arrow upwards is not counted; all others are, so that a room as a whole lies on no circle either. The root of a
-//! crate is no such room: what its modules need of one another stands in modules.
+//! A file and the files in its folder are one room: a child may name what its parent's file defines, and the
+//! parent may call it. Such an arrow upwards does not count; all others do, so that rooms as a whole lie on
+//! no circle either. A crate's root is no such room: what modules need of one another stands in modules.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -7,7 +7,7 @@ use referees::discrete::{Convergence, Discrete, DiscreteError, Ends, RemovedStar
 /// Steps of the coarsest grid: the first of these whose own estimate of its error is under [`COARSE`].
 const STEPS: [usize; 5] = [8, 16, 32, 64, 128];
 
-/// An error that is said to be one of a power series in `h²`, relative; without it, halvings show nothing yet.
+/// Largest relative error that follows a power series in `h²`; over it, halvings show nothing yet.
 const COARSE: f64 = 5e-4;
 
 /// Grids, each twice as fine as the one before.
@@ -19,7 +19,7 @@ pub const HORIZON: f64 = 0.5;
 /// Steps of the continuous motion (order 8, at a tolerance of round-off).
 const OWN_STEPS: usize = 20;
 
-/// Errors under this are round-off of the march (1/h in the differences of positions), or of the continuous motion.
+/// Errors under this are round-off of the march (1/h in differences of positions) or of the motion.
 const PLATEAU: f64 = 1e-10;
 
 /// What the measured order may be away from 2, on the last halving above [`PLATEAU`].
@@ -50,9 +50,9 @@ impl Tally {
     }
 }
 
-/// The end of the short run: [`HORIZON`] after the start, and no later than the continuous motion needs [`OWN_STEPS`] steps for.
+/// End of the short run: [`HORIZON`] after the start, at most [`OWN_STEPS`] steps of the continuous motion.
 ///
-/// Near the edge of a chart (the ball in the cone after 0.4 s) a motion has time scales of a millisecond, of which a grid knows nothing.
+/// Near a chart's edge (the ball in the cone after 0.4 s) time scales are a millisecond, unknown to a grid.
 pub fn short(motion: &Motion) -> f64 {
     let own = motion.step_times();
     own[OWN_STEPS.min(own.len() - 1)].min(motion.start() + HORIZON)
@@ -97,7 +97,7 @@ pub fn agrees(what: &str, found: &Convergence, limit: f64, tally: &mut Tally) {
     tally.largest = tally.largest.max(found.difference);
 }
 
-/// The discrete motion of a removal from `P(t₀)`, one a memory variable; nothing where its action is not of first order.
+/// A removal's discrete motion from `P(t₀)`, one a memory variable; none for actions not of first order.
 pub fn removed(
     system: &System,
     removal: &Removal,

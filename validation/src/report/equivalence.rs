@@ -1,4 +1,4 @@
-//! The page about classic systems: is Chetaev's motion vakonomic, at almost every start and at exceptional ones?
+//! The page of classic systems: is Chetaev's motion vakonomic, at almost every and at exceptional starts?
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};

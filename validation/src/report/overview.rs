@@ -7,7 +7,7 @@ use crate::report::tables::verdict_words;
 use crate::report::{Table, fill, membership};
 use random::substitution;
 
-/// One page: the verdict matrix, the findings, what further pages say (`further`: a line and a path), how to regenerate.
+/// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.
 pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {
     let findings = findings(comparisons).into_iter().zip(1..).map(|(finding, i)| format!("{i}. {finding}\n"));
     fill(

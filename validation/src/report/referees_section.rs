@@ -15,8 +15,8 @@ const SAME: f64 = 1e-8;
 /// A difference counts as none, too, under this multiple of the error estimates.
 const CERTAINTY: f64 = 10.0;
 
-/// The section, in Markdown; empty where there is nothing to say. Only bounds are printed, powers of ten, so that the page does not
-/// change with the last digit of a difference.
+/// The section, in Markdown; empty where there is nothing to say. Only bounds are printed, powers of ten, so
+/// that the page does not change with the last digit of a difference.
 ///
 /// # Errors
 /// Where a motion cannot be read off.

@@ -1,4 +1,4 @@
-//! The claims, T1–T14, each as a check of one random system. What they say is in the reports; what they assume, at each check.
+//! Claims T1–T14, each a check of one random system. Reports say what they say, checks what they assume.
 
 mod agreement;
 mod control;

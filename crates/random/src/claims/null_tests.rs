@@ -1,4 +1,4 @@
-//! T13: systems on which formulations are known to agree, or to differ in a known way, with random numbers in them.
+//! T13: systems on which formulations agree, or differ in a known way, with random numbers in them.
 
 use deltaq::{Motion, SolveError, setting, solve};
 use mechanics::ConstantsRule;

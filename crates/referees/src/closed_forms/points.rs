@@ -41,8 +41,8 @@ impl Particle {
 
 /// Appell–Hamel system, every formulation: a straight run at a fixed deceleration.
 ///
-/// `L = ½m(ẋ² + ẏ² + ż²) − m g z`, `f = ż² − a²(ẋ² + ẏ²)`. The heading is constant and `ż = ±a v_h` with the sign of the start:
-/// `v̇_h = ∓g a/(1 + a²)`. The mass does not enter, nor does `μ₀`. Singular where `v_h = 0`. Source: Appell 1911; Saletan & Cromer 1970.
+/// `L = ½m(ẋ² + ẏ² + ż²) − m g z`, `f = ż² − a²(ẋ² + ẏ²)`. Constant heading, `ż = ±a v_h` with the sign at
+/// start: `v̇_h = ∓g a/(1 + a²)`. No `m`, no `μ₀`. Singular at `v_h = 0`. Appell 1911; Saletan & Cromer 1970.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AppellHamel {
     /// `g`, m/s².
@@ -85,9 +85,9 @@ impl AppellHamel {
 
 /// Heisenberg system `L = ½(ẋ² + ẏ²)`, `f = ż − ½(xẏ − yẋ)`: vakonomic, and Chetaev at `μ = 0`.
 ///
-/// With `𝓛 = L + μ f`, `μ` is constant and `ẍ = −μẏ`, `ÿ = μẋ`: the velocity turns at the rate `+μ` on a circle of radius `|v|/|μ|`,
-/// and `z` gains the swept area, `z = z₀ + ½(x₀Y − y₀X) + ½v²(μt − sin μt)/μ²` with `X = x − x₀`, `Y = y − y₀`.
-/// The Chetaev motion is the straight line, whatever `μ` would be. Source: Brockett 1981; Bloch 2003, §1.8.
+/// With `𝓛 = L + μ f`, `μ` is constant and `ẍ = −μẏ`, `ÿ = μẋ`: the velocity turns at the rate `+μ` on a
+/// circle of radius `|v|/|μ|`; `z` gains the swept area, `z = z₀ + ½(x₀Y − y₀X) + ½v²(μt − sin μt)/μ²`, `X =
+/// x − x₀`, `Y = y − y₀`. Chetaev: a straight line, for any `μ`. Source: Brockett 1981; Bloch 2003, §1.8.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heisenberg {
     /// `μ`, rad/s; 0 for Chetaev.
@@ -115,7 +115,7 @@ impl Heisenberg {
 
 /// Pendulum that swings (does not go over the top), every formulation of `d/dt(x² + y² − ℓ²) = 0`.
 ///
-/// With `θ` from the downward vertical, `x = ℓ sin θ`, `y = −ℓ cos θ`, `n = √(g/ℓ)`, `k² = sin²(θ₀/2) + θ̇₀²/(4n²) < 1`:
+/// With `θ` from below, `x = ℓ sin θ`, `y = −ℓ cos θ`, `n = √(g/ℓ)`, `k² = sin²(θ₀/2) + θ̇₀²/(4n²) < 1`:
 ///
 /// ```text
 /// sin(θ/2) = k sn(nt + u₀ | k),   cos(θ/2) = dn,   θ̇ = 2 n k cn
@@ -177,7 +177,7 @@ impl Pendulum {
     }
 }
 
-/// Jacobi's `(sn, cn, dn)` of argument `u` and modulus `k`, `0 ≤ k < 1`, by descending Landen steps (Abramowitz & Stegun 16.4).
+/// Jacobi's `(sn, cn, dn)(u)`, modulus `0 ≤ k < 1`, by descending Landen steps (Abramowitz & Stegun 16.4).
 #[must_use]
 pub fn jacobi(u: f64, k: f64) -> (f64, f64, f64) {
     let mut a = vec![1.0];

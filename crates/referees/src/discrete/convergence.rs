@@ -6,22 +6,22 @@ use discrete::{Discrete, DiscreteError};
 
 /// Errors over halvings of the step, plain and extrapolated.
 ///
-/// All are the largest of `|q_k − q(t_k)| / max(1, |q_i| along the motion)` over the nodes of the coarsest grid and the coordinates.
+/// All are the largest of `|q_k − q(t_k)| / max(1, |q_i| on the motion)` over coarsest nodes and coordinates.
 #[derive(Clone, Debug)]
 pub struct Convergence {
     /// Steps of each level, each twice the one before.
     pub steps: Vec<usize>,
     /// `errors[i][j]`: level i, extrapolated j ≤ i times; order 2j + 2.
     pub errors: Vec<Vec<f64>>,
-    /// How far the last two columns of the last level are apart: the referee's own estimate of the error of the best extrapolation but
-    /// one. Knows nothing of the reference. At least the round-off of the march.
+    /// How far the last two columns of the last level are apart: the referee's own estimate of the error of
+    /// the best extrapolation but one. Knows nothing of the reference. At least the round-off of the march.
     pub estimate: f64,
     /// Largest difference between the best extrapolation and the reference.
     pub difference: f64,
 }
 
 impl Convergence {
-    /// `log₂ (errors[i−1][j] / errors[i][j])` for the levels `i` at which both are over `plateau`: the measured orders of column `j`.
+    /// Orders of column `j`: `log₂ (errors[i−1][j] / errors[i][j])` at levels `i`, both over `plateau`.
     pub fn orders(&self, column: usize, plateau: f64) -> Vec<f64> {
         let pairs = self.errors.windows(2).filter(|pair| pair[0].len() > column);
         let errors = pairs.map(|pair| (pair[0][column], pair[1][column]));
@@ -37,8 +37,8 @@ impl Convergence {
 /// The largest round-off of a march, a step; the error estimate is not under it.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// The errors of `discrete` against `reference` (`t ↦ q`) with `steps, 2·steps, 4·steps, …` steps, `levels` of them, and of Richardson's
-/// extrapolation
+/// The errors of `discrete` against `reference` (`t ↦ q`) with `steps, 2·steps, 4·steps, …` steps, `levels`
+/// of them, and of Richardson's extrapolation
 ///
 /// ```text
 /// T_{i,0} = q(h/2ⁱ) ,      T_{i,j} = T_{i,j−1} + (T_{i,j−1} − T_{i−1,j−1}) / (4ʲ − 1)
@@ -47,7 +47,7 @@ const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// which has order 2j + 2 where the error is a power series in `h²`.
 ///
 /// # Errors
-/// Those of [`Discrete::positions`]; [`DiscreteError::TooFew`] for less than 2 levels; [`DiscreteError::Reference`].
+/// As [`Discrete::positions`]; [`DiscreteError::TooFew`] under 2 levels; [`DiscreteError::Reference`].
 pub fn convergence<E: Display>(
     discrete: &mut Discrete,
     steps: usize,

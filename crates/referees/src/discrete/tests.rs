@@ -16,7 +16,7 @@ fn scene(name: &str) -> Scene {
     Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
 }
 
-/// Halves the step of `discrete` so many times, and finds its orders, `± 0.1` wherever errors are above round-off, and in the end `reference`.
+/// Halves the step of `discrete`: its orders, `± 0.1` where errors are above round-off, then `reference`.
 ///
 /// `least`: so many orders are measured, without extrapolation and extrapolated once.
 fn tends_to<E: Display>(

@@ -9,25 +9,25 @@ use super::{Maggi, MaggiError, check_finite, dot, row_lengths, solve_square};
 /// Largest [`Maggi::constraint_residual`] of a start.
 pub const START_LIMIT: f64 = 1e-9;
 
-/// Where the determinant of the dependent part of `A` falls under this fraction of its value at the start, a run in the
-/// reduced form ends.
+/// Where the determinant of the dependent part of `A` falls under this fraction of its value at the start, a
+/// run in the reduced form ends.
 pub const SPLITTING_LIMIT: f64 = 0.01;
 
 /// The state that is integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// `(q, ν)`, n + m numbers, for `f = A(q,t) v + b(q,t)`: the quasi-velocities `ν` are the velocities of m coordinates
-    /// chosen at the start, the other h follow from them, and the constraint holds identically:
+    /// `(q, ν)`, n + m numbers, for `f = A(q,t) v + b(q,t)`: the quasi-velocities `ν` are the velocities of m
+    /// coordinates chosen at the start, the other h follow from them, and the constraint holds identically:
     ///
     /// ```text
-    /// v = N ν + c ,       N = [ 1 ; −A_d⁻¹A_i ] ,   c = [ 0 ; −A_d⁻¹b ]         (rows: independent; dependent)
+    /// v = N ν + c ,       N = [ 1 ; −A_d⁻¹A_i ] ,   c = [ 0 ; −A_d⁻¹b ]   (rows: independent; dependent)
     /// NᵀMN ν' = Nᵀ(F − M κ) ,                       κ = [ 0 ; −A_d⁻¹γ ] ,       a = N ν' + κ
     /// ```
     ///
     /// A run ends where `A_d` loses rank ([`Ending::SplittingLost`]).
     Reduced,
-    /// `(q, v)`, 2n numbers, with `v' = a` of [`Maggi::accelerations`]. For any constraints; nothing breaks but what is
-    /// singular in itself. `f` stays zero only as well as the integration is accurate.
+    /// `(q, v)`, 2n numbers, with `v' = a` of [`Maggi::accelerations`]. For any constraints; nothing breaks
+    /// but what is singular in itself. `f` stays zero only as well as the integration is accurate.
     Accelerations,
 }
 
@@ -36,7 +36,7 @@ pub enum Form {
 pub enum Ending {
     /// At the end asked for.
     Completed,
-    /// [`Form::Reduced`]: the dependent velocities no longer follow from the others. [`Form::Accelerations`] goes on.
+    /// [`Form::Reduced`]: the dependent velocities no longer follow. [`Form::Accelerations`] goes on.
     SplittingLost {
         /// Where.
         t: f64,
@@ -49,7 +49,7 @@ pub enum Ending {
     Stopped {
         /// Where.
         t: f64,
-        /// Why; where `A` or the stacked matrix became singular, [`StopCause::Evaluation`] with the words of [`MaggiError`].
+        /// Why; [`StopCause::Evaluation`] with [`MaggiError`]'s words where a matrix became singular.
         cause: StopCause,
     },
 }
@@ -186,7 +186,7 @@ impl Splitting {
         Ok(Kinematics { jacobian, offset, lengths, dependent: LU::new(dependent) })
     }
 
-    /// `det A_d` over that at the start: 1 at the start, 0 where the splitting breaks, and of the other sign beyond.
+    /// `det A_d` over that at the start: 1 there, 0 where the splitting breaks, of the other sign beyond.
     fn determinant(&self, maggi: &mut Maggi, t: f64, q: &[f64]) -> Result<f64, MaggiError> {
         let kinematics = self.kinematics(maggi, t, q)?;
         Ok(if kinematics.lengths.is_empty() { 1.0 } else { kinematics.dependent.determinant() / self.at_start })
