@@ -20,7 +20,7 @@ pub enum DerivationError {
     /// Generalized forces in a variational principle.
     #[error(
         "{formulation}: a generalized force acts on `{coordinate}`, and a variational principle has no place for it; \
-         only the Chetaev formulation takes forces"
+         only Chetaev's formulation and the family between (kappa) take forces"
     )]
     ForceInVariationalPrinciple {
         /// Name of the formulation.

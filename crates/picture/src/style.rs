@@ -16,7 +16,7 @@ pub enum Style {
     Vakonomic,
     /// Gap between the Chetaev and the removed-constraint motion.
     ChetaevRemovedConstraint,
-    /// The deliberately wrong fourth: the constraint put into the Lagrangian (purple, dash and dot).
+    /// The deliberately wrong one: the constraint put into the Lagrangian (purple, dash and dot).
     Substituted,
     /// Gap between the vakonomic and the removed-constraint motion.
     VakonomicRemovedConstraint,

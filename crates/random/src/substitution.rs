@@ -1,4 +1,4 @@
-//! The deliberately wrong fourth formulation, a control of the harness itself.
+//! The deliberately wrong formulation, a control of the harness itself.
 //!
 //! Lindelöf's mistake of 1895: put the constraint into the Lagrangian and take Lagrange's equations of that,
 //!

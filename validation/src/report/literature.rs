@@ -169,7 +169,7 @@ impl LiteratureReport {
         let [confirmed, refuted, qualified, open] = ["confirmed", "refuted", "qualified", "open"]
             .map(|word| self.claims.iter().filter(|claim| claim.word == word).count());
         format!(
-            "Of {} published claims {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, {refuted} are refuted, {open} are open.",
+            "Of {} published claims, as abstracts or memory have them, {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, {refuted} are refuted, {open} are open.",
             self.claims.len()
         )
     }

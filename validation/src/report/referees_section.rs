@@ -27,7 +27,7 @@ pub fn referees_section(comparison: &mut Comparison, casadi: Option<&Outcome>) -
         rows.extend(outcome.rows().iter().filter(|row| row.scene == comparison.scene.name).cloned());
     }
     let mut text = String::from("\n## Referees\n\n");
-    text += "Other derivations of the same equations, by programs that share none with this one.\n\n";
+    text += "Other derivations of the same equations, by programs that share no derivation with this one.\n\n";
     if let Some(Outcome::NotRun(reason)) = casadi {
         text += &format!("CasADi and SymPy: *not run: {reason}.*\n\n");
     }

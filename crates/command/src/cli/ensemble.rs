@@ -14,7 +14,7 @@ pub const MOST_MEMBERS: usize = 1_000_000;
 pub struct MotionArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced or removed-constraint.
+    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced, removed-constraint or kappa.
     #[arg(long, short)]
     pub formulation: String,
     /// Vakonomic multipliers at the start, one a constraint.
