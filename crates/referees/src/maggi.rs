@@ -25,7 +25,7 @@
 
 use mechanics::{State, System};
 use nalgebra::{ColPivQR, DMatrix, DVector, Dyn};
-use symbolic::{CompileError, Evaluator, Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol};
 
 mod error;
 mod motion;
@@ -33,7 +33,7 @@ mod motion;
 mod tests;
 
 pub use error::MaggiError;
-pub use motion::{Ending, Form, Motion, SPLITTING_LIMIT, START_LIMIT};
+pub use motion::{Motion, START_LIMIT};
 
 /// Smallest over largest diagonal entry of a pivoted QR factorization; under it a matrix counts as singular.
 pub const PIVOT_LIMIT: f64 = 1e-13;
@@ -57,10 +57,10 @@ impl Residual {
 /// One system, differentiated and compiled; the referee. Clone it for another thread.
 ///
 /// ```
-/// use referees::maggi::{Form, Maggi};
+/// use referees::maggi::Maggi;
 /// let scene = scene::Scene::parse("sledge", include_str!("../../../validation/scenes/sledge.toml"))?;
 /// let mut maggi = Maggi::new(&scene.system)?;
-/// let mut motion = maggi.solve(&scene.start, 2.0, 1e-11, Form::Accelerations)?;
+/// let mut motion = maggi.solve(&scene.start, 2.0, 1e-11)?;
 /// let u = |t: f64| 0.5 + 9.81 * 0.4_f64.sin() / 1.1 * ((0.3 + 1.1 * t).sin() - 0.3_f64.sin());
 /// assert!((motion.state(2.0)?.v[0] - u(2.0) * 2.5_f64.cos()).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -70,20 +70,11 @@ pub struct Maggi {
     n: usize,
     h: usize,
     /// `M, F, A, γ, f` from `t, q, v`.
-    instant: Program,
-    /// `A, b` from `t, q`, where `f = A v + b`; else the first constraint that is not linear.
-    affine: Result<Program, usize>,
+    instant: Evaluator<f64>,
 }
 
 /// A pivoted QR factorization.
 type Factors = ColPivQR<f64, Dyn, Dyn>;
-
-/// Outputs at `(t, q, v)` or `(t, q)`.
-#[derive(Clone, Debug)]
-struct Program {
-    evaluator: Evaluator<f64>,
-    inputs: Vec<f64>,
-}
 
 /// `M, F, A, γ, f` at one instant; matrices row-major.
 #[derive(Clone, Copy)]
@@ -94,20 +85,6 @@ struct Instant<'a> {
     jacobian: &'a [f64],
     gamma: &'a [f64],
     constraint: &'a [f64],
-}
-
-impl Program {
-    fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        Ok(Program { inputs: vec![0.0; inputs.len()], evaluator: system.evaluator(inputs, outputs)? })
-    }
-
-    /// The outputs at `(t, q, v)` (or at `(t, q)` with an empty `v`).
-    fn evaluate(&mut self, t: f64, q: &[f64], v: &[f64]) -> &[f64] {
-        self.inputs[0] = t;
-        self.inputs[1..=q.len()].copy_from_slice(q);
-        self.inputs[q.len() + 1..].copy_from_slice(v);
-        self.evaluator.evaluate(&self.inputs)
-    }
 }
 
 impl Maggi {
@@ -137,25 +114,11 @@ impl Maggi {
             let applied = g.add(g.derivative(system.lagrangian, positions[i]), system.forces[i]);
             g.sub(applied, drift(momenta[i]))
         }));
-        let jacobian: Vec<Expr> = system.constraints.iter().flat_map(|&f| g.gradient(f, &velocities)).collect();
-        outputs.extend(&jacobian);
+        outputs.extend(system.constraints.iter().flat_map(|&f| g.gradient(f, &velocities)));
         outputs.extend(system.constraints.iter().map(|&f| drift(f)));
         outputs.extend(&system.constraints);
-
-        let mut inputs = vec![system.time];
-        inputs.extend(&positions);
-        let nonlinear = jacobian.iter().position(|&e| velocities.iter().any(|&v| g.depends_on(e, v)));
-        let affine = match nonlinear {
-            Some(entry) => Err(entry / n + 1),
-            None => {
-                let rest = velocities.iter().map(|&v| (v, g.zero())).collect();
-                let mut outputs = jacobian.clone();
-                outputs.extend(g.substitute_all(&system.constraints, &rest));
-                Ok(Program::new(&system, &inputs, &outputs)?)
-            }
-        };
-        inputs.extend(&velocities);
-        Ok(Maggi { n, h, instant: Program::new(&system, &inputs, &outputs)?, affine })
+        let inputs = [&[system.time][..], &positions, &velocities].concat();
+        Ok(Maggi { n, h, instant: system.evaluator(&inputs, &outputs)? })
     }
 
     /// The accelerations `a` (n) of Chetaev's motion at `(t, q, v)`.
@@ -232,41 +195,30 @@ impl Maggi {
     }
 
     /// The motion from `start` to the time `end`, forwards or backwards, by [`integrate::Method::Dop853`] with both
-    /// tolerances equal to `tolerance` and without projection.
+    /// tolerances equal to `tolerance` and without projection: `f` stays zero only as well as the integration is accurate.
     ///
     /// How the run ended is [`Motion::ending`], not an error.
     ///
     /// # Errors
-    /// Those of [`Maggi::accelerations`] at the start; [`MaggiError::OffConstraint`]; [`MaggiError::NotLinear`] for
-    /// [`Form::Reduced`] with nonlinear constraints; [`MaggiError::Call`] for a tolerance or an end that makes no sense.
-    pub fn solve(&mut self, start: &State, end: f64, tolerance: f64, form: Form) -> Result<Motion, MaggiError> {
-        motion::solve(self, start, end, tolerance, form)
+    /// Those of [`Maggi::accelerations`] at the start; [`MaggiError::OffConstraint`]; [`MaggiError::Call`] for a tolerance or an end that makes no
+    /// sense.
+    pub fn solve(&mut self, start: &State, end: f64, tolerance: f64) -> Result<Motion, MaggiError> {
+        motion::solve(self, start, end, tolerance)
     }
 
-    /// The form of runs: [`Form::Reduced`] where every constraint is linear or affine in the velocities, else [`Form::Accelerations`].
-    pub fn form(&self) -> Form {
-        if self.affine.is_ok() { Form::Reduced } else { Form::Accelerations }
-    }
-
-    /// [`Maggi::solve`] at two tolerances, so that the difference tells of the error: in the form of [`Maggi::form`], and where its splitting is
-    /// lost on the way, in accelerations.
+    /// [`Maggi::solve`] at two tolerances, so that the difference tells of the error.
     ///
     /// # Errors
     /// As [`Maggi::solve`].
     pub fn solve_twice(&mut self, start: &State, end: f64, tolerances: [f64; 2]) -> Result<[Motion; 2], MaggiError> {
-        let form = self.form();
-        let mut both =
-            |form| Ok([self.solve(start, end, tolerances[0], form)?, self.solve(start, end, tolerances[1], form)?]);
-        let runs = both(form)?;
-        let complete = runs.iter().all(|run| *run.ending() == Ending::Completed);
-        if complete || form == Form::Accelerations { Ok(runs) } else { both(Form::Accelerations) }
+        Ok([self.solve(start, end, tolerances[0])?, self.solve(start, end, tolerances[1])?])
     }
 
     fn instant(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<Instant<'_>, MaggiError> {
         self.check_length("positions", q)?;
         self.check_length("velocities", v)?;
         let (n, h) = (self.n, self.h);
-        let outputs = self.instant.evaluate(t, q, v);
+        let outputs = self.instant.evaluate(&[&[t][..], q, v].concat());
         let (mass, outputs) = outputs.split_at(n * n);
         let (force, outputs) = outputs.split_at(n);
         let (jacobian, outputs) = outputs.split_at(h * n);
