@@ -259,11 +259,6 @@ impl Step {
         self.readings.evaluate(&inputs)
     }
 
-    /// `c` at the midpoint of the last step.
-    pub(crate) fn discrete_conditions(&self) -> &[f64] {
-        &self.impulse.values()[self.size..]
-    }
-
     /// Puts the straight line through the last two solutions at the time `middle` into the unknowns, where there are two.
     fn predict(&mut self, middle: f64, first: usize) -> bool {
         let [Some((t1, one)), Some((t0, zero))] = &self.past else { return false };

@@ -3,5 +3,4 @@
 //! loop.
 
 pub mod closed_forms;
-pub mod discrete;
 pub mod maggi;
