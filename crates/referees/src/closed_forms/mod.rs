@@ -7,7 +7,7 @@ mod points;
 #[cfg(test)]
 mod tests;
 
-pub use points::{AppellHamel, Heisenberg, Particle, Pendulum, jacobi};
+pub use points::{Particle, Pendulum, jacobi};
 
 /// `sin z / z`, 1 at 0.
 #[must_use]
@@ -100,49 +100,6 @@ impl Sledge {
             speed,
             reaction: omega * speed + gravity_along * phi.sin(),
         }
-    }
-
-    /// How far down a sledge that starts with `v = 0` can ever get, `x − x₀ ≤ g'(1 + |sin φ₀|)²/(2ω²)`, m; infinite at `ω = 0`.
-    ///
-    /// For `φ₀ = 0` this is the well-known `g'/(2ω²)`. It is reached when the blade first points across the slope.
-    #[must_use]
-    pub fn descent_bound_from_rest(&self) -> f64 {
-        let reach = (1.0 + self.phi.sin().abs()) / self.omega;
-        0.5 * self.gravity_along * reach * reach
-    }
-}
-
-/// Upright rolling disc, Chetaev: uniform roll and uniform turn.
-///
-/// `L = ½m(ẋ² + ẏ²) + ½Iψ̇² + ½Jφ̇²`, `ẋ = Rψ̇ cos φ`, `ẏ = Rψ̇ sin φ`:
-/// `ψ = ψ₀ + ψ̇₀t`, `φ = φ₀ + ωt`, `(x, y) = (x₀, y₀) + Rψ̇₀ ∫(cos φ, sin φ)dt`: a circle of radius `|Rψ̇₀/ω|`, or a line.
-/// The masses do not enter. The vakonomic motion with `μ₀ = −m(ẋ₀, ẏ₀)` is the same (Fernandez & Bloch 2008). Source: Bloch 2003, §1.4.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
-    /// `R`, m.
-    pub radius: f64,
-    /// Start, m.
-    pub x: f64,
-    /// Start, m.
-    pub y: f64,
-    /// Roll at the start, rad.
-    pub psi: f64,
-    /// Heading at the start, rad.
-    pub phi: f64,
-    /// `ψ̇`, rad/s.
-    pub roll_rate: f64,
-    /// `φ̇`, rad/s.
-    pub turn_rate: f64,
-}
-
-impl Disc {
-    /// `[x, y, ψ, φ]` after time `t` (s).
-    #[must_use]
-    pub fn at(&self, t: f64) -> [f64; 4] {
-        let z = self.turn_rate * t;
-        let middle = self.phi + 0.5 * z;
-        let way = self.radius * self.roll_rate * t * sinc(0.5 * z);
-        [self.x + way * middle.cos(), self.y + way * middle.sin(), self.psi + self.roll_rate * t, self.phi + z]
     }
 }
 

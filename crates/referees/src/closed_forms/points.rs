@@ -1,6 +1,4 @@
-//! Motions of points: particle, Appell-Hamel, Heisenberg, pendulum.
-
-use super::{sinc, sine_defect};
+//! Motions of points: particle, pendulum.
 
 /// Particle with `ż = y ẋ`, Chetaev.
 ///
@@ -36,80 +34,6 @@ impl Particle {
         let w = self.y_speed * t * slope;
         let unit = if w.abs() < 1e-5 { 1.0 - w * w / 6.0 } else { w.asinh() / w };
         [x0 + c * t * slope * unit, y, z0 + c * t * (y + y0) / (s + s0)]
-    }
-}
-
-/// Appell–Hamel system, every formulation: a straight run at a fixed deceleration.
-///
-/// `L = ½m(ẋ² + ẏ² + ż²) − m g z`, `f = ż² − a²(ẋ² + ẏ²)`. The heading is constant and `ż = ±a v_h` with the sign of the start:
-/// `v̇_h = ∓g a/(1 + a²)`. The mass does not enter, nor does `μ₀`. Singular where `v_h = 0`. Source: Appell 1911; Saletan & Cromer 1970.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AppellHamel {
-    /// `g`, m/s².
-    pub gravity: f64,
-    /// `a > 0`.
-    pub slope: f64,
-    /// Start `[x, y, z]`, m.
-    pub position: [f64; 3],
-    /// Start `[ẋ, ẏ, ż]`, m/s, on the constraint and not zero.
-    pub velocity: [f64; 3],
-}
-
-impl AppellHamel {
-    /// `v̇_h`, m/s².
-    #[must_use]
-    pub fn acceleration(&self) -> f64 {
-        -self.velocity[2].signum() * self.gravity * self.slope / (1.0 + self.slope * self.slope)
-    }
-
-    /// When the run comes to rest, s; none if it runs downwards.
-    #[must_use]
-    pub fn rest_time(&self) -> Option<f64> {
-        let acceleration = self.acceleration();
-        (acceleration < 0.0).then(|| self.velocity[0].hypot(self.velocity[1]) / -acceleration)
-    }
-
-    /// `[x, y, z]` after time `t` (s); none from the moment of rest on.
-    #[must_use]
-    pub fn at(&self, t: f64) -> Option<[f64; 3]> {
-        if self.rest_time().is_some_and(|rest| t >= rest) {
-            return None;
-        }
-        let speed = self.velocity[0].hypot(self.velocity[1]);
-        let scale = t * (1.0 + 0.5 * self.acceleration() * t / speed);
-        let [x, y, z] = self.position;
-        let [vx, vy, vz] = self.velocity;
-        Some([x + scale * vx, y + scale * vy, z + scale * vz])
-    }
-}
-
-/// Heisenberg system `L = ½(ẋ² + ẏ²)`, `f = ż − ½(xẏ − yẋ)`: vakonomic, and Chetaev at `μ = 0`.
-///
-/// With `𝓛 = L + μ f`, `μ` is constant and `ẍ = −μẏ`, `ÿ = μẋ`: the velocity turns at the rate `+μ` on a circle of radius `|v|/|μ|`,
-/// and `z` gains the swept area, `z = z₀ + ½(x₀Y − y₀X) + ½v²(μt − sin μt)/μ²` with `X = x − x₀`, `Y = y − y₀`.
-/// The Chetaev motion is the straight line, whatever `μ` would be. Source: Brockett 1981; Bloch 2003, §1.8.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heisenberg {
-    /// `μ`, rad/s; 0 for Chetaev.
-    pub multiplier: f64,
-    /// Start `[x, y, z]`.
-    pub position: [f64; 3],
-    /// Start `[ẋ, ẏ]`.
-    pub velocity: [f64; 2],
-}
-
-impl Heisenberg {
-    /// `[x, y, z]` after time `t`.
-    #[must_use]
-    pub fn at(&self, t: f64) -> [f64; 3] {
-        let z = self.multiplier * t;
-        let [vx, vy] = self.velocity;
-        let (sin, cos) = (0.5 * z).sin_cos();
-        let chord = t * sinc(0.5 * z);
-        let (dx, dy) = (chord * (vx * cos - vy * sin), chord * (vx * sin + vy * cos));
-        let [x0, y0, z0] = self.position;
-        let lobe = 0.5 * (vx * vx + vy * vy) * t * t * z * sine_defect(z);
-        [x0 + dx, y0 + dy, z0 + 0.5 * (x0 * dy - y0 * dx) + lobe]
     }
 }
 
