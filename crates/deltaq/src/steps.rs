@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use discrete::{Composition, Discrete, Ends, RemovedStart};
+use discrete::{Composition, Discrete, RemovedStart};
 use integrate::Work;
 use scene::Scene;
 
@@ -45,7 +45,7 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
                 }
             }
             let at = RemovedStart::at(system, removal, start, &costates)?;
-            Ok(Discrete::removed(system, removal, &at, end, Ends::GivenStart)?)
+            Ok(Discrete::removed(system, removal, &at, end)?)
         }
         _ => Err(SolveError::NoPrinciple { formulation: choice.formulation.into() }),
     }

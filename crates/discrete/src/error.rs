@@ -88,36 +88,7 @@ pub enum DiscreteError {
         /// Correction that would have been accepted.
         limit: f64,
     },
-    /// No `P₀` with `P_N = 0` is found.
-    #[error(
-        "no costates at the start lead to none at t = {t}: {found} is left after {attempts} attempts, limit {limit}"
-    )]
-    NoNaturalEnd {
-        /// Time of the end.
-        t: f64,
-        /// Attempts made.
-        attempts: usize,
-        /// Largest `|P_N|`, relative to 1 + the largest of `P₀`.
-        found: f64,
-        /// What would have been accepted.
-        limit: f64,
-    },
-    /// A count that must be at least 1 is 0.
-    #[error("{what} is {found}, at least {limit} needed")]
-    TooFew {
-        /// Steps or levels.
-        what: &'static str,
-        /// What was given.
-        found: usize,
-        /// What is needed.
-        limit: usize,
-    },
-    /// The motion to compare with cannot be read off.
-    #[error("the reference cannot be read off at t = {t}: {cause}")]
-    Reference {
-        /// Time.
-        t: f64,
-        /// Its own words.
-        cause: String,
-    },
+    /// No step is asked for.
+    #[error("at least one step is needed")]
+    NoSteps,
 }

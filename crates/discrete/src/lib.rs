@@ -1,69 +1,62 @@
-//! Discrete variational principles: time steps that keep the structure of a motion, without its equations.
+//! Discrete variational principles: time-stepping that keeps the structure of a motion, without one equation of motion.
 //!
-//! Time is cut into steps `h`; on the interval from node `k` to node `k+1` every function is taken at the
-//! midpoint, with `x̄ = (x_k + x_{k+1})/2`, `ẋ ≈ (x_{k+1} − x_k)/h`, `t̄ = t_k + h/2`. Derivatives are by
-//! nodes (`D₁`, `D₂`: the left and the right one), of a sum over the intervals; none is by time.
+//! Time is cut into steps `h`; on the interval from node `k` to node `k+1` every function is taken at the midpoint, with
+//! `x̄ = (x_k + x_{k+1})/2`, `ẋ ≈ (x_{k+1} − x_k)/h`, `t̄ = t_k + h/2`. What is differentiated is a sum over the intervals, with respect to
+//! the nodes (`D₁`, `D₂`: with respect to the left and the right one); no time derivative of an expression is ever taken.
 //!
-//! **Chetaev** ([`Discrete::chetaev`], discrete d'Alembert). `L_d = h L`, `f_d = f`, `Q_d = h Q`, midpoints:
+//! **Chetaev** ([`Discrete::chetaev`], discrete Lagrange–d'Alembert principle). `L_d = h L`, `f_d = f`, `Q_d = h Q` at the midpoint:
 //!
 //! ```text
-//! D₂L_d(k−1,k) + D₁L_d(k,k+1) + ½ Q_d(k−1,k) + ½ Q_d(k,k+1) + A_kᵀ κ_k = 0 ,  f_d(k,k+1) = 0 ,  κ_k ≈ h λ .
+//! D₂L_d(k−1,k) + D₁L_d(k,k+1) + ½ Q_d(k−1,k) + ½ Q_d(k,k+1) + A_kᵀ κ_k = 0 ,      f_d(k,k+1) = 0 ,      κ_k ≈ h λ .
 //! ```
 //!
-//! `A_k = ∂f/∂v` (h×n) stands at the node, at `(q_k, v_k)`. The reaction is split between the two steps that
-//! meet there, `κ_k = (h/2)(λ⁻ + λ⁺)`: the first half brings the state onto the constraint, `p_k = L_v(q_k,
-//! v_k)` with `f(q_k, v_k) = 0`, the second makes the constraint hold on the next interval. So the step maps
-//! `{f = 0}` onto itself, as RATTLE and the nonholonomic leapfrog of McLachlan and Perlmutter do.
+//! `A_k = ∂f/∂v` (h×n) stands at the node, at `(q_k, v_k)`. The reaction is split between the two steps that meet there,
+//! `κ_k = (h/2)(λ⁻ + λ⁺)`: the first half brings the state onto the constraint, `p_k = L_v(q_k, v_k)` with `f(q_k, v_k) = 0`, the second
+//! makes the constraint hold on the next interval. So the step maps `{f = 0}` onto itself, as RATTLE and the nonholonomic leapfrog of
+//! McLachlan and Perlmutter do.
 //!
-//! **Vakonomic** ([`Discrete::vakonomic`]). `S = Σ h (L + μ_{k+½}·f)` is stationary in all inner `q_k` and in
-//! all `μ_{k+½}` (h):
+//! **Vakonomic** ([`Discrete::vakonomic`]). `S = Σ h (L + μ_{k+½}·f)` is stationary in all inner `q_k` and in all `μ_{k+½}` (h):
 //!
 //! ```text
 //! D₂S(k−1,k) + D₁S(k,k+1) = 0 ,      f_d(k,k+1) = 0 .
 //! ```
 //!
-//! **Removed constraint** ([`Discrete::removed`]). `S = Σ [ h L + P_{k+½}·(h B − (w_{k+1} − w_k)) ]` is
-//! stationary in all inner `u_k` (m) and `w_k` (k), and in all `P_{k+½}` (k). At the last node `w_N` is free,
-//! `D₂S(N−1,N) = 0`: that is `P_N = 0` with `P_{k+1} = P_{k+½} − ½h G_w`, `G = L + P·B`. Not for removals
-//! that bring `ü` into `L` or `B`, or `u̇` into `q`.
+//! **Removed constraint** ([`Discrete::removed`]). `S = Σ [ h L + P_{k+½}·(h B − (w_{k+1} − w_k)) ]` is stationary in all inner `u_k` (m)
+//! and `w_k` (k), and in all `P_{k+½}` (k), with `P_{k+1} = P_{k+½} − ½h G_w`, `G = L + P·B`. Not for removals that bring `ü` into `L` or
+//! `B`, or `u̇` into `q`.
 //!
-//! All three are marched with node momenta, `p_{k+1} = D₂S(k,k+1)` and `p_k + D₁S(k,k+1) = 0` (Chetaev: with
-//! the reactions), from `p₀ = L_v + Aᵀμ₀` (Chetaev: `L_v`) and `p₀ = (G_u̇, −P₀)`. Velocities and multipliers
-//! at a node are those with `𝓛_ẋ = p_k` and `f = 0`.
+//! All three are marched with node momenta, `p_{k+1} = D₂S(k,k+1)` and `p_k + D₁S(k,k+1) = 0` (Chetaev: with the reactions), from
+//! `p₀ = L_v + Aᵀμ₀` (Chetaev: `L_v`) and `p₀ = (G_u̇, −P₀)`. Velocities and multipliers at a node are those with `𝓛_ẋ = p_k` and
+//! `f = 0`.
 //!
 //! # What is kept
-//! - The constraint, to round-off: `f = 0` at the nodes in the velocities there, `f_d = 0` on every interval.
-//! - Reversibility. Exchange the nodes of an interval and the sign of `h`: the midpoint, the difference
-//!   quotient, `S` up to its sign, so all equations stay as they are, `Φ_{−h} Φ_h = 1`. So the error is a
-//!   power series in `h²`, and on integrable reversible motions the energy error stays bounded. On others it
-//!   may wander: a nonholonomic flow is not symplectic, and no step makes it so.
-//! - Vakonomic and removed: `Φ_h` is the implicit midpoint rule in `(x, p)`, hence symplectic; `p` of a
-//!   cyclic coordinate is constant to round-off.
+//! - The constraint, to round-off at all times: `f = 0` at the nodes in the velocities there, and `f_d = 0` on every interval.
+//! - Reversibility. Exchange the nodes of an interval and the sign of `h`: the midpoint, the difference quotient, `S` up to its sign,
+//!   and so all equations stay as they are, `Φ_{−h} Φ_h = 1`. So the error is a power series in `h²`, and on integrable reversible motions the
+//!   energy error stays bounded. On others it may wander: a nonholonomic flow is not symplectic, and no step makes it so.
+//! - Vakonomic and removed: `Φ_h` is the implicit midpoint rule in `(x, p)`, hence symplectic; `p` of a cyclic coordinate is constant to
+//!   round-off.
 //!
 //! # Order
-//! 2, and 4, 6, 8 by [`Composition`], with some steps back in time; Richardson's extrapolation over halvings
-//! of `h` gains two orders a level. States are those of nodes; [`Trajectory::at`] steps between.
+//! 2, and 4, 6, 8 by [`Composition`] of steps, some of them back in time. States are those of the nodes; between nodes, [`Trajectory::at`] takes
+//! one shorter step from the node before.
 //!
 //! # Round-off
-//! Each step is solved to round-off; positions and momenta are sums of increments of size `h`, compensated:
-//! what a million steps lose is the round-off of the increments and not that of the sums.
+//! Each step is solved to round-off; positions and momenta are sums of increments of size `h`, compensated: what a million steps lose is the
+//! round-off of the increments and not that of the sums.
 //!
-//! Sources: J. E. Marsden, M. West, *Discrete mechanics and variational integrators*, Acta Numerica 10
-//! (2001); J. Cortés, S. Martínez, *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M.
-//! Perlmutter, *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16 (2006); M. de León, J.
-//! C. Marrero, D. Martín de Diego, *Vakonomic mechanics versus non-holonomic mechanics*, J. Geom. Phys. 35
-//! (2000); R. Benito, D. Martín de Diego, *Discrete vakonomic mechanics*, J. Math. Phys. 46 (2005); for
-//! symmetry and compositions E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, chapters II
-//! and V. The discrete removed action is derived here.
+//! Sources: J. E. Marsden, M. West, *Discrete mechanics and variational integrators*, Acta Numerica 10 (2001); J. Cortés, S. Martínez,
+//! *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter, *Integrators for nonholonomic mechanical systems*,
+//! J. Nonlinear Sci. 16 (2006); M. de León, J. C. Marrero, D. Martín de Diego, *Vakonomic mechanics versus non-holonomic mechanics*,
+//! J. Geom. Phys. 35 (2000); R. Benito, D. Martín de Diego, *Discrete vakonomic mechanics*, J. Math. Phys. 46 (2005); for symmetry and
+//! compositions E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, chapters II and V. The discrete removed action is
+//! derived here.
 
 use mechanics::{Removal, State, System};
-use nalgebra::DMatrix;
-use symbolic::{Evaluator, Expr, Symbol};
+use symbolic::{Expr, Symbol};
 
 mod composition;
-mod drift;
 mod error;
-mod natural;
 mod newton;
 mod removed_start;
 mod start;
@@ -76,11 +69,9 @@ mod tests;
 mod trajectory;
 
 pub use composition::Composition;
-pub use drift::{Drift, Spread};
 pub use error::DiscreteError;
-use natural::Natural;
 use newton::check_finite;
-pub use removed_start::{Ends, RemovedStart};
+pub use removed_start::RemovedStart;
 pub use start::START_LIMIT;
 use start::{
     check_length, check_start, fresh_symbols, numbers, refuse_forces, substituted_lagrangian, values, with_zeros,
@@ -89,17 +80,16 @@ use step::{Interval, Node, Principle, Step};
 use sum::Compensated;
 pub use trajectory::{Sample, Trajectory};
 
-/// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), in any number of steps. Clone it per thread.
+/// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), for any number of steps. Clone it for another thread.
 ///
 /// ```
 /// use discrete::Discrete;
 /// let scene = scene::Scene::parse("sledge", include_str!("../../../validation/scenes/sledge.toml"))?;
-/// let mut discrete = Discrete::chetaev(&scene.system, &scene.start, 1.0)?;
-/// let q = discrete.positions(200)?;
+/// let q = Discrete::chetaev(&scene.system, &scene.start, 1.0)?.trajectory(200)?.at(1.0)?.x;
 /// // φ = 0.3 + 1.1 t exactly, x by its integral to order h²
-/// assert!((q[200][2] - 1.4).abs() < 1e-12);
+/// assert!((q[2] - 1.4).abs() < 1e-12);
 /// let (g, s) = (9.81 * 0.4_f64.sin(), (1.4_f64.sin() - 0.3_f64.sin()) / 1.1);
-/// assert!((q[200][0] - (0.5 * s + g * s * s / 2.0)).abs() < 1e-4);
+/// assert!((q[0] - (0.5 * s + g * s * s / 2.0)).abs() < 1e-4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -108,19 +98,14 @@ pub struct Discrete {
     composition: Composition,
     start: Node,
     end: f64,
-    /// `q` from `(t, u, w)`, for removals.
-    coordinates: Option<Evaluator<f64>>,
-    /// How the start depends on `P₀`, for removals.
-    costates: Option<Natural>,
-    ends: Ends,
 }
 
 impl Discrete {
     /// The discrete Lagrange–d'Alembert motion from `start` to the time `end`.
     ///
     /// # Errors
-    /// [`DiscreteError::NoFreedom`], [`DiscreteError::Length`], [`DiscreteError::OffConstraint`],
-    /// [`DiscreteError::NotFinite`], [`DiscreteError::Compile`].
+    /// [`DiscreteError::NoFreedom`], [`DiscreteError::Length`], [`DiscreteError::OffConstraint`], [`DiscreteError::NotFinite`],
+    /// [`DiscreteError::Compile`].
     pub fn chetaev(system: &System, start: &State, end: f64) -> Result<Self, DiscreteError> {
         let system = system.clone();
         check_start(&system, start)?;
@@ -143,7 +128,7 @@ impl Discrete {
         Discrete::new(step, start.t, start.q.clone(), p, guess, end)
     }
 
-    /// The motion of stationary discrete vakonomic action from `start` and multipliers `μ₀` (h) to `end`.
+    /// The motion of stationary discrete vakonomic action from `start` and the multipliers `μ₀` (h) to the time `end`.
     ///
     /// # Errors
     /// Those of [`Discrete::chetaev`], [`DiscreteError::Force`].
@@ -173,19 +158,12 @@ impl Discrete {
         Discrete::new(step, start.t, start.q.clone(), p, guess, end)
     }
 
-    /// The motion of stationary discrete action in `(u, w)` of a removal, from `start` to the time `end`,
-    /// which is the horizon of [`Ends::Natural`].
+    /// The motion of stationary discrete action in `(u, w)` of a removal, from `start` to the time `end`.
     ///
     /// # Errors
-    /// [`DiscreteError::HighRate`], [`DiscreteError::Force`], [`DiscreteError::Length`],
-    /// [`DiscreteError::NotFinite`], [`DiscreteError::Compile`].
-    pub fn removed(
-        system: &System,
-        removal: &Removal,
-        start: &RemovedStart,
-        end: f64,
-        ends: Ends,
-    ) -> Result<Self, DiscreteError> {
+    /// [`DiscreteError::HighRate`], [`DiscreteError::Force`], [`DiscreteError::Length`], [`DiscreteError::NotFinite`],
+    /// [`DiscreteError::Compile`].
+    pub fn removed(system: &System, removal: &Removal, start: &RemovedStart, end: f64) -> Result<Self, DiscreteError> {
         let system = system.clone();
         refuse_forces(&system)?;
         let (m, k) = (removal.parameters.len(), removal.memory.len());
@@ -213,14 +191,8 @@ impl Discrete {
         // B does not contain ẇ.
         let memory_rates = numbers(g, &removal.memory.iter().map(|w| w.rate).collect::<Vec<_>>(), &values)?;
         values.extend(rates[m..].iter().copied().zip(memory_rates.iter().copied()));
-        let momenta = g.gradient(augmented, &rates);
-        let p = numbers(g, &momenta, &values)?;
-        let slopes = numbers(g, g.jacobian(&momenta, &costates).entries(), &values)?;
-        check_finite("a slope of a momentum", start.t, &slopes)?;
-        let slopes = DMatrix::from_row_slice(m + k, k, &slopes);
+        let p = numbers(g, &g.gradient(augmented, &rates), &values)?;
         let guess: Vec<f64> = [&start.rates[..], &memory_rates, &start.costates].concat();
-        let inputs: Vec<Symbol> = std::iter::once(system.time).chain(x.iter().copied()).collect();
-        let coordinates = system.evaluator(&inputs, &removal.coordinates)?;
         let principle = Principle {
             lagrangian: augmented,
             forces: vec![g.zero(); m + k],
@@ -231,9 +203,7 @@ impl Discrete {
             rates,
         };
         let step = Step::new(g, &system.parameter_values(), &interval, &principle, &guess)?;
-        let costates = Some(Natural { first: start.costates.clone(), slopes });
-        let discrete = Discrete::new(step, start.t, rest, p, guess, end)?;
-        Ok(Discrete { costates, ends, coordinates: Some(coordinates), ..discrete })
+        Discrete::new(step, start.t, rest, p, guess, end)
     }
 
     /// `guess` are the rates and multipliers at the start.
@@ -246,69 +216,12 @@ impl Discrete {
         let (v, multipliers) = guess.split_at(step.size);
         let (v, multipliers) = (v.to_vec(), multipliers.to_vec());
         let start = Node { t, x: Compensated::new(x), p: Compensated::new(p), v, multipliers };
-        let (composition, ends) = (Composition::Second, Ends::GivenStart);
-        Ok(Discrete { step, composition, start, end, coordinates: None, costates: None, ends })
+        Ok(Discrete { step, composition: Composition::Second, start, end })
     }
 
     /// The same motion in steps of the order of `composition`; without this, of order 2.
     pub fn composed(self, composition: Composition) -> Self {
         Discrete { composition, ..self }
-    }
-
-    /// Time of the node `k` of `steps`.
-    pub fn time(&self, k: usize, steps: usize) -> f64 {
-        self.start.t + (self.end - self.start.t) * (k as f64 / steps as f64)
-    }
-
-    /// `q_0, …, q_N` (each n) on the equidistant grid of `steps` steps.
-    ///
-    /// # Errors
-    /// [`DiscreteError::TooFew`], [`DiscreteError::NotFinite`], [`DiscreteError::Singular`],
-    /// [`DiscreteError::NotConverged`]; [`DiscreteError::NoNaturalEnd`].
-    pub fn positions(&mut self, steps: usize) -> Result<Vec<Vec<f64>>, DiscreteError> {
-        let nodes = self.nodes(steps)?;
-        let Some(coordinates) = &mut self.coordinates else {
-            return Ok(nodes.into_iter().map(|node| node.x.value).collect());
-        };
-        let mut positions = Vec::with_capacity(nodes.len());
-        for node in nodes {
-            let inputs: Vec<f64> = std::iter::once(node.t).chain(node.x.value).collect();
-            let q = coordinates.evaluate(&inputs);
-            check_finite("a coordinate", node.t, q)?;
-            positions.push(q.to_vec());
-        }
-        Ok(positions)
-    }
-
-    /// The momenta `p_0, …, p_N` at the nodes: `D₂S` of the interval before, with the reaction that brings it
-    /// onto the constraint (at the start, that of `(q₀, v₀)`). Length n; for a removal `(p_u, −P)`, m + k.
-    ///
-    /// # Errors
-    /// As [`Discrete::positions`].
-    pub fn momenta(&mut self, steps: usize) -> Result<Vec<Vec<f64>>, DiscreteError> {
-        Ok(self.nodes(steps)?.into_iter().map(|node| node.p.value).collect())
-    }
-
-    fn nodes(&mut self, steps: usize) -> Result<Vec<Node>, DiscreteError> {
-        if steps == 0 {
-            return Err(DiscreteError::TooFew { what: "the number of steps", found: 0, limit: 1 });
-        }
-        let start = self.start.clone();
-        match (&self.costates, self.ends) {
-            (Some(natural), Ends::Natural) => {
-                natural.clone().shoot(&start, self.end, |node| self.nodes_from(node, steps))
-            }
-            _ => self.nodes_from(start, steps),
-        }
-    }
-
-    fn nodes_from(&mut self, start: Node, steps: usize) -> Result<Vec<Node>, DiscreteError> {
-        let mut nodes = Vec::with_capacity(steps + 1);
-        self.march(start, steps, |_, node| {
-            nodes.push(node.clone());
-            Ok(())
-        })?;
-        Ok(nodes)
     }
 
     /// Calls `visit` at every node, the start included.
@@ -320,11 +233,11 @@ impl Discrete {
     ) -> Result<(), DiscreteError> {
         let h = (self.end - self.start.t) / steps as f64;
         self.step.forget();
-        // momenta that leave a velocity open make no motion, though a finite step may have a solution
+        // momenta that leave a velocity open make no motion, though a step of finite length may have a solution
         self.step.read(&mut node.clone(), h)?;
         visit(&mut self.step, &node)?;
         for k in 1..=steps {
-            let t = self.time(k, steps);
+            let t = self.start.t + (self.end - self.start.t) * (k as f64 / steps as f64);
             self.composed_step(&mut node, h, t)?;
             visit(&mut self.step, &node)?;
         }

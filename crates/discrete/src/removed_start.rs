@@ -1,18 +1,9 @@
-//! Where a removed motion starts and what holds at its end.
+//! Where a removed motion starts.
 
 use mechanics::{Removal, State, System, complete_removal_start};
 use symbolic::Symbol;
 
 use crate::DiscreteError;
-
-/// What holds at the ends of a removed motion; the other motions know only the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ends {
-    /// `P₀` as given.
-    GivenStart,
-    /// `w_N` is free: `P_N = 0`, and `P₀` follows from it.
-    Natural,
-}
 
 /// Where a removed motion starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +16,7 @@ pub struct RemovedStart {
     pub rates: Vec<f64>,
     /// `w₀`, length k.
     pub memory: Vec<f64>,
-    /// `P₀`, length k; with [`Ends::Natural`] a first guess.
+    /// `P₀`, length k.
     pub costates: Vec<f64>,
 }
 

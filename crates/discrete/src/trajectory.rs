@@ -49,17 +49,23 @@ impl Discrete {
     /// ```
     ///
     /// # Errors
-    /// [`DiscreteError::TooFew`]; with [`crate::Ends::Natural`] those of [`Discrete::positions`].
+    /// [`DiscreteError::NoSteps`]; those of a step where the first one cannot even begin.
     pub fn trajectory(&self, steps: usize) -> Result<Trajectory, DiscreteError> {
+        if steps == 0 {
+            return Err(DiscreteError::NoSteps);
+        }
         let mut discrete = self.clone();
-        let (start, h) = (discrete.first_node(steps)?, (discrete.end - discrete.start.t) / steps as f64);
+        let (start, h) = (self.start.clone(), (self.end - self.start.t) / steps as f64);
         let (mut times, mut rows) = (Vec::with_capacity(steps + 1), Vec::new());
         let stop = discrete.march(start, steps, |_, node| {
             times.push(node.t);
             node.write(&mut rows);
             Ok(())
         });
-        Ok(Trajectory { discrete, h, times, rows, stop: stop.err() })
+        match stop {
+            Err(error) if times.is_empty() => Err(error),
+            stop => Ok(Trajectory { discrete, h, times, rows, stop: stop.err() }),
+        }
     }
 }
 
@@ -130,13 +136,5 @@ impl Discrete {
         }
         let energy = self.step.readings(&node)[0];
         Ok(Sample { t: node.t, x: node.x.value, v: node.v, multipliers: node.multipliers, energy })
-    }
-
-    /// The node that a march of so many steps starts from.
-    pub(crate) fn first_node(&mut self, steps: usize) -> Result<Node, DiscreteError> {
-        match self.ends {
-            crate::Ends::GivenStart if steps > 0 => Ok(self.start.clone()),
-            _ => Ok(self.nodes(steps)?.swap_remove(0)),
-        }
     }
 }

@@ -3,5 +3,4 @@
 //! differentiation, tapes and the time loop.
 
 pub mod closed_forms;
-pub mod discrete;
 pub mod maggi;

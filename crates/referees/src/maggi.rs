@@ -1,7 +1,7 @@
 //! Chetaev's motion by Maggi's equations: no multipliers, no bordered matrix of the multiplier method.
 //!
-//! With `M = ∂²L/∂v²` (n×n), `F = L_q − L_vq v − L_vt + Q` (n), `A = ∂f/∂v` (h×n) and `γ = f_q v + f_t` (h),
-//! d'Alembert's principle with Chetaev's condition and the constraint differentiated once are
+//! With `M = ∂²L/∂v²` (n×n), `F = L_q − L_vq v − L_vt + Q` (n), `A = ∂f/∂v` (h×n) and `γ = f_q v + f_t` (h), the principle of
+//! d'Alembert and Lagrange with Chetaev's condition, and the constraint differentiated once, are
 //!
 //! ```text
 //! δq · (M a − F) = 0   for every δq with A δq = 0 ,      A a + γ = 0 .
@@ -14,18 +14,18 @@
 //! [  A  ] a  =  [ −γ  ]          n equations for the n accelerations .
 //! ```
 //!
-//! `N` is not derived but computed: the last m columns of the complete orthogonal factor of `Aᵀ`. The first m
-//! rows are Maggi's equations (1896). `f` may be nonlinear in `v`, and `M` may be singular: only the stacked
-//! matrix has to be regular, that is `NᵀMN`.
+//! `N` is not derived but computed: the last m columns of the complete orthogonal factor of `Aᵀ`. The first m rows are
+//! Maggi's equations (1896). `f` may be nonlinear in `v`, and `M` may be singular: only the stacked matrix has to be
+//! regular, that is `NᵀMN`.
 //!
-//! Scaling: each row of `A` is divided by its length, the rows `NᵀM` together by the largest entry of `M`. So
-//! the factors with which constraints and `L` are written do not matter; the units of the coordinates do.
+//! Scaling: each row of `A` is divided by its length, the rows `NᵀM` together by the largest entry of `M`. So the factors
+//! with which constraints and `L` are written do not matter; the units of the coordinates do.
 //!
 //! Source: J. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, AMS 1972, chapter III.
 
 use mechanics::{State, System};
 use nalgebra::{ColPivQR, DMatrix, DVector, Dyn};
-use symbolic::{CompileError, Evaluator, Expr, Symbol};
+use symbolic::{Evaluator, Expr, Symbol};
 
 mod error;
 mod motion;
@@ -33,12 +33,12 @@ mod motion;
 mod tests;
 
 pub use error::MaggiError;
-pub use motion::{Ending, Form, Motion, SPLITTING_LIMIT, START_LIMIT};
+pub use motion::{Motion, START_LIMIT};
 
 /// Smallest over largest diagonal entry of a pivoted QR factorization; under it a matrix counts as singular.
 pub const PIVOT_LIMIT: f64 = 1e-13;
 
-/// How far accelerations are from Maggi's equations ([`Maggi::residual`]). Both parts are pure numbers ≥ 0.
+/// How far given accelerations are from Maggi's equations; see [`Maggi::residual`]. Both parts are pure numbers ≥ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// `|Nᵀ(M a − F)| / (|M| (1 + |a|) + |F|)`, Euclidean (Frobenius) norms.
@@ -57,10 +57,10 @@ impl Residual {
 /// One system, differentiated and compiled; the referee. Clone it for another thread.
 ///
 /// ```
-/// use referees::maggi::{Form, Maggi};
+/// use referees::maggi::Maggi;
 /// let scene = scene::Scene::parse("sledge", include_str!("../../../validation/scenes/sledge.toml"))?;
 /// let mut maggi = Maggi::new(&scene.system)?;
-/// let mut motion = maggi.solve(&scene.start, 2.0, 1e-11, Form::Accelerations)?;
+/// let mut motion = maggi.solve(&scene.start, 2.0, 1e-11)?;
 /// let u = |t: f64| 0.5 + 9.81 * 0.4_f64.sin() / 1.1 * ((0.3 + 1.1 * t).sin() - 0.3_f64.sin());
 /// assert!((motion.state(2.0)?.v[0] - u(2.0) * 2.5_f64.cos()).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -70,20 +70,11 @@ pub struct Maggi {
     n: usize,
     h: usize,
     /// `M, F, A, γ, f` from `t, q, v`.
-    instant: Program,
-    /// `A, b` from `t, q`, where `f = A v + b`; else the first constraint that is not linear.
-    affine: Result<Program, usize>,
+    instant: Evaluator<f64>,
 }
 
 /// A pivoted QR factorization.
 type Factors = ColPivQR<f64, Dyn, Dyn>;
-
-/// Outputs at `(t, q, v)` or `(t, q)`.
-#[derive(Clone, Debug)]
-struct Program {
-    evaluator: Evaluator<f64>,
-    inputs: Vec<f64>,
-}
 
 /// `M, F, A, γ, f` at one instant; matrices row-major.
 #[derive(Clone, Copy)]
@@ -94,20 +85,6 @@ struct Instant<'a> {
     jacobian: &'a [f64],
     gamma: &'a [f64],
     constraint: &'a [f64],
-}
-
-impl Program {
-    fn new(system: &System, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        Ok(Program { inputs: vec![0.0; inputs.len()], evaluator: system.evaluator(inputs, outputs)? })
-    }
-
-    /// The outputs at `(t, q, v)` (or at `(t, q)` with an empty `v`).
-    fn evaluate(&mut self, t: f64, q: &[f64], v: &[f64]) -> &[f64] {
-        self.inputs[0] = t;
-        self.inputs[1..=q.len()].copy_from_slice(q);
-        self.inputs[q.len() + 1..].copy_from_slice(v);
-        self.evaluator.evaluate(&self.inputs)
-    }
 }
 
 impl Maggi {
@@ -137,25 +114,11 @@ impl Maggi {
             let applied = g.add(g.derivative(system.lagrangian, positions[i]), system.forces[i]);
             g.sub(applied, drift(momenta[i]))
         }));
-        let jacobian: Vec<Expr> = system.constraints.iter().flat_map(|&f| g.gradient(f, &velocities)).collect();
-        outputs.extend(&jacobian);
+        outputs.extend(system.constraints.iter().flat_map(|&f| g.gradient(f, &velocities)));
         outputs.extend(system.constraints.iter().map(|&f| drift(f)));
         outputs.extend(&system.constraints);
-
-        let mut inputs = vec![system.time];
-        inputs.extend(&positions);
-        let nonlinear = jacobian.iter().position(|&e| velocities.iter().any(|&v| g.depends_on(e, v)));
-        let affine = match nonlinear {
-            Some(entry) => Err(entry / n + 1),
-            None => {
-                let rest = velocities.iter().map(|&v| (v, g.zero())).collect();
-                let mut outputs = jacobian.clone();
-                outputs.extend(g.substitute_all(&system.constraints, &rest));
-                Ok(Program::new(&system, &inputs, &outputs)?)
-            }
-        };
-        inputs.extend(&velocities);
-        Ok(Maggi { n, h, instant: Program::new(&system, &inputs, &outputs)?, affine })
+        let inputs = [&[system.time][..], &positions, &velocities].concat();
+        Ok(Maggi { n, h, instant: system.evaluator(&inputs, &outputs)? })
     }
 
     /// The accelerations `a` (n) of Chetaev's motion at `(t, q, v)`.
@@ -163,7 +126,7 @@ impl Maggi {
     /// `(q, v)` need not lie on the constraint: what is solved is `A a + γ = 0`, not `f = 0`.
     ///
     /// # Errors
-    /// [`MaggiError`]s `Length`, `NotFinite`, `DependentConstraints`, `Singular`.
+    /// [`MaggiError::Length`], [`MaggiError::NotFinite`], [`MaggiError::DependentConstraints`], [`MaggiError::Singular`].
     pub fn accelerations(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<Vec<f64>, MaggiError> {
         let mut a = vec![0.0; self.n];
         self.write_accelerations(t, q, v, &mut a)?;
@@ -195,8 +158,8 @@ impl Maggi {
         Ok(())
     }
 
-    /// How far the accelerations `a` (n) are from Maggi's equations at `(t, q, v)`; each part is relative to
-    /// its terms, and absolute where the accelerations are below 1.
+    /// How far the accelerations `a` (n) are from Maggi's equations at `(t, q, v)`; each part is relative to its terms,
+    /// and absolute where the accelerations are below 1.
     ///
     /// # Errors
     /// [`MaggiError::Length`], [`MaggiError::NotFinite`], [`MaggiError::DependentConstraints`].
@@ -219,10 +182,10 @@ impl Maggi {
         Ok(Residual { dynamics: if dynamics == 0.0 { 0.0 } else { dynamics / scale }, constraint })
     }
 
-    /// Distance of `(t, q, v)` from the constraint: the largest `|f_i| / (|A_i| (1 + |v|))`; 0 without any.
+    /// How far `(t, q, v)` is from the constraint: the largest `|f_i| / (|A_i| (1 + |v|))`; 0 without constraints.
     ///
     /// # Errors
-    /// [`MaggiError`]s `Length`, `NotFinite`; `DependentConstraints` where a row of `A` is zero.
+    /// [`MaggiError::Length`], [`MaggiError::NotFinite`]; [`MaggiError::DependentConstraints`] where a row of `A` is zero.
     pub fn constraint_residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<f64, MaggiError> {
         let n = self.n;
         let instant = self.instant(t, q, v)?;
@@ -231,42 +194,31 @@ impl Maggi {
         Ok(instant.constraint.iter().zip(lengths).map(|(f, length)| f.abs() / (length * reach)).fold(0.0, f64::max))
     }
 
-    /// The motion from `start` to the time `end`, forwards or backwards, by [`integrate::Method::Dop853`]
-    /// with both tolerances equal to `tolerance` and without projection.
+    /// The motion from `start` to the time `end`, forwards or backwards, by [`integrate::Method::Dop853`] with both
+    /// tolerances equal to `tolerance` and without projection: `f` stays zero only as well as the integration is accurate.
     ///
     /// How the run ended is [`Motion::ending`], not an error.
     ///
     /// # Errors
-    /// Those of [`Maggi::accelerations`] at the start; [`MaggiError`]s `OffConstraint`; `NotLinear` for
-    /// [`Form::Reduced`] with nonlinear constraints; `Call` for a senseless tolerance or end.
-    pub fn solve(&mut self, start: &State, end: f64, tolerance: f64, form: Form) -> Result<Motion, MaggiError> {
-        motion::solve(self, start, end, tolerance, form)
+    /// Those of [`Maggi::accelerations`] at the start; [`MaggiError::OffConstraint`]; [`MaggiError::Call`] for a tolerance or an end that makes no
+    /// sense.
+    pub fn solve(&mut self, start: &State, end: f64, tolerance: f64) -> Result<Motion, MaggiError> {
+        motion::solve(self, start, end, tolerance)
     }
 
-    /// [`Form::Reduced`] for constraints linear or affine in the velocities, else [`Form::Accelerations`].
-    pub fn form(&self) -> Form {
-        if self.affine.is_ok() { Form::Reduced } else { Form::Accelerations }
-    }
-
-    /// [`Maggi::solve`] at two tolerances, so that the difference tells of the error: in the form of
-    /// [`Maggi::form`], and where its splitting is lost on the way, in accelerations.
+    /// [`Maggi::solve`] at two tolerances, so that the difference tells of the error.
     ///
     /// # Errors
     /// As [`Maggi::solve`].
     pub fn solve_twice(&mut self, start: &State, end: f64, tolerances: [f64; 2]) -> Result<[Motion; 2], MaggiError> {
-        let form = self.form();
-        let mut both =
-            |form| Ok([self.solve(start, end, tolerances[0], form)?, self.solve(start, end, tolerances[1], form)?]);
-        let runs = both(form)?;
-        let complete = runs.iter().all(|run| *run.ending() == Ending::Completed);
-        if complete || form == Form::Accelerations { Ok(runs) } else { both(Form::Accelerations) }
+        Ok([self.solve(start, end, tolerances[0])?, self.solve(start, end, tolerances[1])?])
     }
 
     fn instant(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<Instant<'_>, MaggiError> {
         self.check_length("positions", q)?;
         self.check_length("velocities", v)?;
         let (n, h) = (self.n, self.h);
-        let outputs = self.instant.evaluate(t, q, v);
+        let outputs = self.instant.evaluate(&[&[t][..], q, v].concat());
         let (mass, outputs) = outputs.split_at(n * n);
         let (force, outputs) = outputs.split_at(n);
         let (jacobian, outputs) = outputs.split_at(h * n);
@@ -295,8 +247,8 @@ impl Instant<'_> {
         Err(MaggiError::Singular { t: self.t, found: 0.0, limit: PIVOT_LIMIT })
     }
 
-    /// The factors `Q R` of `Aᵀ` with columns of length 1, and the lengths of the rows of `A`. The last m
-    /// columns of the complete `Q` (which `q_tr_mul` applies) are an orthonormal basis of `ker A`.
+    /// The factors `Q R` of `Aᵀ` with columns of length 1, and the lengths of the rows of `A`. The last m columns of the
+    /// complete `Q` (which `q_tr_mul` applies) are an orthonormal basis of `ker A`.
     fn factor_jacobian(&self, n: usize) -> Result<(Factors, Vec<f64>), MaggiError> {
         let lengths = row_lengths(self.t, self.jacobian, n)?;
         let transposed = DMatrix::from_fn(n, lengths.len(), |j, i| self.jacobian[i * n + j] / lengths[i]);
@@ -318,15 +270,15 @@ fn row_lengths(t: f64, jacobian: &[f64], n: usize) -> Result<Vec<f64>, MaggiErro
     Ok(lengths)
 }
 
-/// Smallest over largest diagonal entry of `R`, for matrices scaled to a natural size of 1: the largest
-/// counts as 1 at least, so that a matrix of nothing but round-off is singular. 1 for an empty matrix.
+/// Smallest over largest diagonal entry of `R`, for matrices scaled to a natural size of 1: the largest counts as 1 at
+/// least, so that a matrix of nothing but round-off is singular. 1 for an empty matrix.
 fn pivot_ratio(factors: &Factors) -> f64 {
     let diagonal = factors.r().diagonal();
     let largest = diagonal.iter().fold(1.0_f64, |largest, &x| largest.max(x));
     diagonal.iter().fold(1.0, |ratio, &x| ratio.min(x / largest))
 }
 
-/// `matrix⁻¹ right`, scaled as for [`pivot_ratio`], by pivoted QR and one step of iterative refinement.
+/// `matrix⁻¹ right`, the matrix scaled as for [`pivot_ratio`], by pivoted QR and one step of iterative refinement.
 fn solve_square(t: f64, matrix: DMatrix<f64>, right: DVector<f64>) -> Result<DVector<f64>, MaggiError> {
     let factors = ColPivQR::new(matrix.clone());
     let found = pivot_ratio(&factors);

@@ -124,3 +124,13 @@ fn states_say_what_they_are_and_second_rates_are_not_denied() {
         assert_eq!(role(&equations, &equations.graph.name(w.symbol)), wanted);
     }
 }
+
+#[test]
+fn the_family_between_is_asked_for_by_its_parameter() {
+    let without = support::scene("sledge", &[]);
+    assert!(deltaq::choices(&without).iter().all(|choice| choice.formulation != "kappa"));
+    let error = (deltaq::formulation("kappa").expect("there").derive)(&without.system, &Default::default());
+    assert!(error.err().expect("refused").to_string().contains("a parameter `kappa` is needed"));
+    let with = support::scene("sledge", &[("kappa", 2.0)]);
+    assert!(deltaq::choices(&with).iter().any(|choice| choice.formulation == "kappa"));
+}

@@ -1,12 +1,11 @@
 //! Removed-constraint motions inside the vakonomic family, and outside of it (T2, T3).
 
 use deltaq::{Metric, best_fit, setting};
-use mechanics::Removal;
 use scene::Scene;
 
 use super::support::{
-    at, common_times, equations, gap, known_gap, linear_scenes, matching_multipliers, matrix, must, must_exceed,
-    number, parameter, removal, removed, scene, state_at, tight, vakonomic, values,
+    at, common_times, equations, gap, matching_multipliers, matrix, must, must_exceed, number, parameter, removal,
+    removed, scene, state_at, tight, vakonomic, values,
 };
 
 /// `t₁ = −u̇₀/(g sin α cos φ₀)` and `g sin α`: the horizon for which `p_u = 0`.
@@ -92,42 +91,6 @@ fn three_cylinders_by_turn_is_vakonomic_and_keeps_its_constraints() {
         worst = scene.system.constraints.iter().map(|&f| number(g, f, &values).abs()).fold(worst, f64::max);
     }
     must("three-cylinders: constraints (14)-(17) along the motion", worst, 1e-10);
-}
-
-/// `P(t₀)` with no zero in it.
-fn some_constants(count: usize) -> Vec<f64> {
-    (0..count).map(|i| [0.11, -0.07, 0.05, -0.13][i % 4]).collect()
-}
-
-/// Whether the motion stopped where the removal divides by zero, whatever the integrator called it.
-fn chart_ends(scene: &Scene, motion: &mut deltaq::Motion) -> bool {
-    let g = motion.equations.graph.clone();
-    let guards = motion.equations.guards.clone();
-    let end = motion.end();
-    let last = values(&scene.system, &state_at(motion, end));
-    let first = values(&scene.system, &scene.start);
-    guards.into_iter().any(|e| number(&g, e, &last).abs() < 1e-4 * number(&g, e, &first).abs())
-}
-
-#[test]
-fn coordinate_removal_is_vakonomic_on_every_scene() {
-    for scene in linear_scenes() {
-        let by_coordinates = Removal::by_coordinates(&scene.system, &scene.start).expect("a removal");
-        let count = equations(&scene.system, "removed-constraint", Some(&by_coordinates)).free_constants.len();
-        for constants in [vec![0.0; count], some_constants(count)] {
-            let mut motion = removed(&scene, &by_coordinates, &constants);
-            let (mu0, residual) = matching_multipliers(&scene, &by_coordinates, &mut motion);
-            let zero = if constants.iter().all(|&c| c == 0.0) { "P(t₀) = 0" } else { "P(t₀) ≠ 0" };
-            must(&format!("{}, {zero}: residual of Aᵀμ₀ = p_q − L_v", scene.name), residual, 1e-12);
-            let mut vakonomic =
-                super::support::motion_of(&scene, equations(&scene.system, "vakonomic", None), &mu0, &tight());
-            let (distance, end) = known_gap(&mut motion, &mut vakonomic);
-            assert!(motion.is_complete() || chart_ends(&scene, &mut motion), "{}: {:?}", scene.name, motion.ending);
-            assert!(end > 0.05 * scene.duration, "{}: only up to {end}: {:?}", scene.name, motion.ending);
-            let what = format!("{}, {zero}: coordinate removal against vakonomic, to {end:.2} s", scene.name);
-            must(&what, distance, 1e-9);
-        }
-    }
 }
 
 #[test]

@@ -1,13 +1,14 @@
-//! Methods of integration against a closed form, exact Jacobians against differences.
+//! Methods of integration against a closed form, exact Jacobians against differences, and the branch of an implicit form.
 
 use deltaq::{Motion, Settings};
 use integrate::Method;
-
+use scene::Scene;
 use validation::trailer::{self, Coordinates};
 
 use super::closed_forms::sledge;
 use super::support::{
-    all_equations, at, equations, jacobian_error, linear_scenes, motion_of, must, scene, scenes, some_multipliers,
+    all_equations, at, complete, equations, gap, jacobian_error, largest_difference, linear_scenes, motion_of, must,
+    scene, scenes, some_multipliers, tight, vakonomic,
 };
 
 #[test]
@@ -76,4 +77,19 @@ fn implicit_methods_use_those_jacobians() {
             super::support::largest_difference(&at(&mut motion, 1.0).coordinates, &at(&mut reference, 1.0).coordinates);
         must(&format!("ball-in-cone, {method:?} at 1e-9 against Dop853"), error, 1e-6);
     }
+}
+
+/// Found by random systems (seed 2, index 8808): `∂²𝓛/∂v²` is nearly singular in `q4'`, the equations for `(v, μ)` have another root close by.
+const NEAR_A_FOLD: &str = include_str!("../scenes/near-a-fold.toml");
+
+#[test]
+fn costate_form_keeps_to_its_branch_near_a_fold() {
+    let scene = Scene::parse("fold", NEAR_A_FOLD).unwrap_or_else(|e| panic!("{e}"));
+    let mut multiplier = vakonomic(&scene, &scene.multipliers);
+    let costate = motion_of(&scene, equations(&scene.system, "vakonomic-costate", None), &scene.multipliers, &tight());
+    let mut costate = complete(&scene, costate);
+    must("near a fold: multiplier form and costate form", gap(&mut multiplier, &mut costate).0, 1e-9);
+    // read off backwards, far from where it was read last: the start velocities come out again
+    let start = at(&mut costate, 0.0);
+    must("near a fold: velocities read at the start", largest_difference(&start.velocities, &scene.start.v), 1e-11);
 }

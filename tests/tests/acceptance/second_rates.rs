@@ -132,3 +132,12 @@ fn a_singular_highest_hessian_is_refused_where_only_some_parameters_are_of_secon
         Ok(_) => panic!("not refused"),
     }
 }
+
+#[test]
+fn a_lagrangian_without_the_rate_of_the_parameter_is_refused() {
+    let scene = scene("appell-hamel", &[]);
+    let by_heading = |choice: &deltaq::Choice| choice.removal.as_ref().is_some_and(|r| r.name == "by-heading");
+    let choice = deltaq::choices(&scene).into_iter().find(by_heading).expect("a removal of the scene");
+    let error = deltaq::solve_choice(&scene, &choice, &Default::default()).err().map(|e| e.to_string());
+    assert!(error.as_ref().is_some_and(|e| e.contains("singular")), "{error:?}");
+}

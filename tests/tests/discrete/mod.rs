@@ -1,6 +1,4 @@
 //! Discrete variational principles against deltaq's motions: from `L`, `f` without equations of motion.
 
+mod agreement;
 mod orders;
-mod random;
-mod scenes;
-mod support;

@@ -1,9 +1,9 @@
 //! What a motion should have been: closed forms, and equations derived by hand in other variables.
 
 use deltaq::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
-use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
+use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, Status, integrate};
 use mechanics::{ConstantsRule, State, System};
-use referees::maggi::{self, Form, Maggi};
+use referees::maggi::{self, Maggi};
 
 /// Coordinates over time.
 pub type Road = Box<dyn Fn(f64) -> Vec<f64> + Send + Sync>;
@@ -74,12 +74,10 @@ impl Reference {
                 let (system, state) = posed()?;
                 let run = |tolerance: f64| -> Result<maggi::Motion, String> {
                     let mut maggi = Maggi::new(&system).map_err(|error| error.to_string())?;
-                    let motion = maggi.solve(&state, later, tolerance, Form::Accelerations);
-                    let motion = motion.map_err(|error| error.to_string())?;
+                    let motion = maggi.solve(&state, later, tolerance).map_err(|error| error.to_string())?;
                     match motion.ending() {
-                        maggi::Ending::Completed => Ok(motion),
-                        maggi::Ending::Stopped { t, .. } if same_stop(*t) => Ok(motion),
-                        other => Err(format!("the reference stops: {other:?}")),
+                        Status::Stopped { t, .. } if !same_stop(*t) => Err(format!("the reference stops at {t}")),
+                        _ => Ok(motion),
                     }
                 };
                 let (mut looser, mut kept) = (run(MAGGI[0])?, run(MAGGI[1])?);
@@ -116,8 +114,8 @@ impl Reference {
                     let start = Start { t: start, y: y.clone() };
                     let solution = integrate(&mut field, &start, end, &options).map_err(|e| e.to_string())?;
                     match solution.status {
-                        integrate::Status::Completed => Ok(solution.dense),
-                        integrate::Status::Stopped { t, cause } => Err(format!("the reference stops at {t}: {cause}")),
+                        Status::Completed => Ok(solution.dense),
+                        Status::Stopped { t, cause } => Err(format!("the reference stops at {t}: {cause}")),
                     }
                 };
                 let (looser, kept) = (run(TOLERANCES[0])?, run(TOLERANCES[1])?);

@@ -1,13 +1,13 @@
 //! Motions in closed form, to measure solvers against.
 //!
-//! Nothing here calls a solver. Removable limits (a sledge without turn, a particle without drift) are
-//! reached without cancellation. Unit tests put each motion into its equations by central differences.
+//! Nothing here calls a solver. Every motion is written so that its removable limits (a sledge that does not turn, a particle that does
+//! not drift) are reached without cancellation. The unit tests put each motion into its equations of motion by central differences.
 
 mod points;
 #[cfg(test)]
 mod tests;
 
-pub use points::{AppellHamel, Heisenberg, Particle, Pendulum, jacobi};
+pub use points::{Particle, Pendulum, jacobi};
 
 /// `sin z / z`, 1 at 0.
 #[must_use]
@@ -33,8 +33,8 @@ pub fn sine_defect(z: f64) -> f64 {
 
 /// Ice sledge on an incline, Chetaev.
 ///
-/// `L = ½(ẋ² + ẏ²) + ½k²φ̇² + g x sin α`, `f = ẏ cos φ − ẋ sin φ`. The heading turns uniformly,
-/// `φ = φ₀ + ω t`. With `C = ∫₀ᵗ cos φ`, `S = ∫₀ᵗ sin φ` and `g' = g sin α`:
+/// `L = ½(ẋ² + ẏ²) + ½k²φ̇² + g x sin α`, `f = ẏ cos φ − ẋ sin φ`. The heading turns uniformly, `φ = φ₀ + ω t`. With
+/// `C = ∫₀ᵗ cos φ`, `S = ∫₀ᵗ sin φ` and `g' = g sin α`:
 ///
 /// ```text
 /// v = v₀ + g' C                                   speed along the blade
@@ -101,55 +101,12 @@ impl Sledge {
             reaction: omega * speed + gravity_along * phi.sin(),
         }
     }
-
-    /// Deepest point of a sledge from `v = 0`: `x − x₀ ≤ g'(1 + |sin φ₀|)²/(2ω²)`, m; infinite at `ω = 0`.
-    ///
-    /// For `φ₀ = 0` it is the known `g'/(2ω²)`, reached when the blade first points across the slope.
-    #[must_use]
-    pub fn descent_bound_from_rest(&self) -> f64 {
-        let reach = (1.0 + self.phi.sin().abs()) / self.omega;
-        0.5 * self.gravity_along * reach * reach
-    }
-}
-
-/// Upright rolling disc, Chetaev: uniform roll and uniform turn.
-///
-/// `L = ½m(ẋ² + ẏ²) + ½Iψ̇² + ½Jφ̇²`, `ẋ = Rψ̇ cos φ`, `ẏ = Rψ̇ sin φ`: `ψ = ψ₀ + ψ̇₀t`, `φ = φ₀ + ωt`,
-/// `(x, y) = (x₀, y₀) + Rψ̇₀ ∫(cos φ, sin φ)dt`: a circle of radius `|Rψ̇₀/ω|`, or a line. No mass enters.
-/// Vakonomic with `μ₀ = −m(ẋ₀, ẏ₀)` is the same (Fernandez & Bloch 2008). Source: Bloch 2003, §1.4.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
-    /// `R`, m.
-    pub radius: f64,
-    /// Start, m.
-    pub x: f64,
-    /// Start, m.
-    pub y: f64,
-    /// Roll at the start, rad.
-    pub psi: f64,
-    /// Heading at the start, rad.
-    pub phi: f64,
-    /// `ψ̇`, rad/s.
-    pub roll_rate: f64,
-    /// `φ̇`, rad/s.
-    pub turn_rate: f64,
-}
-
-impl Disc {
-    /// `[x, y, ψ, φ]` after time `t` (s).
-    #[must_use]
-    pub fn at(&self, t: f64) -> [f64; 4] {
-        let z = self.turn_rate * t;
-        let middle = self.phi + 0.5 * z;
-        let way = self.radius * self.roll_rate * t * sinc(0.5 * z);
-        [self.x + way * middle.cos(), self.y + way * middle.sin(), self.psi + self.roll_rate * t, self.phi + z]
-    }
 }
 
 /// Ball rolling on a turning table, Chetaev: a circle about any point, at a fixed rate.
 ///
-/// Ball of mass `m`, radius `a`, moment `I`; table rate `Ω`. With the contact force `F`, `m v̇ = F`,
-/// `I ω̇ = −a e_z × F`, and the rolling condition `v − a ω × e_z = Ω e_z × r` differentiated:
+/// Ball of mass `m`, radius `a`, moment `I`; table rate `Ω`. With the contact force `F`, `m v̇ = F`, `I ω̇ = −a e_z × F`, and the rolling
+/// condition `v − a ω × e_z = Ω e_z × r` differentiated:
 ///
 /// ```text
 /// v̇ = Ω' e_z × v,   Ω' = Ω I/(I + m a²) = 2Ω/7 for a homogeneous ball
@@ -204,18 +161,17 @@ impl TurntableBall {
 
 /// Chaplygin sleigh, Chetaev.
 ///
-/// `L = ½m((ẋ − aφ̇ sin φ)² + (ẏ + aφ̇ cos φ)²) + ½Iφ̇²`, `f = ẏ cos φ − ẋ sin φ`; `(x, y)` the blade, the
-/// mass centre `a` ahead of it. With `J = I + ma²`:
+/// `L = ½m((ẋ − aφ̇ sin φ)² + (ẏ + aφ̇ cos φ)²) + ½Iφ̇²`, `f = ẏ cos φ − ẋ sin φ`; `(x, y)` the blade, the mass centre `a` ahead of it.
+/// With `J = I + ma²`:
 ///
 /// ```text
 /// v̇ = a ω²,  ω̇ = −m a v ω/J
-/// v = V tanh(κt+c), ω = W sech(κt+c), W² = ω₀² + m v₀²/J, V = W√(J/m), κ = aW√(m/J), sinh c = v₀√(m/J)/|ω₀|
+/// v = V tanh(κt + c),  ω = W sech(κt + c),   W² = ω₀² + m v₀²/J,  V = W√(J/m),  κ = aW√(m/J),  sinh c = v₀√(m/J)/|ω₀|
 /// φ = φ₀ ± (1/a)√(J/m) (gd(κt + c) − gd(c)),   gd s = 2 atan tanh(s/2)
 /// ```
 ///
-/// Closed: `v, ω, φ`. Not closed in general: the blade's path, `∫ v cos φ dt` and `∫ v sin φ dt`, elementary
-/// only if `(1/a)√(J/m)` is a whole number. The whole turn from `t = −∞` to `∞` is `π√(J/m)/|a|`. Source:
-/// Chaplygin 1911; Neimark & Fufaev 1972.
+/// Closed: `v, ω, φ`. Not closed in general: the blade's path, `∫ v cos φ dt` and `∫ v sin φ dt`, which is elementary only when
+/// `(1/a)√(J/m)` is a whole number. The whole turn from `t = −∞` to `∞` is `π√(J/m)/|a|`. Source: Chaplygin 1911; Neimark & Fufaev 1972.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sleigh {
     /// `m`, kg.

@@ -1,6 +1,4 @@
-//! Motions of points: particle, Appell-Hamel, Heisenberg, pendulum.
-
-use super::{sinc, sine_defect};
+//! Motions of points: particle, pendulum.
 
 /// Particle with `ż = y ẋ`, Chetaev.
 ///
@@ -39,83 +37,9 @@ impl Particle {
     }
 }
 
-/// Appell–Hamel system, every formulation: a straight run at a fixed deceleration.
-///
-/// `L = ½m(ẋ² + ẏ² + ż²) − m g z`, `f = ż² − a²(ẋ² + ẏ²)`. Constant heading, `ż = ±a v_h` with the sign at
-/// start: `v̇_h = ∓g a/(1 + a²)`. No `m`, no `μ₀`. Singular at `v_h = 0`. Appell 1911; Saletan & Cromer 1970.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AppellHamel {
-    /// `g`, m/s².
-    pub gravity: f64,
-    /// `a > 0`.
-    pub slope: f64,
-    /// Start `[x, y, z]`, m.
-    pub position: [f64; 3],
-    /// Start `[ẋ, ẏ, ż]`, m/s, on the constraint and not zero.
-    pub velocity: [f64; 3],
-}
-
-impl AppellHamel {
-    /// `v̇_h`, m/s².
-    #[must_use]
-    pub fn acceleration(&self) -> f64 {
-        -self.velocity[2].signum() * self.gravity * self.slope / (1.0 + self.slope * self.slope)
-    }
-
-    /// When the run comes to rest, s; none if it runs downwards.
-    #[must_use]
-    pub fn rest_time(&self) -> Option<f64> {
-        let acceleration = self.acceleration();
-        (acceleration < 0.0).then(|| self.velocity[0].hypot(self.velocity[1]) / -acceleration)
-    }
-
-    /// `[x, y, z]` after time `t` (s); none from the moment of rest on.
-    #[must_use]
-    pub fn at(&self, t: f64) -> Option<[f64; 3]> {
-        if self.rest_time().is_some_and(|rest| t >= rest) {
-            return None;
-        }
-        let speed = self.velocity[0].hypot(self.velocity[1]);
-        let scale = t * (1.0 + 0.5 * self.acceleration() * t / speed);
-        let [x, y, z] = self.position;
-        let [vx, vy, vz] = self.velocity;
-        Some([x + scale * vx, y + scale * vy, z + scale * vz])
-    }
-}
-
-/// Heisenberg system `L = ½(ẋ² + ẏ²)`, `f = ż − ½(xẏ − yẋ)`: vakonomic, and Chetaev at `μ = 0`.
-///
-/// With `𝓛 = L + μ f`, `μ` is constant and `ẍ = −μẏ`, `ÿ = μẋ`: the velocity turns at the rate `+μ` on a
-/// circle of radius `|v|/|μ|`; `z` gains the swept area, `z = z₀ + ½(x₀Y − y₀X) + ½v²(μt − sin μt)/μ²`, `X =
-/// x − x₀`, `Y = y − y₀`. Chetaev: a straight line, for any `μ`. Source: Brockett 1981; Bloch 2003, §1.8.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heisenberg {
-    /// `μ`, rad/s; 0 for Chetaev.
-    pub multiplier: f64,
-    /// Start `[x, y, z]`.
-    pub position: [f64; 3],
-    /// Start `[ẋ, ẏ]`.
-    pub velocity: [f64; 2],
-}
-
-impl Heisenberg {
-    /// `[x, y, z]` after time `t`.
-    #[must_use]
-    pub fn at(&self, t: f64) -> [f64; 3] {
-        let z = self.multiplier * t;
-        let [vx, vy] = self.velocity;
-        let (sin, cos) = (0.5 * z).sin_cos();
-        let chord = t * sinc(0.5 * z);
-        let (dx, dy) = (chord * (vx * cos - vy * sin), chord * (vx * sin + vy * cos));
-        let [x0, y0, z0] = self.position;
-        let lobe = 0.5 * (vx * vx + vy * vy) * t * t * z * sine_defect(z);
-        [x0 + dx, y0 + dy, z0 + 0.5 * (x0 * dy - y0 * dx) + lobe]
-    }
-}
-
 /// Pendulum that swings (does not go over the top), every formulation of `d/dt(x² + y² − ℓ²) = 0`.
 ///
-/// With `θ` from below, `x = ℓ sin θ`, `y = −ℓ cos θ`, `n = √(g/ℓ)`, `k² = sin²(θ₀/2) + θ̇₀²/(4n²) < 1`:
+/// With `θ` from the downward vertical, `x = ℓ sin θ`, `y = −ℓ cos θ`, `n = √(g/ℓ)`, `k² = sin²(θ₀/2) + θ̇₀²/(4n²) < 1`:
 ///
 /// ```text
 /// sin(θ/2) = k sn(nt + u₀ | k),   cos(θ/2) = dn,   θ̇ = 2 n k cn
@@ -177,7 +101,7 @@ impl Pendulum {
     }
 }
 
-/// Jacobi's `(sn, cn, dn)(u)`, modulus `0 ≤ k < 1`, by descending Landen steps (Abramowitz & Stegun 16.4).
+/// Jacobi's `(sn, cn, dn)` of argument `u` and modulus `k`, `0 ≤ k < 1`, by descending Landen steps (Abramowitz & Stegun 16.4).
 #[must_use]
 pub fn jacobi(u: f64, k: f64) -> (f64, f64, f64) {
     let mut a = vec![1.0];

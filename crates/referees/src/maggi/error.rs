@@ -60,12 +60,6 @@ pub enum MaggiError {
         /// [`super::PIVOT_LIMIT`].
         limit: f64,
     },
-    /// [`super::Form::Reduced`] needs constraints that are linear or affine in the velocities.
-    #[error("constraint {number} is not linear in the velocities, so that there is no reduced form")]
-    NotLinear {
-        /// Which one, counted from 1.
-        number: usize,
-    },
     /// The start is not on the constraint.
     #[error("the start is off the constraints by {found}, limit {limit}")]
     OffConstraint {
