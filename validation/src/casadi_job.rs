@@ -20,7 +20,7 @@
 //! - where asked ([`Question::with_decision`]): all `μ₀` with which the vakonomic motion is Chetaev's (none,
 //!   or a dimension and the least-norm one), against power series in sixty digits, without CasADi.
 //!
-//! The virtual environment is made when needed: in cargo's target folder, installed in the user's cache.
+//! The virtual environment is made when needed: in cargo's target folder; if installed, in the user's cache.
 
 use anyhow::{Context, Result};
 use scene::Scene;

@@ -66,7 +66,7 @@ fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
 
 #[test]
 fn a_motion_that_does_not_return_lets_the_energy_of_order_two_go() {
-    // it would be kept by an integrable reversible motion or a symplectic form; here is neither, as measured
+    // energy is kept on integrable reversible motions or by a symplectic form; here is neither, as measured
     let scene = scene("trailer");
     let discrete = Discrete::chetaev(&scene.system, &scene.start, 0.01 * 100_000.0).unwrap();
     let drift = discrete.drift(100_000, PARTS).unwrap();
