@@ -1,8 +1,7 @@
 //! CasADi as a referee: another program derives the equations again, and another integrator solves them.
 //!
-//! The referee is `validation/casadi/`, Python: a reader of its own for the *text* of `L`, `f`, `Q`,
-//! removals, CasADi to differentiate, and only numbers from Rust. With `𝓛 = L + μ·f` and `G = L + P·B` it
-//! states
+//! The referee is `validation/casadi/`, Python: its own reader of the *text* of `L`, `f`, `Q`, removals,
+//! CasADi to differentiate, only numbers from Rust. With `𝓛 = L + μ·f` and `G = L + P·B` it states
 //!
 //! ```text
 //! Chetaev             d/dt L_v − L_q = Q + Aᵀ λ ,                     d/dt f = 0

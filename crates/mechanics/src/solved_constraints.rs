@@ -40,7 +40,7 @@ impl SolvedConstraints {
                     let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
                     let rest = g.sub(before, g.mul(factor, e));
                     // what cancels without simplifying would be taken for a pivot, or for a dependence that
-                    // is not there
+                    // is none
                     matrix.set(i, j, (!g.vanishes(rest, &constants).is_zero()).then_some(rest));
                 }
             }

@@ -1,8 +1,6 @@
-//! Frames: velocities `u = U(q) v` in which the kinetic energy is a sum of squares with constant
-//! coefficients.
+//! Frames: velocities `u = U(q) v` with the kinetic energy a sum of squares of constant coefficients.
 //!
-//! Where `L` is quadratic in the velocities, elimination of its mass matrix writes the kinetic energy as a
-//! sum of squares,
+//! For `L` quadratic in the velocities, eliminating its mass matrix writes the kinetic energy as squares,
 //!
 //! ```text
 //! ½ vᵀM(q) v = ½ Σ c_k u_k² ,      u_k = s_k (v_k + Σ l_kj v_j) ,

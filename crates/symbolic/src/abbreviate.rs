@@ -76,8 +76,7 @@ impl Names<'_> {
 }
 
 impl Arena {
-    /// A long sum as a sum of names for groups of its terms; a long product with names for its long
-    /// factors.
+    /// A long sum as a sum of names for groups of its terms; a long product with names for its long factors.
     fn split_long(&mut self, e: Expr, names: &mut Names) -> Expr {
         match self.node(e).clone() {
             Node::Sum(constant, terms) if terms.len() > 1 => {

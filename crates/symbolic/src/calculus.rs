@@ -74,8 +74,7 @@ impl Graph {
         Matrix::new(es.len(), symbols.len(), entries)
     }
 
-    /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs. Explicit time has to be among
-    /// them as (t, 1).
+    /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs; explicit time among them as (t, 1).
     ///
     /// ```
     /// let g = symbolic::Graph::new();

@@ -1,5 +1,4 @@
-//! Faults on purpose: one operation of a derivation is made wrong, so that a test can see whether anybody
-//! notices.
+//! Faults on purpose: one operation of a derivation is made wrong, to test whether anybody notices.
 //!
 //! Constructors, derivatives, substitutions and questions of a [`Graph`] ask here whether they are to go
 //! wrong, and how: each such *chance* has a number, counted from the beginning of the work. [`chances`]

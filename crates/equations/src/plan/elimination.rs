@@ -15,8 +15,8 @@ const HARMLESS: f64 = 1e4;
 #[derive(Clone, Default)]
 pub(crate) struct Eliminated {
     pub(crate) list: Vec<(Symbol, Expr)>,
-    /// Squares of multipliers (entries over their pivot, scaled as at the start) and of what cancelled in a
-    /// pivot over that pivot.
+    /// Squares of multipliers (entry over pivot, scaled as at the start) and of what cancelled in a pivot
+    /// over it.
     pub(crate) watched: Vec<Expr>,
     /// Pivots of which something is watched.
     pub(crate) moving: usize,

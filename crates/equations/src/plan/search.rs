@@ -23,8 +23,7 @@ const MOST: usize = 20_000;
 /// Multiplications over which only one way is tried.
 const LONG: usize = 400;
 
-/// Points around the start at which the condition of a plan is tried, and the one over which a point counts
-/// as bad.
+/// Points around the start at which a plan's condition is tried, and that over which a point counts as bad.
 const AROUND: usize = 32;
 const BAD: f64 = 1e3;
 

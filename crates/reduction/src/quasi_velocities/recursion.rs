@@ -92,8 +92,7 @@ impl QuasiVelocities {
         self.dependent.iter().filter_map(multiple).collect()
     }
 
-    /// Hands the dependent velocities over, and those that a frame was made from: defined, and stated for the
-    /// reader.
+    /// Hands over the dependent velocities, and those a frame was made from: defined, and stated for readers.
     pub(crate) fn hand_over(
         &self,
         g: &Graph,
