@@ -173,8 +173,7 @@ impl Discrete {
         Discrete::new(step, start.t, start.q.clone(), p, guess, end)
     }
 
-    /// The motion of stationary discrete action in `(u, w)` of a removal, from `start` to the time `end`,
-    /// which is the horizon of [`Ends::Natural`].
+    /// The motion of stationary discrete action in a removal's `(u, w)` to `end`, where [`Ends::Natural`] is.
     ///
     /// # Errors
     /// [`DiscreteError::HighRate`], [`DiscreteError::Force`], [`DiscreteError::Length`],

@@ -1,8 +1,6 @@
-//! Elimination of sparse linear equations in expressions: what removals, quasi-velocities, sums of squares
-//! and plans have in common.
+//! Elimination of sparse linear expressions, for removals, quasi-velocities, sums of squares and plans.
 //!
-//! Taking out a pivot `a_pc` with its row and column ([`SparseMatrix::take`]), every row with unknown `c`
-//! becomes
+//! With a pivot `a_pc` and its row and column taken out ([`SparseMatrix::take`]), rows with `c` become
 //!
 //! ```text
 //! a_ij ← a_ij − a_ic a_pj / a_pc .

@@ -13,10 +13,9 @@ const LONG_LEAVES: usize = 60;
 const GROUP_LEAVES: usize = 30;
 
 impl Graph {
-    /// Pulls out shared or long subexpressions as named intermediate quantities (names `prefix1`,
-    /// `prefix2`, …) so that what remains can be read: (definitions in order of use, rewritten
-    /// expressions). Later definitions may contain earlier names; putting the definitions back, the
-    /// last first, gives the expressions that were given.
+    /// Pulls out shared or long subexpressions as `prefix1`, `prefix2`, … so that what remains can be read:
+    /// (definitions in order of use, rewritten expressions). Later definitions may contain earlier names;
+    /// putting them back, the last first, gives the given expressions.
     ///
     /// ```
     /// let g = symbolic::Graph::new();

@@ -8,8 +8,7 @@ use std::cell::RefCell;
 
 /// The store of expressions. Building needs only `&Graph`; it is `Send`, not `Sync`; clones keep all ids.
 ///
-/// An [`Expr`] or [`Symbol`] belongs to the graph that made it (and to clones made later); in another
-/// graph it means something else or panics.
+/// An [`Expr`] or [`Symbol`] belongs to its graph and later clones; others misread it or panic.
 ///
 /// ```
 /// use symbolic::Graph;

@@ -170,8 +170,7 @@ impl Arena {
         if coefficient.is_one() { product } else { self.scale(coefficient, product) }
     }
 
-    /// One factor base^exponent: numbers go to the coefficient, nested products to `work`, the rest to
-    /// `done`.
+    /// One factor base^exponent: numbers go to the coefficient, products to `work`, the rest to `done`.
     fn split_factor(
         &mut self,
         base: Expr,

@@ -100,8 +100,7 @@ impl Tape {
     /// Evaluates all outputs; allocates nothing. A singular formula has singular output (∞ or NaN): look.
     ///
     /// # Panics
-    /// If the slices do not have as many entries as there are inputs and outputs, or the workspace is
-    /// of another size than this tape's.
+    /// If the slices are not as long as the inputs and outputs, or the workspace is another tape's.
     pub fn evaluate<T: Scalar>(&self, inputs: &[T], workspace: &mut Workspace<T>, outputs: &mut [T]) {
         let registers = &mut workspace.registers[..];
         assert_eq!(inputs.len(), self.inputs, "inputs of a tape");

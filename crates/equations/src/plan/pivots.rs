@@ -59,8 +59,7 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// Scales columns, then rows, to a largest entry of 1, as the numerical solve does; `None` where that
-    /// cannot be done near the start.
+    /// Scales columns, then rows, to largest entries of 1, as the numerical solve does; `None` if impossible.
     pub(crate) fn new(mut rows: Vec<BTreeMap<usize, Entry>>) -> Option<Self> {
         let mut row_scale = Vec::new();
         for point in 0..POINTS {

@@ -28,8 +28,7 @@ const AROUND: usize = 32;
 const BAD: f64 = 1e3;
 
 impl Plan {
-    /// The cheapest plan that is safe near `(t, y, free constants)`, the point given; without one, near a
-    /// point that stands for all.
+    /// The cheapest plan that is safe near `(t, y, free constants)`, or near a point that stands for all.
     ///
     /// # Errors
     /// [`CompileError`] as [`crate::Compiled::new`].

@@ -213,9 +213,8 @@ impl TurntableBall {
 /// φ = φ₀ ± (1/a)√(J/m) (gd(κt + c) − gd(c)),   gd s = 2 atan tanh(s/2)
 /// ```
 ///
-/// Closed: `v, ω, φ`. Not closed in general: the blade's path, `∫ v cos φ dt` and `∫ v sin φ dt`, elementary
-/// only if `(1/a)√(J/m)` is a whole number. The whole turn from `t = −∞` to `∞` is `π√(J/m)/|a|`. Source:
-/// Chaplygin 1911; Neimark & Fufaev 1972.
+/// Closed: `v, ω, φ`. Not closed: the blade's path, `∫ v cos φ dt` and `∫ v sin φ dt`, unless `(1/a)√(J/m)`
+/// is whole. The whole turn from `t = −∞` to `∞` is `π√(J/m)/|a|`. Chaplygin 1911; Neimark & Fufaev 1972.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sleigh {
     /// `m`, kg.

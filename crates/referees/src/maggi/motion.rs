@@ -9,8 +9,7 @@ use super::{Maggi, MaggiError, check_finite, dot, row_lengths, solve_square};
 /// Largest [`Maggi::constraint_residual`] of a start.
 pub const START_LIMIT: f64 = 1e-9;
 
-/// Where the determinant of the dependent part of `A` falls under this fraction of its value at the start, a
-/// run in the reduced form ends.
+/// A reduced run ends where the dependent part's determinant is under this fraction of that at the start.
 pub const SPLITTING_LIMIT: f64 = 0.01;
 
 /// The state that is integrated.
