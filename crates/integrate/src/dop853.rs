@@ -1,6 +1,7 @@
 //! Dormand and Prince's explicit Runge–Kutta method of order 8(5,3), with dense output of order 7.
 //!
-//! Step control, starting step and dense output as in E. Hairer's DOP853, unstabilised (β = 0, its default).
+//! Step control, starting step and dense output as in E. Hairer's code DOP853 (without its stabilisation of
+//! the step size, β = 0, its default).
 
 use crate::dop853_tableau::*;
 use crate::options::Options;
