@@ -14,8 +14,7 @@ fn ten_seconds(scene: &mut Scene) {
     scene.duration = if scene.name == "appell-hamel" { 1.2 } else { 10.0 };
 }
 
-/// Prints the drift of every invariant that the motion names, relative to the kinetic energy or to the
-/// largest momentum along the way; fails over 1e-10.
+/// Prints each invariant's drift over kinetic energy or the largest momentum on the way; fails over 1e-10.
 fn must_keep(what: &str, scene: &Scene, motion: &mut Motion, needed: &[&str]) {
     let names: Vec<String> = motion.equations.invariants.iter().map(|i| i.name.clone()).collect();
     for name in needed {
