@@ -1,8 +1,7 @@
 //! CasADi as a referee: another program derives the equations again, and another integrator solves them.
 //!
-//! The referee is `validation/casadi/`, Python: a reader of its own for the *text* of `L`, `f`, `Q`,
-//! removals, CasADi to differentiate, and only numbers from Rust. With `𝓛 = L + μ·f` and `G = L + P·B` it
-//! states
+//! The referee is `validation/casadi/`, Python: its own reader of the *text* of `L`, `f`, `Q`, removals,
+//! CasADi to differentiate, only numbers from Rust. With `𝓛 = L + μ·f` and `G = L + P·B` it states
 //!
 //! ```text
 //! Chetaev             d/dt L_v − L_q = Q + Aᵀ λ ,                     d/dt f = 0
@@ -20,7 +19,7 @@
 //! - where asked ([`Question::with_decision`]): all `μ₀` with which the vakonomic motion is Chetaev's (none,
 //!   or a dimension and the least-norm one), against power series in sixty digits, without CasADi.
 //!
-//! The virtual environment is made when needed: in cargo's target folder, installed in the user's cache.
+//! The virtual environment is made when needed: in cargo's target folder; if installed, in the user's cache.
 
 use anyhow::{Context, Result};
 use scene::Scene;

@@ -74,7 +74,7 @@ pub enum DiscreteError {
         /// Time of the node where the step starts.
         t: f64,
     },
-    /// Newton's method does not settle at once: the root may be another one, the step is too long.
+    /// Newton's method does not settle, or not at once: the root may be another one, the step is too long.
     #[error(
         "the step from t = {t} is too long: its equations are not solved after {iterations} iterations, of which the last changed them by {found:.1e}, limit {limit:.0e}"
     )]

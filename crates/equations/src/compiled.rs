@@ -98,7 +98,7 @@ impl Compiled {
     /// Compiles all that a time integrator asks for, without Jacobian, in a plan chosen from structure.
     ///
     /// # Errors
-    /// [`CompileError`] where an expression contains an unknown symbol: a fault of the derivation.
+    /// [`CompileError`] where an expression contains a symbol that `equations` does not list: its fault.
     pub fn new(equations: &Equations) -> Result<Self, CompileError> {
         Compiled::with_plan(equations, &Plan::choose(equations, None)?)
     }
@@ -216,7 +216,7 @@ impl Compiled {
         self.anchor.copy_from_slice(unknowns);
     }
 
-    /// Solves the equations of the instant at `(t, y)`; later, blocks that are not linear start from there.
+    /// Solves for the unknowns at `(t, y)` and returns them; blocks not linear start from there from now on.
     ///
     /// # Errors
     /// As [`Compiled::rates`].

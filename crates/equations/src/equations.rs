@@ -152,7 +152,7 @@ pub struct Equations {
     pub statements: Vec<Statement>,
     /// What this system did not need.
     pub left_out: Vec<LeftOut>,
-    /// Error of velocities and momenta in units in the last place; over 1 where constraints nearly depend.
+    /// Error of velocities and momenta in units in the last place; 1 unless constraints nearly depend.
     pub lost_digits: f64,
     /// In which variables they are written, where there was a choice, and why.
     pub chosen: Vec<String>,

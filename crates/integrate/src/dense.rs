@@ -10,8 +10,8 @@ use crate::error::DenseError;
 /// y(θ) = c₀ + θ (c₁ + (1−θ) (c₂ + θ (c₃ + (1−θ) (c₄ + …))))
 /// ```
 ///
-/// (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.10), or `c₀ + θ (c₁ + θ (c₂ +
-/// …))` for [`crate::Method::Taylor`]. It is continuous, also where a projection ended a step.
+/// (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.10), for
+/// [`crate::Method::Taylor`] `c₀ + θ (c₁ + θ (c₂ + …))`. Continuous, also where a projection moved its end.
 #[derive(Clone, Debug)]
 pub struct DenseOutput {
     basis: Basis,

@@ -9,17 +9,17 @@ pub enum Method {
     /// Taylor series of an order that follows from the tolerance, dense output of that order; for smooth
     /// non-stiff problems that can be expanded ([`crate::Problem::taylor`]), at any accuracy.
     Taylor,
-    /// Dormand and Prince's explicit Runge–Kutta method, order 8(5,3), dense output 7; non-stiff problems.
+    /// Dormand and Prince's explicit Runge–Kutta 8(5,3), dense output of order 7; for non-stiff problems.
     Dop853,
     /// Tsitouras' explicit Runge–Kutta method of order 5(4) (diffsol).
     Tsit45,
     /// Backward differentiation formulas of variable order 1 to 5 (diffsol); for stiff problems.
     Bdf,
-    /// The trapezoidal rule and BDF2 in one step, order 2, L-stable (diffsol); stiff, at low accuracy.
+    /// The trapezoidal rule and BDF2 in a step, order 2, L-stable (diffsol); stiff problems, low accuracy.
     TrBdf2,
     /// Singly diagonally implicit Runge–Kutta method of order 3(4), L-stable (diffsol); for stiff problems.
     Esdirk34,
-    /// Radau IIA, order 5, three stages, L-stable, dense output 3; stiff, down to tight tolerances.
+    /// Radau IIA of order 5, dense output of order 3, L-stable; for stiff problems, tight tolerances too.
     Radau5,
 }
 

@@ -71,8 +71,7 @@ pub trait Problem {
         Err(EvaluationError { reason: "the problem has no Taylor series".into() })
     }
 
-    /// Moves `y` onto the invariant manifold; returns the Euclidean length of the move (0 where there is
-    /// nothing to project onto).
+    /// Moves `y` onto the invariant manifold, if any; returns the Euclidean length of the move (or 0).
     ///
     /// # Errors
     /// [`EvaluationError`] where no near point of the manifold was found. The step is retried, shorter.

@@ -130,8 +130,7 @@ pub enum PictureError {
         /// Points that are not positive on a logarithmic axis.
         not_positive: usize,
     },
-    /// A range that is not finite, does not rise, is narrower than 1e-9 of its magnitude, or reaches 0 on a
-    /// logarithmic axis.
+    /// A range not finite, not rising, narrower than 1e-9 of its magnitude, or with 0 on a logarithmic axis.
     #[error(
         "axis \"{axis}\" cannot run from {low:e} to {high:e}: the ends must be finite, at most 1e300 in magnitude, rising, \
          at least 1e-9 of their magnitude apart, and positive on a logarithmic axis"

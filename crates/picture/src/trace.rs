@@ -17,8 +17,7 @@ pub(super) struct Extent {
 pub(super) struct Coarseness {
     /// Points closer than this to the line through their neighbours are left out, in pixels.
     pub(super) tolerance: f64,
-    /// Where a curve runs from left to right: of the points within a column of this width, the first, the
-    /// last, the highest and the lowest are kept.
+    /// Width of a column, of whose points the first, last, highest and lowest are kept.
     pub(super) column: f64,
 }
 

@@ -262,8 +262,7 @@ fn some_costates(recipe: &Recipe, equations: &Equations, memory: usize) -> Vec<f
 /// The tighter run's tolerance is not under this part of [`Case::floor`].
 const FLOOR: f64 = 1e-6;
 
-/// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does
-/// not allow. `plain`: see [`Settings::plain`].
+/// Solves at the sharpest of [`TOLERANCES`] that `floor` allows and the motion lasts; [`Settings::plain`].
 fn solve(
     setting: Setting,
     equations: Equations,

@@ -15,7 +15,7 @@
 //! The constraint holds in every state `(q, w)`: there is nothing to drift from and nothing to project.
 //!
 //! `S` is not written out in `q`: it is a recursion ([`QuasiVelocities`]), as are its columns, `γ` and both
-//! sides of the equation, each quantity short in those before. A chain of n bodies takes O(n), not O(n²).
+//! sides of the equation, each quantity short in those before. A chain of n bodies: O(n), not O(n²) or more.
 //!
 //! Where a [`Frame`] shows the kinetic energy as squares with constant coefficients, and equations are
 //! cheaper so, `v` are its velocities: `SᵀMS` is then free of how the body is turned, often constant.

@@ -74,8 +74,7 @@ impl Graph {
         Matrix::new(es.len(), symbols.len(), entries)
     }
 
-    /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs. Explicit time has to be among
-    /// them as (t, 1).
+    /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs; explicit time among them as (t, 1).
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -89,7 +88,7 @@ impl Graph {
         self.total_derivatives(&[e], rates)[0]
     }
 
-    /// [`Graph::total_derivative`] of several expressions. The work does not grow with the number of rates.
+    /// [`Graph::total_derivative`] of several; the work grows with what they contain, not with the rates.
     #[track_caller]
     pub fn total_derivatives(&self, es: &[Expr], rates: &[(Symbol, Expr)]) -> Vec<Expr> {
         let symbols: Vec<Symbol> = rates.iter().map(|(s, _)| *s).collect();

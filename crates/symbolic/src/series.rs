@@ -77,8 +77,7 @@ pub(crate) struct Implicit {
 /// A flat program that computes Taylor coefficients of expressions whose inputs move by these expressions.
 ///
 /// # How
-/// At order 0 every value and every partial derivative of one operation is computed by a [`Tape`]. Whatever
-/// the operation, its coefficient of order `k ≥ 1` is
+/// At order 0 a [`Tape`] computes every value and partial derivative of an operation. Its order `k ≥ 1` is
 ///
 /// ```text
 /// c_k = Σ_m w_m · (operand m)_k + Σ_p s_p Σ_{i+j=k; i,j≥1} (a_p)_i (b_p)_j · (1 or 1/k)

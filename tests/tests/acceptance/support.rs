@@ -134,8 +134,7 @@ pub fn at(motion: &mut Motion, t: f64) -> Outputs {
     motion.at(t).unwrap_or_else(|e| panic!("at t = {t}: {e}"))
 }
 
-/// Equidistant times from start to the last one that both motions reached; where a motion stopped at a
-/// singularity, a tenth of the way before it is left out.
+/// Equidistant times from the start to where both motions last, less a tenth before a singularity.
 pub fn common_times(motions: &[&Motion]) -> Vec<f64> {
     let start = motions[0].start();
     let end = |m: &&Motion| if m.is_complete() { m.end() } else { start + 0.9 * (m.end() - start) };

@@ -5,7 +5,7 @@
 //! sliding velocity to zero, within a cone so wide that it never binds. It shares no code and no idea with
 //! our derivations: it gets a ball, a surface, gravity and a start, and never a constraint.
 //!
-//! - [`Mapping`]: from a scene to a [`Setup`] of the engine, from coordinates to a ball's [`Pose`]; signs.
+//! - [`Mapping`]: from a scene to the engine's [`Setup`], from coordinates to a ball's [`Pose`], with signs.
 //! - [`Run`]: one run of the engine.
 //! - [`Study`]: runs at a ladder of steps, their distance to each formulation's motion, the [`Finding`].
 //! - [`files`]: the page `reports/engine.md`, which `cargo xtask engine` writes.

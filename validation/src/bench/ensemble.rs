@@ -115,7 +115,7 @@ impl Throughput {
     }
 }
 
-/// Sledges anywhere on the slope, any heading, to 2 m/s along the blade and 2 rad/s: exactly constrained.
+/// Sledges anywhere on the slope, any heading, ≤ 2 m/s along the blade, ≤ 2 rad/s: on the constraint exactly.
 fn starts(count: usize) -> Vec<State> {
     let mut random = Xorshift::default();
     let mut number = |from: f64, to: f64| from + (to - from) * random.unit();

@@ -1,8 +1,7 @@
 //! Stiff and extreme cases: is what comes back right, and where it is not, does it say so?
 //!
 //! A [`Question`] is one system at a point of a case in one formulation, with a [`Reference`] that does not
-//! share the failure sought. All of [`integrate::Method::ALL`] answer; [`judge()`] gives each [`Cell`] a
-//! word:
+//! share the failure sought. All of [`integrate::Method::ALL`] answer; [`judge()`] says a word per [`Cell`]:
 //!
 //! ```text
 //! accurate   complete;  error(t) ≤ max(10 e(t), b s(t)) + u(t) at 201 times t, e ≤ 10⁻³ s at the end

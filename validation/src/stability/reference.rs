@@ -49,7 +49,7 @@ const STEPS: usize = 2_000_000;
 /// Tolerances of the runs of [`Reference::Maggi`] and [`Reference::Equivalent`]: their solves round off more.
 const MAGGI: [f64; 2] = [1e-10, 1e-12];
 
-/// A reference that stops by this part earlier stops at the motion's singularity; none is compared between.
+/// A reference that stops by this part earlier stops at the same singularity; no comparison in between.
 const SAME_STOP: f64 = 1e-3;
 
 /// Length of a run that is needed only for its start.

@@ -49,8 +49,7 @@ pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &Start
     Ok(v)
 }
 
-/// Values at which unknowns without a guess start: nonlinear equations are solved from several, to see
-/// whether they have more than one solution.
+/// Starts of unknowns without a guess: several, to see whether nonlinear equations have more solutions.
 fn guesses(problem: &Problem, data: &StartData) -> Vec<f64> {
     if problem.is_linear() || !data.guess.is_empty() {
         return vec![0.0];

@@ -45,7 +45,7 @@ impl<'a> Builder<'a> {
         Builder { system, g: &system.graph, known, names: RefCell::default() }
     }
 
-    /// The frame of the squares, turned to the constraints; `None` where these contain what it has singular.
+    /// The frame of the squares, turned to the constraints; `None` if these contain a singular part of it.
     pub(super) fn build(&self, squares: Vec<Square>, jacobian: &[Sparse]) -> Option<Building> {
         let mut building = self.inverted(squares);
         let g = self.g;
