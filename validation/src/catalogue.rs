@@ -1,6 +1,7 @@
 //! The built-in scenes, and how a scene is found.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use scene::{Scene, SceneError};
 
@@ -36,7 +37,8 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
     "snakeboard" "roller-racer" "pursuit" "isokinetic" "parallel-velocities" "sledge-with-friction"
 );
 
-/// The built-in scene `name`, or else the file at that path; `overrides` replace parameters and starts.
+/// The built-in scene `name`, for `-` that on standard input, or else the file at that path; `overrides` replace
+/// parameters and starts.
 ///
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.
@@ -46,6 +48,12 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
     }
     if let Some((trailers, coordinates)) = trailer::named(name_or_path) {
         return Ok(Scene::parse_with(name_or_path, &trailer::text(trailers, coordinates), overrides)?);
+    }
+    if name_or_path == "-" {
+        // it can be read once only, and its scene may be asked for again
+        static TEXT: OnceLock<Result<String, SceneError>> = OnceLock::new();
+        let text = TEXT.get_or_init(|| Scene::read_from("stdin", std::io::stdin())).clone()?;
+        return Ok(Scene::parse_with("stdin", &text, overrides)?);
     }
     let path = Path::new(name_or_path);
     if !path.exists() {

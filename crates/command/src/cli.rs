@@ -6,20 +6,28 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 pub use ensemble::{EnsembleArguments, MOST_MEMBERS, MotionArguments, Range};
 use random::Kind;
 use scene::Scene;
+use validation::bench::MEMBERS;
 use validation::catalogue::{self, NotFound};
 use validation::stability::Stepping;
 
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
 #[derive(Parser, Debug)]
-#[command(name = "deltaq", version, max_term_width = 100)]
+#[command(name = "deltaq", version = env!("DELTAQ_VERSION"), propagate_version = true, max_term_width = 100)]
 pub struct Cli {
     /// What to do; without it the main job runs: every scene in every formulation, reports written.
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// No progress bar.
+    #[arg(long, global = true)]
+    pub quiet: bool,
+    /// Threads for work that can be divided; one a processor if left out. No result depends on it.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
     /// Options of the main job.
     #[command(flatten)]
     pub job: JobArguments,
@@ -44,9 +52,9 @@ pub struct JobArguments {
     /// Scenes to run, all if left out; other sections run only if they are named.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub scenes: Vec<String>,
-    /// No progress bar.
-    #[arg(long)]
-    pub quiet: bool,
+    /// Output format of what is said at the end.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
 }
 
 /// Sections of the main job.
@@ -74,7 +82,7 @@ pub enum Section {
 #[derive(Subcommand, Debug)]
 pub enum Command {
     /// List the built-in scenes.
-    List,
+    List(ListArguments),
     /// Show the equations of a scene, what was left out of them, and whether its constraints are integrable.
     Show(ShowArguments),
     /// Integrate a scene in one formulation.
@@ -95,12 +103,22 @@ pub enum Command {
     Stability(StabilityArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
+    /// Print completions for a shell.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print a page of the manual, for `man -l -`.
+    Man {
+        /// The command that it is about; the whole program if left out.
+        command: Option<String>,
+    },
 }
 
 /// A scene with changes.
 #[derive(Args, Debug)]
 pub struct SceneArguments {
-    /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
+    /// Built-in name (`n-trailer-5` for a car with 5 trailers), path of a scene file, or `-` for standard input.
     pub scene: String,
     #[command(flatten)]
     pub set: Overrides,
@@ -130,9 +148,6 @@ pub struct Output {
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
-    /// No progress bar.
-    #[arg(long)]
-    pub quiet: bool,
 }
 
 /// Output formats of commands with tables.
@@ -144,6 +159,14 @@ pub enum TextOrJson {
     Json,
 }
 
+/// `deltaq list`.
+#[derive(Args, Debug)]
+pub struct ListArguments {
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+}
+
 /// `deltaq show`.
 #[derive(Args, Debug)]
 pub struct ShowArguments {
@@ -152,6 +175,9 @@ pub struct ShowArguments {
     /// Formulas in LaTeX.
     #[arg(long)]
     pub latex: bool,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
 }
 
 /// `deltaq solve`.
@@ -176,12 +202,11 @@ pub struct SolveArguments {
 /// `deltaq compare`.
 #[derive(Args, Debug)]
 pub struct CompareArguments {
-    /// Built-in names or paths of scene files.
+    /// Built-in names, paths of scene files, or `-` for standard input.
     #[arg(required = true)]
     pub scenes: Vec<String>,
-    /// Folder for the pages and pictures; to the terminal if left out.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: Output,
     #[command(flatten)]
     pub set: Overrides,
     /// Tolerance of the looser of the two runs of every motion.
@@ -245,8 +270,11 @@ pub struct BenchArguments {
     #[command(flatten)]
     pub set: Overrides,
     /// Measure the throughput of ensembles of sledges instead, at this tolerance: one by one, in lanes, and over all cores.
-    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out", "format"])]
+    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out"])]
     pub ensemble: Option<f64>,
+    /// Members of each of these ensembles.
+    #[arg(long, default_value_t = MEMBERS as u16, requires = "ensemble", value_parser = clap::value_parser!(u16).range(1..))]
+    pub members: u16,
     #[command(flatten)]
     pub output: Output,
 }

@@ -1,6 +1,5 @@
 //! The main job: every scene in every formulation, reports written; and the check that committed reports are still true.
 
-use std::fmt::Write;
 use std::panic::resume_unwind;
 use std::process::Command;
 use std::thread::ScopedJoinHandle;
@@ -10,9 +9,10 @@ use anyhow::{Context, Result, bail};
 use clap::{CommandFactory, ValueEnum};
 use deltaq::{Comparison, Settings, choices, compare};
 use scene::Scene;
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use crate::cli::{Cli, JobArguments, ReportsArguments, Section};
+use crate::answer::pretty;
+use crate::cli::{Cli, JobArguments, ReportsArguments, Section, TextOrJson};
 use random::{Batch, Kind, parallel, substitution};
 use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
@@ -180,7 +180,7 @@ fn in_the_sources() -> bool {
 }
 
 /// Runs the main job and returns what to tell the user. Where it fails, nothing is written.
-pub(crate) fn run(arguments: &JobArguments) -> Result<String> {
+pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let clock = Instant::now();
     let out = match &arguments.out {
         Some(folder) => folder.clone(),
@@ -202,13 +202,13 @@ pub(crate) fn run(arguments: &JobArguments) -> Result<String> {
     let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
-    let results = Results::of(sections, &names, arguments.quiet)?;
+    let results = Results::of(sections, &names, quiet)?;
     let mut files = results.files();
     let further: Vec<(&str, &str)> = results.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
     if complete {
         let text = overview(&results.comparisons, &further);
         files.push(File { path: "README.md".into(), text });
-        let text = serde_json::to_string_pretty(&results.verdicts())? + "\n";
+        let text = pretty("verdicts", &results.verdicts());
         files.push(File { path: "verdicts.json".into(), text });
     }
     write_all(&out, &files)?;
@@ -223,21 +223,26 @@ pub(crate) fn run(arguments: &JobArguments) -> Result<String> {
         pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
         write_all(&folder, &part.files)?;
     }
-    let mut told = String::new();
-    for comparison in &results.comparisons {
+    // of what, and its first sentence
+    let scene = |comparison: &Comparison| {
         let answer = answer(comparison);
-        let first = answer.split_inclusive(". ").next().unwrap_or_default();
-        let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
-    }
-    for (line, page) in further {
-        let _ = writeln!(told, "{page:<24} {line}");
-    }
-    if let Some(part) = measured {
-        let _ = writeln!(told, "{:<24} {}", folder.join(part.page).display(), part.headline);
-    }
-    let seconds = clock.elapsed().as_secs_f64();
-    let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), out.display());
-    Ok(told)
+        (comparison.scene.name.clone(), answer.split_inclusive(". ").next().unwrap_or_default().to_owned())
+    };
+    let scenes = results.comparisons.iter().map(scene);
+    let pages = further.into_iter().map(|(line, page)| (page.to_owned(), line.to_owned()));
+    let measured = measured.map(|part| (folder.join(part.page).display().to_string(), part.headline));
+    let told: Vec<(String, String)> = scenes.chain(pages).chain(measured).collect();
+    let (count, seconds) = (files.len(), clock.elapsed().as_secs_f64());
+    Ok(match arguments.format {
+        TextOrJson::Text => {
+            let lines: String = told.iter().map(|(of, line)| format!("{of:<24} {line}\n")).collect();
+            lines + &format!("\n{count} files in {} after {seconds:.1} s\n", out.display())
+        }
+        TextOrJson::Json => {
+            let answers: Vec<Value> = told.iter().map(|(of, answer)| json!({ "of": of, "answer": answer })).collect();
+            pretty("job", &json!({ "answers": answers, "files": count, "folder": out, "seconds": seconds }))
+        }
+    })
 }
 
 /// Computes the verdicts again and compares them with the committed ones.
@@ -256,7 +261,7 @@ pub(crate) fn check(arguments: &ReportsArguments) -> Result<String> {
             bail!("{} is missing; {MEND}", path.display());
         }
     }
-    let mut new = results.verdicts();
+    let mut new: Value = serde_json::from_str(&pretty("verdicts", &results.verdicts()))?;
     // the referee is not everywhere: its verdicts are compared where there are two to compare
     if old.get("casadi").is_none() || new.get("casadi").is_none() {
         for verdicts in [&mut old, &mut new] {

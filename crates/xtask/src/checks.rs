@@ -67,6 +67,12 @@ pub(crate) fn all() -> Vec<Check> {
             dependencies::check,
         ),
         check(
+            "package",
+            "every crate can be packaged",
+            "name version and path of what it is built on in the table of the workspace (cargo package --workspace)",
+            dependencies::package,
+        ),
+        check(
             "python",
             "the Python module does what its tests say",
             "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",

@@ -12,6 +12,7 @@ use deltaq::{
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
+use serde::Serialize;
 use symbolic::Xorshift;
 
 use crate::catalogue;
@@ -25,7 +26,7 @@ pub const MEMBERS: usize = 4096;
 pub const FEW_MEMBERS: usize = 256;
 
 /// What was measured of one formulation.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Throughput {
     /// What the reader sees.
     pub label: String,
@@ -54,7 +55,7 @@ pub struct Throughput {
 }
 
 /// What something took, the least of several times.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Time {
     /// Seconds of the clock.
     pub clock: f64,
@@ -159,7 +160,7 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
     let members: Vec<EnsembleMember> =
         starts.iter().map(|state| ensemble.member_at(&start(state))).collect::<Result<_, _>>()?;
     let prepare = clock.elapsed().as_secs_f64();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = random::parallel::threads();
     let mut options = Options::with_tolerance(tolerance);
     (options.method, options.dense) = (Method::Taylor, Dense::EndOnly);
     let one = EnsembleOptions { threads: 1, estimate: false };

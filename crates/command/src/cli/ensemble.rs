@@ -52,9 +52,6 @@ pub struct EnsembleArguments {
     /// Equidistant values of one of these, both ends included; several are combined with each other and with the lines of the file.
     #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range, required_unless_present = "members")]
     pub vary: Vec<Range>,
-    /// Number of threads; one a processor if left out. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
     /// File to write; to the terminal if left out.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
