@@ -34,7 +34,7 @@ impl Answer {
 }
 
 impl Output {
-    /// Writes the files to the folder that was asked for, if one was; then what is to be printed, as JSON of this kind or as text.
+    /// Writes the files to the folder asked for, if any; then prints JSON of this kind, or text.
     pub(crate) fn answer(
         &self,
         kind: &str,
@@ -52,7 +52,7 @@ impl Output {
     }
 }
 
-/// An object as JSON for readers, with an end of line. At its head stands which file of `docs/schemas` describes it, and the version of that.
+/// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
 pub(crate) fn pretty(kind: &str, object: &Value) -> String {
     let text = format!("{object:#}\n");
     text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/1\","), 1)

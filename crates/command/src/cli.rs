@@ -15,7 +15,7 @@ use validation::bench::MEMBERS;
 use validation::catalogue::{self, NotFound};
 use validation::stability::Stepping;
 
-/// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
+/// What may a virtual displacement be? One system with velocity constraints, several formulations of motion.
 #[derive(Parser, Debug)]
 #[command(name = "deltaq", version = env!("DELTAQ_VERSION"), propagate_version = true, max_term_width = 100)]
 pub struct Cli {
@@ -39,8 +39,8 @@ pub struct JobArguments {
     /// Folder that the reports are written to; `reports` of the project's sources if left out.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is the committed one, `target/measured`
-    /// that of the sources if left out.
+    /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is
+    /// the committed one, `target/measured` that of the sources if left out.
     #[arg(long, value_name = "DIR")]
     pub measured: Option<PathBuf>,
     /// Sections to run, all if left out. The overview is written only when all of them run.
@@ -62,7 +62,7 @@ pub struct JobArguments {
 pub enum Section {
     /// Every built-in scene in every formulation.
     Scenes,
-    /// The scenes and 50 random systems once more by CasADi and SymPy, which derive everything again; needs Python 3.11 and a package index.
+    /// Scenes and 50 random systems derived again by CasADi and SymPy; needs Python 3.11, a package index.
     Casadi,
     /// The claims T1 to T14 on 1,000 random systems.
     Random,
@@ -91,7 +91,7 @@ pub enum Command {
     Ensemble(EnsembleArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
-    /// Prove that no multipliers make the vakonomic motion of a scene Chetaev's, in a certificate that others can check.
+    /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
     /// Put the claims T1 to T14 to the test on random systems.
     Random(RandomArguments),
@@ -99,7 +99,7 @@ pub enum Command {
     Bench(BenchArguments),
     /// Measure how cost grows with the length of a train of trailers.
     Scaling(ScalingArguments),
-    /// Put every method to the test on stiff and extreme cases: is what comes back right, and where it is not, does it say so?
+    /// Put every method to stiff and extreme cases: is what comes back right, and if not, does it say so?
     Stability(StabilityArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
@@ -118,7 +118,7 @@ pub enum Command {
 /// A scene with changes.
 #[derive(Args, Debug)]
 pub struct SceneArguments {
-    /// Built-in name (`n-trailer-5` for a car with 5 trailers), path of a scene file, or `-` for standard input.
+    /// Built-in name (`n-trailer-5` for a car with 5 trailers), scene file path, or `-` for standard input.
     pub scene: String,
     #[command(flatten)]
     pub set: Overrides,
@@ -185,13 +185,13 @@ pub struct ShowArguments {
 pub struct SolveArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// Time-stepping method: Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of order 8 (dop853) or 5 (tsit45);
-    /// for stiff systems implicit Runge–Kutta of order 5 (radau5), 4 (esdirk34) or 2 (tr-bdf2) and backward differentiation formulas (bdf);
-    /// leapfrog, a discrete variational principle in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the
-    /// symplectic form.
+    /// Time-stepping method: Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of
+    /// order 8 (dop853) or 5 (tsit45); stiff: implicit Runge–Kutta of order 5 (radau5), 4 (esdirk34) or 2
+    /// (tr-bdf2) and backward differentiation formulas (bdf); leapfrog, a discrete variational principle in
+    /// equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
     #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "dop853")]
     pub method: Stepping,
-    /// Longest step of `--method leapfrog`. A second run has steps twice as long; the difference is the error estimate.
+    /// Longest step of `--method leapfrog`. A second run in steps twice as long gives the error estimate.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
@@ -269,7 +269,7 @@ pub struct BenchArguments {
     pub seconds: f64,
     #[command(flatten)]
     pub set: Overrides,
-    /// Measure the throughput of ensembles of sledges instead, at this tolerance: one by one, in lanes, and over all cores.
+    /// Measure throughput of ensembles of sledges instead, at this tolerance: alone, in lanes, on all cores.
     #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out"])]
     pub ensemble: Option<f64>,
     /// Members of each of these ensembles.
@@ -285,7 +285,8 @@ pub struct ScalingArguments {
     /// Longest train.
     #[arg(long, default_value_t = 320)]
     pub longest: usize,
-    /// Seconds for one derivation or one solve: after a derivation that takes longer, longer trains are left out, and solves that would.
+    /// Seconds for one derivation or one solve: after a derivation that takes longer, longer trains are left
+    /// out, and solves that would.
     #[arg(long, default_value_t = 2.0)]
     pub seconds: f64,
     /// Repeats of everything that is timed; the shortest time counts.

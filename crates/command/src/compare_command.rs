@@ -10,7 +10,7 @@ use crate::solve_command::check_tolerance;
 use validation::catalogue;
 use validation::report::verdicts;
 
-/// Runs the command: returns the pages or the verdicts, or writes pages and pictures to a folder and says so; on bad input nothing is written.
+/// Returns pages or verdicts, or writes pages and pictures to a folder and says so; on bad input nothing.
 pub(crate) fn run(arguments: &CompareArguments) -> Result<String> {
     check_tolerance(arguments.tolerance)?;
     let settings = Settings { tolerance: arguments.tolerance, ..protocol() };

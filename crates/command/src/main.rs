@@ -1,6 +1,6 @@
-//! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` ends with 0 only where its trajectory can be
-//! trusted, and with 3 where the integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members;
-//! `prove` ends with 3 where there is no certificate.
+//! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
+//! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
+//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate.
 
 mod answer;
 mod bench_command;

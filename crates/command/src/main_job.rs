@@ -1,4 +1,4 @@
-//! The main job: every scene in every formulation, reports written; and the check that committed reports are still true.
+//! The main job: every scene in every formulation, reports; and the check that committed reports still hold.
 
 use std::panic::resume_unwind;
 use std::process::Command;
@@ -74,7 +74,7 @@ struct Results {
 
 impl Results {
     fn of(sections: &[Section], names: &[&str], quiet: bool) -> Result<Results> {
-        // the referee is another process for most of its time: it works beside what follows, up to where times are measured
+        // the referee is mostly another process: it works beside what follows, up to where times are measured
         std::thread::scope(|scope| {
             let asked = sections.contains(&Section::Casadi);
             let referee = asked.then(|| scope.spawn(|| casadi_job::section(names)));

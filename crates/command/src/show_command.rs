@@ -27,7 +27,7 @@ pub(crate) fn list(format: TextOrJson) -> Result<String> {
     })
 }
 
-/// Equations of every formulation and its further forms, what was left out, and whether the constraints are integrable.
+/// Equations of every formulation and form, what was left out, and whether constraints are integrable.
 pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };

@@ -179,7 +179,7 @@ impl<'a> Transport<'a> {
         }
     }
 
-    /// The size of each state by its start and its rate there, where that is under 1; at least a thousandth: round-off is no size.
+    /// Size of each state by its start and its rate there, if under 1; at least a thousandth, over round-off.
     fn sizes(&mut self, start: &Start, end: f64) -> Result<Vec<f64>, DecisionError> {
         let mut rates = vec![0.0; start.y.len()];
         self.rates(start.t, &start.y, &mut rates).map_err(|e| DecisionError::Curve { reason: e.reason })?;

@@ -1,6 +1,6 @@
 //! Fairness: the free constants with which one motion comes closest to another.
 //!
-//! "Different" has to mean different for *every* choice of the free constants (T9), so a comparison also searches the best one.
+//! "Different" means different for *every* choice of free constants (T9), so a comparison searches the best.
 
 use equations::Equations;
 use integrate::{BoundaryError, ShootOptions, fit};
@@ -20,14 +20,14 @@ const SEARCH_ITERATIONS: usize = 30;
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
 const CLOSE: f64 = 1e-4;
 
-/// Integrates `equations` with the free constants for which the coordinates come closest to those of `target`:
+/// Integrates `equations` with the free constants whose coordinates come closest to those of `target`:
 ///
 /// ```text
 /// minimize Σ_k Δqᵀ M Δq ,   Δq = q(t_k; C) − q_target(t_k) ,   over C .
 /// ```
 ///
-/// Searches at a coarse tolerance from that of `guesses` which is closest, and refines what comes close: then it may be exact.
-/// `None` where there is no free constant, or no guess leads to a motion.
+/// Searches at a coarse tolerance from that of `guesses` which is closest, and refines what comes close: then
+/// it may be exact. `None` where there is no free constant, or no guess leads to a motion.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be started or `target` cannot be read off.

@@ -11,7 +11,7 @@ use crate::{Motion, SolveError};
 pub struct Growth {
     /// Slope of log gap over log t, extrapolated to the start.
     pub exponent: f64,
-    /// What the exponent changes by when the fit has one term less: a measure of how far the range is from the start.
+    /// The exponent's change when the fit has one term less: how far the range is from the start.
     pub uncertainty: f64,
     /// `Δq / (t − t₀)^k` extrapolated to the start, `k` the rounded exponent; length n.
     pub coefficient: Vec<f64>,
@@ -23,10 +23,10 @@ pub struct Growth {
     pub to: f64,
 }
 
-/// The leading term of the difference of two motions with the same start: `coefficient · (t − t₀)^exponent` (T5).
+/// Leading term of the difference of two motions with one start: `coefficient · (t − t₀)^exponent` (T5).
 ///
-/// `y_k / ((k+1)(k+2))` where the difference of their accelerations along one of them starts with `y_k (t − t₀)^k`. From Chetaev's motion to
-/// the vakonomic one, for `f` linear in `v`: `½ Π C μ₀ t²`, and `−⅙ Π C λ₀ t³` for `μ₀ = 0`.
+/// `y_k / ((k+1)(k+2))` where the difference of their accelerations along one starts with `y_k (t − t₀)^k`.
+/// Chetaev to vakonomic, `f` linear in `v`: `½ Π C μ₀ t²`, and `−⅙ Π C λ₀ t³` for `μ₀ = 0`.
 #[derive(Clone, Debug)]
 pub struct LeadingTerm {
     /// `k + 2`.
@@ -42,7 +42,7 @@ pub struct LeadingTerm {
 }
 
 impl Growth {
-    /// `|measured − predicted| / |predicted|` of the leading coefficient, Euclidean norm over the coordinates.
+    /// `|measured − predicted| / |predicted|` of leading coefficients, Euclidean over the coordinates.
     pub fn deviation_from(&self, predicted: &LeadingTerm) -> f64 {
         let norm = |x: &[f64]| x.iter().map(|a| a * a).sum::<f64>().sqrt();
         norm(&subtract(&self.coefficient, &predicted.coefficient)) / norm(&predicted.coefficient)
@@ -59,7 +59,7 @@ const FIT_POINTS: usize = 24;
 /// The gap at the beginning of the fit range has to be this many times its certainty limit.
 const FIT_CERTAINTY: f64 = 300.0;
 
-/// Fits the growth of `first − second` near the start. `None` where the gap does not stand out from the errors there.
+/// Fits the growth of `first − second` near the start. `None` if the gap is not above errors there.
 ///
 /// # Errors
 /// [`SolveError`] where a motion cannot be read off.

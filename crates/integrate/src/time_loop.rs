@@ -11,8 +11,8 @@ use crate::system::{Failure, System, check_finite};
 /// So many times in a row is a step that cannot be evaluated halved.
 pub(crate) const HALVINGS: usize = 60;
 
-/// A run creeps where so many steps move the time by less than this part of what it has come: the rest of it would take
-/// more than a thousand million.
+/// A run creeps where so many steps move the time by less than this part of what it has come: the rest of it
+/// would take more than a thousand million.
 const CREEPING_STEPS: usize = 3_000;
 const CREEPING: f64 = 1e-6;
 

@@ -1,14 +1,14 @@
 //! Singular values by one-sided Jacobi rotations.
 //!
-//! Our own, because nalgebra's (0.34) stops too early where a matrix has entries of very different sizes: on the one in the
-//! test below its solution is off by 4e-10. Rotations find every singular value to its own last digits.
+//! Ours, because nalgebra's (0.34) stops too early on entries of very different sizes: in the test below its
+//! solution is off by 4e-10. Rotations find every singular value to its own last digits.
 
 use nalgebra::{DMatrix, DVector};
 
 /// Sweeps over all pairs of columns; six to ten are usual, since each squares what is left.
 const SWEEPS: usize = 60;
 
-/// `A = U diag(σ) V` with σ in falling order: `U` is m×k, `V` k×n and k = min(m, n). Columns of `U` that belong to σ = 0 are zero.
+/// `A = U diag(σ) V`, σ falling: `U` is m×k, `V` k×n, k = min(m, n). Columns of `U` with σ = 0 are zero.
 pub struct SingularValues {
     /// `U`, left singular vectors in its columns.
     pub left: DMatrix<f64>,

@@ -57,8 +57,8 @@ impl Graph {
         bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
     }
 
-    /// Every distinct base of an even power under a root in `es`, not a number: `√(a²) = |a|` has a kink where `a` is
-    /// zero, and its radicand does not change its sign there.
+    /// Every distinct base of an even power under a root in `es`, not a number: `√(a²) = |a|` has a kink
+    /// where `a` is zero, and its radicand does not change its sign there.
     ///
     /// ```
     /// let g = symbolic::Graph::new();

@@ -17,9 +17,9 @@
 //! ```
 //!
 //! Written out, `d/dt L_v − L_q = (f_qᵀ − Ȧᵀ) μ − Aᵀ μ̇`: where Chetaev's `Aᵀ λ` stood, the *curvature*
-//! `f_qᵀ − Ȧᵀ` of the constraint enters too, and `−μ̇` corresponds to `λ`. The curvature vanishes where `f` is
-//! a total time derivative; for all integrable constraints the two formulations agree. `μᵢ` has the unit of
-//! action over that of `∫ fᵢ dt`.
+//! `f_qᵀ − Ȧᵀ` of the constraint enters too, and `−μ̇` corresponds to `λ`. The curvature vanishes where `f`
+//! is a total time derivative; for all integrable constraints the two formulations agree. `μᵢ` has the unit
+//! of action over that of `∫ fᵢ dt`.
 //!
 //! **One instant, multiplier form** ([`derive()`]). In the state `(q, v, μ)`, linear in `(a, μ̇)`:
 //!

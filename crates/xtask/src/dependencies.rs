@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use crate::checks::{Outcome, cargo, outside, succeed, target};
 use crate::python;
 
-/// Packages that are compiled at most, ours included: for the library, and for the program that `cargo run` runs.
+/// Packages compiled at most, ours included: for the library, and for the program of `cargo run`.
 const MOST: [(&str, usize); 2] = [("deltaq", 70), ("deltaq-cli", 165)];
 
 /// cargo-deny on the list of advisories that is committed, so that it asks no host and always has one.
@@ -23,7 +23,7 @@ pub(crate) fn check() -> Result<Outcome> {
     Ok(Outcome(format!("{}; {}", String::from_utf8_lossy(&laid.stdout).trim_end(), counts.join(", "))))
 }
 
-/// What a registry would be given can be put together: each dependency has a version, and asks for nothing that is not there.
+/// A registry's packages can be put together: every dependency has a version and asks for what there is.
 pub(crate) fn package() -> Result<Outcome> {
     succeed(cargo().args(["package", "--workspace", "--no-verify", "--allow-dirty", "--offline", "--quiet"]))
 }

@@ -1,8 +1,8 @@
 //! clippy and rustdoc on our own crates, beside dependencies as the build left them.
 //!
-//! `cargo clippy` and `cargo doc` check every dependency once more, which is nine tenths of their work. Here cargo builds
-//! the workspace with this program in the place of rustc for our own crates (`RUSTC_WORKSPACE_WRAPPER`). It hands each call
-//! to clippy-driver, asks for metadata in the place of code, and has rustdoc read what is no test.
+//! `cargo clippy` and `cargo doc` check every dependency once more, nine tenths of their work. Here cargo
+//! builds the workspace with this program as rustc for our own crates (`RUSTC_WORKSPACE_WRAPPER`): each call
+//! goes to clippy-driver and asks for metadata, not code; rustdoc reads what is no test.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Methods of integration against a closed form, exact Jacobians against differences, and the branch of an implicit form.
+//! Integration methods against a closed form, exact Jacobians against differences, an implicit form's branch.
 
 use deltaq::{Motion, Settings};
 use integrate::Method;
@@ -79,7 +79,7 @@ fn implicit_methods_use_those_jacobians() {
     }
 }
 
-/// Found by random systems (seed 2, index 8808): `∂²𝓛/∂v²` is nearly singular in `q4'`, the equations for `(v, μ)` have another root close by.
+/// Random system (seed 2, index 8808): `∂²𝓛/∂v²` nearly singular in `q4'`, another root of `(v, μ)` close by.
 const NEAR_A_FOLD: &str = include_str!("../scenes/near-a-fold.toml");
 
 #[test]
