@@ -50,6 +50,7 @@ pub const FORMULATION: Formulation = Formulation {
     title: "Chetaev",
     needs_removal: false,
     starts_multipliers: false,
+    takes_forces: true,
     parameter: None,
     derive,
 };

@@ -167,10 +167,9 @@ impl<'a> Pairing<'a> {
 /// A choice's equations, nothing left out, forces apart if its principle has none; whether they are in.
 fn as_derived(system: &System, choice: &Choice) -> Result<(Equations, bool), SolveError> {
     let entry = formulation(choice.formulation).unwrap_or(&chetaev::FORMULATION);
-    let carries_forces = [chetaev::FORMULATION.name, kappa::FORMULATION.name].contains(&entry.name);
-    let forces = if carries_forces { system.forces.clone() } else { vec![system.graph.zero(); system.dimension()] };
+    let forces = if entry.takes_forces { system.forces.clone() } else { vec![system.graph.zero(); system.dimension()] };
     let derivation = Derivation { removal: choice.removal.as_ref(), start: None, all_costates: true };
-    Ok(((entry.derive)(&System { forces, ..system.clone() }, &derivation)?, carries_forces))
+    Ok(((entry.derive)(&System { forces, ..system.clone() }, &derivation)?, entry.takes_forces))
 }
 
 /// Decides whether Chetaev's motion of a scene up to `end` is vakonomic; `None` where there is no constraint.

@@ -80,6 +80,8 @@ pub struct Formulation {
     pub needs_removal: bool,
     /// Whether its free constants are multipliers `μ₀` at the start, one a constraint.
     pub starts_multipliers: bool,
+    /// Whether generalized forces `Q` stand in its equations; if not, its derivation refuses them.
+    pub takes_forces: bool,
     /// The parameter needed beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
     pub parameter: Option<&'static str>,
     /// The derivation.

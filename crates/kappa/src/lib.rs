@@ -42,6 +42,7 @@ pub const FORMULATION: Formulation = Formulation {
     title: "between, κ",
     needs_removal: false,
     starts_multipliers: true,
+    takes_forces: true,
     parameter: Some("kappa"),
     derive,
 };

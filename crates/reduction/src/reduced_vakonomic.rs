@@ -52,6 +52,7 @@ pub const REDUCED_VAKONOMIC: Formulation = Formulation {
     title: "vakonomic, quasi-velocities",
     needs_removal: false,
     starts_multipliers: true,
+    takes_forces: false,
     parameter: None,
     derive: derive_vakonomic,
 };

@@ -70,6 +70,7 @@ pub const FORMULATION: Formulation = Formulation {
     title: "removed constraint",
     needs_removal: true,
     starts_multipliers: false,
+    takes_forces: false,
     parameter: None,
     derive,
 };

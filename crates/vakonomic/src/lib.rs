@@ -61,6 +61,7 @@ pub const FORMULATION: Formulation = Formulation {
     title: "vakonomic",
     needs_removal: false,
     starts_multipliers: true,
+    takes_forces: false,
     parameter: None,
     derive,
 };
@@ -71,6 +72,7 @@ pub const COSTATE_FORM: Formulation = Formulation {
     title: "vakonomic, costate form",
     needs_removal: false,
     starts_multipliers: true,
+    takes_forces: false,
     parameter: None,
     derive: derive_costate_form,
 };
