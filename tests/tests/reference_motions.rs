@@ -45,13 +45,13 @@ fn known(name: &str, label: &str, end: f64) -> Reference {
     println!(
         "{name}, {label}, {end} s: reference error {:.1e} (methods {:.1e}; tolerances: Taylor {:.1e}, extrapolation {:.1e}); f {:.1e}; {:.2} s",
         found.error(),
-        a.methods.positions,
-        a.taylor.positions,
-        a.extrapolation.positions,
+        a.methods,
+        a.taylor,
+        a.extrapolation,
         found.constraint_residual,
         clock.elapsed().as_secs_f64()
     );
-    assert!(found.error() <= 1e-20 && a.methods.positions <= 1e-20 && a.taylor.positions <= 1e-20, "{a:?}");
+    assert!(found.error() <= 1e-20 && a.methods <= 1e-20 && a.taylor <= 1e-20, "{a:?}");
     // no run is projected onto the constraint: staying on it is a result
     assert!(found.constraint_residual < 1e-24, "{:.1e}", found.constraint_residual);
     found

@@ -11,8 +11,8 @@ use crate::trailer;
 pub const SCENES: &[(&str, &str)] = &[
     ("sledge", include_str!("../scenes/sledge.toml")),
     ("ball-in-cone", include_str!("../scenes/ball-in-cone.toml")),
-    ("ball-in-cone-as-printed", include_str!("../scenes/ball-in-cone-as-printed.toml")),
     ("three-cylinders", include_str!("../scenes/three-cylinders.toml")),
+    ("ball-in-cone-as-printed", include_str!("../scenes/ball-in-cone-as-printed.toml")),
     ("particle", include_str!("../scenes/particle.toml")),
     ("heisenberg", include_str!("../scenes/heisenberg.toml")),
     ("sleigh", include_str!("../scenes/sleigh.toml")),

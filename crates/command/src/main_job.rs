@@ -11,7 +11,7 @@ use deltaq::{Comparison, Settings, choices, compare};
 use scene::Scene;
 use serde_json::{Value, json};
 
-use crate::answer::pretty;
+use crate::answer::{Answer, pretty};
 use crate::cli::{Cli, JobArguments, ReportsArguments, Section, TextOrJson};
 use random::{Batch, Kind, parallel, substitution};
 use validation::bench::{self, Bench, Effort};
@@ -182,6 +182,8 @@ fn in_the_sources() -> bool {
 /// Runs the main job and returns what to tell the user. Where it fails, nothing is written.
 pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let clock = Instant::now();
+    // an answer for machines is one object
+    let quiet = quiet || arguments.format == TextOrJson::Json;
     let out = match &arguments.out {
         Some(folder) => folder.clone(),
         None if in_the_sources() => "reports".into(),
@@ -223,23 +225,20 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
         pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
         write_all(&folder, &part.files)?;
     }
-    // of what, and its first sentence
-    let scene = |comparison: &Comparison| {
-        let answer = answer(comparison);
-        (comparison.scene.name.clone(), answer.split_inclusive(". ").next().unwrap_or_default().to_owned())
-    };
-    let scenes = results.comparisons.iter().map(scene);
+    let untold = if quiet { &results.comparisons[..] } else { &[] };
+    let scenes = untold.iter().map(first_sentence);
     let pages = further.into_iter().map(|(line, page)| (page.to_owned(), line.to_owned()));
     let measured = measured.map(|part| (folder.join(part.page).display().to_string(), part.headline));
-    let told: Vec<(String, String)> = scenes.chain(pages).chain(measured).collect();
+    let answers: Vec<(String, String)> = scenes.chain(pages).chain(measured).collect();
     let (count, seconds) = (files.len(), clock.elapsed().as_secs_f64());
     Ok(match arguments.format {
         TextOrJson::Text => {
-            let lines: String = told.iter().map(|(of, line)| format!("{of:<24} {line}\n")).collect();
+            let lines: String = answers.iter().map(|(of, line)| told(of, line)).collect();
             lines + &format!("\n{count} files in {} after {seconds:.1} s\n", out.display())
         }
         TextOrJson::Json => {
-            let answers: Vec<Value> = told.iter().map(|(of, answer)| json!({ "of": of, "answer": answer })).collect();
+            let answers: Vec<Value> =
+                answers.iter().map(|(of, answer)| json!({ "of": of, "answer": answer })).collect();
             pretty("job", &json!({ "answers": answers, "files": count, "folder": out, "seconds": seconds }))
         }
     })
@@ -281,10 +280,32 @@ pub(crate) fn protocol() -> Settings {
     Settings { max_steps: MAX_STEPS, ..Settings::default() }
 }
 
-/// All scenes, over all processors, in the order of `names`.
+/// Of what, and the first sentence of its answer.
+fn first_sentence(comparison: &Comparison) -> (String, String) {
+    let answer = answer(comparison);
+    (comparison.scene.name.clone(), answer.split_inclusive(". ").next().unwrap_or_default().to_owned())
+}
+
+fn told(of: &str, line: &str) -> String {
+    format!("{of:<24} {line}\n")
+}
+
+/// All scenes, over all processors, in the order of `names`; what is found is told at once, unless `quiet`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let settings = protocol();
-    parallel::try_map(names, quiet, ToString::to_string, |name| scene_files(catalogue::find(name, &[])?, &settings))
+    let bar = parallel::progress(names.len(), quiet);
+    let reports = parallel::map(names, |name| {
+        bar.set_message(name.to_string());
+        let report = scene_files(catalogue::find(name, &[])?, &settings)?;
+        if !quiet {
+            let (of, line) = first_sentence(&report.comparison);
+            bar.suspend(|| Answer::from(told(&of, &line)).print())?;
+        }
+        bar.inc(1);
+        Ok(report)
+    });
+    bar.finish_and_clear();
+    reports.into_iter().collect()
 }
 
 /// References of all scenes over all processors, then measurements one after the other.

@@ -49,8 +49,10 @@ pub trait Problem {
     /// Writes `∂F/∂y(t, y)`, row-major: `jacobian[i * n + j] = ∂F_i/∂y_j`. Only implicit methods ask for it.
     ///
     /// # Errors
-    /// [`EvaluationError`] where it is not defined.
-    fn jacobian(&mut self, t: f64, y: &[f64], jacobian: &mut [f64]) -> Result<(), EvaluationError>;
+    /// [`EvaluationError`] where it is not defined, and always where a problem does not say what it is.
+    fn jacobian(&mut self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> Result<(), EvaluationError> {
+        Err(EvaluationError { reason: "the problem has no Jacobian".into() })
+    }
 
     /// Whether [`taylor`](Problem::taylor) is there, which [`crate::Method::Taylor`] asks for.
     fn has_taylor(&self) -> bool {

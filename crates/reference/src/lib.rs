@@ -23,6 +23,5 @@ pub use double_double::DoubleDouble;
 pub use error::ReferenceError;
 pub use instant::Point;
 pub use mechanics::linear::Entry;
-pub use metric::Distance;
 pub use reference::{Agreement, Question, Reference, reference, reference_in};
 pub use wide::Wide;

@@ -6,27 +6,6 @@ use symbolic::{CompileError, Evaluator, Symbol};
 use crate::Wide;
 use crate::instant::Point;
 
-/// How far two runs are apart at one time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Distance {
-    /// `√|Δqᵀ M Δq|`, the kinetic metric.
-    pub positions: f64,
-    /// `√|Δq̇ᵀ M Δq̇|`.
-    pub velocities: f64,
-    /// Largest difference of a multiplier or costate.
-    pub multipliers: f64,
-}
-
-impl Distance {
-    pub(crate) fn max(self, other: Distance) -> Distance {
-        Distance {
-            positions: self.positions.max(other.positions),
-            velocities: self.velocities.max(other.velocities),
-            multipliers: self.multipliers.max(other.multipliers),
-        }
-    }
-}
-
 /// `M = ∂²L/∂v²` and `f` at one point of a motion.
 pub(crate) struct Metric<T> {
     program: Evaluator<T>,
@@ -58,22 +37,11 @@ impl<T: Wide> Metric<T> {
         self.program.values()[self.dimension * self.dimension..].iter().fold(0.0, |worst: f64, f| worst.max(f.size()))
     }
 
-    /// `√|Δᵀ M Δ|` with `Δ = a − b`.
-    pub(crate) fn length(&self, a: &[T], b: &[T]) -> f64 {
-        let difference: Vec<f64> = a.iter().zip(b).map(|(&a, &b)| (a - b).to_f64()).collect();
+    /// `√|Δqᵀ M Δq|` between two points.
+    pub(crate) fn distance(&self, a: &Point<T>, b: &Point<T>) -> f64 {
+        let pairs = a.coordinates.iter().zip(&b.coordinates);
+        let difference: Vec<f64> = pairs.map(|(&a, &b)| (a - b).to_f64()).collect();
         length(&self.mass(), &difference)
-    }
-
-    pub(crate) fn distance(&self, a: &Point<T>, b: &Point<T>) -> Distance {
-        Distance {
-            positions: self.length(&a.coordinates, &b.coordinates),
-            velocities: self.length(&a.velocities, &b.velocities),
-            multipliers: a
-                .multipliers
-                .iter()
-                .zip(&b.multipliers)
-                .fold(0.0, |worst, (&a, &b)| worst.max((a - b).size())),
-        }
     }
 }
 

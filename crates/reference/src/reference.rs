@@ -4,7 +4,7 @@ use equations::Equations;
 use mechanics::{State, System};
 
 use crate::instant::{Instant, Point};
-use crate::metric::{Distance, Metric};
+use crate::metric::Metric;
 use crate::start::{Start, start};
 use crate::taylor::Taylor;
 use crate::{DoubleDouble, ReferenceError, Wide, extrapolation};
@@ -22,17 +22,15 @@ pub struct Question<'a> {
     pub constants: &'a [f64],
 }
 
-/// Largest distances between the runs behind a reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Largest distances between the runs behind a reference, `√|Δqᵀ M Δq|`: the kinetic metric.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Agreement {
     /// Extrapolation and Taylor series, both at the tighter tolerance.
-    pub methods: Distance,
+    pub methods: f64,
     /// Extrapolation at two tolerances.
-    pub extrapolation: Distance,
+    pub extrapolation: f64,
     /// Taylor series at two tolerances.
-    pub taylor: Distance,
-    /// The tighter tolerance; the other one is 100 times that.
-    pub tolerance: f64,
+    pub taylor: f64,
 }
 
 /// A motion at some times, with a known error.
@@ -42,21 +40,20 @@ pub struct Reference<T = DoubleDouble> {
     pub times: Vec<f64>,
     /// The motion there, by the Taylor series at the tighter tolerance.
     pub points: Vec<Point<T>>,
-    /// Its doubt at each time: the distance from the other method or the looser tolerance, the larger one.
-    pub errors: Vec<Distance>,
+    /// Its doubt at each time, in the kinetic metric: the distance from the other method or the looser tolerance,
+    /// the larger one.
+    pub errors: Vec<f64>,
     /// The largest distances behind that.
     pub agreement: Agreement,
     /// Largest `|fᵢ|` at the points: no run is projected onto the constraint.
     pub constraint_residual: f64,
-    /// Largest distance of a point from the first one, kinetic metric.
-    pub scale: f64,
     metric: Vec<Vec<f64>>,
 }
 
 impl<T: Wide> Reference<T> {
-    /// Largest of [`Reference::errors`] in the positions, kinetic metric.
+    /// Largest of [`Reference::errors`].
     pub fn error(&self) -> f64 {
-        self.errors.iter().fold(0.0, |worst, e| worst.max(e.positions))
+        self.errors.iter().copied().fold(0.0, f64::max)
     }
 
     /// `√|Δqᵀ M Δq|` between the coordinates `q` and the reference at the time of index `i`, with `M` there:
@@ -157,7 +154,7 @@ pub fn reference_in<T: Wide>(
     for _ in 0..TRIES {
         tolerance = (tolerance * next).max(tightest);
         let tighter = runs.pair(tolerance)?;
-        let found = runs.compared(&looser, &tighter, tolerance)?;
+        let found = runs.compared(&looser, &tighter)?;
         if found.error() <= accuracy {
             return Ok(found);
         }
@@ -227,21 +224,14 @@ impl<'a, T: Wide> Runs<'a, T> {
     }
 
     /// The tighter pair of runs, compared with each other and with the looser pair.
-    fn compared(&self, looser: &Pair<T>, tighter: &Pair<T>, tolerance: f64) -> Result<Reference<T>, ReferenceError> {
+    fn compared(&self, looser: &Pair<T>, tighter: &Pair<T>) -> Result<Reference<T>, ReferenceError> {
         let points = &tighter.taylor;
         let mut metric: Metric<T> = Metric::new(self.question.system)?;
-        let mut agreement = Agreement {
-            methods: Distance::default(),
-            extrapolation: Distance::default(),
-            taylor: Distance::default(),
-            tolerance,
-        };
-        let (mut errors, mut masses) = (Vec::new(), Vec::new());
-        let (mut constraint_residual, mut scale) = (0.0_f64, 0.0_f64);
+        let mut agreement = Agreement::default();
+        let (mut errors, mut masses, mut constraint_residual) = (Vec::new(), Vec::new(), 0.0_f64);
         for (i, point) in points.iter().enumerate() {
             metric.load(T::from_f64(self.times[i]), point);
             constraint_residual = constraint_residual.max(metric.constraint_residual());
-            scale = scale.max(metric.length(&point.coordinates, &points[0].coordinates));
             let methods = metric.distance(point, &tighter.extrapolation[i]);
             let taylor = metric.distance(point, &looser.taylor[i]);
             let extrapolation = metric.distance(&tighter.extrapolation[i], &looser.extrapolation[i]);
@@ -257,7 +247,6 @@ impl<'a, T: Wide> Runs<'a, T> {
             errors,
             agreement,
             constraint_residual,
-            scale,
             metric: masses,
         })
     }

@@ -158,9 +158,6 @@ impl Problem for Law {
         rates.copy_from_slice(self.evaluator.evaluate(y));
         Ok(())
     }
-    fn jacobian(&mut self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> Result<(), EvaluationError> {
-        Err(EvaluationError { reason: "explicit methods only".into() })
-    }
 }
 
 /// The same system as a scene.

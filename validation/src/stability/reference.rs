@@ -152,7 +152,4 @@ impl Problem for Field<'_> {
         (self.rates)(t, y, rates);
         Ok(())
     }
-    fn jacobian(&mut self, t: f64, _: &[f64], _: &mut [f64]) -> Result<(), EvaluationError> {
-        Err(EvaluationError { reason: format!("a reference has no Jacobian, asked for at t = {t}") })
-    }
 }

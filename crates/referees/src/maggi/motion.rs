@@ -70,8 +70,4 @@ impl Problem for Run<'_> {
         let done = self.maggi.write_accelerations(t, q, v, v_rates);
         done.map_err(|error| EvaluationError { reason: error.to_string() })
     }
-
-    fn jacobian(&mut self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> Result<(), EvaluationError> {
-        Err(EvaluationError { reason: "the referee has no Jacobian of its rates".into() })
-    }
 }
