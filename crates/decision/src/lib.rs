@@ -28,16 +28,19 @@
 //! (integrable `f`: h; a contact constraint: 0; a disc that rolls straight: 1).
 //!
 //! **Decided in floating point** ([`decide`]). The rows `√w √M [O | y₀]` at 256 Gauss nodes or more go into one triangular matrix: the least of `∫ |y|²_M dt`
-//! is `ρ²`. The same from a looser run gives the noise: `‖difference of the rows‖ √(1 + |c*|²)`. `ρ` over ten times the noise: *not contained*. Otherwise
-//! *contained*, of the dimension of the directions in which the rows are noise; *undecided* where the noise is over 1e-6 of the
-//! terms that cancel in `y` and of the curve's own acceleration. The element of least norm is the first guess for whoever fits.
+//! is `ρ²`. The same from a looser run gives the noise, `‖difference of the rows‖ √(1 + |c*|²)`, and at least 1e-14 of all that was added up. `ρ` over ten
+//! times the noise: *not contained*. Otherwise *contained*, of the dimension of the directions in which the rows are noise; *undecided* where the noise is
+//! over 1e-6 of the curve's own acceleration, unless that is round-off of what balances at rest. This is judged up to ten times of the run: what no
+//! constants can do up to one of these they cannot do at all, and otherwise the longest time that is not too loud counts ([`Decision::until`]).
+//! The element of least norm is the first guess for whoever fits.
 //!
 //! **Proved over a finite field** ([`Question::prove`]). The Taylor coefficients `y_k = O_k c + y₀_k` at the start are algebraic in the numbers of the scene. With
 //! fractions for these, and sines, cosines and exponentials of fractions, they lie in `Q(i)(T, S)`, `T = e^{i/N}`, `S = e^{1/N}` independent
 //! (Lindemann, Weierstrass); `T ↦ τ`, `S ↦ σ`, `i ↦ √−1` into the field of `p ≈ 2^60` elements is a homomorphism where nothing divided by is 0. A minor of `[O | y₀]` that is not zero
 //! there is not zero. So rank `[O | y₀]` = h + 1 at some order proves that *this very start* has no constants, and, the minor being analytic on `f = 0`,
 //! that *almost no* start has. [`Question::certificate`] writes down what others need to check that. Where at a random start the rank of both stays from one order to the next, all later coefficients follow from
-//! the earlier ones, and almost every start *has* constants; so has this one, if its own rank is that one. Square roots of products of small primes
+//! the earlier ones, and almost every start *has* constants; so has this one, if its own rank is that one. At rest, where time stands nowhere, `η̇` is linear
+//! in `η` with constant coefficients: coefficients of `y` follow from as many as there are costates, and one. Square roots of products of small primes
 //! have images, too, and multiples of π/2 inside of sines and cosines; logarithms, other roots and π elsewhere have none: no proof, and
 //! [`Finding::NotApplicable`] says why. Numbers are the decimals that they are written as; one that is π/2 or a multiple to all its digits is read as that.
 //!

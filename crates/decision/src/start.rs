@@ -44,6 +44,8 @@ pub struct ExactStart {
     numbers: Vec<Option<f64>>,
     /// Velocities that the constraints supply.
     supplied: Vec<usize>,
+    /// All velocities as they were found.
+    rounded: Vec<f64>,
     /// What `v` the constraint would be solved for, where nothing is supplied and the given velocities miss it by round-off.
     spare: Vec<usize>,
     constraints: Program,
@@ -96,8 +98,8 @@ impl ExactStart {
         let constraints = Program::new(g, &inputs, &outputs)?;
         let spare = independent_columns(system, state, &constraints);
         let projected = completion.projected.is_some();
-        let (system, time) = (system.clone(), state.t);
-        Ok(ExactStart { system, time, values, numbers, supplied, spare, constraints, problem, projected })
+        let (system, time, rounded) = (system.clone(), state.t, state.v.clone());
+        Ok(ExactStart { system, time, values, numbers, supplied, rounded, spare, constraints, problem, projected })
     }
 
     /// Names of velocities that are solved from the constraints although they were given: their decimals miss the constraints by round-off.
@@ -135,6 +137,12 @@ impl ExactStart {
                 let g = &self.system.graph;
                 let names = self.spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
                 Ok((start(self.solved(&parameters, time, q, v, &self.spare)?), names))
+            }
+            // what is supplied is not determined here; it is taken as the decimals that were found, if these fulfil the constraints
+            Err(NoExactStart::Nonlinear) => {
+                let mut v = v.to_vec();
+                self.supplied.iter().for_each(|&i| v[i] = Jet::of(self.rounded[i]));
+                Ok((start(self.solved(&parameters, time, q, &v, &[])?), Vec::new()))
             }
             Err(fault) => Err(fault),
         }
