@@ -21,6 +21,8 @@ from reader import Scene, value
 
 getcontext().prec, mpmath.mp.dps = 60, 70
 ZERO = Decimal("1e-25")
+# what is below this is round-off, and no motion
+REST = Decimal("1e-45")
 
 
 def at(name, x):
@@ -215,7 +217,8 @@ def decide(text, start):
     of = [max(abs(x[0]) for x in row) for row in A]
     speed = max(abs(c[0]) for c in motion.v) or Decimal(1)
     series = [(c, speed) for c in motion.v] + [(x, of[j]) for j in range(h) for x in A[j]]
-    fast = max((abs(c[k]) / scale) ** (Decimal(1) / k) for c, scale in series for k in orders) or Decimal(1)
+    rates = ((abs(c[k]) / scale, Decimal(1) / k) for c, scale in series for k in orders)
+    fast = max((rate**power for rate, power in rates if rate > REST), default=Decimal(1))
     A = [[[x / fast**k / of[j] for k, x in enumerate(A[j][i])] for i in range(n)] for j in range(h)]
     B = [[[x / fast ** (k + 1) / of[j] for k, x in enumerate(B[j][i])] for i in range(n)] for j in range(h)]
     width = [max(abs(x) for j in range(h) for x in A[j][i]) or Decimal(1) for i in range(n)]

@@ -37,8 +37,7 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
     "snakeboard" "roller-racer" "pursuit" "isokinetic" "parallel-velocities" "sledge-with-friction"
 );
 
-/// The built-in scene `name`, for `-` that on standard input, else the file at that path; `overrides`
-/// replace parameters and starts.
+/// The built-in scene `name`, `-` for standard input, or the file at that path; `overrides` replace numbers.
 ///
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 
 use crate::DecisionError;
-use crate::family::flow;
+use crate::family::{flow, timeless};
 use crate::program::{Evaluator, Program};
 
 /// A point of a curve: positions, velocities and accelerations, each of length n.
@@ -81,6 +81,8 @@ pub(crate) struct Dynamics {
     pub(crate) coordinates: usize,
     pub(crate) states: usize,
     pub(crate) unknowns: usize,
+    /// Whether time stands in nothing of this.
+    pub(crate) timeless: bool,
     /// `J` (N×N), then `R` at `z = 0`; from parameters, `t, y`.
     pub(crate) instant: Program,
     /// Rates of `y`, then `q`, `v`, `a`; from parameters, `t, y, z`.
@@ -134,6 +136,7 @@ impl Dynamics {
             coordinates: system.dimension(),
             states: equations.states.len(),
             unknowns: unknowns.len(),
+            timeless: timeless(system.time, equations),
             instant,
             rates: Program::new(g, &inputs, &rates)?,
             start: Program::new(g, &at_start, &starts)?,

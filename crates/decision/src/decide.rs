@@ -5,18 +5,20 @@ use nalgebra::{DMatrix, DVector};
 use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
-use crate::transport::Transport;
+use crate::transport::{Path, Transport};
 
 /// Gauss nodes a panel, and the least number of panels: at least 256 nodes.
-const NODES: usize = 4;
+pub(crate) const NODES: usize = 4;
 const PANELS: usize = 64;
+/// The question is judged up to these parts of the time.
+const PARTS: [f64; 12] = [0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
 /// Turns of every pair of columns until they are orthogonal: the sixth changes nothing any more.
 const SWEEPS: usize = 10;
 /// A mismatch up to this many times its noise is none.
 const CERTAIN: f64 = 10.0;
-/// What round-off leaves of the rows at best, relative to their size.
+/// What round-off leaves of the rows at best, relative to their size and to what was added up to them.
 const ROUND_OFF: f64 = 1e-14;
-/// Noise over this part of the terms that cancel tells nothing: a mismatch below it could be a real one.
+/// Noise over this part of the curve's own acceleration tells nothing: a mismatch below it may be real.
 const TOO_LOUD: f64 = 1e-5;
 
 /// Where round-off shortens steps: factors of the tolerances, with steps for each; the last spares nothing.
@@ -94,10 +96,34 @@ pub struct Decision {
     pub acceleration: f64,
     /// Names of the constants.
     pub constants: Vec<String>,
+    /// Up to when this was judged, if not to the end: what comes after is too loud, or cannot be followed.
+    pub until: Option<f64>,
     triangle: DMatrix<f64>,
-    rows_noise: f64,
-    /// What counts as a size of accelerations: the curve's own, and its speed over the time.
-    size: f64,
+    sizes: Sizes,
+}
+
+/// What a mismatch is compared with; squares of lengths while these are added up.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sizes {
+    /// What the rows are known to.
+    noise: f64,
+    /// The curve's own acceleration, and its speed, over the time at last.
+    acceleration: f64,
+    speed: f64,
+    /// What was added up to the mismatch, without regard to signs.
+    terms: f64,
+    /// Whether the curve moves at any node, by more than round-off of that.
+    moves: bool,
+}
+
+impl Sizes {
+    fn lengths(self, time: f64, rows: f64) -> Sizes {
+        let [noise, acceleration, speed, terms] =
+            [self.noise, self.acceleration, self.speed / time.powi(2), self.terms].map(f64::sqrt);
+        let terms = if terms.is_finite() { terms } else { 0.0 };
+        let floor = ROUND_OFF * rows.max(acceleration.hypot(speed)).max(terms);
+        Sizes { noise: noise.max(floor), acceleration, speed, terms, ..self }
+    }
 }
 
 impl Decision {
@@ -111,7 +137,7 @@ impl Decision {
     /// Whether the constants `c` leave no mismatch that stands out from the noise.
     pub fn admits(&self, constants: &[f64]) -> bool {
         let reach = (1.0 + constants.iter().map(|c| c * c).sum::<f64>()).sqrt();
-        self.mismatch_at(constants) <= CERTAIN * self.rows_noise * reach
+        self.mismatch_at(constants) <= CERTAIN * self.sizes.noise * reach
     }
 
     /// The same question with only the constants `kept` (by their places), the others zero.
@@ -120,7 +146,7 @@ impl Decision {
         let columns: Vec<usize> = kept.iter().copied().chain([last]).collect();
         let triangle = compressed(self.triangle.select_columns(&columns));
         let constants = kept.iter().map(|&i| self.constants[i].clone()).collect();
-        judge(triangle, self.rows_noise, self.size, self.acceleration, constants)
+        judge(triangle, self.sizes, self.until, constants)
     }
 }
 
@@ -137,45 +163,69 @@ pub fn decide(
     looser: &mut dyn Curve,
     settings: &DecisionSettings,
 ) -> Result<Decision, DecisionError> {
-    let (start, end) = tighter.span();
     let mut fine = Transport::new(family, tighter);
     let mut coarse = Transport::new(family, looser);
-    let mut runs = Err(DecisionError::Curve { reason: String::new() });
+    let mut found = Err(DecisionError::Curve { reason: String::new() });
     for (factor, steps) in ATTEMPTS {
         let tolerance = settings.tolerance * factor;
-        runs = fine.run(tolerance * settings.tighter, steps).and_then(|run| Ok((run, coarse.run(tolerance, steps)?)));
-        if !matches!(runs, Err(DecisionError::Steps { .. })) {
+        let paths = [fine.run(tolerance * settings.tighter, steps)?, coarse.run(tolerance, steps)?];
+        found = judged(&mut fine, &mut coarse, &paths);
+        let short = paths.iter().any(|path| matches!(path.stop, Some(DecisionError::Steps { .. })));
+        if !short || found.as_ref().is_ok_and(|found| found.verdict != Verdict::Undecided) {
             break;
         }
     }
-    let (fine_run, coarse_run) = runs?;
-    let steps = fine_run.as_ref().map_or(0, |run| run.step_times().len());
-    let panels = PANELS.max(steps);
-    let size = family.constants().len() + 1;
-    let mut triangle = DMatrix::zeros(0, size);
-    let (mut difference, mut acceleration, mut speed) = (0.0, 0.0, 0.0);
-    let width = (end - start) / panels as f64;
-    let (nodes, n) = (legendre(), family.shape.coordinates);
-    for panel in 0..panels {
+    found
+}
+
+/// Judges as far as both runs come, and up to the end of each part of that.
+fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Result<Decision, DecisionError> {
+    let (start, end) = fine.span();
+    let [own, other] = paths;
+    let way = (own.end - start).abs().min((other.end - start).abs());
+    let panels = PANELS.max(own.dense.as_ref().map_or(0, |run| run.step_times().len()));
+    let width = way.copysign(end - start) / panels as f64;
+    let constants = fine.family.constants();
+    let mut triangle = DMatrix::zeros(0, constants.len() + 1);
+    let mut sums = Sizes::default();
+    let (nodes, n) = (legendre(), fine.family.shape.coordinates);
+    let mut found: Vec<Decision> = Vec::new();
+    let mut add = |panel: usize| -> Result<(), DecisionError> {
         let above = triangle.nrows();
-        triangle = triangle.resize_vertically(above + NODES * n, 0.0);
+        triangle = std::mem::take(&mut triangle).resize_vertically(above + NODES * n, 0.0);
         for (i, (x, weight)) in nodes.into_iter().enumerate() {
             let t = start + width * (panel as f64 + x);
             let root = (weight * width.abs()).sqrt();
-            let own = fine.mismatch(fine_run.as_ref(), t)?;
-            triangle.rows_mut(above + i * n, n).copy_from(&(&own.rows * root));
+            let here = fine.mismatch(own, t)?;
+            triangle.rows_mut(above + i * n, n).copy_from(&(&here.rows * root));
             if i == panel % NODES {
-                let other = coarse.mismatch(coarse_run.as_ref(), t)?;
-                difference += (own.rows - other.rows).norm_squared() * width.abs();
+                let there = coarse.mismatch(other, t)?;
+                sums.noise += (here.rows - there.rows).norm_squared() * width.abs();
             }
-            acceleration += (own.acceleration * root).powi(2);
-            speed += (own.speed * root).powi(2);
+            sums.acceleration += (here.acceleration * root).powi(2);
+            sums.speed += (here.speed * root).powi(2);
+            sums.terms += (here.terms * root).powi(2);
+            sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * here.terms;
         }
-        triangle = compressed(triangle);
+        triangle = compressed(std::mem::take(&mut triangle));
+        let done = panel + 1;
+        if PARTS.iter().any(|part| done == (part * panels as f64) as usize) {
+            let sizes = sums.lengths(width * done as f64, triangle.norm());
+            let whole = done == panels && way == (end - start).abs();
+            let until = (!whole).then_some(start + width * done as f64);
+            found.push(judge(triangle.clone(), sizes, until, constants.to_vec()));
+        }
+        Ok(())
+    };
+    let stopped = (0..panels).try_for_each(&mut add).err();
+    // what no constants can do up to some time they cannot do at all
+    let longest = |verdict: Verdict| found.iter().rposition(|decision| decision.verdict == verdict);
+    let longest = longest(Verdict::NotContained).or_else(|| longest(Verdict::Contained));
+    match (longest.or(found.len().checked_sub(1)), stopped) {
+        (Some(i), _) => Ok(found.swap_remove(i)),
+        (None, Some(stop)) => Err(own.stop.clone().unwrap_or(stop)),
+        (None, None) => unreachable!("every part was judged"),
     }
-    let size = (acceleration + speed / (end - start).powi(2)).sqrt();
-    let rows_noise = difference.sqrt().max(ROUND_OFF * triangle.norm().max(size));
-    Ok(judge(triangle, rows_noise, size, acceleration.sqrt(), family.constants().to_vec()))
 }
 
 /// [`decide`] for a curve that is integrated beside the transport of the constants.
@@ -186,7 +236,7 @@ pub fn decide_flow(family: &Family, flow: &Flow, settings: &DecisionSettings) ->
     decide(family, &mut flow.clone(), &mut flow.clone(), settings)
 }
 
-fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, constants: Vec<String>) -> Decision {
+fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Vec<String>) -> Decision {
     let last = triangle.ncols() - 1;
     let goal = -triangle.column(last);
     let matrix = triangle.columns(0, last).into_owned();
@@ -194,7 +244,7 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, 
     let mut directions = Vec::new();
     let (images, preimages) = orthogonal(&matrix);
     for (image, preimage) in images.column_iter().zip(preimages.column_iter()) {
-        if image.norm() > CERTAIN * rows_noise {
+        if image.norm() > CERTAIN * sizes.noise {
             point += preimage * (image.dot(&goal) / image.norm_squared());
         } else {
             directions.push(preimage.iter().copied().collect());
@@ -202,8 +252,10 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, 
     }
     let least = (&matrix * &point - &goal).norm();
     let reach = (1.0 + point.norm_squared()).sqrt();
-    let noise = rows_noise * reach;
-    let scale = size.max(triangle.norm() * reach);
+    let noise = sizes.noise * reach;
+    let motion = sizes.acceleration.hypot(sizes.speed);
+    // where nothing moves, what balances is the scale
+    let scale = if sizes.moves { motion } else { sizes.terms * reach };
     let verdict = if least > CERTAIN * noise {
         Verdict::NotContained
     } else if CERTAIN * noise <= TOO_LOUD * scale {
@@ -217,12 +269,17 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, 
         least,
         at_zero: goal.norm(),
         noise,
-        acceleration,
+        acceleration: sizes.acceleration,
         constants,
+        until,
         triangle,
-        rows_noise,
-        size,
+        sizes,
     }
+}
+
+/// The least of `|O c + y₀|` over all constants `c`, for rows `[O | y₀]`.
+pub(crate) fn least(rows: DMatrix<f64>) -> f64 {
+    judge(compressed(rows), Sizes::default(), None, Vec::new()).least
 }
 
 /// `A V` with orthogonal columns, and the orthogonal `V` (one-sided Jacobi): small columns stay sharp.
@@ -255,7 +312,7 @@ fn compressed(rows: DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// Nodes and weights of the Gauss-Legendre rule on [0, 1].
-fn legendre() -> [(f64, f64); NODES] {
+pub(crate) fn legendre() -> [(f64, f64); NODES] {
     let n = NODES as f64;
     std::array::from_fn(|i| {
         let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();

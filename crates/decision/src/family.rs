@@ -18,6 +18,8 @@ use crate::program::{Evaluator, Program};
 pub struct Family {
     pub(crate) formulation: &'static str,
     pub(crate) shape: Shape,
+    /// Whether time stands in no equation, and in no force.
+    pub(crate) timeless: bool,
     names: Vec<String>,
     parameters: Vec<f64>,
     program: Program,
@@ -163,6 +165,8 @@ impl Family {
                 rates: kinds,
                 explicit: explicit.len(),
             },
+            timeless: timeless(system.time, equations)
+                && !system.forces.iter().any(|&force| g.depends_on(force, system.time)),
             names: constants.iter().map(|&s| g.name(s)).collect(),
             parameters: system.parameters.iter().map(|p| p.value).collect(),
             program: Program::new(g, &inputs, &outputs)?,
@@ -226,6 +230,14 @@ pub(crate) fn flow(system: &System, equations: &Equations) -> Vec<(Symbol, Expr)
     let mut flow: Vec<(Symbol, Expr)> = equations.states.iter().map(|y| (y.symbol, y.rate)).collect();
     flow.push((system.time, equations.graph.one()));
     flow
+}
+
+/// Whether time stands in no equation.
+pub(crate) fn timeless(time: Symbol, equations: &Equations) -> bool {
+    let residuals = equations.blocks.iter().flat_map(|block| &block.residuals);
+    let rates = equations.states.iter().map(|y| &y.rate);
+    let all = residuals.chain(rates).chain(&equations.coordinates).chain(&equations.velocities);
+    !all.copied().any(|e| equations.graph.depends_on(e, time))
 }
 
 /// `M` and `A`.

@@ -27,14 +27,17 @@
 //! the family iff `y ≡ 0`. Other formulations affine in their costates need no line here.
 //!
 //! **The set.** `η = Φ c + φ` for constants `c`, `Φ` and `φ` integrated beside the curve; so `y = O(t) c +
-//! y₀(t)`, and `{c : y ≡ 0}` is an affine space: empty, a point, …, everything. Its dimension counts the
-//! curve's abnormal lifts (integrable `f`: h; a contact constraint: 0; a disc that rolls straight: 1).
+//! y₀(t)`, and `{c : y ≡ 0}` is an affine space: empty, a point, …, everything. Its dimension is the number
+//! of independent abnormal lifts (integrable `f`: h; a contact constraint: 0; a disc that rolls straight: 1).
 //!
 //! **Decided in floating point** ([`decide`]). The rows `√w √M [O | y₀]` at 256 Gauss nodes or more go into
-//! one triangular matrix: `ρ²` is the least `∫ |y|²_M dt`. A looser run gives the noise: `‖difference of the
-//! rows‖ √(1 + |c*|²)`. `ρ` over ten times the noise: *not contained*. Else *contained*, of the dimension of
-//! the directions whose rows are noise; *undecided* if the noise is over 1e-6 of the terms that cancel in `y`
-//! and of the curve's acceleration. The least-norm element is the first guess for fits.
+//! one triangular matrix: `ρ²` is the least `∫ |y|²_M dt`. A looser run gives the noise,
+//! `‖difference of the rows‖ √(1 + |c*|²)`, at least 1e-14 of all that was added up. `ρ` over ten times the
+//! noise: *not contained*. Else *contained*, of the dimension of the directions whose rows are noise;
+//! *undecided* if the noise is over 1e-6 of the curve's own acceleration, unless that is round-off of what
+//! balances at rest. This is judged up to ten times of the run: what no constants can do up to one of these
+//! they cannot do at all; otherwise the longest time that is not too loud counts ([`Decision::until`]). The
+//! least-norm element is the first guess for fits.
 //!
 //! **Proved over a finite field** ([`Question::prove`]). Taylor coefficients `y_k = O_k c + y₀_k` at the
 //! start are algebraic in the scene's numbers. For fractions and their sines, cosines, exponentials they lie
@@ -44,9 +47,11 @@
 //! start* has no constants and, as the minor is analytic on `f = 0`, that *almost no* start has
 //! ([`Question::certificate`], for others to check). Where both ranks stay from one order to the next at a
 //! random start, all later coefficients follow, and almost every start *has* constants; so has this one, if
-//! its rank is that one. Square roots of products of small primes have images, and multiples of π/2 in sines
-//! and cosines; logarithms, other roots, π elsewhere have none: [`Finding::NotApplicable`] says why. Numbers
-//! are decimals as written; π/2 or a multiple to all digits is read as that.
+//! its rank is that one. At rest, where time stands nowhere, `η̇` is linear in `η` with constant
+//! coefficients: coefficients of `y` follow from as many as there are costates, and one. Square roots of
+//! products of small primes have images, and multiples of π/2 in sines and cosines; logarithms, other roots,
+//! π elsewhere have none: [`Finding::NotApplicable`] says why. Numbers are decimals as written; π/2 or a
+//! multiple to all digits is read as that.
 //!
 //! **An identity** ([`Question::section`]). `c = φ(q, v)`, sought among combinations of momenta, constants
 //! and velocities at random points of the field, verified at others: `μ = −L_ṡ`, say. It holds on `f = 0`.

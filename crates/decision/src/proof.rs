@@ -84,6 +84,7 @@ impl Echelon {
 pub(crate) struct Ranks {
     by_order: Vec<(usize, usize)>,
     constants: usize,
+    at_rest: bool,
 }
 
 impl Ranks {
@@ -97,7 +98,7 @@ impl Ranks {
             let whole = echelon.0.len();
             (whole - usize::from(echelon.0.iter().any(|(pivot, _)| *pivot == constants)), whole)
         });
-        Ranks { by_order: ranks.collect(), constants }
+        Ranks { by_order: ranks.collect(), constants, at_rest: series.at_rest }
     }
 
     /// The order at which no constants are left.
@@ -204,8 +205,13 @@ impl<'a> Question<'a> {
         if let Some(none) = ranks.refuted() {
             return Finding::None(none);
         }
+        // at rest η obeys one linear equation with constant coefficients, and the constant 1 beside it makes
+        // this homogeneous: coefficients beyond its order follow from those before
+        let enough = self.family.shape.costates;
+        let at_rest = ranks.at_rest && self.dynamics.timeless && self.family.timeless && enough < ranks.by_order.len();
         // where the rank is the generic one it stays so nearby, and the jets obey one linear equation
         match generic {
+            _ if at_rest => Finding::Contained { rank: ranks.last(), order: enough },
             Finding::Contained { .. } if is_generic(&ranks) => generic.clone(),
             _ => Finding::ThroughOrder { rank: ranks.last(), order: ranks.by_order.len() - 1 },
         }

@@ -35,6 +35,8 @@ pub(crate) struct CurveSeries<C> {
     pub(crate) unknowns: Vec<Vec<C>>,
     /// Determinant of the equations of the first instant.
     pub(crate) determinant: C,
+    /// Whether no state has a rate: where time stands nowhere, they stay for ever.
+    pub(crate) at_rest: bool,
 }
 
 pub(crate) fn sound<C: Coefficient>(values: &[Jet<C>]) -> Result<(), NoSeries> {
@@ -148,7 +150,12 @@ impl Dynamics {
             let mut inputs = start.parameters.clone();
             inputs.push(time(&start.time, orders)?);
             inputs.extend(point);
-            return Ok(CurveSeries { inputs, determinant: solve.determinant, unknowns: solve.solved.clone() });
+            return Ok(CurveSeries {
+                inputs,
+                determinant: solve.determinant,
+                unknowns: solve.solved.clone(),
+                at_rest: states.iter().all(|y| y[1..].iter().take(1).all(|rate| rate.weight() == 0.0)),
+            });
         }
     }
 }
@@ -161,6 +168,8 @@ pub(crate) struct MismatchSeries<C> {
     /// The same as accelerations of the coordinates, n rows.
     pub(crate) accelerations: Vec<Vec<C>>,
     pub(crate) width: usize,
+    /// Whether curve and lift are at rest.
+    pub(crate) at_rest: bool,
 }
 
 impl Family {
@@ -175,8 +184,11 @@ impl Family {
     {
         let shape = &self.shape;
         let mut inputs = curve.inputs.clone();
+        let mut at_rest = curve.at_rest;
         if let Some(lift) = &self.lift {
-            inputs.extend(lift.series(&curve.inputs, orders)?);
+            let lifted = lift.series(&curve.inputs, orders)?;
+            at_rest &= lifted[..lift.parameters + lift.memory].iter().all(|x| x.coefficient(1).weight() == 0.0);
+            inputs.extend(lifted);
         }
         let values = self.evaluator::<Jet<C>>().run(&inputs).to_vec();
         sound(&values)?;
@@ -230,6 +242,6 @@ impl Family {
             }
             sum.into_iter().map(|x| -x).collect()
         });
-        Ok(MismatchSeries { accelerations: accelerations.collect(), orders: unknowns, width })
+        Ok(MismatchSeries { accelerations: accelerations.collect(), orders: unknowns, width, at_rest })
     }
 }

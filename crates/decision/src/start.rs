@@ -44,6 +44,8 @@ pub struct ExactStart {
     numbers: Vec<Option<f64>>,
     /// Velocities that the constraints supply.
     supplied: Vec<usize>,
+    /// All velocities as they were found.
+    rounded: Vec<f64>,
     /// What `v` a constraint would be solved for, if none is supplied and the given miss it by round-off.
     spare: Vec<usize>,
     constraints: Program,
@@ -96,8 +98,8 @@ impl ExactStart {
         let constraints = Program::new(g, &inputs, &outputs)?;
         let spare = independent_columns(system, state, &constraints);
         let projected = completion.projected.is_some();
-        let (system, time) = (system.clone(), state.t);
-        Ok(ExactStart { system, time, values, numbers, supplied, spare, constraints, problem, projected })
+        let (system, time, rounded) = (system.clone(), state.t, state.v.clone());
+        Ok(ExactStart { system, time, values, numbers, supplied, rounded, spare, constraints, problem, projected })
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
@@ -135,6 +137,13 @@ impl ExactStart {
                 let g = &self.system.graph;
                 let names = self.spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
                 Ok((start(self.solved(&parameters, time, q, v, &self.spare)?), names))
+            }
+            // what is supplied is not determined here: the decimals found count, if they fulfil the
+            // constraints
+            Err(NoExactStart::Nonlinear) => {
+                let mut v = v.to_vec();
+                self.supplied.iter().for_each(|&i| v[i] = Jet::of(self.rounded[i]));
+                Ok((start(self.solved(&parameters, time, q, &v, &[])?), Vec::new()))
             }
             Err(fault) => Err(fault),
         }

@@ -3,10 +3,11 @@
 use integrate::{Dense, DenseOutput, EvaluationError, Method, Options, Problem, Start, Status, StopCause, integrate};
 use mechanics::{SingularValues, State};
 use nalgebra::{DMatrix, DVector};
+use symbolic::{Bounded, Scalar};
 
 use crate::DecisionError;
 use crate::curve::{Curve, Point};
-use crate::family::{CostateRate, Family};
+use crate::family::{CostateRate, Family, Instant, Shape};
 use crate::lift::Lift;
 use crate::program::Evaluator;
 
@@ -19,18 +20,29 @@ const SMALLEST: f64 = 1e-3;
 pub(crate) struct Mismatch {
     /// n×(constants + 1), whitened: its Euclidean length is the length in the metric `M` on `ker A`.
     pub(crate) rows: DMatrix<f64>,
+    /// How long what was added up to the rows is, without regard to signs: round-off is a part of it.
+    pub(crate) terms: f64,
     /// `√(aᵀ M a)` of the curve's own acceleration, and `√(vᵀ M v)`.
     pub(crate) acceleration: f64,
     pub(crate) speed: f64,
 }
 
+/// What was integrated; no dense output where there are no states.
+pub(crate) struct Path {
+    pub(crate) dense: Option<DenseOutput>,
+    pub(crate) end: f64,
+    /// Why it ends early.
+    pub(crate) stop: Option<DecisionError>,
+}
+
 /// `(states of the curve, u, w, Φ, φ)` as a problem for the time loop.
 pub(crate) struct Transport<'a> {
-    family: &'a Family,
+    pub(crate) family: &'a Family,
     curve: &'a mut dyn Curve,
     own: usize,
     lift: Option<LiftNumbers<'a>>,
     instant: Evaluator<f64>,
+    bounded: Evaluator<Bounded>,
     inputs: Vec<f64>,
     values: Vec<f64>,
     point: Point,
@@ -64,11 +76,16 @@ impl<'a> Transport<'a> {
             curve,
             lift,
             instant: family.evaluator(),
+            bounded: family.evaluator(),
             inputs: Vec::new(),
             values: Vec::new(),
             point: Point::default(),
             family,
         }
+    }
+
+    pub(crate) fn span(&self) -> (f64, f64) {
+        self.curve.span()
     }
 
     /// States at the start of the curve.
@@ -151,19 +168,34 @@ impl<'a> Transport<'a> {
         Ok(Solved { unknowns, rates })
     }
 
+    /// What adds up in `Δz`: `|J⁻¹| (‖J‖ |Δz| + ‖R_η‖ |η| + ‖R₀‖)`, by column; `‖·‖` sums all terms.
+    fn terms(&mut self, columns: &DMatrix<f64>, solved: &DMatrix<f64>) -> DMatrix<f64> {
+        let shape = &self.family.shape;
+        let (size, k, last) = (shape.unknowns, shape.costates, shape.constants);
+        let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let magnitudes: Vec<f64> = self.bounded.run(&inputs).iter().map(|x| x.magnitude).collect();
+        let instant = shape.instant(&magnitudes);
+        let mut right = DMatrix::from_row_slice(size, k, instant.by_costate) * columns.abs();
+        right += DMatrix::from_row_slice(size, size, instant.matrix) * solved.abs();
+        for (r, rest) in right.column_mut(last).iter_mut().zip(instant.rest) {
+            *r += rest;
+        }
+        let matrix = DMatrix::from_row_slice(size, size, shape.instant(&self.values).matrix);
+        matrix.try_inverse().map_or(right.clone(), |inverse| inverse.abs() * right)
+    }
+
     fn columns(&self, y: &[f64]) -> DMatrix<f64> {
         let shape = &self.family.shape;
         DMatrix::from_row_slice(shape.costates, shape.constants + 1, &y[self.own + self.lifted()..])
     }
 
-    /// Integrates to the end of the curve.
-    /// `None` where there is nothing to integrate.
-    pub(crate) fn run(&mut self, tolerance: f64, steps: usize) -> Result<Option<DenseOutput>, DecisionError> {
+    /// Integrates to the end of the curve, or as far as it comes.
+    pub(crate) fn run(&mut self, tolerance: f64, steps: usize) -> Result<Path, DecisionError> {
         let start = self.start()?;
+        let (_, end) = self.span();
         if start.y.is_empty() {
-            return Ok(None);
+            return Ok(Path { dense: None, end, stop: None });
         }
-        let (_, end) = self.curve.span();
         let options = Options {
             method: Method::Dop853,
             dense: Dense::Everywhere,
@@ -172,11 +204,12 @@ impl<'a> Transport<'a> {
             ..Options::with_tolerance(tolerance)
         };
         let solution = integrate(self, &start, end, &options)?;
-        match solution.status {
-            Status::Completed => Ok(Some(solution.dense)),
-            Status::Stopped { cause: StopCause::TooManySteps { limit }, .. } => Err(DecisionError::Steps { limit }),
-            Status::Stopped { cause, t } => Err(DecisionError::Curve { reason: format!("{cause} (at t = {t})") }),
-        }
+        let stop = match solution.status {
+            Status::Completed => None,
+            Status::Stopped { cause: StopCause::TooManySteps { limit }, .. } => Some(DecisionError::Steps { limit }),
+            Status::Stopped { cause, t } => Some(DecisionError::Curve { reason: format!("{cause} (at t = {t})") }),
+        };
+        Ok(Path { end: solution.dense.end(), dense: Some(solution.dense), stop })
     }
 
     /// Size of each state by its start and its rate there, if under 1; at least a thousandth, over round-off.
@@ -189,34 +222,43 @@ impl<'a> Transport<'a> {
     }
 
     /// The mismatch at `t` of what was integrated.
-    pub(crate) fn mismatch(&mut self, dense: Option<&DenseOutput>, t: f64) -> Result<Mismatch, DecisionError> {
+    pub(crate) fn mismatch(&mut self, path: &Path, t: f64) -> Result<Mismatch, DecisionError> {
         let fault = |reason: String| DecisionError::Curve { reason };
         let mut y = vec![0.0; self.dimension()];
-        if let Some(dense) = dense {
+        if let Some(dense) = &path.dense {
             dense.try_evaluate(t, &mut y).map_err(|e| fault(e.to_string()))?;
         }
         let mut rates = vec![0.0; y.len()];
         self.load(t, &y, &mut rates).map_err(|e| fault(e.reason))?;
-        let solved = self.solve(t, &self.columns(&y)).map_err(|e| fault(e.reason))?;
+        let columns = self.columns(&y);
+        let solved = self.solve(t, &columns).map_err(|e| fault(e.reason))?;
         let shape = &self.family.shape;
         let instant = shape.instant(&self.values);
-        let (n, h) = (shape.coordinates, shape.constraints);
+        let n = shape.coordinates;
         let to_acceleration = DMatrix::from_row_slice(n, shape.accelerations.len(), instant.to_acceleration);
-        let mismatch = to_acceleration * solved.unknowns.select_rows(&shape.accelerations);
-        // the mismatch lies in ker A: there alone M has to be positive, and M + c AᵀA is M
-        let mass = DMatrix::from_row_slice(n, n, instant.mass);
-        let jacobian = DMatrix::from_row_slice(h, n, instant.jacobian);
-        let normal = jacobian.transpose() * &jacobian;
-        let unit = if h == 0 { 0.0 } else { mass.norm() / normal.norm() };
-        let factor = WEIGHTS.iter().find_map(|weight| (&mass + &normal * (unit * weight)).cholesky());
+        let factor = root_of_mass(shape, &instant);
         let factor = factor.ok_or_else(|| fault(format!("M is not positive on ker A at t = {t}")))?;
+        let mass = DMatrix::from_row_slice(n, n, instant.mass);
         let length = |x: &[f64]| {
             let x = DVector::from_column_slice(x);
             x.dot(&(&mass * &x)).max(0.0).sqrt()
         };
-        let rows = factor.l().transpose() * mismatch;
-        Ok(Mismatch { rows, acceleration: length(&self.point.a), speed: length(&self.point.v) })
+        let whitened = factor * to_acceleration;
+        let rows = &whitened * solved.unknowns.select_rows(&shape.accelerations);
+        let terms = (whitened.abs() * self.terms(&columns, &solved.unknowns).select_rows(&shape.accelerations)).norm();
+        Ok(Mismatch { rows, terms, acceleration: length(&self.point.a), speed: length(&self.point.v) })
     }
+}
+
+/// `√M` for mismatches: these lie in ker A, there alone M has to be positive, and `M + c AᵀA` is M.
+pub(crate) fn root_of_mass(shape: &Shape, instant: &Instant<f64>) -> Option<DMatrix<f64>> {
+    let (n, h) = (shape.coordinates, shape.constraints);
+    let mass = DMatrix::from_row_slice(n, n, instant.mass);
+    let jacobian = DMatrix::from_row_slice(h, n, instant.jacobian);
+    let normal = jacobian.transpose() * &jacobian;
+    let unit = if h == 0 { 0.0 } else { mass.norm() / normal.norm() };
+    let factor = WEIGHTS.iter().find_map(|weight| (&mass + &normal * (unit * weight)).cholesky());
+    factor.map(|factor| factor.l().transpose())
 }
 
 impl Problem for Transport<'_> {

@@ -58,7 +58,7 @@ fn a_ball_on_a_turning_table() {
     }
 }
 
-const COIN: &str = r#"
+pub(crate) const COIN: &str = r#"
 title = "Coin on an incline"
 [parameters]
 R = 0.5

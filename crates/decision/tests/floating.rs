@@ -1,7 +1,7 @@
 //! The decision in floating point.
 
-use decision::{Decision, Known, Point, Verdict, decide};
-use equations::Compiled;
+use decision::{Decision, Family, Known, Point, Verdict, decide};
+use equations::{Compiled, Derivation};
 use mechanics::Removal;
 
 use crate::questions::{
@@ -163,4 +163,29 @@ fn the_flow_of_a_curve_is_that_of_the_compiled_equations() {
     }
     assert_eq!(point.v, scene.start.v);
     assert_eq!(point.a, own[5..]);
+}
+
+#[test]
+fn a_question_is_judged_up_to_where_its_chart_is_too_loud() {
+    // P_0 = -d(L + mu f)/dw', and later on the removal divides by cosines that vanish
+    let scene = built_in("trailer", &[]);
+    let removal = Removal::by_coordinates(&scene.system, &scene.start).expect("a removal");
+    let mu = [0.3; 4];
+    let derivation = Derivation { removal: Some(&removal), start: None, all_costates: true };
+    let equations = removed_constraint::derive(&scene.system, &derivation).expect("equations");
+    let family = Family::new(&scene.system, &equations, false).expect("a family");
+    let decision = decided(&family, &flow(&scene, &vakonomic_equations(&scene), &mu));
+    let (system, g) = (&scene.system, &scene.system.graph);
+    let augmented = g.add(system.lagrangian, g.dot(&mu.map(|mu| g.number(mu)), &system.constraints));
+    let mut values = system.parameter_values();
+    values.extend(system.values_at(&scene.start));
+    let momentum = |i: usize| g.evaluate(g.derivative(augmented, system.coordinates[i].velocity), &values);
+    let places = removal.memory.iter().map(|w| w.coordinate.expect("a coordinate"));
+    let costates: Vec<f64> = places.map(|i| -momentum(i).expect("a number")).collect();
+    contains(&decision, &costates, 0);
+    assert!(decision.until.is_some_and(|t| t > 0.1 && t < 3.0), "{:?}", decision.until);
+    assert!(decision.noise < 1e-5 * decision.acceleration);
+    let mut beside = costates.clone();
+    beside[0] += 1e-4;
+    assert!(decision.admits(&costates) && !decision.admits(&beside));
 }

@@ -5,4 +5,5 @@ mod closed_forms;
 mod floating;
 mod proofs;
 mod questions;
+mod rest;
 mod signs;

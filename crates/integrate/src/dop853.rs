@@ -3,9 +3,8 @@
 //! Step control, starting step and dense output as in E. Hairer's code DOP853 (without its stabilisation of
 //! the step size, β = 0, its default).
 //!
-//! Ours, because verdicts need errors far below the gaps and roots on the dense output, and every motion is
-//! integrated twice: the explicit method of `diffsol` has order 5. In our loop a projection costs this one no
-//! evaluation.
+//! Ours: verdicts need errors far below the gaps and roots on the dense output, every motion is run twice,
+//! and the explicit method of `diffsol` has order 5. In our loop its projection costs no evaluation.
 
 use crate::dop853_tableau::*;
 use crate::options::Options;

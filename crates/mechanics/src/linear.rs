@@ -1,8 +1,7 @@
 //! Small dense linear systems in place, without allocation: the one solve of every instant.
 //!
-//! In `f64` and the wide types of references. Written here as it runs once an evaluation on matrices of 1 to
-//! 20 rows, where a general factorization spends more on allocation than on elimination. What
-//! runs once is left to nalgebra.
+//! In `f64` and the wide types of references. Written here: it runs once an evaluation on matrices of 1 to 20
+//! rows, where a general factorization mostly allocates. What runs once is left to nalgebra.
 
 use symbolic::Scalar;
 

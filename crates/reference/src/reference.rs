@@ -40,8 +40,8 @@ pub struct Reference<T = DoubleDouble> {
     pub times: Vec<f64>,
     /// The motion there, by the Taylor series at the tighter tolerance.
     pub points: Vec<Point<T>>,
-    /// Its doubt at each time, in the kinetic metric: the distance from the other method or the looser tolerance,
-    /// the larger one.
+    /// Its doubt at each time, in the kinetic metric: the distance from the other method or the looser
+    /// tolerance, the larger one.
     pub errors: Vec<f64>,
     /// The largest distances behind that.
     pub agreement: Agreement,

@@ -43,9 +43,8 @@
 //! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇`
 //! (or `p`) of a parameter that `G` does not contain.
 //!
-//! **Where it breaks.** Where the chart of the removal does. What coordinates, `B` and `G` divide by is in
-//! the graph, and is collected as guards; a motion stops where one changes its sign. (For `tan` the cosine is
-//! watched.)
+//! **Where it breaks.** Where the chart of the removal does. What coordinates, `B` and `G` divide by (for
+//! `tan` the cosine) is in the graph, and is collected as guards; a motion stops where one changes its sign.
 //!
 //! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is
 //! a quadrature; its costate does not move. Zero at the start or at the free end it is zero throughout, and

@@ -89,15 +89,22 @@ fn reason(membership: &Membership) -> String {
     let mismatch = format!("the least mismatch of accelerations is {part} of the motion's own");
     match membership.answer() {
         Answer::NoneProved { order } => format!("proved (order {order}); {mismatch}"),
-        Answer::None { unproved } => format!("{mismatch}; there is no proof, since {unproved}"),
+        Answer::None { unproved } => {
+            format!("{mismatch}{}; there is no proof, since {unproved}", up_to(decision.until))
+        }
         Answer::SomeProved => {
             membership.section.as_ref().map_or("proved by ranks that grow no more".into(), |section| {
                 format!("an identity, ({}), for all starts", section.expressions.join(", "))
             })
         }
         Answer::Some { order } => how_far(membership, order),
-        Answer::Undecided => format!("round-off hides it, {mismatch}"),
+        Answer::Undecided => format!("round-off hides it, {mismatch}{}", up_to(decision.until)),
     }
+}
+
+/// Up to when the numbers were judged, where that is not the end.
+fn up_to(until: Option<f64>) -> String {
+    until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too loud", precise(t)))
 }
 
 /// What a search over `μ₀` leaves of the gap, where there is none that leaves nothing.
@@ -156,6 +163,7 @@ fn which(membership: &Membership) -> String {
 fn how_far(membership: &Membership, order: Option<usize>) -> String {
     let decision = &membership.decision;
     let part = decision.least.max(decision.noise) / decision.acceleration;
-    let part = if part.is_finite() { format!("to 1e{:.0}", part.log10().ceil()) } else { "at rest".into() };
+    let part =
+        if part < 1.0 { format!("to 1e{:.0}{}", part.log10().ceil(), up_to(decision.until)) } else { "at rest".into() };
     order.map_or(part.clone(), |order| format!("through order {order} and {part}"))
 }

@@ -1,0 +1,130 @@
+//! Curves at rest: algebra with constant coefficients. Answers by hand and by
+//! `validation/casadi/decision.py`.
+
+use std::f64::consts::FRAC_PI_2;
+
+use decision::{Decision, Finding, Proof, Verdict};
+use scene::Scene;
+
+use crate::closed_forms::COIN;
+use crate::questions::{
+    built_in, chetaev, chetaev_equations, decided, is_vakonomic, proved, proved_in, removed, written,
+};
+
+/// How many dimensions of constants are left; floating point and proof have to say the same.
+fn left(decision: &Decision, proof: &Proof) -> Option<usize> {
+    println!("{:?} rho {:.1e} noise {:.1e}; {proof:?}", decision.verdict, decision.least, decision.noise);
+    let proved = match proof.this_start {
+        Finding::None(_) => None,
+        Finding::Contained { rank, .. } => Some(decision.constants.len() - rank),
+        ref other => panic!("{other:?}"),
+    };
+    assert_ne!(decision.verdict, Verdict::Undecided, "rho {:.1e}, noise {:.1e}", decision.least, decision.noise);
+    assert_eq!((decision.verdict == Verdict::Contained).then(|| decision.set.dimension()), proved);
+    proved
+}
+
+fn multipliers(scene: &Scene) -> Option<usize> {
+    left(&is_vakonomic(scene), &proved(scene).0)
+}
+
+#[test]
+fn constraints_without_a_curvature_there_bind_nothing() {
+    assert_eq!(multipliers(&built_in("disc", &[("psi'", 0.0), ("phi'", 0.0)])), Some(2));
+    // held by the constraint; decimals that stand for pi/2 leave 6e-17 of the force
+    let across = [("psi'", 0.0), ("phi'", 0.0), ("phi", FRAC_PI_2)];
+    assert_eq!(multipliers(&written(COIN, &across)), Some(2));
+    let sledge = built_in("sledge", &[("x'", 0.0), ("phi'", 0.0), ("phi", FRAC_PI_2)]);
+    assert_eq!(multipliers(&sledge), Some(1));
+    let family = removed(&sledge, &sledge.removals[0]);
+    let proof = proved_in(&sledge, &chetaev_equations(&sledge), &[], &family).0;
+    assert_eq!(left(&decided(&family, &chetaev(&sledge)), &proof), Some(1));
+}
+
+#[test]
+fn at_rest_for_an_instant_only() {
+    assert_eq!(multipliers(&written(COIN, &[("psi'", 0.0), ("phi'", 0.0)])), None);
+    assert_eq!(multipliers(&built_in("sledge", &[("x'", 0.0), ("phi'", 0.0)])), None);
+    // straight down the blade does not react
+    let down = is_vakonomic(&built_in("sledge", &[("x'", 0.0), ("phi'", 0.0), ("phi", 0.0)]));
+    assert_eq!((down.verdict, down.set.dimension()), (Verdict::Contained, 0));
+}
+
+const DRIFT: &str = r#"
+title = "A drift that is zero where the particle rests"
+[parameters]
+weight = 0
+[coordinates]
+x = { start = 0 }
+y = { start = 0 }
+z = { start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2 + z'^2)/2 - x^2 - weight*z"
+constraints = ["z' - 0.3*x - 0.5*x*y'"]
+[start.velocities]
+"x'" = 0
+"y'" = 0
+[run]
+duration = 2
+"#;
+
+#[test]
+fn constraints_with_a_curvature_there_do() {
+    // C = (-0.3, 0, 0)': mu = 0; with a weight lambda = 1 drives mu away from there
+    assert_eq!(multipliers(&written(DRIFT, &[])), Some(0));
+    assert_eq!(multipliers(&written(DRIFT, &[("weight", 1.0)])), None);
+}
+
+const HELD: &str = r#"
+title = "Held by a force"
+[parameters]
+push = 2
+[coordinates]
+x = { start = 0 }
+y = { start = 0 }
+z = { start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2 + z'^2)/2 + 2*x - 5*z"
+constraints = ["z' - x*y'"]
+forces = { x = "-push" }
+[start.velocities]
+"x'" = 0
+"y'" = 0
+[run]
+duration = 2
+"#;
+
+#[test]
+fn held_by_a_force_or_not() {
+    assert_eq!(multipliers(&written(HELD, &[])), Some(1));
+    // without it the particle runs along x; there λ = 5
+    assert_eq!(multipliers(&written(HELD, &[("push", 1.9)])), None);
+}
+
+const NO_IMAGE: &str = r#"
+title = "At rest at the logarithm of 2, which no decimal is"
+[coordinates]
+x = { start = "log(2)" }
+y = { start = 0 }
+z = { start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2 + z'^2)/2 - 100*(exp(x) - 2*x)"
+constraints = ["z' - x*y'"]
+[start.velocities]
+"x'" = 0
+"y'" = 0
+[run]
+duration = 2
+"#;
+
+#[test]
+fn round_off_of_what_balances_is_no_motion() {
+    let scene = written(NO_IMAGE, &[]);
+    let decision = is_vakonomic(&scene);
+    println!(
+        "{:?} rho {:.1e} noise {:.1e} {:.1e}",
+        decision.verdict, decision.least, decision.noise, decision.acceleration
+    );
+    assert!(matches!(proved(&scene).0.this_start, Finding::NotApplicable(_)));
+    assert_eq!((decision.verdict, decision.set.dimension()), (Verdict::Contained, 1));
+}
