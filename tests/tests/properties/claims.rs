@@ -1,4 +1,4 @@
-//! One suite a theorem. What each claim says and assumes is at the check, in `validation::random`.
+//! One suite a theorem. What each claim says and assumes is at the check, in the crate `random`.
 
 use proptest::test_runner::TestCaseError;
 use random::{Kind, NullTest, null_test};
