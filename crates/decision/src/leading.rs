@@ -3,15 +3,20 @@
 use mechanics::{State, System};
 use nalgebra::{DMatrix, DVector};
 
-use crate::exact::{Jet, Modular};
+use crate::decide::{NODES, least, legendre};
+use crate::exact::{Jet, Modular, ORDERS};
 use crate::proof::Question;
 use crate::series::{MismatchSeries, SeriesStart, order as at_order};
 use crate::start::ExactStart;
+use crate::transport::root_of_mass;
 
 /// Orders that are looked at.
 const HIGHEST: usize = 12;
 /// A coefficient under this part of its terms counts as zero, where no exact numbers decide.
 const VANISHES: f64 = 1e-9;
+/// Of the time in which coefficients get no larger; and slices of that part.
+const FAST: f64 = 0.5;
+const SLICES: usize = 8;
 
 /// The leading term of `q_family − q_curve`: `coefficient · (t − t₀)^exponent`.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,13 +41,7 @@ impl Question<'_> {
         exact: Option<&ExactStart>,
         constants: &[f64],
     ) -> Option<LeadingDifference> {
-        let start = SeriesStart {
-            parameters: system.parameters.iter().map(|p| Jet::<f64>::of(p.value)).collect(),
-            time: Jet::of(state.t),
-            positions: state.q.iter().map(|&x| Jet::of(x)).collect(),
-            velocities: state.v.iter().map(|&x| Jet::of(x)).collect(),
-        };
-        let (curve, series) = self.series(&start, HIGHEST).ok()?;
+        let (curve, series) = self.series(&rounded(system, state), HIGHEST).ok()?;
         let proved = exact.and_then(|exact| self.proved_order(exact, constants));
         let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants))?;
         // decimals that stand for other numbers leave lower terms, of the size of round-off
@@ -65,6 +64,33 @@ impl Question<'_> {
             }
         };
         Some(LeadingDifference { exponent: order + 2, coefficient, reach, exact: proved == Some(Some(order)) })
+    }
+
+    /// The least mismatch `(∫ |y|²_M dt)^{1/2}` over all constants by the Taylor series at `state`, over that part of
+    /// `time` in which these converge fast: over all of it the least is no less. `None` where there are no series, and
+    /// for removals with variables of their own.
+    pub fn least_by_series(&self, system: &System, state: &State, time: f64) -> Option<f64> {
+        let family = self.family();
+        let (curve, series) = self.series(&rounded(system, state), ORDERS).ok()?;
+        if family.lift.is_some() {
+            return None;
+        }
+        let values = family.evaluator::<f64>().run(&at_order(&curve.inputs, 0)).to_vec();
+        let root = root_of_mass(&family.shape, &family.shape.instant(&values))?;
+        let n = family.shape.coordinates;
+        let terms: Vec<_> =
+            series.accelerations.iter().map(|y| &root * DMatrix::from_row_slice(n, series.width, y)).collect();
+        let size = |k: usize| terms[..k].iter().map(|term| term.norm()).fold(0.0, f64::max);
+        let radius = |k: usize| (size(k) / terms[k].norm()).powf(1.0 / k as f64);
+        let reach = (1..ORDERS).map(radius).filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
+        let width = time.min(FAST * reach) / SLICES as f64;
+        let nodes = (0..SLICES).flat_map(|slice| legendre().map(|(x, weight)| (width * (slice as f64 + x), weight)));
+        let mut rows = DMatrix::zeros(NODES * SLICES * n, series.width);
+        for (i, (t, weight)) in nodes.enumerate() {
+            let sum = terms.iter().rev().fold(DMatrix::zeros(n, series.width), |sum, term| sum * t + term);
+            rows.rows_mut(i * n, n).copy_from(&(sum * (weight * width).sqrt()));
+        }
+        Some(least(rows))
     }
 
     /// Accelerations from the family's unknowns at which the mismatch begins, found with `∂R/∂z` at `η = 0`.
@@ -111,6 +137,16 @@ impl Question<'_> {
             })
         };
         Some((0..HIGHEST).find(|&k| !vanishes(k)))
+    }
+}
+
+/// A start as it is rounded.
+fn rounded(system: &System, state: &State) -> SeriesStart<f64> {
+    SeriesStart {
+        parameters: system.parameters.iter().map(|p| Jet::of(p.value)).collect(),
+        time: Jet::of(state.t),
+        positions: state.q.iter().map(|&x| Jet::of(x)).collect(),
+        velocities: state.v.iter().map(|&x| Jet::of(x)).collect(),
     }
 }
 

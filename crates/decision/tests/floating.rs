@@ -5,7 +5,8 @@ use equations::{Compiled, Derivation};
 use mechanics::Removal;
 
 use crate::questions::{
-    built_in, chetaev, chetaev_equations, decided, flow, is_vakonomic, removed, vakonomic, vakonomic_equations,
+    built_in, chetaev, chetaev_equations, decided, flow, is_vakonomic, least_by_series, removed, vakonomic,
+    vakonomic_equations,
 };
 
 fn near(found: f64, expected: f64, part: f64) -> bool {
@@ -51,6 +52,27 @@ fn motions_that_no_multipliers_give() {
 
 /// The ball on the table turns with it, on a circle about its axis.
 const CONTAINED: [(&str, f64); 2] = [("x", 0.6), ("psi'", 0.7)];
+
+#[test]
+fn series_say_what_is_left_at_least() {
+    for (name, duration, ..) in NONE {
+        let scene = built_in(name, &[("duration", duration)]);
+        let (series, whole) = (least_by_series(&scene), is_vakonomic(&scene));
+        println!("{name}: {series:.2e} of {:.2e}, noise {:.1e}", whole.least, whole.noise);
+        assert!(series > 0.0 && series < 1.5 * whole.least, "{name}");
+        // up to the same time, a tenth of the run or less, both are the same
+        let short = is_vakonomic(&built_in(name, &[("duration", 1e-2)]));
+        let series = least_by_series(&built_in(name, &[("duration", 1e-2)]));
+        println!("  {series:.4e} and {:.4e}, noise {:.1e}", short.least, short.noise);
+        assert!((series - short.least).abs() < 0.1 * short.least + 10.0 * short.noise, "{name}");
+    }
+    for (name, overrides) in [("disc", &[][..]), ("heisenberg", &[]), ("turntable", &CONTAINED)] {
+        let scene = built_in(name, overrides);
+        let series = least_by_series(&scene);
+        println!("{name}: {series:.2e}");
+        assert!(series < 1e-13, "{name}: {series:e}");
+    }
+}
 
 #[test]
 fn a_ball_that_turns_with_its_table() {

@@ -100,3 +100,10 @@ pub(crate) fn leading(scene: &Scene, multipliers: &[f64], exact: bool) -> Option
     let found = question.leading_difference(&scene.system, &scene.start, start.as_ref(), multipliers)?;
     Some((found.exponent, found.coefficient, found.exact))
 }
+
+/// The least mismatch by Taylor series, up to the end of the run.
+pub(crate) fn least_by_series(scene: &Scene) -> f64 {
+    let family = vakonomic(scene);
+    let question = Question::new(&scene.system, &chetaev_equations(scene), &[], &family).expect("a question");
+    question.least_by_series(&scene.system, &scene.start, scene.duration).expect("series")
+}

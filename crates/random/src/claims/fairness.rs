@@ -8,6 +8,9 @@ use super::CheckError;
 use crate::case::{Which, equations};
 use crate::{Case, Kind};
 
+/// A mismatch up to this many times its noise does not stand out.
+const CERTAIN: f64 = 10.0;
+
 /// Decides whether the Chetaev motion is vakonomic; finds a vakonomic motion's multipliers from itself.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let Some(found) = case.membership()? else { return Ok(()) };
@@ -20,15 +23,15 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         decision.noise,
         words(&found.proof.this_start)
     );
-    if (decision.verdict, case.recipe.kind) == (Verdict::Contained, Kind::NearRankLoss)
-        && matches!(found.proof.this_start, Finding::None(_))
-    {
-        // nearly dependent constraints leave noise over which a true mismatch need not stand out
-        case.found.undecided(9, "decision and proof agree", &note);
+    if let (Verdict::Contained, Finding::None(_)) = (decision.verdict, &found.proof.this_start) {
+        // a proved mismatch need not stand out from the noise; how large is it?
+        let family = &choices(&case.scene)[1];
+        let curve = Choice { constants: ConstantsRule::Zero, ..choices(&case.scene)[0].clone() };
+        let least = Pairing::new(&case.scene, &curve, family)?.least_by_series(case.end())?;
+        case.found.bound(9, "decision and proof agree", least.unwrap_or(f64::NAN), CERTAIN * decision.noise);
         return Ok(());
     }
     let contradiction = match (decision.verdict, &found.proof.this_start) {
-        (Verdict::Contained, Finding::None(_)) => true,
         (Verdict::NotContained, Finding::Contained { .. }) => true,
         (Verdict::NotContained, _) => found.section.is_some(),
         _ => false,
