@@ -8,13 +8,14 @@ use super::python_environment::{self, NotRun, files};
 const REQUIREMENTS: &str = include_str!("../../casadi/requirements.txt");
 
 /// Name and text of the referee's files.
-const SCRIPTS: [(&str, &str); 7] = [
+const SCRIPTS: [(&str, &str); 8] = [
     ("reader.py", include_str!("../../casadi/reader.py")),
     ("formulations.py", include_str!("../../casadi/formulations.py")),
     ("trajectories.py", include_str!("../../casadi/trajectories.py")),
     ("transcription.py", include_str!("../../casadi/transcription.py")),
     ("lagranges_method.py", include_str!("../../casadi/lagranges_method.py")),
     ("decision.py", include_str!("../../casadi/decision.py")),
+    ("exceptional.py", include_str!("../../casadi/exceptional.py")),
     ("check.py", include_str!("../../casadi/check.py")),
 ];
 
