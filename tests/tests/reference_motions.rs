@@ -1,4 +1,4 @@
-//! References with a known error: two methods agree, forms agree, and closed solutions and 42-digit states are met.
+//! References with a known error: two methods agree, forms agree, closed and 42-digit solutions are met.
 
 use crate::references::{Motion, REFERENCES};
 use deltaq::{Choice, Settings, choices, derive, prepare, setting};

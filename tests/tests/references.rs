@@ -1,8 +1,8 @@
-//! Reference states of the paper's examples at the default starts of their scenes, from code that shares nothing with the solvers.
+//! Reference states of the paper's examples, default starts, from code that shares nothing with the solvers.
 //!
-//! `references.csv` is written by `validation/referees/references.py`. SymPy derives the equations from `L` and `f`, MPFR with
-//! 42 digits evaluates them, and two methods integrate them: Gragg-Bulirsch-Stoer extrapolation and Gauss-Legendre collocation of order 16.
-//! `agreement` is how far these two are apart; every digit printed is right.
+//! `references.csv` is written by `validation/referees/references.py`. SymPy derives the equations from `L`,
+//! `f`, MPFR evaluates them in 42 digits, and two methods integrate them: Gragg-Bulirsch-Stoer extrapolation
+//! and Gauss-Legendre collocation of order 16. `agreement` is their distance; every digit printed is right.
 
 use std::sync::LazyLock;
 
@@ -38,9 +38,9 @@ pub struct Reference {
     pub q: Vec<f64>,
     /// Velocities in the same order.
     pub v: Vec<f64>,
-    /// `λ` (Chetaev) or `μ` (vakonomic) in the order of the constraints, or `P` (removed) in the order of `costates`.
+    /// `λ` (Chetaev), `μ` (vakonomic) in the order of constraints, or `P` (removed) in that of `costates`.
     pub multipliers: Vec<f64>,
-    /// Largest change of a component when parameters and start are rounded to `f64`: no double-precision run can be asked to come closer.
+    /// Largest change of a component by rounding parameters and start to `f64`: no such run can come closer.
     pub rounding: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Stiff and extreme cases: no method returns a wrong trajectory in silence, and what was mended on the way stays so.
+//! Stiff and extreme cases: no method returns a wrong trajectory in silence; what was mended stays so.
 
 use deltaq::{
     Choice, Ending, Motion, Setting, Settings, default_constants, derive, derive_at, formulation, setting, solve,
@@ -158,12 +158,12 @@ fn steps_that_the_tolerance_does_not_decide_are_said() {
 
 #[test]
 fn a_motion_ends_where_the_run_for_its_estimate_ends() {
-    // a stiff problem by series: of lower order they are stable for shorter steps only, so that the looser run is the first to have taken them all
+    // stiff, by series: low order is stable for short steps only, so the looser run first uses up its steps
     let stiff = motion(&question("viscous", 1e6, "Newton, with friction"), Method::Taylor, 1e-10, 4_000);
     let Ending::Stopped { t, cause } = &stiff.ending else { panic!("complete") };
     assert!(cause.starts_with("the run that estimates the error stops here"), "{cause}");
     assert!(stiff.end() >= 0.99 * t, "ends at {}, says {t}", stiff.end());
-    // close to the end of a chart, the tighter run follows its round-off and stops first, and the looser one goes no farther
+    // near a chart's end the tighter run stops first, following its round-off; the looser goes no farther
     let asked = question("cone-chart", 1e-5, "Chetaev");
     let stuck = motion(&asked, Method::Dop853, 1e-10, 4_000);
     let Ending::Stopped { t, .. } = &stuck.ending else { panic!("complete") };

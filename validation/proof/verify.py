@@ -143,7 +143,7 @@ if __name__ == "__main__":
     try:
         TABLE, PROOF = tomllib.load(open(sys.argv[1], "rb")), json.load(open(sys.argv[2]), parse_float=str, parse_constant=str)
         P, I, N, TAU, SIZE = PROOF["prime"], PROOF["i"], int(PROOF["N"]), PROOF["tau"], PROOF["order"] + 3
-        demand(PROOF["version"] == 1 and all(pow(a, P - 1, P) == 1 for a in (2, 3, 5, 7)) and (I * I + 1) % P == 0, "version, p or i")
+        demand(PROOF["schema"] == "deltaq/certificate/1" and all(pow(a, P - 1, P) == 1 for a in (2, 3, 5, 7)) and (I * I + 1) % P == 0, "schema, p or i")
         demand(verify(TABLE, PROOF) == PROOF["minor"] != 0, "the minor")
     except Exception as error:
         sys.exit(f"refused: {type(error).__name__}, {error}")

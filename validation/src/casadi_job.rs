@@ -1,7 +1,7 @@
-//! CasADi as a referee: another program derives the equations again and integrates them with another integrator.
+//! CasADi as a referee: another program derives the equations again, and another integrator solves them.
 //!
-//! The referee is `validation/casadi/`, Python. It reads the *text* of `L`, `f`, `Q` and the removals from scene files with a reader of its own,
-//! differentiates with CasADi and knows nothing of the Rust crates but numbers that it is handed. With `𝓛 = L + μ·f` and `G = L + P·B` it states
+//! The referee is `validation/casadi/`, Python: its own reader of the *text* of `L`, `f`, `Q`, removals,
+//! CasADi to differentiate, only numbers from Rust. With `𝓛 = L + μ·f` and `G = L + P·B` it states
 //!
 //! ```text
 //! Chetaev             d/dt L_v − L_q = Q + Aᵀ λ ,                     d/dt f = 0
@@ -11,15 +11,15 @@
 //!
 //! and compares
 //!
-//! - rates of all states, and `λ`, at random states near the start (and off the constraint), with all equations as derived;
+//! - rates of all states, and `λ`, at random states near the start (and off the constraint), as derived;
 //! - motions, with those of SUNDIALS' CVODES and IDAS;
-//! - motions, with curves that make the discretized action stationary: no equation of motion at all (vakonomic: `f = 0` imposed, ends fixed;
-//!   removed constraint: `u` fixed at both ends, `w(t₁)` free, so that `P(t₁) = 0` has to come out);
+//! - motions, with curves of stationary discretized action: no equation of motion (vakonomic: `f = 0`
+//!   imposed, ends fixed; removed: `u` fixed at both ends, `w(t₁)` free, so that `P(t₁) = 0` must come out);
 //! - Chetaev's accelerations, with those of SymPy's `LagrangesMethod`;
-//! - where it is asked ([`Question::with_decision`]): the set of all `μ₀` with which the vakonomic motion is Chetaev's, empty or with its dimension and
-//!   its element of least norm, with what power series in sixty digits say, multipliers and all (no CasADi in this).
+//! - where asked ([`Question::with_decision`]): all `μ₀` with which the vakonomic motion is Chetaev's (none,
+//!   or a dimension and the least-norm one), against power series in sixty digits, without CasADi.
 //!
-//! The virtual environment is made when it is first needed, in cargo's target folder; by an installed program in the user's cache.
+//! The virtual environment is made when needed: in cargo's target folder; if installed, in the user's cache.
 
 use anyhow::{Context, Result};
 use scene::Scene;
@@ -69,7 +69,7 @@ pub struct Row {
     pub verdict: Word,
     /// Remarks.
     pub note: String,
-    /// Condition of the equilibrated matrix of the instant where the difference is largest, for right-hand sides.
+    /// Condition of the equilibrated instant's matrix at the largest difference, for right-hand sides.
     #[serde(default)]
     pub condition: Option<f64>,
 }

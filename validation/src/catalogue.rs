@@ -1,6 +1,7 @@
 //! The built-in scenes, and how a scene is found.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use scene::{Scene, SceneError};
 
@@ -10,8 +11,8 @@ use crate::trailer;
 pub const SCENES: &[(&str, &str)] = &[
     ("sledge", include_str!("../scenes/sledge.toml")),
     ("ball-in-cone", include_str!("../scenes/ball-in-cone.toml")),
-    ("ball-in-cone-as-printed", include_str!("../scenes/ball-in-cone-as-printed.toml")),
     ("three-cylinders", include_str!("../scenes/three-cylinders.toml")),
+    ("ball-in-cone-as-printed", include_str!("../scenes/ball-in-cone-as-printed.toml")),
     ("particle", include_str!("../scenes/particle.toml")),
     ("heisenberg", include_str!("../scenes/heisenberg.toml")),
     ("sleigh", include_str!("../scenes/sleigh.toml")),
@@ -28,7 +29,7 @@ macro_rules! beside {
     ($($name:literal)*) => { &[$(($name, include_str!(concat!("../equivalence/", $name, ".toml")))),*] };
 }
 
-/// Further systems of the literature, which are asked one question only: which of their motions are vakonomic.
+/// Further systems of the literature, asked one question: which of their motions are vakonomic.
 pub const CLASSICS: &[(&str, &str)] = beside!(
     "coin-on-incline" "mobile-robot" "falling-disc" "two-wheeled-carriage" "unicycle-in-potential" "turning-knife-edge"
     "nonholonomic-oscillator" "martinet" "engel" "generalized-heisenberg" "suslov" "veselova" "chaplygin-sphere"
@@ -36,7 +37,8 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
     "snakeboard" "roller-racer" "pursuit" "isokinetic" "parallel-velocities" "sledge-with-friction"
 );
 
-/// The built-in scene of that name, or else the scene file at that path; `overrides` replace parameters and start values.
+/// The built-in scene `name`, for `-` that on standard input, else the file at that path; `overrides`
+/// replace parameters and starts.
 ///
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.
@@ -46,6 +48,12 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
     }
     if let Some((trailers, coordinates)) = trailer::named(name_or_path) {
         return Ok(Scene::parse_with(name_or_path, &trailer::text(trailers, coordinates), overrides)?);
+    }
+    if name_or_path == "-" {
+        // it can be read once only, and its scene may be asked for again
+        static TEXT: OnceLock<Result<String, SceneError>> = OnceLock::new();
+        let text = TEXT.get_or_init(|| Scene::read_from("stdin", std::io::stdin())).clone()?;
+        return Ok(Scene::parse_with("stdin", &text, overrides)?);
     }
     let path = Path::new(name_or_path);
     if !path.exists() {

@@ -1,13 +1,13 @@
-//! A car with n trailers, in coordinates in which every constraint touches neighbours only, or in as few as there are.
+//! A car with n trailers: in coordinates whose constraints touch neighbours only, or in as few as possible.
 //!
-//! n + 1 bodies with headings `θᵢ` and axles at `(xᵢ, yᵢ)`, body 0 the car; the hitch of a trailer is the axle in front, at the distance `d`:
+//! n + 1 bodies, headings `θᵢ`, axles `(xᵢ, yᵢ)`, body 0 the car; trailers hitch at the axle `d` before:
 //!
 //! ```text
-//! xᵢ = xᵢ₋₁ − d cos θᵢ ,     yᵢ = yᵢ₋₁ − d sin θᵢ ,     ẏᵢ cos θᵢ − ẋᵢ sin θᵢ = 0   (no axle slips sideways).
+//! xᵢ = xᵢ₋₁ − d cos θᵢ ,   yᵢ = yᵢ₋₁ − d sin θᵢ ,   ẏᵢ cos θᵢ − ẋᵢ sin θᵢ = 0   (no axle slips sideways).
 //! ```
 //!
-//! Two degrees of freedom however long the train: the speed of the car along its heading, and its turning. With n = 3 and
-//! minimal coordinates it is the scene `trailer`.
+//! Two degrees of freedom however long the train: the speed of the car along its heading, and its turning.
+//! With n = 3 and minimal coordinates it is the scene `trailer`.
 
 use mechanics::{Completion, Parameter, State, System};
 use scene::Scene;
@@ -16,7 +16,7 @@ use symbolic::{Expr, ParseError};
 /// What the train is described by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
-    /// `(xᵢ, yᵢ, θᵢ)` of every body, hitches as constraints on the velocities: 3n + 3 coordinates, 3n + 1 constraints of at most 3 velocities.
+    /// All `(xᵢ, yᵢ, θᵢ)`, hitches as velocity constraints: 3n + 3 coordinates, 3n + 1 short constraints.
     Maximal,
     /// `(x, y)` of the car and all headings: n + 3 coordinates, n + 1 constraints of up to n + 2 velocities.
     Minimal,
@@ -43,7 +43,7 @@ struct Train {
     constraints: Vec<String>,
 }
 
-/// The train that `n-trailer-N` (maximal coordinates) or `n-trailer-minimal-N` names, with 1 to [`LONGEST`] trailers.
+/// The train `n-trailer-N` (maximal coordinates) or `n-trailer-minimal-N`, with 1 to [`LONGEST`] trailers.
 pub fn named(name: &str) -> Option<(usize, Coordinates)> {
     let rest = name.strip_prefix("n-trailer-")?;
     let (number, coordinates) = match rest.strip_prefix("minimal-") {
@@ -72,7 +72,7 @@ pub fn text(trailers: usize, coordinates: Coordinates) -> String {
     )
 }
 
-/// The train as a scene, its start velocities computed body by body: no matrix is decomposed, so that long trains are ready at once.
+/// The train as a scene, start velocities body by body: no matrix is decomposed, long trains come at once.
 ///
 /// # Errors
 /// None for the texts made here, which parse.

@@ -1,4 +1,4 @@
-//! The referee in Python: it has to be able to run, to agree where we are right, and to disagree where we are not.
+//! The referee in Python: it must run, agree where we are right, and disagree where we are not.
 
 use random::{Batch, Kind};
 use scene::Scene;

@@ -1,7 +1,7 @@
 //! # The Chetaev formulation (d'Alembert–Lagrange with reaction multipliers)
 //!
-//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ` and
-//! generalized forces `Q(q, v, t)`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n).
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ`
+//! and generalized forces `Q(q, v, t)`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n).
 //!
 //! **The principle.** At every instant `t`
 //!
@@ -9,34 +9,34 @@
 //! ( d/dt ∂L/∂v − ∂L/∂q − Q ) · δq = 0     for every virtual displacement with   A δq = 0.
 //! ```
 //!
-//! That is Chetaev's condition: a displacement is virtual when it lies in the kernel of `∂f/∂v`. For constraints linear in
-//! the velocities it is d'Alembert's principle; for others it is a definition.
+//! That is Chetaev's condition: a displacement is virtual when it lies in the kernel of `∂f/∂v`. For
+//! constraints linear in the velocities it is d'Alembert's principle; for others it is a definition.
 //!
-//! **The equations.** A covector that annihilates the kernel of `A` is a combination of the rows of `A`. So there are
-//! reaction multipliers `λ ∈ Rʰ` with
+//! **The equations.** A covector that annihilates the kernel of `A` is a combination of the rows of `A`. So
+//! there are reaction multipliers `λ ∈ Rʰ` with
 //!
 //! ```text
 //! d/dt ∂L/∂v − ∂L/∂q = Q + Aᵀ λ ,        f(q, v, t) = 0 .
 //! ```
 //!
-//! The reaction `Aᵀ λ` does no work on virtual displacements. `λᵢ` has the unit of power over that of `fᵢ`: a force where `fᵢ`
-//! is a velocity.
+//! The reaction `Aᵀ λ` does no work on virtual displacements. `λᵢ` has the unit of power over that of `fᵢ`: a
+//! force where `fᵢ` is a velocity.
 //!
-//! **One instant.** With `a = q̈` the first equation is linear in `(a, λ)`; so is the constraint after one differentiation in
-//! time. Together they are the saddle-point system
+//! **One instant.** With `a = q̈` the first equation is linear in `(a, λ)`; so is the constraint after one
+//! differentiation in time. Together they are the saddle-point system
 //!
 //! ```text
 //! [ M  −Aᵀ ] [ a ]   [ L_q + Q − L_vq v − L_vt ]
 //! [ A    0 ] [ λ ] = [ −(f_q v + f_t)          ]
 //! ```
 //!
-//! which has one solution when `A` has full row rank and `M` is regular on the kernel of `A`. `M` itself may be singular.
+//! with one solution if `A` has full row rank and `M` is regular on ker `A`. `M` itself may be singular.
 //!
 //! **What the motion depends on.** On `(q₀, v₀)` with `f(q₀, v₀, t₀) = 0`, and nothing else.
 //!
-//! **What stays constant.** The energy `v·L_v − L`, when nothing depends on time, `Q = 0`, and the motion itself is a virtual
-//! displacement, `A v = 0` wherever `f = 0` (for constraints homogeneous in `v`; *not* for affine ones). The
-//! momentum `∂L/∂vᵢ` of a coordinate that `L` does not contain and on which no reaction or force acts.
+//! **What stays constant.** The energy `v·L_v − L`, when nothing depends on time, `Q = 0`, and the motion
+//! itself is a virtual displacement, `A v = 0` wherever `f = 0` (constraints homogeneous in `v`; *not* affine
+//! ones). The momentum `∂L/∂vᵢ` of a coordinate not in `L` on which no reaction or force acts.
 //!
 //! Sources: N. G. Chetaev 1932; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972.
 
@@ -60,7 +60,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// None: every system has Chetaev equations. Whether they are regular shows when they are solved.
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
@@ -141,8 +141,8 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 
 /// Whether `v·L_v − L` is constant: nothing depends on time, no force acts, and `A v = 0` wherever `f = 0`.
 ///
-/// `A v = 0` on `f = 0` is recognized where `A v` is a multiple of `f` with a constant factor: `f` homogeneous of
-/// degree `d` in `v` gives `A v = d f` (Euler).
+/// `A v = 0` on `f = 0` is recognized where `A v` is a multiple of `f` with a constant factor: `f`
+/// homogeneous of degree `d` in `v` gives `A v = d f` (Euler).
 fn energy_is_constant(system: &System, jacobian: &symbolic::Matrix) -> bool {
     let g = &system.graph;
     let work = g.mat_vec(jacobian, &g.variables(&system.velocities()));

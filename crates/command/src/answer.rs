@@ -34,9 +34,10 @@ impl Answer {
 }
 
 impl Output {
-    /// Writes the files to the folder that was asked for, if one was; then what is to be printed.
+    /// Writes the files to the folder asked for, if any; then prints JSON of this kind, or text.
     pub(crate) fn answer(
         &self,
+        kind: &str,
         files: impl FnOnce() -> Result<Vec<File>>,
         text: impl FnOnce() -> String,
         json: impl FnOnce() -> Value,
@@ -46,12 +47,13 @@ impl Output {
         }
         Ok(match self.format {
             TextOrJson::Text => text(),
-            TextOrJson::Json => pretty(&json()),
+            TextOrJson::Json => pretty(kind, &json()),
         })
     }
 }
 
-/// JSON for readers, with an end of line.
-pub(crate) fn pretty(value: &Value) -> String {
-    format!("{value:#}\n")
+/// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
+pub(crate) fn pretty(kind: &str, object: &Value) -> String {
+    let text = format!("{object:#}\n");
+    text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/1\","), 1)
 }

@@ -6,20 +6,28 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 pub use ensemble::{EnsembleArguments, MOST_MEMBERS, MotionArguments, Range};
 use random::Kind;
 use scene::Scene;
+use validation::bench::MEMBERS;
 use validation::catalogue::{self, NotFound};
 use validation::stability::Stepping;
 
-/// What may a virtual displacement be? One system with velocity constraints, several formulations of its motion.
+/// What may a virtual displacement be? One system with velocity constraints, several formulations of motion.
 #[derive(Parser, Debug)]
-#[command(name = "deltaq", version, max_term_width = 100)]
+#[command(name = "deltaq", version = env!("DELTAQ_VERSION"), propagate_version = true, max_term_width = 100)]
 pub struct Cli {
     /// What to do; without it the main job runs: every scene in every formulation, reports written.
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// No progress bar.
+    #[arg(long, global = true)]
+    pub quiet: bool,
+    /// Threads for work that can be divided; one a processor if left out. No result depends on it.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
     /// Options of the main job.
     #[command(flatten)]
     pub job: JobArguments,
@@ -31,8 +39,8 @@ pub struct JobArguments {
     /// Folder that the reports are written to; `reports` of the project's sources if left out.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is the committed one, `target/measured`
-    /// that of the sources if left out.
+    /// Folder that pages of times are written to, which differ from machine to machine; `reports/measured` is
+    /// the committed one, `target/measured` that of the sources if left out.
     #[arg(long, value_name = "DIR")]
     pub measured: Option<PathBuf>,
     /// Sections to run, all if left out. The overview is written only when all of them run.
@@ -44,9 +52,9 @@ pub struct JobArguments {
     /// Scenes to run, all if left out; other sections run only if they are named.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub scenes: Vec<String>,
-    /// No progress bar.
-    #[arg(long)]
-    pub quiet: bool,
+    /// Output format of what is said at the end.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
 }
 
 /// Sections of the main job.
@@ -54,7 +62,7 @@ pub struct JobArguments {
 pub enum Section {
     /// Every built-in scene in every formulation.
     Scenes,
-    /// The scenes and 50 random systems once more by CasADi and SymPy, which derive everything again; needs Python 3.11 and a package index.
+    /// Scenes and 50 random systems derived again by CasADi and SymPy; needs Python 3.11, a package index.
     Casadi,
     /// The claims T1 to T14 on 1,000 random systems.
     Random,
@@ -74,7 +82,7 @@ pub enum Section {
 #[derive(Subcommand, Debug)]
 pub enum Command {
     /// List the built-in scenes.
-    List,
+    List(ListArguments),
     /// Show the equations of a scene, what was left out of them, and whether its constraints are integrable.
     Show(ShowArguments),
     /// Integrate a scene in one formulation.
@@ -83,7 +91,7 @@ pub enum Command {
     Ensemble(EnsembleArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
-    /// Prove that no multipliers make the vakonomic motion of a scene Chetaev's, in a certificate that others can check.
+    /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
     /// Put the claims T1 to T14 to the test on random systems.
     Random(RandomArguments),
@@ -91,16 +99,26 @@ pub enum Command {
     Bench(BenchArguments),
     /// Measure how cost grows with the length of a train of trailers.
     Scaling(ScalingArguments),
-    /// Put every method to the test on stiff and extreme cases: is what comes back right, and where it is not, does it say so?
+    /// Put every method to stiff and extreme cases: is what comes back right, and if not, does it say so?
     Stability(StabilityArguments),
     /// Run the main job in memory and compare its verdicts with those in the reports folder.
     Reports(ReportsArguments),
+    /// Print completions for a shell.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print a page of the manual, for `man -l -`.
+    Man {
+        /// The command that it is about; the whole program if left out.
+        command: Option<String>,
+    },
 }
 
 /// A scene with changes.
 #[derive(Args, Debug)]
 pub struct SceneArguments {
-    /// Built-in name (`n-trailer-5` for a car with 5 trailers) or path of a scene file.
+    /// Built-in name (`n-trailer-5` for a car with 5 trailers), scene file path, or `-` for standard input.
     pub scene: String,
     #[command(flatten)]
     pub set: Overrides,
@@ -130,9 +148,6 @@ pub struct Output {
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
-    /// No progress bar.
-    #[arg(long)]
-    pub quiet: bool,
 }
 
 /// Output formats of commands with tables.
@@ -144,6 +159,14 @@ pub enum TextOrJson {
     Json,
 }
 
+/// `deltaq list`.
+#[derive(Args, Debug)]
+pub struct ListArguments {
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+}
+
 /// `deltaq show`.
 #[derive(Args, Debug)]
 pub struct ShowArguments {
@@ -152,6 +175,9 @@ pub struct ShowArguments {
     /// Formulas in LaTeX.
     #[arg(long)]
     pub latex: bool,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
 }
 
 /// `deltaq solve`.
@@ -159,13 +185,13 @@ pub struct ShowArguments {
 pub struct SolveArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// Time-stepping method: Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of order 8 (dop853) or 5 (tsit45);
-    /// for stiff systems implicit Runge–Kutta of order 5 (radau5), 4 (esdirk34) or 2 (tr-bdf2) and backward differentiation formulas (bdf);
-    /// leapfrog, a discrete variational principle in equal steps, which keeps constraints, reversibility and (vakonomic, removed) the
-    /// symplectic form.
+    /// Time-stepping method: Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of
+    /// order 8 (dop853) or 5 (tsit45); stiff: implicit Runge–Kutta of order 5 (radau5), 4 (esdirk34) or 2
+    /// (tr-bdf2) and backward differentiation formulas (bdf); leapfrog, a discrete variational principle in
+    /// equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
     #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "dop853")]
     pub method: Stepping,
-    /// Longest step of `--method leapfrog`. A second run has steps twice as long; the difference is the error estimate.
+    /// Longest step of `--method leapfrog`. A second run in steps twice as long gives the error estimate.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
@@ -176,12 +202,11 @@ pub struct SolveArguments {
 /// `deltaq compare`.
 #[derive(Args, Debug)]
 pub struct CompareArguments {
-    /// Built-in names or paths of scene files.
+    /// Built-in names, paths of scene files, or `-` for standard input.
     #[arg(required = true)]
     pub scenes: Vec<String>,
-    /// Folder for the pages and pictures; to the terminal if left out.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: Output,
     #[command(flatten)]
     pub set: Overrides,
     /// Tolerance of the looser of the two runs of every motion.
@@ -244,9 +269,12 @@ pub struct BenchArguments {
     pub seconds: f64,
     #[command(flatten)]
     pub set: Overrides,
-    /// Measure the throughput of ensembles of sledges instead, at this tolerance: one by one, in lanes, and over all cores.
-    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out", "format"])]
+    /// Measure throughput of ensembles of sledges instead, at this tolerance: alone, in lanes, on all cores.
+    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, default_missing_value = "1e-10", conflicts_with_all = ["scenes", "overrides", "out"])]
     pub ensemble: Option<f64>,
+    /// Members of each of these ensembles.
+    #[arg(long, default_value_t = MEMBERS as u16, requires = "ensemble", value_parser = clap::value_parser!(u16).range(1..))]
+    pub members: u16,
     #[command(flatten)]
     pub output: Output,
 }
@@ -257,7 +285,8 @@ pub struct ScalingArguments {
     /// Longest train.
     #[arg(long, default_value_t = 320)]
     pub longest: usize,
-    /// Seconds for one derivation or one solve: after a derivation that takes longer, longer trains are left out, and solves that would.
+    /// Seconds for one derivation or one solve: after a derivation that takes longer, longer trains are left
+    /// out, and solves that would.
     #[arg(long, default_value_t = 2.0)]
     pub seconds: f64,
     /// Repeats of everything that is timed; the shortest time counts.

@@ -2,30 +2,40 @@
 
 use anyhow::Result;
 use deltaq::Settings;
+use serde_json::json;
 
 use crate::cli::CompareArguments;
 use crate::main_job::{protocol, scene_files};
 use crate::solve_command::check_tolerance;
 use validation::catalogue;
-use validation::report::write_all;
+use validation::report::verdicts;
 
-/// Runs the command: returns the pages, or writes pages and pictures to a folder and says so; on bad input nothing is written.
+/// Returns pages or verdicts, or writes pages and pictures to a folder and says so; on bad input nothing.
 pub(crate) fn run(arguments: &CompareArguments) -> Result<String> {
     check_tolerance(arguments.tolerance)?;
     let settings = Settings { tolerance: arguments.tolerance, ..protocol() };
-    let mut all = Vec::new();
+    let (mut files, mut comparisons) = (Vec::new(), Vec::new());
     for name in &arguments.scenes {
-        let scene = catalogue::find(name, &arguments.set.overrides)?;
-        all.extend(scene_files(scene, &settings)?.files);
+        let report = scene_files(catalogue::find(name, &arguments.set.overrides)?, &settings)?;
+        files.extend(report.files);
+        comparisons.push(report.comparison);
     }
-    match &arguments.out {
-        Some(folder) => {
-            write_all(folder, &all)?;
-            Ok(format!("{} files in {}\n", all.len(), folder.display()))
-        }
+    let text = || match &arguments.output.out {
+        Some(folder) => format!("{} files in {}\n", files.len(), folder.display()),
         None => {
-            let pages = all.into_iter().filter(|f| f.path.extension().is_some_and(|e| e == "md"));
-            Ok(pages.map(|page| page.text + "\n").collect())
+            let pages = files.iter().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
+            pages.map(|page| page.text.clone() + "\n").collect()
         }
-    }
+    };
+    let json = || {
+        let mut value = verdicts(&comparisons);
+        for comparison in &comparisons {
+            for (i, pair) in comparison.pairs.iter().enumerate() {
+                let found = &mut value["scenes"][&comparison.scene.name]["pairs"][i];
+                (found["largest"], found["estimates"]) = (json!(pair.gap.largest), json!(pair.gap.estimates));
+            }
+        }
+        value
+    };
+    arguments.output.answer("compare", || Ok(files.clone()), text, json)
 }

@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &EnsembleArguments) -> Result<Answer> {
     let derive = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let options = EnsembleOptions { threads: arguments.threads.map_or(0, usize::from), estimate: true };
+    let options = EnsembleOptions { threads: parallel::threads(), estimate: true };
     let mut answers = Answers::new(arguments.motion.format, &base, &choice, ensemble.equations(), &members, &times);
     for chunk in starts.chunks(CHUNK) {
         for motion in ensemble.answers(chunk, &times, &options) {

@@ -1,6 +1,6 @@
-//! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` ends with 0 only where its trajectory can be
-//! trusted, and with 3 where the integration had to stop or its error estimate is too large; `ensemble` likewise, for any of its members;
-//! `prove` ends with 3 where there is no certificate.
+//! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
+//! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
+//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate.
 
 mod answer;
 mod bench_command;
@@ -18,11 +18,12 @@ mod stability_command;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
-use anyhow::{Error, Result};
-use clap::Parser;
+use anyhow::{Context, Error, Result};
+use clap::{CommandFactory, Parser};
 
 use answer::Answer;
 use cli::{Cli, Command};
+use random::parallel;
 
 // derivations allocate much: an eighth of the time of a thousand random systems
 #[global_allocator]
@@ -71,19 +72,42 @@ fn failed(error: &Error, code: u8) -> ExitCode {
 }
 
 fn run(cli: Cli) -> Result<Answer> {
+    let quiet = cli.quiet;
+    if let Some(threads) = cli.threads {
+        parallel::use_threads(threads.into());
+    }
     let text = match cli.command {
-        None => main_job::run(&cli.job)?,
-        Some(Command::List) => show_command::list(),
+        None => main_job::run(&cli.job, quiet)?,
+        Some(Command::List(arguments)) => show_command::list(arguments.format)?,
         Some(Command::Show(arguments)) => show_command::run(&arguments)?,
         Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
-        Some(Command::Bench(arguments)) => bench_command::run(&arguments)?,
-        Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments)?,
+        Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet)?,
+        Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments, quiet)?,
+        Some(Command::Completions { shell }) => {
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "deltaq", &mut text);
+            String::from_utf8(text)?
+        }
+        Some(Command::Man { command }) => manual(command.as_deref())?,
         Some(Command::Prove(arguments)) => return prove_command::run(&arguments),
-        Some(Command::Random(arguments)) => return random_command::run(&arguments),
-        Some(Command::Stability(arguments)) => return stability_command::run(&arguments),
+        Some(Command::Random(arguments)) => return random_command::run(&arguments, quiet),
+        Some(Command::Stability(arguments)) => return stability_command::run(&arguments, quiet),
         Some(Command::Ensemble(arguments)) => return ensemble_command::run(&arguments),
         Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
     };
     Ok(text.into())
+}
+
+/// The page of the manual about the program, or about one of its commands.
+fn manual(command: Option<&str>) -> Result<String> {
+    let mut program = Cli::command();
+    program.build();
+    let about = match command {
+        None => &program,
+        Some(name) => program.find_subcommand(name).with_context(|| format!("there is no command `{name}`"))?,
+    };
+    let mut text = Vec::new();
+    clap_mangen::Man::new(about.clone()).render(&mut text)?;
+    Ok(String::from_utf8(text)?)
 }

@@ -1,6 +1,5 @@
-//! The main job: every scene in every formulation, reports written; and the check that committed reports are still true.
+//! The main job: every scene in every formulation, reports; and the check that committed reports still hold.
 
-use std::fmt::Write;
 use std::panic::resume_unwind;
 use std::process::Command;
 use std::thread::ScopedJoinHandle;
@@ -10,9 +9,10 @@ use anyhow::{Context, Result, bail};
 use clap::{CommandFactory, ValueEnum};
 use deltaq::{Comparison, Settings, choices, compare};
 use scene::Scene;
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use crate::cli::{Cli, JobArguments, ReportsArguments, Section};
+use crate::answer::{Answer, pretty};
+use crate::cli::{Cli, JobArguments, ReportsArguments, Section, TextOrJson};
 use random::{Batch, Kind, parallel, substitution};
 use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
@@ -74,7 +74,7 @@ struct Results {
 
 impl Results {
     fn of(sections: &[Section], names: &[&str], quiet: bool) -> Result<Results> {
-        // the referee is another process for most of its time: it works beside what follows, up to where times are measured
+        // the referee is mostly another process: it works beside what follows, up to where times are measured
         std::thread::scope(|scope| {
             let asked = sections.contains(&Section::Casadi);
             let referee = asked.then(|| scope.spawn(|| casadi_job::section(names)));
@@ -180,8 +180,10 @@ fn in_the_sources() -> bool {
 }
 
 /// Runs the main job and returns what to tell the user. Where it fails, nothing is written.
-pub(crate) fn run(arguments: &JobArguments) -> Result<String> {
+pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let clock = Instant::now();
+    // an answer for machines is one object
+    let quiet = quiet || arguments.format == TextOrJson::Json;
     let out = match &arguments.out {
         Some(folder) => folder.clone(),
         None if in_the_sources() => "reports".into(),
@@ -202,13 +204,13 @@ pub(crate) fn run(arguments: &JobArguments) -> Result<String> {
     let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
-    let results = Results::of(sections, &names, arguments.quiet)?;
+    let results = Results::of(sections, &names, quiet)?;
     let mut files = results.files();
     let further: Vec<(&str, &str)> = results.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
     if complete {
         let text = overview(&results.comparisons, &further);
         files.push(File { path: "README.md".into(), text });
-        let text = serde_json::to_string_pretty(&results.verdicts())? + "\n";
+        let text = pretty("verdicts", &results.verdicts());
         files.push(File { path: "verdicts.json".into(), text });
     }
     write_all(&out, &files)?;
@@ -223,21 +225,23 @@ pub(crate) fn run(arguments: &JobArguments) -> Result<String> {
         pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
         write_all(&folder, &part.files)?;
     }
-    let mut told = String::new();
-    for comparison in &results.comparisons {
-        let answer = answer(comparison);
-        let first = answer.split_inclusive(". ").next().unwrap_or_default();
-        let _ = writeln!(told, "{:<24} {first}", comparison.scene.name);
-    }
-    for (line, page) in further {
-        let _ = writeln!(told, "{page:<24} {line}");
-    }
-    if let Some(part) = measured {
-        let _ = writeln!(told, "{:<24} {}", folder.join(part.page).display(), part.headline);
-    }
-    let seconds = clock.elapsed().as_secs_f64();
-    let _ = writeln!(told, "\n{} files in {} after {seconds:.1} s", files.len(), out.display());
-    Ok(told)
+    let untold = if quiet { &results.comparisons[..] } else { &[] };
+    let scenes = untold.iter().map(first_sentence);
+    let pages = further.into_iter().map(|(line, page)| (page.to_owned(), line.to_owned()));
+    let measured = measured.map(|part| (folder.join(part.page).display().to_string(), part.headline));
+    let answers: Vec<(String, String)> = scenes.chain(pages).chain(measured).collect();
+    let (count, seconds) = (files.len(), clock.elapsed().as_secs_f64());
+    Ok(match arguments.format {
+        TextOrJson::Text => {
+            let lines: String = answers.iter().map(|(of, line)| told(of, line)).collect();
+            lines + &format!("\n{count} files in {} after {seconds:.1} s\n", out.display())
+        }
+        TextOrJson::Json => {
+            let answers: Vec<Value> =
+                answers.iter().map(|(of, answer)| json!({ "of": of, "answer": answer })).collect();
+            pretty("job", &json!({ "answers": answers, "files": count, "folder": out, "seconds": seconds }))
+        }
+    })
 }
 
 /// Computes the verdicts again and compares them with the committed ones.
@@ -256,7 +260,7 @@ pub(crate) fn check(arguments: &ReportsArguments) -> Result<String> {
             bail!("{} is missing; {MEND}", path.display());
         }
     }
-    let mut new = results.verdicts();
+    let mut new: Value = serde_json::from_str(&pretty("verdicts", &results.verdicts()))?;
     // the referee is not everywhere: its verdicts are compared where there are two to compare
     if old.get("casadi").is_none() || new.get("casadi").is_none() {
         for verdicts in [&mut old, &mut new] {
@@ -276,10 +280,32 @@ pub(crate) fn protocol() -> Settings {
     Settings { max_steps: MAX_STEPS, ..Settings::default() }
 }
 
-/// All scenes, over all processors, in the order of `names`.
+/// Of what, and the first sentence of its answer.
+fn first_sentence(comparison: &Comparison) -> (String, String) {
+    let answer = answer(comparison);
+    (comparison.scene.name.clone(), answer.split_inclusive(". ").next().unwrap_or_default().to_owned())
+}
+
+fn told(of: &str, line: &str) -> String {
+    format!("{of:<24} {line}\n")
+}
+
+/// All scenes, over all processors, in the order of `names`; what is found is told at once, unless `quiet`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let settings = protocol();
-    parallel::try_map(names, quiet, ToString::to_string, |name| scene_files(catalogue::find(name, &[])?, &settings))
+    let bar = parallel::progress(names.len(), quiet);
+    let reports = parallel::map(names, |name| {
+        bar.set_message(name.to_string());
+        let report = scene_files(catalogue::find(name, &[])?, &settings)?;
+        if !quiet {
+            let (of, line) = first_sentence(&report.comparison);
+            bar.suspend(|| Answer::from(told(&of, &line)).print())?;
+        }
+        bar.inc(1);
+        Ok(report)
+    });
+    bar.finish_and_clear();
+    reports.into_iter().collect()
 }
 
 /// References of all scenes over all processors, then measurements one after the other.

@@ -8,9 +8,6 @@ use crate::answer::{Answer, pretty};
 use crate::cli::{ProveArguments, TextOrJson};
 use validation::report::{membership_sentence, membership_value};
 
-/// Version of the format of certificates.
-const VERSION: u32 = 1;
-
 /// Writes the certificate; where there is none, says what is known instead.
 ///
 /// # Errors
@@ -24,8 +21,7 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Ok(certificate) => {
             let named = |pairs: Vec<(String, Value)>| pairs.into_iter().collect::<Map<_, _>>();
             let order = certificate.order;
-            let text = pretty(&json!({
-                "version": VERSION,
+            let value = json!({
                 "prime": certificate.prime,
                 "i": certificate.imaginary,
                 "N": certificate.parts,
@@ -38,7 +34,8 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
                 "completed": certificate.completed,
                 "motion": named(certificate.motion.into_iter().map(|(name, jet)| (name, jet.into())).collect()),
                 "reactions": certificate.reactions,
-            }));
+            });
+            let text = pretty("certificate", &value);
             if to_terminal {
                 return Ok(text.into());
             }
@@ -49,7 +46,8 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
                     format!("{}: {what} (order {order}); the certificate is in {}\n", scene.name, out.display())
                 }
                 TextOrJson::Json => {
-                    pretty(&json!({ "answer": "none", "proved": true, "order": order, "certificate": out }))
+                    let value = json!({ "answer": "none", "proved": true, "order": order, "certificate": out });
+                    pretty("prove", &value)
                 }
             }
             .into());
@@ -57,7 +55,10 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
     };
     let found = membership(&scene, scene.start.t + scene.duration).transpose();
     let text = match (format, to_terminal) {
-        (TextOrJson::Json, false) => pretty(&membership_value(found.as_ref())),
+        (TextOrJson::Json, false) => {
+            let unconstrained = json!({ "answer": "unconstrained" });
+            pretty("prove", &found.as_ref().map_or(unconstrained, |found| membership_value(Some(found))))
+        }
         _ => String::new(),
     };
     let sentence = match &found {

@@ -16,18 +16,18 @@ use validation::report::File;
 const COUNTEREXAMPLES: usize = 5;
 
 /// Puts random systems to the test.
-pub(crate) fn run(arguments: &RandomArguments) -> Result<Answer> {
+pub(crate) fn run(arguments: &RandomArguments, quiet: bool) -> Result<Answer> {
     let kinds = arguments.kind.map_or(Kind::ALL.to_vec(), |kind| vec![kind]);
     let batch = Batch { seed: arguments.seed, kinds };
     match arguments.index {
         Some(index) => one(&batch, index, arguments),
-        None => many(&batch, arguments),
+        None => many(&batch, arguments, quiet),
     }
 }
 
-fn many(batch: &Batch, arguments: &RandomArguments) -> Result<Answer> {
+fn many(batch: &Batch, arguments: &RandomArguments, quiet: bool) -> Result<Answer> {
     let clock = Instant::now();
-    let records = batch.run(arguments.count, arguments.log.as_deref(), arguments.output.quiet)?;
+    let records = batch.run(arguments.count, arguments.log.as_deref(), quiet)?;
     let seconds = clock.elapsed().as_secs_f64();
     let summary = Summary::of(&records);
     let folder = arguments.output.out.as_deref();
@@ -49,7 +49,7 @@ fn many(batch: &Batch, arguments: &RandomArguments) -> Result<Answer> {
         text
     };
     let json = || json!({ "batch": batch, "summary": summary, "open": open, "counterexamples": paths });
-    let text = arguments.output.answer(|| Ok(files), text, json)?;
+    let text = arguments.output.answer("random", || Ok(files), text, json)?;
     Ok(Answer { text, complaint: complaint(summary.total()) })
 }
 
@@ -75,7 +75,7 @@ fn one(batch: &Batch, index: u64, arguments: &RandomArguments) -> Result<Answer>
         text + &opened(&scene.name, &record)
     };
     let json = || json!({ "batch": batch, "record": record, "scene": scene.to_toml() });
-    let text = arguments.output.answer(|| Ok(vec![file(&scene)]), text, json)?;
+    let text = arguments.output.answer("random-system", || Ok(vec![file(&scene)]), text, json)?;
     Ok(Answer { text, complaint: complaint(summary.total()) })
 }
 

@@ -9,43 +9,66 @@ use deltaq::{
 use equations::{Cost, Equations};
 use mechanics::ConstantsRule;
 use scene::Scene;
+use serde_json::json;
 
-use crate::cli::ShowArguments;
+use crate::answer::pretty;
+use crate::cli::{ShowArguments, TextOrJson};
 use validation::catalogue;
 
 /// The built-in scenes, then those of the pages about the literature, a line each.
-pub(crate) fn list() -> String {
-    let line = |&(name, text): &(&str, &str)| match Scene::parse(name, text) {
-        Ok(scene) => format!("{name:<24} {} ({})\n", scene.title, scene.source),
-        Err(error) => format!("{name:<24} {error}\n"),
-    };
-    catalogue::SCENES.iter().chain(catalogue::CLASSICS).map(line).collect()
+pub(crate) fn list(format: TextOrJson) -> Result<String> {
+    let scenes = catalogue::SCENES.iter().chain(catalogue::CLASSICS).map(|(name, text)| Scene::parse(name, text));
+    let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
+    let line = |scene: &Scene| format!("{:<24} {} ({})\n", scene.name, scene.title, scene.source);
+    let entry = |scene: &Scene| json!({ "name": scene.name, "title": scene.title, "source": scene.source });
+    Ok(match format {
+        TextOrJson::Text => scenes.iter().map(line).collect(),
+        TextOrJson::Json => pretty("list", &json!({ "scenes": scenes.iter().map(entry).collect::<Vec<_>>() })),
+    })
 }
 
-/// Equations of every formulation and its further forms, what was left out, and whether the constraints are integrable.
+/// Equations of every formulation and form, what was left out, and whether constraints are integrable.
 pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
-    let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
-    let mut text = format!("{}\n{source}\n", scene.title);
     let g = &scene.system.graph;
-    let print = |e| if arguments.latex { g.latex(e) } else { g.plain(e) };
-    let _ = writeln!(text, "L = {}", print(scene.system.lagrangian));
-    for &f in &scene.system.constraints {
-        let _ = writeln!(text, "0 = {}", print(f));
-    }
-    let _ = writeln!(text, "\nConstraint: {}", integrability(&scene.system, &scene.start)?);
+    let print = |&e| if arguments.latex { g.latex(e) } else { g.plain(e) };
+    let lagrangian = print(&scene.system.lagrangian);
+    let constraints: Vec<String> = scene.system.constraints.iter().map(print).collect();
+    let integrability = integrability(&scene.system, &scene.start)?.to_string();
+    let mut equations = Vec::new();
     for choice in choices(&scene).into_iter().chain(forms(&scene)) {
-        let _ = writeln!(text, "\n## {}\n", choice.label);
-        match derive_at(&scene.system, &scene.start, &choice) {
-            Ok(equations) => {
-                text += &equations_text(&equations, style);
-                text += &form(&scene, equations, &choice)?;
-            }
-            Err(error) => {
-                let _ = writeln!(text, "refused: {error}");
-            }
-        }
+        let derived = match derive_at(&scene.system, &scene.start, &choice) {
+            Ok(equations) => Ok(equations_text(&equations, style) + &form(&scene, equations, &choice)?),
+            Err(error) => Err(error.to_string()),
+        };
+        equations.push((choice, derived));
+    }
+    if arguments.format == TextOrJson::Json {
+        let entry = |(choice, derived): &(Choice, Result<String, String>)| {
+            let removal = choice.removal.as_ref().map(|removal| &removal.name);
+            let (equations, refused) = (derived.as_ref().ok(), derived.as_ref().err());
+            json!({
+                "label": choice.label, "formulation": choice.formulation, "removal": removal,
+                "equations": equations, "refused": refused,
+            })
+        };
+        return Ok(pretty(
+            "show",
+            &json!({
+                "scene": scene.name, "title": scene.title, "source": scene.source, "lagrangian": lagrangian,
+                "constraints": constraints, "integrability": integrability,
+                "formulations": equations.iter().map(entry).collect::<Vec<_>>(),
+            }),
+        ));
+    }
+    let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
+    let mut text = format!("{}\n{source}\nL = {lagrangian}\n", scene.title);
+    text.extend(constraints.iter().map(|constraint| format!("0 = {constraint}\n")));
+    let _ = writeln!(text, "\nConstraint: {integrability}");
+    for (choice, derived) in equations {
+        let derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
+        let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }
     Ok(text)
 }

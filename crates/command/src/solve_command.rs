@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &SolveArguments) -> Result<Answer> {
             let mut value = json_of(&scene, &choice, &mut motion, complaint.as_deref())?;
             (value["times"], value["error_estimate"]) = (json!(reached), json!(estimate.absolute));
             columns.write(&mut value, &rows);
-            pretty(&value)
+            pretty("solve", &value)
         }
     };
     Ok(Answer { text, complaint })

@@ -1,4 +1,4 @@
-//! Scene files that are wrong, through the command: a clear error with its place, exit code 2, and nothing on standard output.
+//! Wrong scene files through the command: a clear error with its place, exit code 2, no standard output.
 
 use std::io::Write;
 use std::process::Output;

@@ -1,4 +1,4 @@
-//! `deltaq ensemble`, run as a user runs it: members are single motions, none is dropped, faults have their place.
+//! `deltaq ensemble` as a user runs it: members are single motions, none is dropped, faults have a place.
 
 use std::path::Path;
 
@@ -57,7 +57,7 @@ fn members_are_the_motions_of_solve() {
 
 #[test]
 fn members_that_fail_are_listed_with_their_cause() {
-    // the first and the second blade turn across the slope, where x is no parameter of the motion; the third comes back before
+    // the first two blades turn across the slope, where x is no parameter; the third comes back before
     let folder = tempfile::tempdir().expect("a folder");
     let file = write(folder.path(), "m.csv", "phi,phi'\n0.3,1.1\n0.3,-0.2\n0.1,-1.5\n");
     let removed = ["sledge", "-f", "removed-constraint", "--removal", "along-x", "--constants", "zero"];

@@ -6,4 +6,5 @@ mod documents;
 mod ensemble_command;
 mod output;
 mod random_command;
+mod shell;
 mod support;

@@ -4,18 +4,40 @@ use std::fs;
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use crate::support::{command, refused, text};
+use crate::support::{answer, command, refused, text};
 
-/// One call of every command that prints an answer.
-const ANSWERS: [&[&str]; 7] = [
+/// Reports of the main job.
+const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/reports");
+
+/// One call of every command, and of none, but of `reports`, which is the whole main job.
+const ANSWERS: [&[&str]; 15] = [
+    &["--scenes", "bowl", "--quiet", "--out", REPORTS],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
     &["list"],
     &["show", "sledge"],
     &["compare", "bowl", "--set", "duration=1"],
     &["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"],
     &["random", "--count", "1", "--quiet"],
+    &["prove", "sledge", "--out", "-"],
+    &["bench", "bowl", "--seconds", "0.0001", "--quiet"],
+    &["scaling", "--longest", "1", "--repeats", "1", "--quiet"],
+    &["stability", "--case", "blow-up", "--quiet"],
+    &["completions", "bash"],
+    &["man"],
+    &["help", "solve"],
     &["--help"],
 ];
+
+#[test]
+fn every_command_is_called() {
+    let (help, _) = answer(&["--help"], 0);
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let commands: Vec<&str> = listed.filter_map(|line| line.strip_prefix("  ")?.split(' ').next()).collect();
+    assert!(commands.contains(&"solve"), "{help}");
+    for command in commands.iter().filter(|command| !command.is_empty() && **command != "reports") {
+        assert!(ANSWERS.iter().any(|call| call[0] == *command), "{command}");
+    }
+}
 
 #[cfg(target_os = "linux")]
 #[test]
@@ -26,6 +48,9 @@ fn an_answer_that_cannot_be_written_is_an_error() {
         let stderr = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
         assert!(stderr.contains("cannot write the answer") && stderr.contains("No space left"), "{stderr}");
+    }
+    for file in [&["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"][..], &["prove", "sledge"]] {
+        refused(&[file, &["--out", "/dev/full"]].concat(), &["cannot write", "/dev/full", "No space left"]);
     }
 }
 

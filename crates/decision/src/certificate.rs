@@ -8,8 +8,9 @@ use crate::start::ExactStart;
 
 /// A proof that no `μ₀` makes a Chetaev motion vakonomic; `validation/proof/verify.py` checks it.
 ///
-/// With `μ = μ₀ + μ₁ s + …` the powers `s⁰ … s^K` of `Aᵀ μ̇ + (Ȧᵀ − f_qᵀ) μ = −E` are linear equations `S x = b` for `x = (μ₀, …, μ_{K+1})`. Some of their
-/// rows make `[S | −b]` a square matrix whose determinant modulo `p` is not zero. `T = e^{i/N} ↦ τ`; all other numbers are in `0..p`.
+/// With `μ = μ₀ + μ₁ s + …` the powers `s⁰ … s^K` of `Aᵀ μ̇ + (Ȧᵀ − f_qᵀ) μ = −E` are linear equations
+/// `S x = b` for `x = (μ₀, …, μ_{K+1})`. Some of their rows make `[S | −b]` a square matrix whose determinant
+/// modulo `p` is not zero. `T = e^{i/N} ↦ τ`; all other numbers are in `0..p`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Certificate {
     /// `p`.
@@ -37,7 +38,7 @@ pub struct Certificate {
 }
 
 impl Question<'_> {
-    /// The certificate that Chetaev's motion from `start` has no `μ₀`, in the family of vakonomic motions; why there is none where there is none.
+    /// The certificate that no vakonomic motion, for any `μ₀`, is Chetaev's from `start`; else the reason.
     ///
     /// # Errors
     /// The reason, in words.

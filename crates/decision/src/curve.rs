@@ -23,8 +23,8 @@ pub struct Point {
 
 /// A curve on `f = 0` in the space of coordinates.
 ///
-/// A curve that is known everywhere answers with [`Point`]s and has no states. One that has to be integrated hands its states and their
-/// rates to the same time loop in which the constants are transported.
+/// A curve that is known everywhere answers with [`Point`]s and has no states. One that has to be integrated
+/// hands its states and their rates to the same time loop in which the constants are transported.
 pub trait Curve {
     /// Start and end of the time for which the question is put.
     fn span(&self) -> (f64, f64);
@@ -142,10 +142,10 @@ impl Dynamics {
 }
 
 impl Flow {
-    /// The motion of `equations`, as derived for `system`, from `start` to `end`; `constants` are its free constants.
+    /// The motion of `equations`, derived for `system`, from `start` to `end` with free `constants`.
     ///
     /// # Errors
-    /// [`DecisionError::Unsuited`] for equations that cannot be followed in this way; hand over such a motion as [`Known`].
+    /// [`DecisionError::Unsuited`] for equations that cannot be followed so; take [`Known`] for these.
     pub fn new(
         system: &System,
         equations: &Equations,

@@ -19,7 +19,7 @@ const ROUND_OFF: f64 = 1e-14;
 /// Noise over this part of the terms that cancel tells nothing: a mismatch below it could be a real one.
 const TOO_LOUD: f64 = 1e-5;
 
-/// Where round-off makes the steps short, the tolerances grow by these factors, each in so many steps; then nothing is spared.
+/// Where round-off shortens steps: factors of the tolerances, with steps for each; the last spares nothing.
 const ATTEMPTS: [(f64, usize); 3] = [(1.0, 3_000), (1e2, 3_000), (1.0, 100_000)];
 
 /// How the decision is computed.
@@ -76,13 +76,13 @@ impl AffineSet {
 
 /// What was decided, and from which numbers.
 ///
-/// The mismatch of accelerations is `y(t) = O(t) c + y₀(t)` for constants `c`; lengths are `(∫ |y|²_M dt)^{1/2}`, in the unit of
-/// `√E/√T`.
+/// The mismatch of accelerations is `y(t) = O(t) c + y₀(t)` for constants `c`; lengths are
+/// `(∫ |y|²_M dt)^{1/2}`, in the unit of `√E/√T`.
 #[derive(Clone, Debug)]
 pub struct Decision {
     /// The answer.
     pub verdict: Verdict,
-    /// The constants with the least mismatch: the answer where the verdict is [`Verdict::Contained`], else the nearest miss.
+    /// The constants of least mismatch: the answer for [`Verdict::Contained`], else the nearest miss.
     pub set: AffineSet,
     /// The least mismatch, ρ.
     pub least: f64,
@@ -126,8 +126,8 @@ impl Decision {
 
 /// Decides whether a curve is a motion of `family` for some choice of the family's constants.
 ///
-/// The same curve is handed over twice: as well as it is known, and less well; the difference tells the noise. For a motion that comes with
-/// two runs these are the two; [`decide_flow`] does it for a curve that is integrated here.
+/// The same curve comes twice: as well as it is known, and less well; the difference tells the noise. A
+/// motion has its two runs; [`decide_flow`] does it for a curve that is integrated here.
 ///
 /// # Errors
 /// [`DecisionError`] where curve or constants cannot be followed to the end.
@@ -225,7 +225,7 @@ fn judge(triangle: DMatrix<f64>, rows_noise: f64, size: f64, acceleration: f64, 
     }
 }
 
-/// `A V` with orthogonal columns, and the orthogonal `V` (one-sided Jacobi): small columns come out as sharp as large ones.
+/// `A V` with orthogonal columns, and the orthogonal `V` (one-sided Jacobi): small columns stay sharp.
 fn orthogonal(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
     let size = matrix.ncols();
     let (mut images, mut preimages) = (matrix.clone(), DMatrix::identity(size, size));

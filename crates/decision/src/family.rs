@@ -1,4 +1,4 @@
-//! The motions of one formulation for all values of its free constants, as a condition on those constants along a curve.
+//! One formulation's motions for all free constants, as a condition on these constants along a curve.
 
 use std::collections::HashMap;
 
@@ -10,10 +10,10 @@ use crate::DecisionError;
 use crate::lift::Lift;
 use crate::program::{Evaluator, Program};
 
-/// Equations of a formulation, read as conditions that are affine in its costates `η` (multipliers `μ`, memory costates `P`).
+/// A formulation's equations as conditions affine in its costates `η` (multipliers `μ`, memory costates `P`).
 ///
-/// Along a curve everything but `η` is known. With the unknowns `z` of one instant (accelerations, and `μ̇` where there is one) the
-/// equations are `J Δz + R_η η + R₀ = 0`, `Δz` being what has to be added to the curve's own accelerations.
+/// Along a curve all but `η` is known. With the unknowns `z` of one instant (accelerations, and `μ̇` if any)
+/// they are `J Δz + R_η η + R₀ = 0`, `Δz` being what the curve's own accelerations lack.
 #[derive(Clone)]
 pub struct Family {
     pub(crate) formulation: &'static str,
@@ -70,11 +70,11 @@ pub(crate) struct Instant<'a, T> {
 impl Family {
     /// Reads `equations` of `system`, as derived: nothing left out, nothing substituted.
     ///
-    /// Forces of `system` act on the family by `∫ (δL + Q·δq) dt = 0`, whatever variations `δq` its principle admits; a variational
-    /// formulation is therefore derived from [`System`] without forces, and `carries_forces` says whether `equations` contain `Q` already.
+    /// Forces of `system` act by `∫ (δL + Q·δq) dt = 0` for the variations `δq` that the family's principle
+    /// admits: a variational formulation is derived without; `carries_forces` says if `equations` have `Q`.
     ///
     /// # Errors
-    /// [`DecisionError::Unsuited`] where the equations are not affine in the costates, or contain what a curve does not tell.
+    /// [`DecisionError::Unsuited`] for equations not affine in costates, or that ask more than a curve tells.
     pub fn new(system: &System, equations: &Equations, carries_forces: bool) -> Result<Self, DecisionError> {
         let unsuited = |reason: String| DecisionError::Unsuited { formulation: equations.formulation, reason };
         let system = &System { graph: equations.graph.clone(), ..system.clone() };
@@ -236,7 +236,7 @@ fn system_matrices(g: &Graph, system: &System) -> Vec<Expr> {
     entries
 }
 
-/// `Q` on the side of `L_q`: `R_i −= Σ Q_j ∂q_j/∂x_i` for the variable `x_i` that equation `i` balances, `Ṗ_w −= Σ Q_j ∂q_j/∂w`.
+/// `Q` beside `L_q`: `R_i −= Σ Q_j ∂q_j/∂x_i` where equation `i` balances `x_i`, `Ṗ_w −= Σ Q_j ∂q_j/∂w`.
 fn add_forces(
     system: &System,
     removal: Option<&Removal>,

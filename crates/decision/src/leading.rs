@@ -10,7 +10,7 @@ use crate::start::ExactStart;
 
 /// Orders that are looked at.
 const HIGHEST: usize = 12;
-/// A coefficient under this part of the terms that it is made of counts as zero, where no exact numbers decide.
+/// A coefficient under this part of its terms counts as zero, where no exact numbers decide.
 const VANISHES: f64 = 1e-9;
 
 /// The leading term of `q_family − q_curve`: `coefficient · (t − t₀)^exponent`.
@@ -22,13 +22,13 @@ pub struct LeadingDifference {
     pub coefficient: Vec<f64>,
     /// The time after which a later term of `y` makes more of the difference than this one.
     pub reach: f64,
-    /// Whether the exponent is proved for the numbers as written: all lower coefficients have the image zero, and this one has not.
+    /// Whether the exponent is proved for the numbers as written: all lower images are zero, this one is not.
     pub exact: bool,
 }
 
 impl Question<'_> {
-    /// The leading term for the motion of the family that starts at `state` with `constants`; `None` where no coefficient up to the twelfth
-    /// stands out. With an exact start the exponent is looked at in exact numbers, `constants` being the decimals that they are written as.
+    /// The leading term for the family's motion from `state` with `constants`; `None` if no coefficient up to
+    /// the twelfth stands out. An exact start gives an exact exponent, `constants` being decimals as written.
     pub fn leading_difference(
         &self,
         system: &System,
@@ -55,7 +55,7 @@ impl Question<'_> {
         let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let meets = |k: usize| (size(&coefficient) / size(&term(k))).powf(1.0 / (k - order) as f64);
         let reach = (order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min);
-        // parameters of a removal have no series among these inputs, and constraints that are not linear no such removal
+        // removal parameters have no series among these inputs, and nonlinear constraints no such removal
         let coefficient = match self.family().lift {
             Some(_) => coefficient,
             None => {
@@ -67,8 +67,8 @@ impl Question<'_> {
         Some(LeadingDifference { exponent: order + 2, coefficient, reach, exact: proved == Some(Some(order)) })
     }
 
-    /// Accelerations from those unknowns of the family at which the mismatch begins. These were found with `∂R/∂z` at `η = 0`; where a constraint is
-    /// not linear in the velocities, `η` is in it: `R_η`, affine in the accelerations, tells how.
+    /// Accelerations from the family's unknowns at which the mismatch begins, found with `∂R/∂z` at `η = 0`.
+    /// A constraint not linear in `v` brings `η` in: `R_η`, affine in the accelerations, tells how.
     fn at_costates(&self, inputs: &[f64], constants: &[f64], unknowns: &[f64]) -> Option<Vec<f64>> {
         let (family, shape) = (self.family(), &self.family().shape);
         let mut evaluator = family.evaluator::<f64>();

@@ -10,7 +10,7 @@ use crate::family::inputs;
 use crate::program::Program;
 use crate::series::{NoSeries, SeriesSolve, order, sound};
 
-/// `u` and `w` that are no coordinates: integrated beside the curve, with `u̇` and `ü` from `q̇(u̇, u, w, t) = v` and its rate.
+/// `u`, `w` that are no coordinates, integrated beside the curve; `u̇`, `ü` by `q̇(u̇, u, w, t) = v` and on.
 #[derive(Clone)]
 pub(crate) struct Lift {
     /// Integrated `u` then `w`; then `u̇`, then `ü`.
@@ -23,7 +23,7 @@ pub(crate) struct Lift {
     pub(crate) velocities: Program,
     /// `q̈ − a` at `ü = 0`, then the rates of `w` at `ü = 0`.
     pub(crate) accelerations: Program,
-    /// Start values of the integrated `u` and `w` as they are written, from parameters, `t, q, v`; the first one that would be needed and is not.
+    /// Start values of the integrated `u`, `w` as written, in parameters, `t, q, v`; or the first missing.
     written: Program,
     missing: Option<String>,
     system: System,

@@ -42,8 +42,8 @@ pub enum Finding {
 pub struct NoConstants {
     /// The order of the derivative of the mismatch at which the last choice is gone.
     pub order: usize,
-    /// Whether a minor of full size is not zero. Where `O` has less than full rank there is none; then the proof rests on ranks modulo `p`, which are
-    /// those of the real numbers but for an accident of a probability of about 1e-17.
+    /// Whether a minor of full size is not zero. Without full rank of `O` there is none; then the proof rests
+    /// on ranks modulo `p`, those of the real numbers but for an accident of probability 1e-17 or so.
     pub full_rank: bool,
 }
 
@@ -54,7 +54,7 @@ pub struct Proof {
     pub this_start: Finding,
     /// About all starts on the constraint but a set of measure zero.
     pub almost_every_start: Finding,
-    /// Velocities that were given as decimals and are solved from the constraints here, which their decimals miss by round-off.
+    /// Velocities given as decimals that miss the constraints by round-off, solved from these here.
     pub completed: Vec<String>,
 }
 
@@ -130,7 +130,7 @@ pub struct Question<'a> {
 }
 
 impl<'a> Question<'a> {
-    /// Is the motion of `curve`, equations as derived for `system` with `constants` for their own free constants, in `family`?
+    /// Is the motion of `curve`, equations derived for `system`, own free `constants`, in `family`?
     ///
     /// # Errors
     /// [`DecisionError::Unsuited`].

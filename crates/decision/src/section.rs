@@ -19,8 +19,8 @@ const LARGEST: i128 = 1_000_000;
 
 /// Constants with which every start on the constraint has the motion in question.
 ///
-/// `c_j = Σ a_{jb} B_b(q, v)` with fractions `a_{jb}` and the momenta `∂L/∂v`, 1 and the velocities as `B_b`. The equations were solved for `a` over
-/// random points of the finite field and hold at four more of these: by chance less often than once in 10^50.
+/// `c_j = Σ a_{jb} B_b(q, v)` with fractions `a_{jb}` and as `B_b` the momenta `∂L/∂v`, 1 and the velocities.
+/// Solved for `a` at random points of the finite field, they hold at four more: a chance under 1 in 10^50.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// Names of the constants.

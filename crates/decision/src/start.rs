@@ -44,7 +44,7 @@ pub struct ExactStart {
     numbers: Vec<Option<f64>>,
     /// Velocities that the constraints supply.
     supplied: Vec<usize>,
-    /// What `v` the constraint would be solved for, where nothing is supplied and the given velocities miss it by round-off.
+    /// What `v` a constraint would be solved for, if none is supplied and the given miss it by round-off.
     spare: Vec<usize>,
     constraints: Program,
     problem: Option<NoExactStart>,
@@ -53,7 +53,7 @@ pub struct ExactStart {
 }
 
 impl ExactStart {
-    /// The start of `state`, with what `completion` says about how it was written; `removal` is the one that start rates may belong to.
+    /// The start of `state`, written as `completion` says; `removal`: the one that start rates may be of.
     ///
     /// # Errors
     /// [`DecisionError::Compile`] for expressions with symbols that the system does not have.
@@ -100,7 +100,7 @@ impl ExactStart {
         Ok(ExactStart { system, time, values, numbers, supplied, spare, constraints, problem, projected })
     }
 
-    /// Names of velocities that are solved from the constraints although they were given: their decimals miss the constraints by round-off.
+    /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
     pub(crate) fn series(&self) -> Result<(SeriesStart<Modular>, Vec<String>), NoExactStart> {
         if let Some(problem) = &self.problem {
             return Err(problem.clone());
@@ -140,13 +140,13 @@ impl ExactStart {
         }
     }
 
-    /// Places of the velocities that are solved from the constraints, where [`Self::series`] has `completed` these.
+    /// Places of velocities solved from the constraints, where [`Self::series`] `completed` these.
     pub(crate) fn open(&self, completed: &[String]) -> &[usize] {
         if completed.is_empty() { &self.supplied } else { &self.spare }
     }
 
-    /// Random integers for positions and velocities, the others from the constraints. Where these are squares, the start is on that part of `f = 0`
-    /// on which it has its roots: both signs, unless the constraint is a product.
+    /// Random integers for positions and velocities, the others from the constraints. Square ones: the start
+    /// is where `f = 0` has its roots: both signs, unless the constraint is a product.
     pub(crate) fn random(&self, seed: u64) -> Result<SeriesStart<Modular>, NoExactStart> {
         let (parameters, time) = self.given();
         let mut state = seed;
@@ -177,7 +177,7 @@ impl ExactStart {
         Err(NoExactStart::Nonlinear)
     }
 
-    /// `v` on constraints that are quadratic: each is solved for a velocity that the fewest of them contain. `None` where one has no root.
+    /// `v` on quadratic constraints, each for a velocity that the fewest contain; `None` without a root.
     fn with_roots(
         &self,
         parameters: &[Jet<Modular>],
@@ -277,7 +277,7 @@ fn by_removal(system: &System, removal: Option<&Removal>, rates: &[(Symbol, Expr
     }
 }
 
-/// As many velocities as there are constraints, by which these can be solved best at `state`; none where they are dependent.
+/// As many velocities as constraints, the best to solve these for at `state`; none if they are dependent.
 fn independent_columns(system: &System, state: &State, constraints: &Program) -> Vec<usize> {
     let (h, n) = (system.constraints.len(), system.dimension());
     let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();

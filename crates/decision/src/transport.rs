@@ -1,7 +1,7 @@
 //! The constants' images along a curve: `η(t) = Φ c + φ`, integrated beside it.
 
 use integrate::{Dense, DenseOutput, EvaluationError, Method, Options, Problem, Start, Status, StopCause, integrate};
-use mechanics::State;
+use mechanics::{SingularValues, State};
 use nalgebra::{DMatrix, DVector};
 
 use crate::DecisionError;
@@ -110,16 +110,11 @@ impl<'a> Transport<'a> {
         let values = numbers.velocities.run(&self.inputs);
         let slopes = DMatrix::from_row_slice(coordinates, parameters, &values[..coordinates * parameters]);
         let rest = DVector::from_column_slice(&values[coordinates * parameters..]);
-        let slopes = slopes.svd(true, true);
-        let least = |rest: &DVector<f64>| {
-            slopes
-                .solve(rest, 1e-13)
-                .map_err(|_| broken(format!("the parameters of the removal are not determined at t = {t}")))
-        };
-        let speeds = -least(&rest)?;
+        let slopes = SingularValues::of(&slopes);
+        let speeds = -slopes.solve(&rest, 1e-13);
         self.inputs.extend(speeds.iter());
         let values = numbers.accelerations.run(&self.inputs);
-        let seconds = -least(&DVector::from_column_slice(&values[..coordinates]))?;
+        let seconds = -slopes.solve(&DVector::from_column_slice(&values[..coordinates]), 1e-13);
         rates[self.own..self.own + parameters].copy_from_slice(speeds.as_slice());
         rates[self.own + parameters..end].copy_from_slice(&values[coordinates..]);
         self.inputs.extend(seconds.iter());
@@ -184,7 +179,7 @@ impl<'a> Transport<'a> {
         }
     }
 
-    /// The size of each state by its start and its rate there, where that is under 1; at least a thousandth: round-off is no size.
+    /// Size of each state by its start and its rate there, if under 1; at least a thousandth, over round-off.
     fn sizes(&mut self, start: &Start, end: f64) -> Result<Vec<f64>, DecisionError> {
         let mut rates = vec![0.0; start.y.len()];
         self.rates(start.t, &start.y, &mut rates).map_err(|e| DecisionError::Curve { reason: e.reason })?;

@@ -1,5 +1,5 @@
-//! Systems of the literature. The orders were found beforehand by scripts that share nothing with this crate: series of 50 digits from the
-//! text of the scene, and for the falling disc a program in the integers modulo a prime.
+//! Systems of the literature. Scripts that share nothing with this crate found the orders beforehand: series
+//! of 50 digits from the scene's text, for the falling disc a program in the integers modulo a prime.
 
 use decision::Finding;
 

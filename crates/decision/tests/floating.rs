@@ -95,7 +95,7 @@ fn planted_constants_are_found() {
 
 #[test]
 fn a_removed_motion_that_is_a_vakonomic_one() {
-    // T3: with t1 = -u'/(g sin(alpha) cos(phi)) Gao's sledge has mu_0 = g t1 sin(alpha) sin(phi) and P_x = g t1 sin(alpha)
+    // T3: with t1 = -u'/(g sin(alpha) cos(phi)) Gao's sledge has mu_0 = P_x sin(phi), P_x = g t1 sin(alpha)
     let scene = built_in("sledge", &[("duration", 3.0)]);
     let pull = 9.81 * 0.4_f64.sin();
     let horizon = -0.5 / (pull * 0.3_f64.cos());

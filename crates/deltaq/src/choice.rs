@@ -1,4 +1,4 @@
-//! What is chosen before a motion is computed: formulation, removal, free constants; and the equations that follow.
+//! What is chosen before a motion is computed: formulation, removal, free constants; the resulting equations.
 
 use std::time::Instant;
 
@@ -21,8 +21,8 @@ pub struct Choice {
     pub constants: ConstantsRule,
 }
 
-/// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need one get a choice
-/// without, which [`solve_choice`] refuses with the reason.
+/// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need
+/// one get a choice without, which [`solve_choice`] refuses with the reason.
 pub fn choices(scene: &Scene) -> Vec<Choice> {
     let mut choices = Vec::new();
     let parameters: Vec<String> = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
@@ -54,12 +54,12 @@ fn without_removal(formulation: &Formulation, scene: &Scene) -> Choice {
     Choice { label: formulation.title.into(), formulation: formulation.name, removal: None, constants }
 }
 
-/// The free constants of a formulation without a removal: the scene's multipliers where it starts from multipliers, else zero.
+/// Free constants without a removal: the scene's multipliers if the formulation starts from them, else zero.
 pub fn default_constants(formulation: &Formulation, scene: &Scene) -> ConstantsRule {
     if formulation.starts_multipliers { ConstantsRule::Given(scene.multipliers.clone()) } else { ConstantsRule::Zero }
 }
 
-/// The free constants of `choice` for a motion of `scene`: its multipliers where the formulation starts from them.
+/// The free constants of `choice` in `scene`: its multipliers where the formulation starts from them.
 pub fn constants_of(choice: &Choice, scene: &Scene) -> ConstantsRule {
     match formulation(choice.formulation) {
         Some(formulation) if formulation.starts_multipliers => default_constants(formulation, scene),
@@ -96,7 +96,7 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
     values.len() == memory && values.iter().enumerate().any(|(i, &x)| x != 0.0 && !kept(i))
 }
 
-/// [`derive()`], from constraints that are independent at `start` where those of the system nearly are not ([`Recombination`]).
+/// [`derive()`], from constraints made independent at `start` where they nearly are not ([`Recombination`]).
 ///
 /// # Errors
 /// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
@@ -149,7 +149,7 @@ type Automatic = fn(&System, &mechanics::State) -> Result<Removal, RemovalError>
 const AUTOMATIC: [(&str, Automatic); 2] =
     [("coordinates", Removal::by_coordinates), ("quasi-velocities", Removal::by_quasi_velocities)];
 
-/// The removals of a scene: those written by hand, then the automatic ones that apply and are not the same again.
+/// The removals of a scene: those written by hand, then automatic ones that apply and are new.
 ///
 /// # Errors
 /// [`RemovalError`] where no removal was written by hand and none can be found automatically.
@@ -180,7 +180,7 @@ fn same_parameters(system: &System, a: &Removal, b: &Removal) -> bool {
     coordinates(a).is_some() && coordinates(a) == coordinates(b) && plain(a) && plain(b)
 }
 
-/// The removal of this name, written by hand or automatic; `None` where there is none of this name ([`removal_names`]).
+/// The removal of this name, by hand or automatic; `None` for any other name ([`removal_names`]).
 ///
 /// # Errors
 /// [`RemovalError`] where the automatic removal asked for does not apply.

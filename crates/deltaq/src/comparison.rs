@@ -23,8 +23,8 @@ pub struct Comparison {
     pub pairs: Vec<Pair>,
     /// Fits of free constants.
     pub fits: Vec<Fit>,
-    /// Which motions are motions of another formulation for some values of its constants. Of removals by coordinates nothing is asked: their families
-    /// are the vakonomic one.
+    /// Which motions are motions of another formulation for some values of its constants. Of removals by
+    /// coordinates nothing is asked: their families are the vakonomic one.
     pub decided: Vec<Decided>,
 }
 
@@ -34,14 +34,14 @@ impl Comparison {
         self.runs.iter().position(|r| r.choice.formulation == formulation)
     }
 
-    /// Is Chetaev's motion vakonomic for some `μ₀`? `None` where there is no constraint, or one of the two has no motion.
+    /// Is Chetaev's motion vakonomic for some `μ₀`? `None` without a constraint, or if one has no motion.
     pub fn membership(&self) -> Option<&Result<Membership, SolveError>> {
         let (family, curve) = (self.run("vakonomic")?, self.run("chetaev")?);
         self.decided.iter().find(|d| (d.family, d.curve) == (family, curve)).map(|d| &d.outcome)
     }
 
-    /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: fits minimize the sum of squares, not the
-    /// largest gap, and a search is no reason to go farther away.
+    /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: fits minimize
+    /// the sum of squares, not the largest gap, and a search is no reason to go farther away.
     pub fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));
@@ -63,10 +63,10 @@ impl Comparison {
     }
 }
 
-/// Computes these choices of a scene, those of [`crate::choices`] for all formulations, and compares them. `extra` are further runs, derived elsewhere.
+/// Computes `choices` of a scene ([`crate::choices`]: all), adds `extra` runs from elsewhere, compares.
 ///
 /// # Errors
-/// [`mechanics::RemovalError`] where the constraints are dependent; [`SolveError`] where a computed motion cannot be read off.
+/// [`mechanics::RemovalError`] for dependent constraints; [`SolveError`] where a motion cannot be read off.
 ///
 /// ```
 /// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
@@ -118,7 +118,7 @@ pub fn compare(
     Ok(Comparison { scene, integrability, runs, pairs, fits, decided })
 }
 
-/// The costate form is the vakonomic motion once more, and compared with that only; a run from outside the table with Chetaev only.
+/// The costate form is compared with the vakonomic one only, a run from outside the table with Chetaev only.
 fn worth_comparing(first: &Run, second: &Run) -> bool {
     let names = [first.choice.formulation, second.choice.formulation];
     let only_with = |name: &str, partner: &str| !names.contains(&name) || names.contains(&partner);

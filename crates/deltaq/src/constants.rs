@@ -6,8 +6,8 @@ use mechanics::ConstantsRule;
 
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 
-/// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are natural at a horizon; that is
-/// done as `settings` say.
+/// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are
+/// natural at a horizon; that is done as `settings` say.
 ///
 /// # Errors
 /// [`SolveError`] where there is no start.
@@ -86,14 +86,14 @@ pub fn constant_names(equations: &Equations) -> Vec<String> {
 /// Residual at the horizon that is accepted, over the tolerance of the integration.
 const RESIDUAL: f64 = 1e3;
 
-/// Steps that a run of the search may take on average, over those of the run from the guess: beside a singularity a run may take a thousand times more,
-/// and the search does not get past it.
+/// Steps that a run of the search may take on average, over those of the run from the guess: beside a
+/// singularity a run may take a thousand times more, and the search does not get past it.
 const LONGER: usize = 4;
 
-/// Finds the constants `C` for which every [`equations::FreeConstant::natural`] quantity vanishes at `horizon`.
+/// Finds the constants `C` that make every [`equations::FreeConstant::natural`] vanish at `horizon`.
 ///
-/// Single shooting from zero: the constants are the unknowns, the quantities at the horizon the residuals. All runs together may take as many steps as
-/// [`LONGER`] times the first one, for each run that the search may make.
+/// Single shooting from zero: unknowns are the constants, residuals the quantities at the horizon. All runs
+/// together may take [`LONGER`] times the first one's steps, for each run that the search may make.
 fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings) -> Result<Vec<f64>, SolveError> {
     let equations = &prepared.equations;
     let constants = &equations.free_constants;

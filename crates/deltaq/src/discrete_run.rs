@@ -8,7 +8,7 @@ use symbolic::Symbol;
 use crate::SolveError;
 use crate::start_values::StartValues;
 
-/// A discrete trajectory, with what makes states `y` of its `(x, v, ν)`: the expressions in which the derivation says what motions start from.
+/// A discrete trajectory; its `(x, v, ν)` give states `y` by the derivation's expressions of start values.
 #[derive(Clone)]
 pub(crate) struct DiscreteRun {
     trajectory: Trajectory,

@@ -16,23 +16,23 @@ pub struct Doubt {
 /// Fewer steps than this may be those of the start, or of a motion that is a polynomial.
 const FEW_STEPS: usize = 200;
 
-/// Steps of a motion that stops are counted over this part of it: just before a singularity they become short whatever the tolerance.
+/// Part of a stopped motion whose steps count: just before a singularity they are short at any tolerance.
 const BEFORE_THE_END: f64 = 0.9;
 
 /// A hundredth of the tolerance takes at least this power of what the order of the method asks for.
 const MORE_STEPS: f64 = 1.0 / 3.0;
 
-/// A hundredth of the tolerance takes at most so many times what the order of the method asks for, or it is round-off that is looked at.
+/// Steps of a hundredth of the tolerance over what the method's order asks for; beyond, it is round-off.
 const TOO_MANY: f64 = 10.0;
 
 /// So many steps of the looser run are looked at together to find where the doubt begins.
 const TOGETHER: usize = 20;
 
 impl Doubt {
-    /// From the times at which the steps of the kept and of the looser run begin and end, up to the `end` of the motion.
+    /// From the ends of the steps of the kept and of the looser run, up to the `end` of the motion.
     ///
-    /// Two runs with the same steps have the same error, which their difference does not show; and a run whose steps follow its round-off is no
-    /// better than the looser one. What the steps of the whole motion show is doubted from the first stretch on that shows it.
+    /// Two runs with the same steps have the same error, which their difference hides; a run whose steps
+    /// follow its round-off is no better than the looser one. Doubt begins where this first shows.
     pub(crate) fn of([kept, looser]: &[Vec<f64>; 2], end: f64, complete: bool, method: Method) -> Option<Doubt> {
         let start = kept[0];
         let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };

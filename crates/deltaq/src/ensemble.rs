@@ -1,4 +1,4 @@
-//! Ensembles: many starts and parameters of one system at once, over the lanes of the processor's vectors and over its cores.
+//! Ensembles: many starts and parameters of one system at once, over vector lanes and processor cores.
 
 mod motions;
 mod run;
@@ -20,17 +20,17 @@ pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::over_threads;
 
-/// Equations of a scene in one formulation, derived and compiled once for members that differ by start, by the values of some parameters, by free
-/// constants and by duration.
+/// Equations of a scene in one formulation, derived and compiled once for members that differ by start, by
+/// the values of some parameters, by free constants and by duration.
 ///
-/// Members are integrated by [`Method::Taylor`], eight at a time. One that does not go well in company is integrated alone, and says so
-/// ([`MemberRun::alone`]): where the form of the equations is not to be trusted, at singularities, and always where a block of equations is left to be
-/// solved numerically ([`Ensemble::refusal`]).
+/// [`Method::Taylor`] integrates eight members at a time. One that does not go well in company is integrated
+/// alone, and says so ([`MemberRun::alone`]): where the form of the equations is not to be trusted, at
+/// singularities, always where a block is left to solve numerically ([`Ensemble::refusal`]).
 ///
 /// ```
 /// # let text = include_str!("../../../validation/scenes/sledge.toml");
 /// use deltaq::{Ensemble, EnsembleOptions, Settings, choices};
-/// let scene = |g: f64, phi: f64| scene::Scene::parse_with("sledge", text, &[("g".into(), g), ("phi".into(), phi)]);
+/// let scene = |g, phi| scene::Scene::parse_with("sledge", text, &[("g".into(), g), ("phi".into(), phi)]);
 /// let base = scene(9.81, 0.3)?;
 /// let mut ensemble = Ensemble::new(&base, &choices(&base)[0], &["g"], &Settings::default())?;
 /// let mut members = Vec::new();
@@ -100,12 +100,13 @@ impl EnsembleMember {
 }
 
 impl Ensemble {
-    /// Derives and compiles; the form of the equations is chosen at the start of `scene`, so that this should be one among the members.
+    /// Derives and compiles in the form chosen at the start of `scene`, which should be one of the members.
     ///
     /// [`Settings::method`] counts for nothing.
     ///
     /// # Errors
-    /// As [`crate::solve_choice`]; [`SolveError::Member`] where a name is no parameter, or where parameters are to vary and the constants are natural at a horizon.
+    /// As [`crate::solve_choice`]; [`SolveError::Member`] where a name is no parameter, or where parameters
+    /// are to vary and the constants are natural at a horizon.
     pub fn new(scene: &Scene, choice: &Choice, parameters: &[&str], settings: &Settings) -> Result<Self, SolveError> {
         let mut equations = derive_at(&scene.system, &scene.start, choice)?;
         let system = scene.system.clone();
@@ -153,10 +154,10 @@ impl Ensemble {
         &self.prepared.compiled
     }
 
-    /// The member that `scene` is: the same scene with other numbers. Its multipliers are the free constants where the formulation starts from them.
+    /// The member `scene`, with other numbers; its multipliers are free constants if motions start from them.
     ///
     /// # Errors
-    /// As [`Ensemble::member_at`]; [`SolveError::Member`] where another parameter than those that vary has changed.
+    /// As [`Ensemble::member_at`]; [`SolveError::Member`] if another parameter than the varying has changed.
     pub fn member(&mut self, scene: &Scene) -> Result<EnsembleMember, SolveError> {
         if scene.system.parameters.len() != self.system.parameters.len() {
             return Err(SolveError::Member { reason: "another scene".into() });
@@ -177,7 +178,7 @@ impl Ensemble {
     /// The member that starts there.
     ///
     /// # Errors
-    /// [`SolveError`] where there is no start; [`SolveError::Member`] for a wrong number of parameters or one that is not finite.
+    /// [`SolveError`] without a start; [`SolveError::Member`] for parameters not finite or wrong in number.
     pub fn member_at(&mut self, start: &EnsembleStart) -> Result<EnsembleMember, SolveError> {
         let EnsembleStart { state, end, parameters, constants } = start;
         let end = *end;
@@ -206,8 +207,8 @@ impl Ensemble {
         Ok(EnsembleMember { t: state.t, end, y, constants, guess })
     }
 
-    /// [`Ensemble::member_at`] of all of them, over threads as [`EnsembleOptions::threads`] says: constants that are natural at a horizon take longer to find than a
-    /// motion to integrate.
+    /// [`Ensemble::member_at`] of all of them, over threads as [`EnsembleOptions::threads`] says: constants
+    /// that are natural at a horizon take longer to find than a motion to integrate.
     pub fn members(&self, starts: &[EnsembleStart], threads: usize) -> Vec<Result<EnsembleMember, SolveError>> {
         let threads = threads::number(threads).clamp(1, starts.len().max(1));
         let copies: Vec<Mutex<Ensemble>> = (0..threads).map(|_| Mutex::new(self.clone())).collect();

@@ -1,6 +1,6 @@
 //! Fairness: the free constants with which one motion comes closest to another.
 //!
-//! "Different" has to mean different for *every* choice of the free constants (T9), so a comparison also searches the best one.
+//! "Different" means different for *every* choice of free constants (T9), so a comparison searches the best.
 
 use equations::Equations;
 use integrate::{BoundaryError, ShootOptions, fit};
@@ -20,13 +20,14 @@ const SEARCH_ITERATIONS: usize = 30;
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
 const CLOSE: f64 = 1e-4;
 
-/// Integrates `equations` with the free constants for which the coordinates come closest to those of `target`:
+/// Integrates `equations` with the free constants whose coordinates come closest to those of `target`:
 ///
 /// ```text
 /// minimize Σ_k Δqᵀ M Δq ,   Δq = q(t_k; C) − q_target(t_k) ,   over C .
 /// ```
 ///
-/// Searches from each of `guesses` at a coarse tolerance, keeps the best, and refines it where it comes close: then it may be exact. `None` where there is no free constant, or no guess leads to a motion.
+/// Searches at a coarse tolerance from that of `guesses` which is closest, and refines what comes close: then
+/// it may be exact. `None` where there is no free constant, or no guess leads to a motion.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be started or `target` cannot be read off.
@@ -53,28 +54,37 @@ pub fn best_fit(
     let origin = DVector::from_vec(target.at(start)?.coordinates);
     let way = goal.iter().map(|(_, q, factor)| (factor * (q - &origin)).norm_squared()).sum::<f64>().sqrt();
     let mut prepared = Prepared::new(setting, equations.clone(), settings)?;
-    let mut search = |tolerance: f64, limits: &Settings, guess: &[f64]| {
-        let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
-            let broken = |reason: String| BoundaryError::Residual { reason };
-            prepared.set_constants(constants.to_vec());
-            let run = prepared.integrate(end, &limits.options(tolerance)).map_err(|e| broken(e.to_string()))?;
-            run.solution.completed()?;
-            for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
-                let outputs = run.at(&mut prepared.compiled, *t).map_err(|e| broken(e.to_string()))?;
-                let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
-                residual.copy_from_slice(difference.as_slice());
-            }
-            Ok(())
-        };
-        let mut options = ShootOptions::with_tolerance(tolerance);
-        options.max_iterations = SEARCH_ITERATIONS;
-        fit(&mut residual, INSTANTS * n, guess, &options)
+    let mut difference = |tolerance: f64, limits: &Settings, constants: &[f64], residual: &mut [f64]| {
+        let broken = |reason: String| BoundaryError::Residual { reason };
+        prepared.set_constants(constants.to_vec());
+        let run = prepared.integrate(end, &limits.options(tolerance)).map_err(|e| broken(e.to_string()))?;
+        run.solution.completed()?;
+        for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
+            let outputs = run.at(&mut prepared.compiled, *t).map_err(|e| broken(e.to_string()))?;
+            let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
+            residual.copy_from_slice(difference.as_slice());
+        }
+        Ok(())
     };
     let coarse = Settings { max_steps: SEARCH_STEPS, ..settings.clone() };
-    let mut best = guesses
-        .iter()
-        .filter_map(|guess| search(SEARCH_TOLERANCE, &coarse, guess).ok())
-        .min_by(|a, b| a.residual.total_cmp(&b.residual));
+    let mut apart = vec![0.0; INSTANTS * n];
+    let mut begun = |guess: &Vec<f64>| -> f64 {
+        difference(SEARCH_TOLERANCE, &coarse, guess, &mut apart)
+            .map_or(f64::INFINITY, |()| apart.iter().map(|d| d * d).sum())
+    };
+    let distances: Vec<f64> = guesses.iter().map(&mut begun).collect();
+    let closest = guesses.iter().zip(&distances).min_by(|a, b| a.1.total_cmp(b.1));
+    let mut search = |tolerance: f64, limits: &Settings, guess: &[f64]| {
+        let mut options = ShootOptions::with_tolerance(tolerance);
+        options.max_iterations = SEARCH_ITERATIONS;
+        fit(
+            &mut |constants: &[f64], residual: &mut [f64]| difference(tolerance, limits, constants, residual),
+            INSTANTS * n,
+            guess,
+            &options,
+        )
+    };
+    let mut best = closest.and_then(|(guess, _)| search(SEARCH_TOLERANCE, &coarse, guess).ok());
     if let Some(found) = &best
         && found.residual < CLOSE * way
         && let Ok(refined) = search(settings.tolerance * TIGHTER, settings, &found.unknowns)

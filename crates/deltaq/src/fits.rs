@@ -20,7 +20,7 @@ pub struct Fit {
     pub target: usize,
     /// The fitted motion; `None` where no constants lead to a motion over the whole horizon.
     pub fitted: Option<FittedMotion>,
-    /// Whether nothing was searched: the constants follow from those of the target ([`costates_of`], [`multipliers_of`]).
+    /// Whether constants follow from the target's without a search ([`costates_of`], [`multipliers_of`]).
     pub by_identity: bool,
 }
 
@@ -32,8 +32,8 @@ pub struct FittedMotion {
     pub gap: Gap,
 }
 
-/// Fits the free constants of one run to another wherever the two differ: vakonomic to Chetaev, the first removed-constraint run to
-/// Chetaev, to vakonomic, and to the removed-constraint runs of other removals. Between removals by coordinates and vakonomic nothing is searched.
+/// Fits one run's free constants to another wherever the two differ: vakonomic to Chetaev, the first removed
+/// run to Chetaev, vakonomic and other removals' runs. Removals by coordinates and vakonomic need no search.
 pub(crate) fn fits(
     scene: &Scene,
     runs: &mut [Run],
@@ -80,8 +80,8 @@ pub(crate) fn fits(
     Ok(fits)
 }
 
-/// The constants of a removal by coordinates with which its motion is `target`, vakonomic or of another removal by coordinates; or, where `target` is
-/// Chetaev's, with which it is the vakonomic motion that was fitted to that before.
+/// The constants that give a removal by coordinates the motion `target`, vakonomic or of another such
+/// removal; or, for Chetaev's `target`, the vakonomic motion fitted to it before.
 fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> Result<Option<Vec<f64>>, SolveError> {
     let (Some(removal), Ok(motion)) = (&choice.removal, &target.outcome) else { return Ok(None) };
     let multipliers = match &target.choice.removal {
@@ -105,7 +105,8 @@ fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> 
 enum Start {
     /// They are these, one a memory variable.
     Known(Vec<f64>),
-    /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero where nothing was decided; and from those of the run.
+    /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
+    /// where nothing was decided; or from those of the run, where these are closer.
     Search(Option<Vec<f64>>),
 }
 
@@ -144,10 +145,7 @@ fn fit_run(
         }
         Start::Search(nearest) => {
             let nearest = nearest.filter(|nearest| nearest.len() == constants.len());
-            let mut guesses = vec![nearest.unwrap_or_else(|| vec![0.0; constants.len()])];
-            if constants != guesses[0] {
-                guesses.push(constants);
-            }
+            let guesses = [nearest.unwrap_or_else(|| vec![0.0; constants.len()]), constants];
             best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?
         }
     };

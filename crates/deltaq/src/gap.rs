@@ -69,7 +69,7 @@ pub struct GapPoint {
     pub t: f64,
     /// `sqrt(Δqᵀ M Δq)`.
     pub gap: f64,
-    /// What the gap has to pass to count: [`CERTAINTY`] times the sum of the error estimates up to `t`, infinite where one of them is in doubt.
+    /// What a gap has to pass: [`CERTAINTY`] times the summed error estimates up to `t`, infinite in doubt.
     pub limit: f64,
 }
 
@@ -104,7 +104,7 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
     compare_motions_by(first, second, metric, &Sampling::default())
 }
 
-/// [`compare_motions`] with other samples, and with clocks that differ: for motions run backwards, or in other units of time.
+/// [`compare_motions`] with other samples and clocks: for motions backwards, or in other units of time.
 ///
 /// # Errors
 /// [`SolveError`] where a motion cannot be read off.

@@ -1,5 +1,6 @@
 //! How a gap starts: exponent and leading coefficient, measured and predicted.
 
+use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 
 use crate::metric::{Metric, subtract};
@@ -10,7 +11,7 @@ use crate::{Motion, SolveError};
 pub struct Growth {
     /// Slope of log gap over log t, extrapolated to the start.
     pub exponent: f64,
-    /// What the exponent changes by when the fit has one term less: a measure of how far the range is from the start.
+    /// The exponent's change when the fit has one term less: how far the range is from the start.
     pub uncertainty: f64,
     /// `Δq / (t − t₀)^k` extrapolated to the start, `k` the rounded exponent; length n.
     pub coefficient: Vec<f64>,
@@ -22,10 +23,10 @@ pub struct Growth {
     pub to: f64,
 }
 
-/// The leading term of the difference of two motions with the same start: `coefficient · (t − t₀)^exponent` (T5).
+/// Leading term of the difference of two motions with one start: `coefficient · (t − t₀)^exponent` (T5).
 ///
-/// `y_k / ((k+1)(k+2))` where the difference of their accelerations along one of them starts with `y_k (t − t₀)^k`. From Chetaev's motion to
-/// the vakonomic one, for `f` linear in `v`: `½ Π C μ₀ t²`, and `−⅙ Π C λ₀ t³` for `μ₀ = 0`.
+/// `y_k / ((k+1)(k+2))` where the difference of their accelerations along one starts with `y_k (t − t₀)^k`.
+/// Chetaev to vakonomic, `f` linear in `v`: `½ Π C μ₀ t²`, and `−⅙ Π C λ₀ t³` for `μ₀ = 0`.
 #[derive(Clone, Debug)]
 pub struct LeadingTerm {
     /// `k + 2`.
@@ -41,7 +42,7 @@ pub struct LeadingTerm {
 }
 
 impl Growth {
-    /// `|measured − predicted| / |predicted|` of the leading coefficient, Euclidean norm over the coordinates.
+    /// `|measured − predicted| / |predicted|` of leading coefficients, Euclidean over the coordinates.
     pub fn deviation_from(&self, predicted: &LeadingTerm) -> f64 {
         let norm = |x: &[f64]| x.iter().map(|a| a * a).sum::<f64>().sqrt();
         norm(&subtract(&self.coefficient, &predicted.coefficient)) / norm(&predicted.coefficient)
@@ -58,7 +59,7 @@ const FIT_POINTS: usize = 24;
 /// The gap at the beginning of the fit range has to be this many times its certainty limit.
 const FIT_CERTAINTY: f64 = 300.0;
 
-/// Fits the growth of `first − second` near the start. `None` where the gap does not stand out from the errors there.
+/// Fits the growth of `first − second` near the start. `None` if the gap is not above errors there.
 ///
 /// # Errors
 /// [`SolveError`] where a motion cannot be read off.
@@ -93,30 +94,22 @@ pub fn growth(
     let design = |s: f64| [1.0, s.ln(), s / to, (s / to).powi(2)];
     let shorter = |s: f64| [1.0, s.ln(), s / to, 0.0];
     let logarithms: Vec<f64> = differences.iter().map(|d| d.2.ln()).collect();
-    let Some(fit) = least_squares(&differences, &design, &logarithms) else { return Ok(None) };
+    let fit = least_squares(&differences, &design, &logarithms);
     let exponent = fit[1];
-    let uncertainty =
-        least_squares(&differences, &shorter, &logarithms).map_or(f64::INFINITY, |fit| (fit[1] - exponent).abs());
+    let uncertainty = (least_squares(&differences, &shorter, &logarithms)[1] - exponent).abs();
     let k = exponent.round();
     // Δq / s^k = c + c₁ s + c₂ s² + c₃ s³, coordinate by coordinate
     let powers = |s: f64| [1.0, s / to, (s / to).powi(2), (s / to).powi(3)];
     let mut coefficient = vec![0.0; q0.len()];
     for (i, c) in coefficient.iter_mut().enumerate() {
         let scaled: Vec<f64> = differences.iter().map(|(s, d, _)| d[i] / s.powf(k)).collect();
-        match least_squares(&differences, &powers, &scaled) {
-            Some(fit) => *c = fit[0],
-            None => return Ok(None),
-        }
+        *c = least_squares(&differences, &powers, &scaled)[0];
     }
     let length = metric.length(start, &q0, &v0, &coefficient);
     Ok(Some(Growth { exponent, uncertainty, coefficient, length, from, to }))
 }
 
-fn least_squares(
-    at: &[(f64, Vec<f64>, f64)],
-    design: &dyn Fn(f64) -> [f64; 4],
-    values: &[f64],
-) -> Option<DVector<f64>> {
+fn least_squares(at: &[(f64, Vec<f64>, f64)], design: &dyn Fn(f64) -> [f64; 4], values: &[f64]) -> DVector<f64> {
     let matrix = DMatrix::from_fn(at.len(), 4, |i, j| design(at[i].0)[j]);
-    matrix.svd(true, true).solve(&DVector::from_column_slice(values), 1e-14).ok()
+    SingularValues::of(&matrix).solve(&DVector::from_column_slice(values), 1e-14)
 }

@@ -21,13 +21,13 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, So
     })
 }
 
-/// The number of integrable combinations of the constraints, and how deep brackets have to be nested to reach all the other directions; no
-/// bracket is written. `None` where numbers have no image in the field, or ranks still grow.
+/// The number of integrable combinations of the constraints, and how deep brackets nest to reach all other
+/// directions; none is written. `None` if numbers have no image in the field, or ranks still grow.
 ///
-/// A multiplier with `Aᵀ μ̇ = C μ` along a curve is one that every force leaves free. Along a curve that forces of many frequencies drive, only
-/// the multipliers of integrals are: the linearization along almost every such curve reaches what brackets reach (Sontag 1992). So
-/// the curve is a vakonomic motion with `L = ½ |v|² + Σ b_i q_i / (1 − a_i (t − t₀))`, from a random start, and the number is h minus the rank of
-/// the conditions on its `μ₀`.
+/// A multiplier with `Aᵀ μ̇ = C μ` along a curve is one that every force leaves free. Along a curve driven by
+/// forces of many frequencies, only the multipliers of integrals are: the linearization along almost every
+/// such curve reaches what brackets reach (Sontag 1992). So the curve is a vakonomic motion with `L = ½
+/// |v|² + Σ b_i q_i / (1 − a_i (t − t₀))`, from a random start: h minus the rank of the conditions on `μ₀`.
 ///
 /// # Errors
 /// [`SolveError`] for constraints that the vakonomic formulation refuses.

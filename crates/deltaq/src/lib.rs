@@ -1,15 +1,61 @@
-//! One system with velocity constraints, several formulations of its motion: derive, integrate, compare.
+//! # One system, several formulations of its motion: derive, integrate, compare
 //!
-//! Given `L(q, v, t)` and `f(q, v, t) = 0`, what are the equations of motion? Three answers are in use, and they differ where `f` is not
-//! integrable. Their derivations are the front pages of the crates `chetaev`, `vakonomic` and `removed_constraint`; this crate puts them
-//! into one table, integrates them with one time loop, and says whether two motions are the same.
+//! Given `L(q, v, t)`, `q ∈ Rⁿ`, and constraints `f(q, v, t) = 0 ∈ Rʰ`, what are the equations of motion?
+//! Chetaev's, the vakonomic and the removed-constraint formulation answer differently where `f` cannot be
+//! integrated; `kappa` is a family between the first two. Their derivations are the front pages of the crates
+//! of these names. This crate puts them into one table, integrates them with one time loop, and says whether
+//! two motions are the same.
 //!
 //! - [`FORMULATIONS`]: the table.
-//! - [`derive()`], [`solve`]: one motion, with its global error estimate.
+//! - [`derive()`], [`solve`]: one motion, with its global error estimate `e(t)`, the difference of two runs.
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
-//! - [`prepare`]: the equations compiled and started, for single runs and for other integrators.
+//! - [`prepare`]: the equations compiled and started, for other integrators.
 //! - [`Ensemble`]: many starts and parameters of one system at once.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
+//! - [`membership()`]: whether the motion of one formulation is one of another for *some* free constants.
+//!
+//! **When two motions differ.** Their gap is a length in the kinetic metric, `M = ∂²L/∂v²` (n×n), in `√E·T`
+//! (metres where masses are 1):
+//!
+//! ```text
+//! gap(t) = √(Δqᵀ M Δq) ,      different:  gap(t) > 10 (e₁(t) + e₂(t)) at some t.
+//! ```
+//!
+//! *Same* asks for small estimates besides; everything else is *undecided* ([`Verdict`]).
+//!
+//! ```
+//! use deltaq::{Metric, Settings, Verdict, choices, compare_motions, solve_choice};
+//!
+//! // a skate on level ice, at 1 m/s and turning at 1 rad/s
+//! let text = r#"
+//! title = "Skate"
+//! [coordinates]
+//! x = { unit = "m", start = 0 }
+//! y = { unit = "m", start = 0 }
+//! phi = { unit = "rad", start = 0 }
+//! [system]
+//! lagrangian = "(x'^2 + y'^2 + phi'^2)/2"
+//! constraints = ["y'*cos(phi) - x'*sin(phi)"]
+//! [start]
+//! velocities = { "x'" = 1, "phi'" = 1 }
+//! [run]
+//! duration = 2
+//! "#;
+//! let scene = scene::Scene::parse("skate", text)?;
+//! let choice = |name| choices(&scene).into_iter().find(|c| c.formulation == name).unwrap();
+//! let mut chetaev = solve_choice(&scene, &choice("chetaev"), &Settings::default())?;
+//! let mut vakonomic = solve_choice(&scene, &choice("vakonomic"), &Settings::default())?;
+//! let gap = compare_motions(&mut chetaev, &mut vakonomic, &mut Metric::new(&scene.system)?)?;
+//! assert_eq!(gap.verdict, Verdict::Different);
+//! // Chetaev's skate runs on a circle of radius 1
+//! let q = chetaev.at(2.0)?.coordinates;
+//! assert!((q[0] - f64::sin(2.0)).abs() < 1e-9 && (q[1] - 1.0 + f64::cos(2.0)).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **What it refuses.** A motion that cannot be started is a [`SolveError`]. How one that was started ended
+//! is an [`Ending`]; what was reached stays valid. An error estimate that is not to be trusted says so
+//! ([`Doubt`]).
 
 mod choice;
 mod comparison;

@@ -1,4 +1,4 @@
-//! Is the motion of one formulation a motion of another, for some values of its free constants? Decided, not searched, and a no is proved.
+//! Is one formulation's motion another's, for some free constants? Decided, not searched; a no is proved.
 
 use decision::{
     Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question,
@@ -12,7 +12,7 @@ use symbolic::Expr;
 
 use crate::{Choice, LeadingTerm, Metric, SolveError, choices, formulation};
 
-/// The set of all constants with which a formulation has a given motion: what was computed and what was proved about it.
+/// All constants that give a formulation a given motion: what was computed and what was proved of them.
 ///
 /// Forces act on both by `∫ (δL + Q·δq) dt = 0`.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ pub struct Membership {
 /// What is known of the set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// It is empty: at this order a Taylor coefficient of the mismatch is not zero, whatever the constants are.
+    /// Empty: at this order a Taylor coefficient of the mismatch is not zero, for any constants.
     NoneProved {
         /// The order.
         order: usize,
@@ -78,10 +78,10 @@ pub struct Pairing<'a> {
 }
 
 impl<'a> Pairing<'a> {
-    /// The motion of `curve`, whose free constants must be given or zero, and the motions of `family` for all values of its constants.
+    /// The motion of `curve`, free constants given or zero, and the motions of `family` for all of its own.
     ///
     /// # Errors
-    /// [`SolveError::Derivation`] where one of the two is refused; [`SolveError::Decision`] for equations that are not affine in their costates.
+    /// [`SolveError::Derivation`] if one is refused; [`SolveError::Decision`] if not affine in costates.
     pub fn new(scene: &'a Scene, curve: &Choice, family: &Choice) -> Result<Self, SolveError> {
         let (equations, _) = as_derived(&scene.system, curve)?;
         let reason = "its constants are found by a search, and have no exact values".to_owned();
@@ -95,7 +95,7 @@ impl<'a> Pairing<'a> {
         Pairing::with_curve(scene, equations, constants, family)
     }
 
-    /// [`Pairing::new`] for the motion of equations that stand in no table, with values for their free constants.
+    /// [`Pairing::new`] for a motion of equations in no table, with values for their free constants.
     ///
     /// # Errors
     /// As [`Pairing::new`].
@@ -139,7 +139,7 @@ impl<'a> Pairing<'a> {
         Ok(question.certificate(&self.exact_start()?))
     }
 
-    /// How the motion of the family with `constants` leaves the other one; `None` where no Taylor coefficient up to the twelfth stands out.
+    /// How the family's motion with `constants` leaves the other; `None` without a term up to the twelfth.
     ///
     /// # Errors
     /// [`SolveError::Decision`] where an expression cannot be evaluated.
@@ -164,7 +164,7 @@ impl<'a> Pairing<'a> {
     }
 }
 
-/// The equations of a choice with nothing left out, forces apart where its principle has no place for them; and whether they contain forces.
+/// A choice's equations, nothing left out, forces apart if its principle has none; whether they are in.
 fn as_derived(system: &System, choice: &Choice) -> Result<(Equations, bool), SolveError> {
     let entry = formulation(choice.formulation).unwrap_or(&chetaev::FORMULATION);
     let carries_forces = [chetaev::FORMULATION.name, kappa::FORMULATION.name].contains(&entry.name);
@@ -181,7 +181,7 @@ pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveEr
     principal(scene)?.map(|pairing| pairing.decide(end)).transpose()
 }
 
-/// The certificate that no `μ₀` makes the vakonomic motion Chetaev's; the reason in words where there is none.
+/// The certificate that no `μ₀` makes the vakonomic motion Chetaev's; or the reason in words.
 ///
 /// # Errors
 /// As [`Pairing::new`] and [`Pairing::certificate`].
@@ -217,8 +217,8 @@ pub fn costates_of(scene: &Scene, removal: &Removal, multipliers: &[f64]) -> Res
     Ok(Some(momenta.iter().zip(&pull).map(|(p, pull)| -p - pull).collect()))
 }
 
-/// The multipliers with which the vakonomic motion is that of a removal by coordinates with `costates`, one a memory variable: the inverse of
-/// [`costates_of`].
+/// The multipliers with which the vakonomic motion is that of a removal by coordinates with `costates`, one a
+/// memory variable: the inverse of [`costates_of`].
 ///
 /// # Errors
 /// [`SolveError::Compile`] where an expression has no value at the start.

@@ -69,8 +69,8 @@ impl Metric {
         self.length(t, q, v, &subtract(q, other))
     }
 
-    /// Upper triangular `R` with `RᵀR = M` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`; where `M` is not positive
-    /// definite, the square roots of its diagonal instead.
+    /// Upper triangular `R` with `RᵀR = M` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`;
+    /// where `M` is not positive definite, the square roots of its diagonal instead.
     pub(crate) fn factor(&mut self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
         let n = self.dimension;
         let mass = DMatrix::from_row_slice(n, n, self.at(t, q, v).0);

@@ -27,7 +27,7 @@ pub struct Seconds {
 pub struct FormReport {
     /// What was chosen and why ([`equations::Plan::why`]).
     pub why: Vec<String>,
-    /// Evaluations of the kept run in which a pivot of the form was small, so that the plain form was evaluated instead.
+    /// Evaluations of the kept run in the plain form, because a pivot of the chosen form was small.
     pub fallbacks: usize,
 }
 
@@ -40,7 +40,7 @@ pub struct Motion {
     pub constants: Vec<f64>,
     /// How it ended.
     pub ending: Ending,
-    /// Where the tolerance did not decide how long the steps are: the difference of the two runs is no error estimate then.
+    /// Where the tolerance did not decide the steps: the runs' difference is no error estimate then.
     pub doubt: Option<Doubt>,
     /// Work of the kept run.
     pub work: Work,
@@ -62,7 +62,7 @@ impl Motion {
         self.kept.ends()[0]
     }
 
-    /// Last time that both runs reached and at which both can be read off: where a motion stops at a singularity, a little before it.
+    /// Last time at which both runs can be read off: a little before the singularity where a motion stops.
     pub fn end(&self) -> f64 {
         self.end
     }
@@ -98,7 +98,7 @@ impl Motion {
         self.kept.state(&mut self.compiled, t)
     }
 
-    /// Difference of the coordinates of the two runs at `t`: what the looser run was wrong by, and a bound in practice for the kept one.
+    /// Difference of the runs' coordinates at `t`: the looser's error, in practice a bound of the kept one's.
     ///
     /// # Errors
     /// As [`Motion::at`].
@@ -113,7 +113,7 @@ impl Motion {
         Ok((kept, difference))
     }
 
-    /// [`Motion::at`] from the kept run and from the looser one: any quantity computed from both has its own error estimate.
+    /// [`Motion::at`] from the kept and the looser run: what both give has its own error estimate.
     ///
     /// # Errors
     /// As [`Motion::at`].
@@ -177,7 +177,7 @@ pub fn solve(
 }
 
 impl Motion {
-    /// Of the `kept` and the looser run, which are told apart by nothing but their order; no work and no projections.
+    /// Of the `kept` and the looser run, told apart by their order only; no work and no projections.
     pub(crate) fn of(
         mut prepared: Prepared,
         ending: Ending,

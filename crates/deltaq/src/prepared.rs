@@ -22,7 +22,7 @@ pub struct Prepared {
     pub t: f64,
     /// `y(t₀)`.
     pub start: Vec<f64>,
-    /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty where the derivation knows none.
+    /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty if not derived.
     pub guess: Vec<f64>,
     pub(crate) values: StartValues,
 }
@@ -54,7 +54,7 @@ impl Prepared {
         Ok(prepared)
     }
 
-    /// Compiles what `method` needs beyond the rates, unless that is done: it is done by the first run anyway.
+    /// Compiles what `method` needs beyond the rates, once; the first run does it anyway.
     ///
     /// # Errors
     /// [`SolveError::Compile`].
@@ -85,7 +85,7 @@ impl Prepared {
         }
     }
 
-    /// Integrates once from the start to `end`: half of what [`crate::solve`] does, for those who know the error from elsewhere.
+    /// Integrates once from start to `end`: half of [`crate::solve`], for those who know the error otherwise.
     ///
     /// # Errors
     /// [`SolveError`] where the run cannot be started; how it ended is in [`SingleRun::solution`].
@@ -100,8 +100,8 @@ impl Prepared {
         SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, options)
     }
 
-    /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last digits changed: how far the two
-    /// ends are apart then also tells what those digits are worth.
+    /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last
+    /// digits changed: how far the two ends are apart then also tells what those digits are worth.
     pub(crate) fn second_run(
         &mut self,
         kept: &SingleRun,

@@ -25,7 +25,7 @@ pub struct Pair {
     pub gap: Gap,
     /// Growth of `second − first` near the start, where it stands out from the errors.
     pub growth: Option<Growth>,
-    /// Predicted leading term, where the first motion can be followed in Taylor series and the second has no constants found by a search.
+    /// Predicted leading term, if the first has Taylor series and the second no constants found by a search.
     pub predicted: Option<LeadingTerm>,
 }
 
@@ -52,8 +52,8 @@ pub(crate) fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<Lead
     pairing.leading_term(&constants).ok().flatten()
 }
 
-/// Asks of Chetaev's motion whether it belongs to the other families, and of the vakonomic one whether it belongs to those of removals that have
-/// more than coordinates for their variables.
+/// Asks of Chetaev's motion whether it belongs to the other families, and of the vakonomic one whether it
+/// belongs to those of removals that have more than coordinates for their variables.
 pub(crate) fn decided(scene: &Scene, runs: &[Run]) -> Vec<Decided> {
     let end = |i: usize| runs[i].outcome.as_ref().map_or(0.0, Motion::end);
     let known = |i: usize| formulation(runs[i].choice.formulation).is_some();

@@ -34,8 +34,8 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
-    /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that [`equations::Plan::choose`]
-    /// finds cheapest. The motion is the same to round-off.
+    /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that
+    /// [`equations::Plan::choose`] finds cheapest. The motion is the same to round-off.
     pub plain: bool,
     /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
     pub interrupt: Option<Interrupt>,

@@ -19,7 +19,7 @@ pub struct SingleRun {
 }
 
 impl SingleRun {
-    /// Runs from `start`, with the sizes of its own start where `options` have none; the constants and the guess of `compiled` are set.
+    /// Runs from `start`, with its own sizes unless `options` have some; `compiled` has constants and guess.
     pub(crate) fn new(
         compiled: &mut Compiled,
         start: &Start,
@@ -49,8 +49,8 @@ impl SingleRun {
         self.solution.dense.end()
     }
 
-    /// The states at `t`, which has to be an end of the run where that kept its ends only. Where the equations of the instant have several
-    /// roots, `compiled` solves them from the right one after this.
+    /// The states at `t`, which has to be an end of the run where that kept its ends only. Where the
+    /// equations of the instant have several roots, `compiled` solves them from the right one after this.
     pub fn states_at(&self, compiled: &mut Compiled, t: f64, states: &mut [f64]) {
         if let Some(unknowns) = self.unknowns_near(t) {
             compiled.set_guess(unknowns);
@@ -98,9 +98,9 @@ pub(crate) fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
 /// Parts of the largest size under which a size is round-off.
 const NO_SIZE: f64 = 1e-14;
 
-/// The size of each state, by which the absolute tolerance is multiplied: what it is at the start or what its rate there makes of it within the
-/// run, if that is under 1. So a motion of 10⁻¹² m is resolved as well as one of 1 m. A state that starts as round-off
-/// of the others, or at rest in zero, says nothing of its size, and has 1.
+/// Size of each state, the factor of the absolute tolerance: what it is at the start or what its rate there
+/// makes of it within the run, if under 1. So a motion of 10⁻¹² m is resolved as well as one of 1 m. A state
+/// that starts as round-off of the others, or at rest in zero, tells no size, and has 1.
 pub(crate) fn sizes(y: &[f64], rates: &[f64], length: f64) -> Vec<f64> {
     let reach: Vec<f64> = y.iter().zip(rates).map(|(y, rate)| y.abs().max((rate * length).abs())).collect();
     let least = NO_SIZE * reach.iter().copied().fold(0.0, f64::max);

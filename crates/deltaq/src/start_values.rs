@@ -8,8 +8,8 @@ use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::{Setting, SolveError};
 
-/// The expressions in which a derivation says what motions start from:
-/// `t, q, v`, what belongs to a removal, the free constants → the states, guesses for the unknowns of the instant.
+/// The expressions in which a derivation says what motions start from: `t, q, v`, what belongs to a removal,
+/// the free constants → the states, guesses for the unknowns of the instant.
 #[derive(Clone)]
 pub(crate) struct StartValues {
     program: Evaluator<f64>,
@@ -58,7 +58,7 @@ impl StartValues {
         self.inputs[first..].copy_from_slice(constants);
     }
 
-    /// The states, and the guess for the unknowns of the instant; that is empty unless the derivation has one for each.
+    /// The states, and the guess for the unknowns of the instant, empty unless each has a derived one.
     pub(crate) fn evaluate(&mut self) -> (&[f64], &[f64]) {
         let (states, guess) = self.program.evaluate(&self.inputs).split_at(self.states);
         (states, if guess.len() == self.unknowns { guess } else { &[] })

@@ -17,13 +17,13 @@ pub const STEP_LIMIT: usize = 10_000_000;
 /// How a motion is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
-    /// Longest step; the time to go is cut into as few equal steps as that allows. Above 0, in the scene's unit of time.
+    /// Longest step > 0, in the scene's unit of time; the time is cut into as few equal steps as that allows.
     pub step: f64,
     /// Order 2, 4, 6 or 8.
     pub composition: Composition,
 }
 
-/// The discrete motion of a choice from the start of the scene, with these free constants (one each of the derived equations).
+/// The discrete motion of a choice from the scene's start with these free constants, as in its equations.
 ///
 /// # Errors
 /// [`SolveError::NoPrinciple`], [`SolveError::Discrete`].
@@ -51,9 +51,9 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
     }
 }
 
-/// Steps a choice from the start of the scene to its end, twice: as `steps` say, which is kept, and in steps twice as long. The difference of
-/// the two estimates the error of the longer ones. What is read off at a time, multipliers too, are the derived equations' outputs at the
-/// positions, velocities (and multipliers or costates) of the discrete motion.
+/// Steps a choice from the scene's start to its end, twice: as `steps` say, which is kept, and twice as long.
+/// Their difference estimates the error of the longer ones. What is read off at a time, multipliers too, are
+/// the derived outputs at the discrete motion's positions, velocities (and multipliers or costates).
 ///
 /// Free constants that are natural at a horizon are found by the time loop, as `settings` say.
 ///

@@ -32,7 +32,7 @@ impl Trajectory {
         }
     }
 
-    /// The state at `t`. Where the equations of the instant have several roots, they are solved from the right one after this.
+    /// The state at `t`. Equations of the instant with several roots then start from the right one.
     pub(crate) fn state(&mut self, compiled: &mut Compiled, t: f64) -> Result<Vec<f64>, SolveError> {
         let mut state = vec![0.0; compiled.dimension()];
         match self {

@@ -149,7 +149,7 @@ fn a_removal_is_needed_and_has_to_be_of_first_order_or_regular() {
     let error = refused(solve_choice(&scene, &none, &Settings::default()));
     let missing = DerivationError::RemovalMissing { formulation: "removed-constraint" };
     assert_eq!(error, SolveError::Derivation(missing));
-    // φ = u'/w' and a speed u' along the blade: φ' is the only place of second rates, so they come in one combination
+    // φ = u'/w', speed u' along the blade: second rates are in φ' only, so in one combination
     let removal = "[removal.second]\nparameters = [\"u\", \"w\"]\ndirect = { phi = \"u'/w'\" }\n\
                    rates = { x = \"u'*cos(u'/w')\", y = \"u'*sin(u'/w')\" }\n[run]";
     let scene = Scene::parse("sledge", &SLEDGE.replace("[run]", removal)).unwrap_or_else(|e| panic!("{e}"));

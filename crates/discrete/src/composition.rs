@@ -1,9 +1,9 @@
 //! Symmetric compositions: a symmetric step of order 2 in, a symmetric step of higher order out.
 
-/// How many steps of order 2, of lengths `γ_i h`, `γ_i = γ_{s+1−i}`, `Σ γ_i = 1`, make one step of length `h`.
+/// How many steps of order 2, lengths `γ_i h`, `γ_i = γ_{s+1−i}`, `Σ γ_i = 1`, make one step of length `h`.
 ///
-/// Where the base step is symplectic, keeps a quadratic invariant or maps a discrete constraint into another one, so does the
-/// composition. Some `γ_i` are negative: time runs back for a part of the step (beyond order 2 that cannot be avoided).
+/// The composition is symplectic, keeps a quadratic invariant or maps a discrete constraint into another if
+/// the base step does. Some `γ_i` are negative, time runs back there (unavoidable beyond order 2).
 ///
 /// ```
 /// use discrete::Composition;
@@ -94,8 +94,8 @@ impl Composition {
 
 #[cfg(test)]
 mod tests {
-    //! A symmetric step is `exp(h A₁ + h³ A₃ + h⁵ A₅ + …)` with operators `A_j` that commute with nothing. So the composition has order p
-    //! exactly if `Π exp(γ_i A₁ + γ_i³ A₃ + γ_i⁵ A₅ + …) = exp(A₁)` for all words in the letters `A_j` of grade (sum of the `j`) up to p.
+    //! A symmetric step is `exp(h A₁ + h³ A₃ + h⁵ A₅ + …)`, no two `A_j` commuting. So order p means `Π
+    //! exp(γ_i A₁ + γ_i³ A₃ + γ_i⁵ A₅ + …) = exp(A₁)` for all words in `A_j` of grade (sum of `j`) ≤ p.
 
     use super::*;
     use std::collections::BTreeMap;

@@ -48,7 +48,7 @@ pub enum DiscreteError {
         /// Which coordinate, counted from 1.
         number: usize,
     },
-    /// The removal brings a rate into the action, or into the coordinates, that a discrete action of first order does not have.
+    /// The removal brings in a rate that a discrete action of first order does not have.
     #[error(
         "removal `{removal}`: {what} contains `{symbol}`; only removals of first order have a discrete action here"
     )]
@@ -74,7 +74,7 @@ pub enum DiscreteError {
         /// Time of the node where the step starts.
         t: f64,
     },
-    /// Newton's method does not settle, or not at once, so that its root may be another one: the step is too long for the motion.
+    /// Newton's method does not settle, or not at once: the root may be another one, the step is too long.
     #[error(
         "the step from t = {t} is too long: its equations are not solved after {iterations} iterations, of which the last changed them by {found:.1e}, limit {limit:.0e}"
     )]

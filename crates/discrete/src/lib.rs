@@ -1,56 +1,59 @@
-//! Discrete variational principles: time-stepping that keeps the structure of a motion, without one equation of motion.
+//! Discrete variational principles: time steps that keep the structure of a motion, without its equations.
 //!
-//! Time is cut into steps `h`; on the interval from node `k` to node `k+1` every function is taken at the midpoint, with
-//! `x̄ = (x_k + x_{k+1})/2`, `ẋ ≈ (x_{k+1} − x_k)/h`, `t̄ = t_k + h/2`. What is differentiated is a sum over the intervals, with respect to
-//! the nodes (`D₁`, `D₂`: with respect to the left and the right one); no time derivative of an expression is ever taken.
+//! Time is cut into steps `h`; on the interval from node `k` to node `k+1` every function is taken at the
+//! midpoint, with `x̄ = (x_k + x_{k+1})/2`, `ẋ ≈ (x_{k+1} − x_k)/h`, `t̄ = t_k + h/2`. Derivatives are by
+//! nodes (`D₁`, `D₂`: the left and the right one), of a sum over the intervals; none is by time.
 //!
-//! **Chetaev** ([`Discrete::chetaev`], discrete Lagrange–d'Alembert principle). `L_d = h L`, `f_d = f`, `Q_d = h Q` at the midpoint:
+//! **Chetaev** ([`Discrete::chetaev`], discrete d'Alembert). `L_d = h L`, `f_d = f`, `Q_d = h Q`, midpoints:
 //!
 //! ```text
-//! D₂L_d(k−1,k) + D₁L_d(k,k+1) + ½ Q_d(k−1,k) + ½ Q_d(k,k+1) + A_kᵀ κ_k = 0 ,      f_d(k,k+1) = 0 ,      κ_k ≈ h λ .
+//! D₂L_d(k−1,k) + D₁L_d(k,k+1) + ½ Q_d(k−1,k) + ½ Q_d(k,k+1) + A_kᵀ κ_k = 0 ,  f_d(k,k+1) = 0 ,  κ_k ≈ h λ .
 //! ```
 //!
-//! `A_k = ∂f/∂v` (h×n) stands at the node, at `(q_k, v_k)`. The reaction is split between the two steps that meet there,
-//! `κ_k = (h/2)(λ⁻ + λ⁺)`: the first half brings the state onto the constraint, `p_k = L_v(q_k, v_k)` with `f(q_k, v_k) = 0`, the second
-//! makes the constraint hold on the next interval. So the step maps `{f = 0}` onto itself, as RATTLE and the nonholonomic leapfrog of
-//! McLachlan and Perlmutter do.
+//! `A_k = ∂f/∂v` (h×n) stands at the node, at `(q_k, v_k)`. The reaction is split between the two steps that
+//! meet there, `κ_k = (h/2)(λ⁻ + λ⁺)`: the first half brings the state onto the constraint, `p_k = L_v(q_k,
+//! v_k)` with `f(q_k, v_k) = 0`, the second makes the constraint hold on the next interval. So the step maps
+//! `{f = 0}` onto itself, as RATTLE and the nonholonomic leapfrog of McLachlan and Perlmutter do.
 //!
-//! **Vakonomic** ([`Discrete::vakonomic`]). `S = Σ h (L + μ_{k+½}·f)` is stationary in all inner `q_k` and in all `μ_{k+½}` (h):
+//! **Vakonomic** ([`Discrete::vakonomic`]). `S = Σ h (L + μ_{k+½}·f)` is stationary in all inner `q_k` and in
+//! all `μ_{k+½}` (h):
 //!
 //! ```text
 //! D₂S(k−1,k) + D₁S(k,k+1) = 0 ,      f_d(k,k+1) = 0 .
 //! ```
 //!
-//! **Removed constraint** ([`Discrete::removed`]). `S = Σ [ h L + P_{k+½}·(h B − (w_{k+1} − w_k)) ]` is stationary in all inner `u_k` (m)
-//! and `w_k` (k), and in all `P_{k+½}` (k), with `P_{k+1} = P_{k+½} − ½h G_w`, `G = L + P·B`. Not for removals that bring `ü` into `L` or
-//! `B`, or `u̇` into `q`.
+//! **Removed constraint** ([`Discrete::removed`]). `S = Σ [ h L + P_{k+½}·(h B − (w_{k+1} − w_k)) ]` is
+//! stationary in all inner `u_k` (m) and `w_k` (k), and in all `P_{k+½}` (k), with `P_{k+1} = P_{k+½} − ½h
+//! G_w`, `G = L + P·B`. Not for removals that bring `ü` into `L` or `B`, or `u̇` into `q`.
 //!
-//! All three are marched with node momenta, `p_{k+1} = D₂S(k,k+1)` and `p_k + D₁S(k,k+1) = 0` (Chetaev: with the reactions), from
-//! `p₀ = L_v + Aᵀμ₀` (Chetaev: `L_v`) and `p₀ = (G_u̇, −P₀)`. Velocities and multipliers at a node are those with `𝓛_ẋ = p_k` and
-//! `f = 0`.
+//! All three are marched with node momenta, `p_{k+1} = D₂S(k,k+1)` and `p_k + D₁S(k,k+1) = 0` (Chetaev: with
+//! the reactions), from `p₀ = L_v + Aᵀμ₀` (Chetaev: `L_v`) and `p₀ = (G_u̇, −P₀)`. Velocities and multipliers
+//! at a node are those with `𝓛_ẋ = p_k` and `f = 0`.
 //!
 //! # What is kept
-//! - The constraint, to round-off at all times: `f = 0` at the nodes in the velocities there, and `f_d = 0` on every interval.
-//! - Reversibility. Exchange the nodes of an interval and the sign of `h`: the midpoint, the difference quotient, `S` up to its sign,
-//!   and so all equations stay as they are, `Φ_{−h} Φ_h = 1`. So the error is a power series in `h²`, and on integrable reversible motions the
-//!   energy error stays bounded. On others it may wander: a nonholonomic flow is not symplectic, and no step makes it so.
-//! - Vakonomic and removed: `Φ_h` is the implicit midpoint rule in `(x, p)`, hence symplectic; `p` of a cyclic coordinate is constant to
-//!   round-off.
+//! - The constraint, to round-off: `f = 0` at the nodes in the velocities there, `f_d = 0` on every interval.
+//! - Reversibility. Exchange the nodes of an interval and the sign of `h`: the midpoint, the difference
+//!   quotient, `S` up to its sign, so all equations stay as they are, `Φ_{−h} Φ_h = 1`. So the error is a
+//!   power series in `h²`, and on integrable reversible motions the energy error stays bounded. On others it
+//!   may wander: a nonholonomic flow is not symplectic, and no step makes it so.
+//! - Vakonomic and removed: `Φ_h` is the implicit midpoint rule in `(x, p)`, hence symplectic; `p` of a
+//!   cyclic coordinate is constant to round-off.
 //!
 //! # Order
-//! 2, and 4, 6, 8 by [`Composition`] of steps, some of them back in time. States are those of the nodes; between nodes, [`Trajectory::at`] takes
-//! one shorter step from the node before.
+//! 2, and 4, 6, 8 by [`Composition`] of steps, some of them back in time. States are those of the nodes;
+//! between nodes, [`Trajectory::at`] takes one shorter step from the node before.
 //!
 //! # Round-off
-//! Each step is solved to round-off; positions and momenta are sums of increments of size `h`, compensated: what a million steps lose is the
-//! round-off of the increments and not that of the sums.
+//! Each step is solved to round-off; positions and momenta are sums of increments of size `h`, compensated:
+//! what a million steps lose is the round-off of the increments and not that of the sums.
 //!
-//! Sources: J. E. Marsden, M. West, *Discrete mechanics and variational integrators*, Acta Numerica 10 (2001); J. Cortés, S. Martínez,
-//! *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M. Perlmutter, *Integrators for nonholonomic mechanical systems*,
-//! J. Nonlinear Sci. 16 (2006); M. de León, J. C. Marrero, D. Martín de Diego, *Vakonomic mechanics versus non-holonomic mechanics*,
-//! J. Geom. Phys. 35 (2000); R. Benito, D. Martín de Diego, *Discrete vakonomic mechanics*, J. Math. Phys. 46 (2005); for symmetry and
-//! compositions E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, chapters II and V. The discrete removed action is
-//! derived here.
+//! Sources: J. E. Marsden, M. West, *Discrete mechanics and variational integrators*, Acta Numerica 10
+//! (2001); J. Cortés, S. Martínez, *Non-holonomic integrators*, Nonlinearity 14 (2001); R. McLachlan, M.
+//! Perlmutter, *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16 (2006); M. de León, J.
+//! C. Marrero, D. Martín de Diego, *Vakonomic mechanics versus non-holonomic mechanics*, J. Geom. Phys. 35
+//! (2000); R. Benito, D. Martín de Diego, *Discrete vakonomic mechanics*, J. Math. Phys. 46 (2005); for
+//! symmetry and compositions E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, chapters II
+//! and V. The discrete removed action is derived here.
 
 use mechanics::{Removal, State, System};
 use symbolic::{Expr, Symbol};
@@ -80,7 +83,7 @@ use step::{Interval, Node, Principle, Step};
 use sum::Compensated;
 pub use trajectory::{Sample, Trajectory};
 
-/// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), for any number of steps. Clone it for another thread.
+/// A discrete motion over `[t₀, t₁]` (`t₁ < t₀`: backwards), in any number of steps. Clone it per thread.
 ///
 /// ```
 /// use discrete::Discrete;
@@ -104,8 +107,8 @@ impl Discrete {
     /// The discrete Lagrange–d'Alembert motion from `start` to the time `end`.
     ///
     /// # Errors
-    /// [`DiscreteError::NoFreedom`], [`DiscreteError::Length`], [`DiscreteError::OffConstraint`], [`DiscreteError::NotFinite`],
-    /// [`DiscreteError::Compile`].
+    /// [`DiscreteError::NoFreedom`], [`DiscreteError::Length`], [`DiscreteError::OffConstraint`],
+    /// [`DiscreteError::NotFinite`], [`DiscreteError::Compile`].
     pub fn chetaev(system: &System, start: &State, end: f64) -> Result<Self, DiscreteError> {
         let system = system.clone();
         check_start(&system, start)?;
@@ -128,7 +131,7 @@ impl Discrete {
         Discrete::new(step, start.t, start.q.clone(), p, guess, end)
     }
 
-    /// The motion of stationary discrete vakonomic action from `start` and the multipliers `μ₀` (h) to the time `end`.
+    /// The motion of stationary discrete vakonomic action from `start` and multipliers `μ₀` (h) to `end`.
     ///
     /// # Errors
     /// Those of [`Discrete::chetaev`], [`DiscreteError::Force`].
@@ -161,8 +164,8 @@ impl Discrete {
     /// The motion of stationary discrete action in `(u, w)` of a removal, from `start` to the time `end`.
     ///
     /// # Errors
-    /// [`DiscreteError::HighRate`], [`DiscreteError::Force`], [`DiscreteError::Length`], [`DiscreteError::NotFinite`],
-    /// [`DiscreteError::Compile`].
+    /// [`DiscreteError::HighRate`], [`DiscreteError::Force`], [`DiscreteError::Length`],
+    /// [`DiscreteError::NotFinite`], [`DiscreteError::Compile`].
     pub fn removed(system: &System, removal: &Removal, start: &RemovedStart, end: f64) -> Result<Self, DiscreteError> {
         let system = system.clone();
         refuse_forces(&system)?;
@@ -233,7 +236,7 @@ impl Discrete {
     ) -> Result<(), DiscreteError> {
         let h = (self.end - self.start.t) / steps as f64;
         self.step.forget();
-        // momenta that leave a velocity open make no motion, though a step of finite length may have a solution
+        // momenta that leave a velocity open make no motion, though a finite step may have a solution
         self.step.read(&mut node.clone(), h)?;
         visit(&mut self.step, &node)?;
         for k in 1..=steps {

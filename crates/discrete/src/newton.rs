@@ -1,4 +1,5 @@
-//! Newton's method for one step, without allocation.
+//! Newton's method for one step, without allocation. A step that it does not solve at once is refused as too
+//! long: a root farther off is another motion.
 
 use std::collections::HashMap;
 
@@ -19,7 +20,7 @@ const UNNOTICED: f64 = 2e-17;
 /// Iterations of one step.
 const ITERATIONS: usize = 40;
 
-/// A correction over this part of the one before, while corrections are over [`FAR`], may lead to another root: the step is refused.
+/// A correction over this part of the last one, and over [`FAR`], is refused: it may lead to another root.
 const CONTRACTION: f64 = 0.5;
 
 /// What corrections under this part of the unknowns lead to is near.
@@ -42,7 +43,7 @@ pub(crate) struct Iteration {
 }
 
 impl Iteration {
-    /// `residuals` in the last of `inputs`, of which `rates` are rates and the rest multipliers. `guess` has their sizes.
+    /// `residuals` in the last of `inputs`: `rates`, then multipliers. `guess` has their sizes.
     pub(crate) fn new(
         g: &Graph,
         inputs: &[Symbol],

@@ -70,7 +70,7 @@ impl Interval {
 /// p_{k+1} = D₂S + (h/2) Q + (h/2) R(x_{k+1}, v_{k+1}) ν'
 /// ```
 ///
-/// where `ν'` and `v_{k+1}` follow from `p_{k+1} = 𝓛_ẋ` and `c = 0` at the node. Without `R` the second line is `D₂S + (h/2) Q`.
+/// where `ν'`, `v_{k+1}` follow from `p_{k+1} = 𝓛_ẋ`, `c = 0` at the node. Without `R`: `D₂S + (h/2) Q`.
 pub(crate) struct Principle {
     pub(crate) x: Vec<Symbol>,
     pub(crate) rates: Vec<Symbol>,
@@ -259,7 +259,7 @@ impl Step {
         self.readings.evaluate(&inputs)
     }
 
-    /// Puts the straight line through the last two solutions at the time `middle` into the unknowns, where there are two.
+    /// Sets the unknowns to the straight line through the last two solutions, if any, at the time `middle`.
     fn predict(&mut self, middle: f64, first: usize) -> bool {
         let [Some((t1, one)), Some((t0, zero))] = &self.past else { return false };
         let slope = (middle - t1) / (t1 - t0);

@@ -1,4 +1,4 @@
-//! What a step keeps: its mirror, the symplectic form, over a million steps energy and constraint, and what sums of increments would lose.
+//! A step keeps its mirror, the symplectic form, energy and constraint over a million steps; sums lose none.
 
 use scene::Scene;
 
@@ -137,7 +137,7 @@ const MILLION: usize = 1_000_000;
 struct Drift {
     /// Largest `|E − E₀|`, over the largest `|v·p|`.
     energy: f64,
-    /// How far the mean energies of ten parts of the run are apart, in the same unit: a drift and not an oscillation.
+    /// Spread of the mean energies of ten parts of the run, same unit: a drift, not an oscillation.
     trend: f64,
     /// Largest `|f_i|`.
     constraint: f64,
@@ -178,7 +178,7 @@ fn a_million_steps_of_order_four_keep_energy_and_constraint() {
 
 #[test]
 fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
-    // at order 6 nothing else is left: vakonomic circles, 2.5 turns in 1000 steps, and what a removal makes of them
+    // order 6 leaves nothing else: vakonomic circles, 2.5 turns in 1000 steps, and a removal's motion
     let Scene { system, start, removals, .. } = scene("heisenberg");
     let circles = Discrete::vakonomic(&system, &start, &[0.8], 0.02 * MILLION as f64).unwrap();
     let at = RemovedStart::at(&system, &removals[0], &start, &[-0.8]).unwrap();
@@ -191,7 +191,7 @@ fn round_off_of_a_million_steps_is_a_random_walk_of_increments() {
 
 #[test]
 fn a_motion_that_does_not_return_lets_the_energy_of_order_two_go() {
-    // what is kept elsewhere needs a reversible motion that is integrable, or a symplectic form; this one has neither, as measured
+    // energy is kept on integrable reversible motions or by a symplectic form; here is neither, as measured
     let scene = scene("trailer");
     let discrete = Discrete::chetaev(&scene.system, &scene.start, 0.01 * 100_000.0).unwrap();
     let second = drift(&discrete, 100_000);

@@ -1,6 +1,6 @@
 //! Sums of many small terms.
 
-/// A vector that is added to many times, with what each addition loses (T. J. Dekker, D. E. Knuth: the error of a sum is a number).
+/// A vector summed with what each addition loses (T. J. Dekker, D. E. Knuth: the error of a sum is a number).
 #[derive(Clone, Debug)]
 pub(crate) struct Compensated {
     pub(crate) value: Vec<f64>,

@@ -13,7 +13,7 @@ pub(crate) fn scene(name: &str) -> Scene {
 
 #[test]
 fn removed_sledge_has_its_costates() {
-    // P_x' = −G_x = −g sin α and P_y' = 0, so that P_x = P_x(0) − g sin α t even on the grid; x alone is memory of weight here
+    // P_x' = −G_x = −g sin α, P_y' = 0, so P_x = P_x(0) − g sin α t even on the grid; only x has weight
     let scene = scene("sledge");
     let removal = scene.removals.iter().find(|r| r.name == "arc-length").unwrap();
     let at = RemovedStart::at(&scene.system, removal, &scene.start, &[2.0, -0.5]).unwrap();

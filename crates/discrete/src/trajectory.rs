@@ -16,7 +16,7 @@ pub struct Sample {
     pub x: Vec<f64>,
     /// `q̇`; for a removal `(u̇, ẇ)`. On the constraint to round-off.
     pub v: Vec<f64>,
-    /// `μ`; for a removal `P`; for Chetaev the half `λ⁻` of the reaction of the last step, which is `λ` to order 1 only.
+    /// `μ`; for a removal `P`; for Chetaev the half `λ⁻` of the last step's reaction, `λ` to order 1 only.
     pub multipliers: Vec<f64>,
     /// `v·p − 𝓛`: the energy where constraints are homogeneous in the velocities.
     pub energy: f64,
@@ -35,7 +35,7 @@ pub struct Trajectory {
 }
 
 impl Discrete {
-    /// The motion over `steps` equal steps. Where a step cannot be taken the trajectory ends, and [`Trajectory::stop`] says why.
+    /// The motion over `steps` equal steps; it ends where a step fails, and [`Trajectory::stop`] says why.
     ///
     /// ```
     /// use discrete::{Composition, Discrete};
@@ -85,9 +85,9 @@ impl Trajectory {
         self.times[self.times.len() - 1]
     }
 
-    /// The motion at `t`: at a node what stands there, between nodes one step of the method from the node before, so that the order is the
-    /// same everywhere. Just behind a node the step is taken from the one before that, and just behind the start back from the next: reactions
-    /// over a very short step would be quotients of round-off. A `t` outside is answered from the nearest node as well.
+    /// The motion at `t`: at a node what stands there, else one step of the method from the node before, so
+    /// of the same order. Just behind a node the step starts one node earlier, just behind the start it goes
+    /// back from the next: reactions over a very short step are round-off. Outside, from the nearest node.
     ///
     /// # Errors
     /// Those of a step.

@@ -53,7 +53,7 @@ pub(crate) struct CompiledBlock {
 const NEWTON_STEPS: usize = 50;
 const NEWTON_LIMIT: f64 = 1e-14;
 
-/// A second Newton step over this part of the first, while steps are over the other part of `z`, may lead to another root.
+/// A second Newton step over this part of the first and over `FAR` of `z` may lead to another root.
 const CONTRACTION: f64 = 0.5;
 const FAR: f64 = 1e-8;
 
@@ -81,8 +81,8 @@ impl CompiledBlock {
 
     /// Newton's method from the current `z`; ends when the step no longer shrinks at round-off.
     ///
-    /// The equations may have several roots. The one that belongs to the motion is near; so a start from which the iteration does not contract at
-    /// once is refused, and whoever steps time comes nearer.
+    /// The equations may have several roots. The one that belongs to the motion is near; so a start from
+    /// which the iteration does not contract at once is refused, and whoever steps time comes nearer.
     pub(crate) fn newton(&mut self, inputs: &mut [f64], known: usize) -> Result<(), EvaluationFailure> {
         let mut previous = f64::INFINITY;
         for iteration in 0..NEWTON_STEPS {

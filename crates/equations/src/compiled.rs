@@ -95,10 +95,10 @@ pub struct Outputs {
 }
 
 impl Compiled {
-    /// Compiles everything that a time integrator asks for, Jacobian left out, in a plan chosen from structure.
+    /// Compiles all that a time integrator asks for, without Jacobian, in a plan chosen from structure.
     ///
     /// # Errors
-    /// [`CompileError`] where an expression contains a symbol that is neither state, parameter, constant nor unknown: a fault of the derivation.
+    /// [`CompileError`] where an expression contains a symbol that `equations` does not list: its fault.
     pub fn new(equations: &Equations) -> Result<Self, CompileError> {
         Compiled::with_plan(equations, &Plan::choose(equations, None)?)
     }
@@ -167,7 +167,7 @@ impl Compiled {
         Ok(self)
     }
 
-    /// Adds the recurrences of Taylor coefficients, for [`Compiled::taylor`]; `plan` is the one that these equations were compiled in.
+    /// Adds the recurrences of Taylor coefficients, for [`Compiled::taylor`], in the `plan` compiled before.
     ///
     /// # Errors
     /// As [`Compiled::new`].
@@ -216,7 +216,7 @@ impl Compiled {
         self.anchor.copy_from_slice(unknowns);
     }
 
-    /// Solves the equations of the instant at `(t, y)`; from its solution, which is returned, blocks that are not linear are solved from now on.
+    /// Solves for the unknowns at `(t, y)` and returns them; blocks not linear start from there from now on.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
@@ -246,7 +246,7 @@ impl Compiled {
         Ok(())
     }
 
-    /// How often rates were asked for where the chosen plan could not be trusted ([`Plan::LIMIT`]), so that the plain one was taken.
+    /// How often the chosen plan could not be trusted ([`Plan::LIMIT`]), so that the plain one gave rates.
     pub fn fallbacks(&self) -> usize {
         self.fallbacks
     }
@@ -324,10 +324,10 @@ impl Compiled {
         Ok(())
     }
 
-    /// Taylor coefficients of the motion through `(t, y)`, component after component, as many orders as there is room for:
-    /// `y_i(t + τ) = Σ_k coefficients[i orders + k] (τ/unit)^k`.
+    /// Taylor coefficients of the motion through `(t, y)`, component after component, as many orders as there
+    /// is room for: `y_i(t + τ) = Σ_k coefficients[i orders + k] (τ/unit)^k`.
     ///
-    /// Unknowns of the instant are series, too: at order k a block is linear in `z_k`, with `∂R/∂z` of order 0 as its matrix.
+    /// Unknowns of the instant are series: at order k a block is linear in `z_k`, with `∂R/∂z` of order 0.
     ///
     /// # Errors
     /// As [`Compiled::rates`].

@@ -1,4 +1,4 @@
-//! Intermediate quantities of equations: each a short expression in states, unknowns, parameters and earlier ones.
+//! Intermediate quantities of equations: each short, in states, unknowns, parameters and earlier ones.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,8 +6,8 @@ use symbolic::{Expr, Graph, Symbol};
 
 use mechanics::fresh_symbol;
 
-/// Intermediate quantities in the order of their computation. A recursion written as definitions is as long as the system; with everything
-/// put in, it would be as long as its square, or longer.
+/// Intermediate quantities in the order of their computation. A recursion written as definitions is as long
+/// as the system; with everything put in, it would be as long as its square, or longer.
 #[derive(Clone, Debug, Default)]
 pub struct Definitions {
     list: Vec<(Symbol, Expr)>,
@@ -30,7 +30,7 @@ impl Definitions {
         self.list.push((symbol, e));
     }
 
-    /// `e` itself if it has at most `limit` nodes, else a new symbol `stem_1`, `stem_2`, … that is defined as `e`.
+    /// `e` itself if it has at most `limit` nodes, else a new symbol `stem_1`, `stem_2`, … defined as `e`.
     pub fn short(&mut self, g: &Graph, stem: &str, limit: usize, e: Expr) -> Expr {
         if g.size(&[e]) <= limit {
             return e;
@@ -96,8 +96,8 @@ pub(crate) fn apart(g: &Graph, definitions: &[(Symbol, Expr)], unknowns: &[Symbo
     })
 }
 
-/// Derivatives through definitions: `∂e/∂s` row-major for the outputs and independent symbols of each of `wanted`, one after the other, and the
-/// definitions that this needs, those of `definitions` among them. With `e(s, d)`, `d = D(s, d earlier)`:
+/// Derivatives through definitions: `∂e/∂s`, row-major, for the outputs and independent symbols of each of
+/// `wanted` in turn, and all definitions then needed. With `e(s, d)`, `d = D(s, d earlier)`:
 ///
 /// ```text
 /// de/ds = ∂e/∂s + Σ ∂e/∂d · dd/ds ,     the sum over the definitions that e contains.

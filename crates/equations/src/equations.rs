@@ -1,7 +1,7 @@
 //! The common form in which a formulation hands over its equations of motion.
 //!
-//! A state `y` moves by `ẏ = F(t, y, z)`, where `z` (accelerations, multipliers or their rates) solves one small block
-//! of equations `R(z; t, y) = 0` at every instant, nearly always linear in `z`. Nothing here says how time is stepped.
+//! A state `y` moves by `ẏ = F(t, y, z)`, where `z` (accelerations, multipliers or their rates) solves a
+//! small block `R(z; t, y) = 0` at every instant, nearly always linear in `z`. Nothing here steps time.
 
 use std::collections::{HashMap, HashSet};
 
@@ -46,7 +46,7 @@ pub struct StateVariable {
     pub role: Role,
     /// `ẏ`, an expression in `(t, y, z)` and the free constants.
     pub rate: Expr,
-    /// `y(t₀)`, an expression in `(t₀, q₀, v₀)`, the free constants and, with a removal, `(u, u̇, ü, w)` at the start.
+    /// `y(t₀)`, an expression in `(t₀, q₀, v₀)`, free constants and, with a removal, `(u, u̇, ü, w)` there.
     pub start: Expr,
 }
 
@@ -57,7 +57,7 @@ pub struct Block {
     pub unknowns: Vec<Symbol>,
     /// `R`, as many as unknowns.
     pub residuals: Vec<Expr>,
-    /// A value of `z` near the solution at the start, in the symbols of the start; used where `R` is not linear in `z`.
+    /// A value of `z` near the solution at the start, in its symbols; used where `R` is not linear in `z`.
     pub guess: Vec<Expr>,
     /// What has to be regular for the block to be solvable, in the field's words.
     pub regular: &'static str,
@@ -127,7 +127,8 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
-    /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards may need those without `z` only.
+    /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards
+    /// need only those without `z`.
     pub definitions: Vec<(Symbol, Expr)>,
     /// `y` with rates and start.
     pub states: Vec<StateVariable>,
@@ -151,7 +152,7 @@ pub struct Equations {
     pub statements: Vec<Statement>,
     /// What this system did not need.
     pub left_out: Vec<LeftOut>,
-    /// So many units in the last place are velocities and momenta known to, where constraints are nearly dependent; 1 without such.
+    /// Error of velocities and momenta in units in the last place; 1 unless constraints nearly depend.
     pub lost_digits: f64,
     /// In which variables they are written, where there was a choice, and why.
     pub chosen: Vec<String>,

@@ -10,7 +10,7 @@ pub struct Derivation<'a> {
     pub removal: Option<&'a Removal>,
     /// The start of the motion, for forms that choose pivots by their size there.
     pub start: Option<&'a State>,
-    /// Whether costates that never move are kept, with free constants of their own. The rules "zero" and "natural" make them zero.
+    /// Whether to keep costates that never move, with free constants. "zero" and "natural" make them zero.
     pub all_costates: bool,
 }
 
@@ -20,7 +20,7 @@ pub enum DerivationError {
     /// Generalized forces in a variational principle.
     #[error(
         "{formulation}: a generalized force acts on `{coordinate}`, and a variational principle has no place for it; \
-         only the Chetaev formulation takes forces"
+         only Chetaev's formulation and the family between (kappa) take forces"
     )]
     ForceInVariationalPrinciple {
         /// Name of the formulation.
@@ -80,7 +80,7 @@ pub struct Formulation {
     pub needs_removal: bool,
     /// Whether its free constants are multipliers `μ₀` at the start, one a constraint.
     pub starts_multipliers: bool,
-    /// The parameter of the system that it needs beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
+    /// The parameter needed beyond `L`, `f` and `Q`. Systems without it are not compared in this formulation.
     pub parameter: Option<&'static str>,
     /// The derivation.
     pub derive: fn(&System, &Derivation) -> Result<Equations, DerivationError>,

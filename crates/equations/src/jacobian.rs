@@ -34,7 +34,7 @@ impl Jacobian {
         })
     }
 
-    /// Writes `∂F/∂y`, row-major, at `t, y, constants, z`, where `z` solves the blocks, whose factors are at hand.
+    /// Writes `∂F/∂y`, row-major, at `t, y, constants, z`; `z` solves the blocks, whose factors are at hand.
     pub(crate) fn write(&mut self, inputs: &[f64], blocks: &mut [CompiledBlock], jacobian: &mut [f64]) {
         let n = self.states;
         let values = self.program.evaluate(inputs);

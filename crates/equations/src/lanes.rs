@@ -8,7 +8,7 @@ use crate::projection::{LIMIT, STEPS};
 use crate::series::Series;
 use mechanics::fresh_symbol;
 
-/// Compiled equations of motion whose plan leaves no block to be solved numerically: [`crate::Compiled`], eight motions at a time.
+/// [`crate::Compiled`] for eight motions at a time, in a plan that leaves no block to solve numerically.
 ///
 /// The constants differ from lane to lane. Clone it for another thread.
 #[derive(Clone)]
@@ -24,7 +24,7 @@ pub struct LaneEquations {
 }
 
 impl LaneEquations {
-    /// Compiles `equations` in `plan`; `point` is `(t, y, constants)` at the start of one of the motions. `Err` inside says why that is not possible.
+    /// Compiles `equations` in `plan`; `point`: `(t, y, constants)` at a start. Inner `Err`: why not.
     ///
     /// # Errors
     /// As [`crate::Compiled::new`].
@@ -75,8 +75,8 @@ impl LaneEquations {
         }
     }
 
-    /// [`crate::Compiled::taylor`] of every lane, and whether the condition of the plan is within [`Plan::LIMIT`] there. What is not finite shows
-    /// in the coefficients.
+    /// [`crate::Compiled::taylor`] of every lane, and whether the condition of the plan is within
+    /// [`Plan::LIMIT`] there. What is not finite shows in the coefficients.
     pub fn taylor(
         &mut self,
         t: &[f64; LANES],
@@ -113,7 +113,7 @@ impl LaneEquations {
         }
     }
 
-    /// [`crate::Compiled::project`] of every lane; a length that is NaN is that of a lane which was not projected.
+    /// [`crate::Compiled::project`] of every lane; the length is NaN for a lane that was not projected.
     pub fn project(&mut self, t: &[f64; LANES], y: &mut [[f64; LANES]]) -> [f64; LANES] {
         self.load(t, y);
         let Some(projection) = &mut self.projection else { return [0.0; LANES] };

@@ -1,22 +1,21 @@
 //! # Equations of motion, and how they are evaluated
 //!
-//! What every formulation hands over is one thing, [`Equations`]: states `y`, unknowns `z` of one instant,
-//! and
+//! What every formulation hands over is one thing, [`Equations`]: states `y ∈ Rᴺ`, unknowns `z ∈ Rᴷ` of one
+//! instant (accelerations, multipliers or their rates), and in expressions
 //!
 //! ```text
-//! ẏ = Y(t, y, z) ,        R(z; t, y) = 0 ,        y(t₀) = y₀(t₀, q₀, v₀; free constants),
+//! ẏ = Y(t, y, z) ,        R(z; t, y) = 0 ∈ Rᴷ ,        y(t₀) = y₀(t₀, q₀, v₀; free constants).
 //! ```
 //!
-//! in expressions, with outputs (`q`, `q̇`, multipliers), what stays constant, what must not vanish (guards)
-//! and the equations as a reader wants to see them. A [`Formulation`] is a name and a pass from a system to
-//! such equations.
+//! Beside these stand outputs (`q`, `q̇`, multipliers), what stays constant, what must not vanish (guards)
+//! and the equations for the reader. A [`Formulation`] is a name and a pass from a system to such equations.
 //!
-//! **Left out** ([`Equations::leave_out_unneeded`]). Blocks of `R` fall apart into independent ones, single
-//! unknowns are solved on the spot, states on which nothing depends are dropped. The motion is the same.
+//! **Left out** ([`Equations::leave_out_unneeded`]). `R` falls apart into independent blocks, single unknowns
+//! are solved on the spot, states on which nothing depends are dropped. The motion is the same.
 //!
 //! **Compiled** ([`Compiled`]). `F(t, y) = Y(t, y, z(t, y))` as straight-line programs. `z` solves the
-//! blocks, by LU factorization where they are linear and by Newton's method from the last accepted state
-//! where they are not. From the same expressions come `∂F/∂y` by the implicit function theorem,
+//! blocks: by LU factorization where they are linear, by Newton's method from the last accepted state where
+//! they are not. From the same expressions come the Jacobian (N×N), by the implicit function theorem,
 //!
 //! ```text
 //! ∂F/∂y = Y_y − Y_z R_z⁻¹ R_y ,
@@ -26,9 +25,38 @@
 //! `δvᵀ M δv`. [`LaneEquations`] do the same for eight motions at once.
 //!
 //! **Planned** ([`Plan`]). Linear blocks whose pivots are known beforehand are eliminated in expressions,
-//! under a condition that is watched.
+//! under a condition that every evaluation checks.
 //!
-//! What it does not know: any formulation, any principle, how time advances.
+//! ```
+//! use equations::{Block, Compiled, Equations};
+//! use mechanics::System;
+//! use symbolic::Graph;
+//!
+//! // a mass of 2 kg on a spring of 8 N/m: z = x'', R = 2 x'' + 8 x
+//! let system = System::new(Graph::new(), &[("x", "m")]);
+//! let mut equations = Equations::new("by hand", &system);
+//! equations.add_positions_and_velocities(&system);
+//! let residuals = vec![system.expression("2*x'' + 8*x")?];
+//! let unknowns = system.accelerations();
+//! equations.blocks.push(Block { unknowns, residuals, guess: Vec::new(), regular: "the mass" });
+//! equations.coordinates = system.graph.variables(&system.positions());
+//! equations.velocities = system.graph.variables(&system.velocities());
+//! equations.graph = system.graph;
+//!
+//! let mut compiled = Compiled::new(&equations)?.with_jacobian(&equations)?;
+//! let (mut rates, mut jacobian) = ([0.0; 2], [0.0; 4]);
+//! compiled.rates(0.0, &[3.0, 0.5], &mut rates)?;
+//! compiled.jacobian(0.0, &[3.0, 0.5], &mut jacobian)?;
+//! assert_eq!((rates, jacobian), ([0.5, -12.0], [0.0, 1.0, -4.0, 0.0]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **What it refuses.** An instant whose `R_z` is singular or whose Newton iteration does not converge
+//! ([`EvaluationFailure`]); a system that a formulation has no equations for ([`DerivationError`]). It knows
+//! no formulation, no principle and no time step.
+//!
+//! Source of the return onto the constraint: E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical
+//! Integration*, IV.4.
 
 mod blocks;
 mod compiled;

@@ -5,7 +5,7 @@ use symbolic::{CompileError, Evaluator, Expr, Symbol};
 use crate::equations::Equations;
 use crate::plan::Plan;
 
-/// Compiled definitions: rates and outputs each by a tape of their own, so that neither computes what only the other needs.
+/// Compiled definitions: one tape for rates and one for outputs, each without what only the other needs.
 #[derive(Clone)]
 pub(crate) struct Planned {
     rates: Evaluator<f64>,

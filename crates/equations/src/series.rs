@@ -6,7 +6,7 @@ use crate::blocks::CompiledBlock;
 use crate::equations::Equations;
 use crate::plan::Plan;
 
-/// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan, blocks that are left in it included.
+/// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan and the blocks left in it.
 #[derive(Clone)]
 pub(crate) struct Series {
     tape: SeriesTape,
@@ -43,7 +43,7 @@ impl Series {
         equations.graph.compile_series(&inputs, &definitions, &rates, &residuals, &equations.parameters)
     }
 
-    /// Expands to `order`, from `(t, y, constants, z)`, where `z` solves the blocks that are left and their factors are at hand.
+    /// Expands to `order`, from `(t, y, constants, z)`; `z` solves the blocks left, with factors at hand.
     pub(crate) fn expand(&mut self, values: &[f64], unit: f64, order: usize, blocks: &mut [CompiledBlock]) {
         if self.workspace.order() != order {
             self.workspace = self.tape.workspace(order);

@@ -156,7 +156,7 @@ fn newton_that_finds_no_root_says_so() {
     assert!(matches!(failure, EvaluationFailure::NotConverged { step, limit, .. } if step > limit), "{failure}");
 }
 
-/// `v² = x`: two roots. From where it is solved decides which one; [`Compiled::settle`] moves that place along, [`Compiled::rates`] does not.
+/// `v² = x`: two roots. The anchor decides: [`Compiled::settle`] moves it, [`Compiled::rates`] does not.
 #[test]
 fn a_block_with_two_roots_keeps_to_the_one_it_was_settled_on() {
     let states = [("x", Role::Position, "vx")];
@@ -181,7 +181,7 @@ fn a_block_with_two_roots_keeps_to_the_one_it_was_settled_on() {
     assert!(matches!(failure, EvaluationFailure::NotConverged { .. }), "{failure}");
 }
 
-/// `[x, e; e, −(3 + y²)] (vx, ay) = (y, 1)` with `e = 2 + x`, eliminated by way of the pivot `x`, which goes through zero where the matrix is regular.
+/// `[x, e; e, −(3 + y²)] (vx, ay) = (y, 1)`, `e = 2 + x`: regular, but the pivot `x` goes through zero.
 #[test]
 fn where_a_pivot_of_the_form_is_zero_the_plain_form_takes_over() {
     let states = [("x", Role::Position, "vx"), ("y", Role::Position, "vy"), ("vy", Role::Velocity, "ay")];

@@ -4,8 +4,8 @@
 //! shoot: find c ∈ Rᵏ with r(c) = 0,   r(c) ∈ Rᵏ        fit: minimise |r(c)|²,   r(c) ∈ Rᵐ,  m ≥ k
 //! ```
 //!
-//! `r` is the caller's: it integrates from the start state that belongs to `c` and returns what is to vanish at the end.
-//! The minimiser is the crate `levenberg-marquardt`, a port of MINPACK's.
+//! `r` is the caller's: it integrates from the start state that belongs to `c` and returns what is to vanish
+//! at the end. The minimiser is the crate `levenberg-marquardt`, a port of MINPACK's.
 
 use std::cell::RefCell;
 
@@ -30,15 +30,15 @@ pub struct ShootOptions {
     pub tolerance: f64,
     /// Limit on the number of evaluated Jacobians; > 0.
     pub max_iterations: usize,
-    /// Central differences are taken over `± difference_step · max(|c_j|, scale)`; in (0, 1). The error of a difference
-    /// is about `difference_step² + (error of r)/difference_step` relative to the scale of `r`.
+    /// Central differences are taken over `± difference_step · max(|c_j|, scale)`; in (0, 1). The error of a
+    /// difference is about `difference_step² + (error of r)/difference_step` relative to the scale of `r`.
     pub difference_step: f64,
     /// The magnitude below which an unknown counts as small; > 0.
     pub scale: f64,
 }
 
 impl ShootOptions {
-    /// At most 50 iterations, differences over 1e-4 (for integration errors of about 1e-12), unknowns of magnitude 1.
+    /// At most 50 iterations, differences over 1e-4 (for integration errors near 1e-12), unknowns of size 1.
     pub fn with_tolerance(tolerance: f64) -> Self {
         Self { tolerance, max_iterations: 50, difference_step: 1e-4, scale: 1.0 }
     }
@@ -118,7 +118,7 @@ pub enum BoundaryError {
         /// Jacobians evaluated.
         iterations: usize,
     },
-    /// The residual stays above the tolerance, and the Jacobian at the best point does not determine the unknowns.
+    /// The residual stays above the tolerance; the Jacobian at the best point does not fix the unknowns.
     #[error("the residual is {residual}; the condition number of its Jacobian is {condition}, the limit is {limit}")]
     Singular {
         /// The smallest `|r|` found.
@@ -148,9 +148,9 @@ pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), BoundaryErro
 
 /// Single shooting: finds `c` near `guess` with `|r(c)| ≤ tolerance`, as many residuals as unknowns.
 ///
-/// Unknowns at which `residual` returns an error are out of reach: the step towards them is shortened. The solution
-/// found is the one that the guess leads to; there may be others. Single shooting is for moderate growth between the ends: where
-/// the end state depends on `c` like `e^K`, residuals cannot be made smaller than about `e^K` times the integration error.
+/// Where `residual` returns an error the step is shortened. The solution found is the one that the guess
+/// leads to; there may be others. Single shooting is for moderate growth: where the end state depends on `c`
+/// like `e^K`, residuals stay above about `e^K` times the integration error.
 ///
 /// # Errors
 /// See [`BoundaryError`].
@@ -181,9 +181,9 @@ pub fn shoot(residual: &mut Residual, guess: &[f64], options: &ShootOptions) -> 
 
 /// Best-fitting constants: minimises `|r(c)|` over `c` near `guess`, `residuals ≥ k` of them.
 ///
-/// Returns the best point found, with the residual norm there, which is not small where the model does not fit; a
-/// `condition` above 1e12 says that the fit does not determine the constants. The minimum is a local one; [`Shot::exhausted`] says
-/// that the limit on iterations was reached on the way to it.
+/// Returns the best point found, with the residual norm there, which is not small where the model does not
+/// fit; a `condition` above 1e12 says that the fit does not determine the constants. The minimum is a local
+/// one; [`Shot::exhausted`] says that the limit on iterations was reached on the way to it.
 ///
 /// # Errors
 /// The variants for bad calls and for residuals that cannot be evaluated at the guess.

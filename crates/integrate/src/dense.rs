@@ -2,7 +2,7 @@
 
 use crate::error::DenseError;
 
-/// Piecewise polynomial; valid between [`start`](DenseOutput::start) and [`end`](DenseOutput::end) of what was integrated.
+/// Piecewise polynomial; valid between its [`start`](DenseOutput::start) and [`end`](DenseOutput::end).
 ///
 /// On the step from `t_k` to `t_k + h`, with `θ = (t − t_k)/h`, each component is
 ///
@@ -10,8 +10,8 @@ use crate::error::DenseError;
 /// y(θ) = c₀ + θ (c₁ + (1−θ) (c₂ + θ (c₃ + (1−θ) (c₄ + …))))
 /// ```
 ///
-/// (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.10), or `c₀ + θ (c₁ + θ (c₂ + …))` for [`crate::Method::Taylor`].
-/// It is continuous, also where a projection moved the state at the end of a step.
+/// (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.10), for
+/// [`crate::Method::Taylor`] `c₀ + θ (c₁ + θ (c₂ + …))`. Continuous, also where a projection moved its end.
 #[derive(Clone, Debug)]
 pub struct DenseOutput {
     basis: Basis,
@@ -45,7 +45,7 @@ impl DenseOutput {
         }
     }
 
-    /// Room for the coefficients of one more step, to be filled and then either kept by `push` or dropped by `pop_room`.
+    /// Room for the coefficients of one more step: fill it, then `push` keeps it or `pop_room` drops it.
     pub(crate) fn room(&mut self) -> &mut [f64] {
         let length = self.terms * self.dimension;
         let stored = self.coefficients.len();
@@ -62,7 +62,7 @@ impl DenseOutput {
         self.coefficients.truncate(self.coefficients.len() - self.terms * self.dimension);
     }
 
-    /// One more step, from `begin` over `width`, of which the part up to `end` is valid; `y` is the state at `end`.
+    /// One more step, from `begin` over `width`, valid up to `end`; `y` is the state at `end`.
     pub(crate) fn push(&mut self, begin: f64, width: f64, end: f64, y: &[f64]) {
         self.begins.push(begin);
         self.widths.push(width);
@@ -79,7 +79,7 @@ impl DenseOutput {
         self.start
     }
 
-    /// How far it came: the end asked for, or where it stopped. Smaller than the start for backward integration.
+    /// The end asked for, or where the run stopped. Smaller than the start for backward integration.
     pub fn end(&self) -> f64 {
         self.end
     }
@@ -99,7 +99,7 @@ impl DenseOutput {
         &self.end_state
     }
 
-    /// End points of the steps: the start, then the end of each step, the last of them being [`end`](DenseOutput::end).
+    /// The start, then the end of each step; the last one is [`end`](DenseOutput::end).
     pub fn step_times(&self) -> Vec<f64> {
         let mut times = self.begins.clone();
         times.push(self.end);
@@ -108,10 +108,10 @@ impl DenseOutput {
 
     /// Writes the state at `t` into `y`.
     ///
-    /// A `t` outside of the range by no more than round-off is moved to the end of the range. Farther outside, with
-    /// a slice of the wrong length or where nothing was stored ([`crate::Dense::EndOnly`]), debug builds panic; release
-    /// builds answer with the state at the nearer end, as far as the slice reaches. Where the time is not known to be
-    /// in range, ask [`try_evaluate`](DenseOutput::try_evaluate).
+    /// A `t` outside of the range by no more than round-off is moved to the end of the range. Farther
+    /// outside, with a slice of the wrong length or where nothing was stored ([`crate::Dense::EndOnly`]),
+    /// debug builds panic; release builds answer with the state at the nearer end, as far as the slice
+    /// reaches. Where the time is not known to be in range, ask [`try_evaluate`](DenseOutput::try_evaluate).
     pub fn evaluate(&self, t: f64, y: &mut [f64]) {
         if let Err(error) = self.try_evaluate(t, y) {
             debug_assert!(false, "{error}");
@@ -126,9 +126,9 @@ impl DenseOutput {
     /// Writes the state at `t` into `y`.
     ///
     /// # Errors
-    /// [`DenseError::OutsideRange`] for a `t` farther outside of the range than round-off, `16 ε max(|start|, |end|)`;
-    /// [`DenseError::NotStored`] between the ends where only they were stored; [`DenseError::Dimension`] where `y` has
-    /// the wrong length. `y` is then untouched.
+    /// [`DenseError::OutsideRange`] for a `t` farther outside of the range than round-off,
+    /// `16 ε max(|start|, |end|)`; [`DenseError::NotStored`] between the ends where only they were stored;
+    /// [`DenseError::Dimension`] where `y` has the wrong length. `y` is then untouched.
     pub fn try_evaluate(&self, t: f64, y: &mut [f64]) -> Result<(), DenseError> {
         let (start, end) = (self.start, self.end);
         if y.len() != self.dimension {

@@ -1,9 +1,9 @@
-//! The methods of the library diffsol: [`Method::Bdf`], [`Method::TrBdf2`], [`Method::Esdirk34`], [`Method::Tsit45`].
+//! Methods of diffsol: [`Method::Bdf`], [`Method::TrBdf2`], [`Method::Esdirk34`], [`Method::Tsit45`].
 //!
-//! What this file guards against: diffsol 0.18 takes a NaN error estimate of a Runge–Kutta step for zero (`max` drops
-//! NaN), so that NaN comes out as success; and a failed Newton iteration leaves the solver in the middle of a step. So
-//! the state before each step is kept, every accepted state and its rates are checked, and a step that cannot be taken
-//! is repeated from the kept state with half the length.
+//! What this file guards against: diffsol 0.18 takes a NaN error estimate of a Runge–Kutta step for zero
+//! (`max` drops NaN), so that NaN comes out as success; and a failed Newton iteration leaves the solver in
+//! the middle of a step. So the state before each step is kept, every accepted state and its rates are
+//! checked, and a step that cannot be taken is repeated from the kept state with half the length.
 
 use diffsol::error::OdeSolverError;
 use diffsol::{
@@ -22,12 +22,12 @@ use crate::time_loop;
 type Linear = NalgebraLU<f64>;
 type States = NalgebraVec<f64>;
 
-/// A multistep solver that is told of a projected state starts again at order 1; so it is told only where the move is
-/// longer than so many tolerances. Measured on the unit circle over 16 turns, tolerances 1e-4 to 1e-10: told above 10
-/// tolerances Bdf takes up to half as many steps again, above 100 up to a fifth, above 1000 none; the error at the end is
-/// then 1.6 to 24 times smaller than without projection.
+/// A multistep solver that is told of a projected state starts again at order 1; so it is told only where the
+/// move is longer than so many tolerances. Measured on the unit circle over 16 turns, tolerances 1e-4 to
+/// 1e-10: told above 10 tolerances Bdf takes up to half as many steps again, above 100 up to a fifth, above
+/// 1000 none; the error at the end is then 1.6 to 24 times smaller than without projection.
 const MULTISTEP_MOVE: f64 = 1000.0;
-/// What Newton's iteration may leave, in parts of the tolerance. The error estimate does not see it, and an ill-conditioned mass matrix makes it large.
+/// What Newton's iteration may leave, in tolerances: the estimate misses it; bad mass matrices make it large.
 const ITERATION: f64 = 0.02;
 /// Limits of diffsol on failures; a run that meets them is stuck, the step size being bounded from below.
 const LIBRARY_FAILURES: usize = 100_000;
@@ -243,8 +243,8 @@ where
         &mut self.candidate
     }
 
-    // The polynomial takes the stored (projected) values at its ends; in between it has the library's values, moved by
-    // the projections' moves at the two ends, interpolated linearly.
+    // The polynomial takes the stored (projected) values at its ends; in between it has the library's values,
+    // moved by the projections' moves at the two ends, interpolated linearly.
     fn finish(&mut self, moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure> {
         self.moved = moved;
         let Some(segment) = segment else { return Ok(()) };

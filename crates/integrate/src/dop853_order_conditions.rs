@@ -1,7 +1,7 @@
 //! Every Butcher order condition of the tableau, by walking the rooted trees.
 //!
-//! For a rooted tree τ, `Φ_i(τ) = Π_children Σ_j a_ij Φ_j(child)` and `γ(τ) = |τ| Π γ(child)`; weights `b` have order p
-//! where `Σ_i b_i Φ_i(τ) = 1/γ(τ)` for all τ with |τ| ≤ p; a dense output where `Σ_i b_i(θ) Φ_i(τ) = θ^|τ|/γ(τ)`.
+//! For a rooted tree τ, `Φ_i(τ) = Π_children Σ_j a_ij Φ_j(child)` and `γ(τ) = |τ| Π γ(child)`. Order p means
+//! `Σ_i b_i Φ_i(τ) = 1/γ(τ)` for all |τ| ≤ p; in a dense output, `Σ_i b_i(θ) Φ_i(τ) = θ^|τ|/γ(τ)`.
 
 use crate::dop853_tableau::*;
 

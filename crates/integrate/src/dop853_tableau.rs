@@ -1,9 +1,9 @@
-//! Coefficients of Dormand and Prince's explicit Runge–Kutta method of order 8(5,3), with its dense output of order 7.
+//! Coefficients of Dormand and Prince's explicit Runge–Kutta method of order 8(5,3), dense output of order 7.
 //!
-//! Source: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993,
-//! section II.10, and the code DOP853 that goes with the book; here rounded to double precision. The tests below check
-//! *every* Butcher order condition: the 200 of order ≤ 8 for the step, those of order ≤ 5 and ≤ 3 for the two embedded
-//! formulas and the 85 of order ≤ 7, as polynomials in θ, for the dense output.
+//! Source: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
+//! Springer 1993, section II.10, and the book's code DOP853; here rounded to double precision. The tests
+//! below check *every* Butcher condition: the 200 of order ≤ 8 for the step, those of order ≤ 5 and ≤ 3 for
+//! the embedded formulas and the 85 of order ≤ 7, as polynomials in θ, for the dense output.
 
 /// One sparse row of the tableau: `Σ_m weight[m] · k[from[m]]`, stages counted from 0.
 pub(crate) struct Row<const M: usize> {

@@ -1,11 +1,11 @@
 //! Many motions of one problem at once by Taylor series, eight at a time, one a lane.
 //!
-//! Each lane has a time, a step and an end of its own, chosen as [`crate::Method::Taylor`] chooses them for a single motion; a lane whose motion is
-//! complete goes on with the next one. Lanes do not know of each other: what comes out for a motion is the same to the last bit, whichever
-//! motions run beside it.
+//! Each lane has a time, a step and an end of its own, chosen as [`crate::Method::Taylor`] chooses them for a
+//! single motion; a lane whose motion is complete goes on with the next one. Lanes do not know of each other:
+//! what comes out for a motion is the same to the last bit, whichever motions run beside it.
 //!
-//! Only what goes well is done here. A motion is left to [`crate::integrate`] where its problem does not trust the rates, where a coefficient is
-//! not finite, an event function changes its sign, or steps become too short or too many: these are rare, and every lane would wait for them.
+//! [`crate::integrate`] takes over, as every lane would wait, where the problem does not trust the rates, a
+//! coefficient is not finite, an event function changes sign, or steps get too short or too many: all rare.
 
 mod problem;
 
@@ -66,10 +66,10 @@ struct Lanes<'a, P> {
     inner: Vec<Lane>,
 }
 
-/// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series with the tolerances of `options`; `done` gets each with its states at
-/// those of `times` (in the order in which they are passed) that are not after its end, or why it was left.
+/// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series to the
+/// tolerances of `options`. `done` gets each, with its states at the `times` passed or why it was left.
 ///
-/// `options` must be those of a valid call of [`crate::integrate`]; its sizes and what it says of dense output count for nothing.
+/// `options` must suit [`crate::integrate`]; their sizes and what they say of dense output do not count.
 pub fn integrate_lanes<P: LaneProblem>(
     problem: &mut P,
     next: &mut dyn FnMut() -> Option<(usize, LaneStart)>,
@@ -199,7 +199,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         }
     }
 
-    /// Whether the lane goes on from its candidate: it does not where its motion is over or left, or where the step is to be halved.
+    /// Whether the lane goes on from its candidate: not if its motion is over or left, or the step too long.
     fn judge(&mut self, lane: usize, done: Done) -> bool {
         let Some(rider) = &mut self.riders[lane] else { return false };
         if self.finite[lane] {

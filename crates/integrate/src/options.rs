@@ -6,20 +6,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The time-stepping method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Method {
-    /// Taylor series of an order that follows from the tolerance, dense output of that order; for smooth non-stiff problems that
-    /// can be expanded ([`crate::Problem::taylor`]), at any accuracy.
+    /// Taylor series of an order that follows from the tolerance, dense output of that order; for smooth
+    /// non-stiff problems that can be expanded ([`crate::Problem::taylor`]), at any accuracy.
     Taylor,
-    /// Dormand and Prince's explicit Runge–Kutta method of order 8(5,3), dense output of order 7; for non-stiff problems.
+    /// Dormand and Prince's explicit Runge–Kutta 8(5,3), dense output of order 7; for non-stiff problems.
     Dop853,
     /// Tsitouras' explicit Runge–Kutta method of order 5(4) (diffsol).
     Tsit45,
     /// Backward differentiation formulas of variable order 1 to 5 (diffsol); for stiff problems.
     Bdf,
-    /// The trapezoidal rule and BDF2 in one step, order 2, L-stable (diffsol); for stiff problems at low accuracy.
+    /// The trapezoidal rule and BDF2 in a step, order 2, L-stable (diffsol); stiff problems, low accuracy.
     TrBdf2,
     /// Singly diagonally implicit Runge–Kutta method of order 3(4), L-stable (diffsol); for stiff problems.
     Esdirk34,
-    /// Radau IIA of order 5, three stages, L-stable; for stiff problems, down to tight tolerances. Dense output of order 3.
+    /// Radau IIA of order 5, dense output of order 3, L-stable; for stiff problems, tight tolerances too.
     Radau5,
 }
 
@@ -41,8 +41,8 @@ impl Method {
         }
     }
 
-    /// The number of steps grows as `tolerance^(−1/order)` with this order, for [`Method::Bdf`] at least with it; [`Method::Taylor`] takes a higher order
-    /// instead of more steps, and has none.
+    /// The number of steps grows as `tolerance^(−1/order)` with this order, for [`Method::Bdf`] at least with
+    /// it; [`Method::Taylor`] takes a higher order instead of more steps, and has none.
     pub fn order_in_steps(self) -> Option<f64> {
         match self {
             Method::Taylor => None,
@@ -91,7 +91,7 @@ pub enum Dense {
     EndOnly,
 }
 
-/// A flag by which another thread ends an integration. Clones share it; two are equal if they are the same flag.
+/// A flag by which another thread ends an integration. Clones share it; two are equal if they are one flag.
 ///
 /// ```
 /// use integrate::Interrupt;
@@ -123,19 +123,19 @@ impl PartialEq for Interrupt {
 
 /// Method, tolerances and limits of an integration.
 ///
-/// The local error `e` of a step is kept below `|e_i| ≤ absolute · size_i + relative · max(|y_i|, |y_i,new|)` in the root mean
-/// square over the components.
+/// The local error `e` of a step is kept below `|e_i| ≤ absolute · size_i + relative · max(|y_i|, |y_i,new|)`
+/// in the root mean square over the components.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The time-stepping method.
     pub method: Method,
-    /// Tolerance relative to each component of the state; > 0. [`Method::Dop853`] reads what is below 2e-15, where
-    /// its error estimate measures round-off, as 2e-15.
+    /// Tolerance relative to each component of the state; > 0. [`Method::Dop853`] reads what is below 2e-15,
+    /// where its error estimate measures round-off, as 2e-15.
     pub relative_tolerance: f64,
     /// Tolerance in the state's own units; > 0.
     pub absolute_tolerance: f64,
-    /// What the absolute tolerance is multiplied by, component by component, each > 0; empty: by 1. Small components have small errors only
-    /// where their size is known.
+    /// What the absolute tolerance is multiplied by, component by component, each > 0; empty: by 1. Small
+    /// components have small errors only where their size is known.
     pub sizes: Vec<f64>,
     /// Whether accepted states are projected.
     pub projection: Projection,
@@ -143,7 +143,7 @@ pub struct Options {
     pub max_steps: usize,
     /// What is kept between the ends.
     pub dense: Dense,
-    /// The flag that ends the run with [`crate::StopCause::Interrupted`]; looked at before each attempted step.
+    /// The flag that ends the run with [`crate::StopCause::Interrupted`]; looked at before each attempt.
     pub interrupt: Option<Interrupt>,
 }
 
@@ -154,7 +154,7 @@ impl Options {
         (0..n).map(|i| self.absolute_tolerance * size(i)).collect()
     }
 
-    /// [`Method::Dop853`] with both tolerances equal, projection after each step, dense output, at most 100 000 steps.
+    /// [`Method::Dop853`], both tolerances equal, projection after each step, dense output, ≤ 100 000 steps.
     ///
     /// ```
     /// use integrate::{Method, Options};

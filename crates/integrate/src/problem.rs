@@ -8,9 +8,9 @@ use thiserror::Error;
 /// y' = F(t, y),   y ∈ Rⁿ,   J(t, y) = ∂F/∂y (n×n, row-major),   g_k(t, y) = 0: event k
 /// ```
 ///
-/// All methods take `&mut self`, so that an implementation may keep work space. Equations in the linearly implicit form
-/// `W(t, y) y' = F` are handed over solved for `y'`: the caller factorises `W` inside [`rates`](Problem::rates)
-/// (a mass matrix that depends on the state is not supported by the library behind the implicit methods).
+/// All methods take `&mut self`, so that an implementation may keep work space. For equations
+/// `W(t, y) y' = F` the caller factorises `W` inside [`rates`](Problem::rates) and hands over `y'` (the
+/// library behind the implicit methods takes no mass matrix that depends on the state).
 ///
 /// # Examples
 /// ```
@@ -43,10 +43,10 @@ pub trait Problem {
     /// Writes `F(t, y)`; `y` and `rates` have length n.
     ///
     /// # Errors
-    /// [`EvaluationError`] where `F` is not defined. The integration then tries shorter steps before it stops.
+    /// [`EvaluationError`] where `F` is not defined. The integration then tries shorter steps, then stops.
     fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError>;
 
-    /// Writes `∂F/∂y(t, y)`, row-major: `jacobian[i * n + j] = ∂F_i/∂y_j`. Only the implicit methods ask for it.
+    /// Writes `∂F/∂y(t, y)`, row-major: `jacobian[i * n + j] = ∂F_i/∂y_j`. Only implicit methods ask for it.
     ///
     /// # Errors
     /// [`EvaluationError`] where it is not defined, and always where a problem does not say what it is.
@@ -59,33 +59,32 @@ pub trait Problem {
         false
     }
 
-    /// Writes the coefficients of the solution through `(t, y)`, component after component, as many orders as there is room for:
+    /// Writes coefficients of the solution through `(t, y)`, component by component, as far as there is room:
     ///
     /// ```text
-    /// y_i(t + τ) = Σ_k coefficients[i m + k] (τ / unit)^k,   k = 0, 1, … m − 1,   m = coefficients.len() / n,   unit > 0
+    /// y_i(t + τ) = Σ_k coefficients[i m + k] (τ/unit)^k,  k = 0 … m − 1,  m = coefficients.len()/n, unit > 0
     /// ```
     ///
     /// A coefficient that overflows may be written as such.
     ///
     /// # Errors
-    /// [`EvaluationError`] where `F` is not defined at `(t, y)`, and always where [`has_taylor`](Problem::has_taylor) says no.
+    /// [`EvaluationError`] where `F` is not defined, and without [`has_taylor`](Problem::has_taylor).
     fn taylor(&mut self, _t: f64, _y: &[f64], _unit: f64, _coefficients: &mut [f64]) -> Result<(), EvaluationError> {
         Err(EvaluationError { reason: "the problem has no Taylor series".into() })
     }
 
-    /// Moves `y` onto the invariant manifold; returns the Euclidean length of the move (0 where there is nothing to
-    /// project onto).
+    /// Moves `y` onto the invariant manifold, if any; returns the Euclidean length of the move (or 0).
     ///
     /// # Errors
-    /// [`EvaluationError`] where no nearby point of the manifold was found. The step is then tried again, shorter.
+    /// [`EvaluationError`] where no near point of the manifold was found. The step is retried, shorter.
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<f64, EvaluationError> {
         Ok(0.0)
     }
 
-    /// Told of every state that the integration accepts, in order, the start left out: what later evaluations may go out from.
+    /// Told of every accepted state, in order, without the start: later evaluations may go out from it.
     ///
     /// # Errors
-    /// [`EvaluationError`] where the state is not acceptable after all. The step is then tried again, shorter.
+    /// [`EvaluationError`] where the state is not acceptable after all. The step is retried, shorter.
     fn accepted(&mut self, _t: f64, _y: &[f64]) -> Result<(), EvaluationError> {
         Ok(())
     }

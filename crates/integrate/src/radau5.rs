@@ -1,11 +1,15 @@
-//! Radau IIA of order 5: three stages, collocation at `c = (4 − √6)/10, (4 + √6)/10, 1`, L-stable; for stiff problems.
+//! Radau IIA of order 5 for stiff problems: L-stable, collocation at `c = (4 − √6)/10, (4 + √6)/10, 1`.
 //!
-//! Newton iteration, error estimate, step control and starting values as in E. Hairer's and G. Wanner's code RADAU5: the three stages are
-//! transformed so that one real and one complex matrix of n rows are factorized, `(γ/h) − J` and `((α + iβ)/h) − J`; Jacobian and factors are
-//! kept while the iteration contracts well. Where it does not, unlike there, each stage has a Jacobian of its own ([`newton`]).
-//! Dense output is the collocation polynomial, of degree 3. The estimate has order 3 too, and unlike in RADAU5, which asks for `0.1 · tolerance^(2/3)` of it, it is held under the tolerance as it stands: so the dense output is as good as the tolerance,
-//! and the ends of the steps are better by orders. That estimate does not see what is stiff, whose polynomial may be wrong between collocation points;
-//! so a second one compares the ends of the steps with where the polynomial before leads.
+//! Ours, because the implicit methods of `diffsol` have order 5 at most in several steps and 3 in one, and
+//! take very many steps at tight tolerances.
+//!
+//! Newton iteration, error estimate, step control and starting values follow Hairer's and Wanner's RADAU5:
+//! one real and one complex matrix of n rows are factorized, `(γ/h) − J` and `((α + iβ)/h) − J`, and kept
+//! while the iteration contracts well. Otherwise, unlike there, each stage has its own Jacobian ([`newton`]).
+//! Dense output is the collocation polynomial, of degree 3. The estimate, of order 3 too, is held under the
+//! tolerance, not under RADAU5's `0.1 · tolerance^(2/3)`: dense output keeps the tolerance, ends of steps are
+//! better by orders. It does not see what is stiff, where the polynomial may be wrong between collocation
+//! points: a second estimate compares the end of a step with where the polynomial before leads.
 //!
 //! E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, IV.8.
 
@@ -23,7 +27,7 @@ use crate::system::{Failure, System, check_finite};
 /// Below this the error estimate measures round-off.
 const TIGHTEST: f64 = 1e-14;
 const SAFETY: f64 = 0.9;
-/// Steps shrink at most by 8 and grow at most by 8, before that by 5 where the estimate was the reason (RADAU5's `FACL`, `FACR`).
+/// Steps shrink and grow by 8 at most, by 5 before that for the estimate's sake (RADAU5's `FACL`, `FACR`).
 const SLOWEST: f64 = 5.0;
 const FASTEST: f64 = 0.125;
 /// Largest `θ (θ − c₁)(θ − c₂)(1 − θ)` on a step.
@@ -54,7 +58,7 @@ pub(crate) struct Radau5<'s, 'p> {
     /// Whether the Jacobian was evaluated at `(t, y)`.
     jacobian_is_new: bool,
     factors: Option<Factors>,
-    /// Factors of the matrix with the Jacobians of all stages, and so many steps that are still to be solved with such.
+    /// Factors of the matrix with all stages' Jacobians, and the number of steps still to solve with it.
     all_stages: Option<LU<f64, Dyn, Dyn>>,
     proper_steps: usize,
     /// `z_i = Y_i − y` of the three stages, and their transforms.
@@ -131,8 +135,8 @@ impl<'s, 'p> Radau5<'s, 'p> {
         self.absolute[i] + self.relative * self.y[i].abs()
     }
 
-    /// The error of the polynomial between collocation points in units of the tolerance: both it and that of its predecessor's continuation are
-    /// `h⁴ y⁗/24` times the product of the distances from the points.
+    /// The error of the polynomial between collocation points in units of the tolerance: both it and that of
+    /// its predecessor's continuation are `h⁴ y⁗/24` times the product of the distances from the points.
     fn estimate_between(&self, h: f64) -> f64 {
         let Some((before, _)) = &self.last else { return 0.0 };
         let ratio = h / before;

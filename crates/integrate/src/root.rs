@@ -1,12 +1,12 @@
 //! Roots of scalar functions.
 
-/// Root of a scalar function between `a` and `b`: `f(x) = 0`, for events and for questions like "when does the gap pass ε".
+/// Root of a scalar function between `a` and `b`: `f(x) = 0`, for events and for "when does the gap pass ε".
 ///
-/// Brent's method: inverse quadratic interpolation and secant steps, safeguarded by bisection. The root is bracketed to
-/// `tolerance + 4ε|x|`, with `tolerance ≥ 0`; 0 asks for round-off.
+/// Brent's method: inverse quadratic interpolation and secant steps, safeguarded by bisection. The root is
+/// bracketed to `tolerance + 4ε|x|`, with `tolerance ≥ 0`; 0 asks for round-off.
 ///
-/// Returns `None` where `f(a)` and `f(b)` are finite and of one sign, where either is NaN or infinite, or where a NaN
-/// turns up between them. With several roots in the interval, one of them is returned.
+/// Returns `None` where `f(a)` and `f(b)` are finite and of one sign, where either is NaN or infinite, or
+/// where a NaN turns up between them. With several roots in the interval, one of them is returned.
 ///
 /// Source: R. P. Brent, *Algorithms for Minimization without Derivatives*, Prentice-Hall 1973, chapter 4.
 ///

@@ -75,6 +75,14 @@ pub enum StopCause {
         /// [`crate::Options::max_steps`].
         limit: usize,
     },
+    /// Many steps hardly moved the time: they creep up to a singularity.
+    #[error("the last {steps} steps moved time by {moved:.1e} only: a singularity is near")]
+    Creeping {
+        /// How many.
+        steps: usize,
+        /// Time they took together.
+        moved: f64,
+    },
     /// [`crate::Options::interrupt`] was raised.
     #[error("interrupted")]
     Interrupted,
@@ -97,8 +105,8 @@ pub struct Work {
     pub evaluations: usize,
     /// Evaluations of ∂F/∂y.
     pub jacobians: usize,
-    /// Orders of Taylor series: one is the coefficients of one power of time, of all components. Each series counts
-    /// as one evaluation besides (its order 0).
+    /// Orders of Taylor series: one is the coefficients of one power of time, of all components. Each series
+    /// counts as one evaluation besides (its order 0).
     pub orders: usize,
 }
 

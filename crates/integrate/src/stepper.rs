@@ -6,8 +6,8 @@ use crate::system::Failure;
 
 /// A time-stepping method at a point `(t, y)` of its way.
 ///
-/// The loop calls `attempt`; on a candidate it may move the candidate's state (projection), then calls `finish` and then
-/// `advance`. Until `advance` the step can be taken back with `shrink`.
+/// The loop calls `attempt`; on a candidate it may move the candidate's state (projection), then calls
+/// `finish` and then `advance`. Until `advance` the step can be taken back with `shrink`.
 pub(crate) trait Stepper {
     /// Degree of the polynomials written by `finish`.
     fn degree(&self) -> usize;
@@ -26,7 +26,7 @@ pub(crate) trait Stepper {
     /// The candidate's state.
     fn candidate(&mut self) -> &mut [f64];
 
-    /// Completes the candidate, whose state may have been moved; writes the coefficients of the step's polynomial.
+    /// Completes the candidate, whose state may have moved; writes the coefficients of its polynomial.
     fn finish(&mut self, moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure>;
 
     /// Makes the candidate the point reached.
@@ -48,8 +48,8 @@ pub(crate) enum Attempt {
     GaveUp(StopCause),
 }
 
-/// Length and end of the next step of a method that wants to go `step` (of either sign) from `t`; a last step up to `stretch` times as long
-/// is better than a tiny one after it.
+/// Length and end of the next step of a method that wants to go `step` (of either sign) from `t`; a last step
+/// up to `stretch` times as long is better than a tiny one after it.
 pub(crate) fn next_step(t: f64, end: f64, step: f64, stretch: f64) -> Result<(f64, f64), StopCause> {
     let remaining = end - t;
     if stretch * step.abs() >= remaining.abs() {

@@ -31,7 +31,7 @@ impl From<Failure> for StopCause {
 
 /// The first NaN or infinite component, if any, as a failure.
 pub(crate) fn check_finite(values: &[f64]) -> Result<(), Failure> {
-    // 0 · x is 0 for finite x and NaN otherwise: one pass without branches, in sums that do not wait for each other.
+    // 0 · x is 0 for finite x and NaN otherwise: one pass without branches, in sums that run side by side.
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];
     for group in groups.iter().map(|g| &g[..]).chain([rest]) {
@@ -134,7 +134,7 @@ impl<'p> System<'p> {
         })
     }
 
-    /// F(t, y) for callers that take no errors: the failure is kept for [`System::take_failure`] and NaN is written.
+    /// F(t, y) for callers without errors: a failure is kept for [`System::take_failure`], NaN is written.
     #[cfg(feature = "diffsol")]
     pub(crate) fn rates_or_nan(&self, t: f64, y: &[f64], rates: &mut [f64]) {
         if let Err(failure) = check_finite(y).and_then(|()| self.rates(t, y, rates)) {
@@ -154,7 +154,7 @@ impl<'p> System<'p> {
         Ok(())
     }
 
-    /// `product = ∂F/∂y(t, y) · v`. The matrix is evaluated once a point, however many products are asked for.
+    /// `product = ∂F/∂y(t, y) · v`. The matrix is evaluated once a point, for any number of products.
     #[cfg(feature = "diffsol")]
     pub(crate) fn jacobian_product_or_nan(&self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) {
         let inner = &mut *self.inner.borrow_mut();

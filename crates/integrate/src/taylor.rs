@@ -1,26 +1,27 @@
 //! Taylor series of the solution, order by order, from the problem's own recurrences.
 //!
-//! Order and step as Jorba and Zou choose them, with the tolerance that [`Options`] define in place of the norm of the state. With
-//! `‖c_k‖` the largest coefficient of order k in units of the tolerance (its maximum over the components, not their mean),
+//! Order and step as Jorba and Zou choose them, with the tolerance of [`Options`] for the norm of the state.
+//! With `‖c_k‖` the largest coefficient of order k in tolerances (a maximum over components, not a mean),
 //!
 //! ```text
-//! p = ⌈1 − c ln(relative tolerance)⌉,   h = e^(−0.7/(p−1)) min( (e² ‖c_p‖)^(−1/p), (e^(2−1/c) ‖c_{p−1}‖)^(−1/(p−1)) ):
+//! p = ⌈1 − c ln(relative tolerance)⌉,
+//! h = e^(−0.7/(p−1)) min( (e² ‖c_p‖)^(−1/p), (e^(2−1/c) ‖c_{p−1}‖)^(−1/(p−1)) ):
 //! ```
 //!
-//! the last term is at most an eighth of the tolerance, and terms fall by `e^(1/c)` from one order to the next. In the source c = 1/2,
-//! which is best where the cost of a step grows with the square of its order. Here it grows hardly faster than the order itself: c = 1,
-//! with 1.9 times longer steps at 1e-10, was 1.2 to 1.4 times faster on sledge and ball in a cone, and 1.2 no faster than that.
-//! Where coefficients come in groups with zeros between, the last two say little; so no earlier term may be over 1000 times what
-//! such a fall from the first to the last gives it.
+//! the last term is at most an eighth of the tolerance, and terms fall by `e^(1/c)` per order. The source has
+//! c = 1/2, best where a step costs the square of its order. Here it costs hardly more than the order: c = 1,
+//! with 1.9 times longer steps at 1e-10, was 1.2 to 1.4 times faster on sledge and ball in a cone, and 1.2 no
+//! faster than that. Where coefficients come in groups with zeros between, the last two say little; so no
+//! earlier term may be over 1000 times what such a fall from first to last gives it.
 //!
 //! Coefficients do not depend on the step, which is shortened until the terms are small.
 //!
-//! A series knows nothing of what lies behind a branch point that it passes: that of √(1 + y) along y = (1 − t/2)² − 1 goes on as 1 − t/2
-//! where the root is t/2 − 1. So the slope of the polynomial at the end of the step is compared with the rates there, which the next
-//! expansion needs anyway; if they differ, the step is tried at half its length.
+//! A series does not see past a branch point: that of √(1 + y) along y = (1 − t/2)² − 1 goes on as 1 − t/2
+//! where the root is t/2 − 1. So the slope of the polynomial at the end of the step is compared with the
+//! rates there, which the next expansion needs anyway; if they differ, the step is halved.
 //!
-//! Source: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order Taylor methods*,
-//! Experimental Mathematics 14 (2005), section 3.
+//! Source: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order
+//! Taylor methods*, Experimental Mathematics 14 (2005), section 3.
 
 use std::array::from_fn;
 
@@ -163,7 +164,7 @@ impl<'s, 'p> Taylor<'s, 'p> {
         defect.component(0).map_or(Ok(()), |component| Err(Failure::NotSmooth { component }))
     }
 
-    /// The longest step, of positive length, whose last terms are below the tolerance; infinite for a constant.
+    /// The longest step > 0 whose last terms are below the tolerance; infinite for a constant.
     fn choose_step(&mut self) -> f64 {
         let (coefficients, absolute) = (self.coefficients.as_chunks::<1>().0, self.absolute_tolerances.as_chunks().0);
         let (relative, sizes) = (self.relative_tolerance, self.sizes.as_chunks_mut().0);
@@ -179,8 +180,8 @@ impl<'s, 'p> Taylor<'s, 'p> {
 const PARTS: usize = 8;
 type Parts = [f64; PARTS];
 
-/// Writes the terms of a polynomial; their sum, and their sum weighted by the exponents. The first power is 0 instead of 1. Powers and
-/// exponents may go on behind the last term.
+/// Writes the terms of a polynomial; their sum, and their sum weighted by the exponents. The first power is 0
+/// instead of 1. Powers and exponents may go on behind the last term.
 #[inline(always)]
 fn sums(row: &[f64], powers: &[Parts], exponents: &[Parts], terms: &mut [f64]) -> (f64, f64) {
     let (mut sum, mut weighted) = ([0.0; PARTS], [0.0; PARTS]);
@@ -233,8 +234,8 @@ impl Stepper for Taylor<'_, '_> {
         &mut self.candidate
     }
 
-    // Whether the rates are defined at the end is seen by the expansion there, which the next step needs anyway. What
-    // a projection moved goes into the last coefficient: it is of the size of the error, and the polynomial ends where the next one begins.
+    // The next expansion shows whether the rates are defined at the end. A projection's move, of the size of
+    // the error, goes into the last coefficient: polynomials stay continuous.
     fn finish(&mut self, moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure> {
         self.next_unit = self.taken.abs();
         self.expand()?;

@@ -11,8 +11,8 @@ const LEAST_ORDER: f64 = 4.0;
 const LAST: f64 = 0.135;
 /// So much may a term before the last two be over the geometric sequence.
 const SLACK: f64 = 1e3;
-/// The slope of the polynomial at the end of a step, times the step, may differ from the rates by so many tolerances, and by as many moves
-/// of a projection; a relative tolerance below round-off is read as that.
+/// The slope of the polynomial at the end of a step, times the step, may differ from the rates by so many
+/// tolerances, and by as many moves of a projection; a relative tolerance below round-off is read as that.
 const DEFECT: f64 = 100.0;
 const ROUND_OFF: f64 = 1e-14;
 
@@ -21,8 +21,8 @@ pub(crate) fn order(relative_tolerance: f64) -> usize {
     (1.0 - ORDERS * relative_tolerance.max(TIGHTEST).ln()).ceil().max(LEAST_ORDER) as usize
 }
 
-/// The longest step over the unit of the coefficients (component after component) whose last terms are below the tolerance; infinite for a
-/// constant. `sizes` is room for the largest coefficient of each order, in tolerances.
+/// The longest step, in the unit of the coefficients (component after component), whose last terms are below
+/// the tolerance; infinite for a constant. `sizes` is room for each order's largest one, in tolerances.
 #[inline(always)]
 pub(crate) fn longest_step<const N: usize>(
     coefficients: &[[f64; N]],
@@ -110,7 +110,7 @@ pub(crate) struct Ends<'a, const N: usize> {
     pub(crate) share: [f64; N],
 }
 
-/// Largest difference of slope and rates, with its component, and largest move by a projection, in what is allowed of the first.
+/// Largest difference of slope and rates, with its component, and largest projection, over what is allowed.
 pub(crate) struct Defect<const N: usize> {
     worst: [f64; N],
     component: [usize; N],
@@ -146,7 +146,7 @@ impl<const N: usize> Ends<'_, N> {
     }
 }
 
-/// Moves what a closure has captured, so that it can be called once only: such a closure is inlined as a whole where it is dispatched.
+/// Takes what a closure has captured: called once only, it is inlined as a whole where it is dispatched.
 #[inline(always)]
 pub(crate) fn once<T>(captured: T) -> T {
     captured

@@ -11,6 +11,11 @@ use crate::system::{Failure, System, check_finite};
 /// So many times in a row is a step that cannot be evaluated halved.
 pub(crate) const HALVINGS: usize = 60;
 
+/// A run creeps where so many steps move the time by less than this part of what it has come: the rest of it
+/// would take more than a thousand million.
+const CREEPING_STEPS: usize = 3_000;
+const CREEPING: f64 = 1e-6;
+
 /// Integrates with `stepper`, or reports that it could not be set up.
 pub(crate) fn drive<S: Stepper>(
     system: &System,
@@ -63,6 +68,7 @@ impl Record<'_, '_> {
         // The last failure since the last accepted step, and the number of them.
         let mut failure: Option<Failure> = None;
         let mut failures = 0;
+        let (mut taken, mut left) = (0, start.t);
         while stepper.time() != end {
             if self.options.interrupt.as_ref().is_some_and(Interrupt::is_raised) {
                 return Err(StopCause::Interrupted);
@@ -71,7 +77,14 @@ impl Record<'_, '_> {
             if work.steps + work.rejected >= self.options.max_steps {
                 return Err(StopCause::TooManySteps { limit: self.options.max_steps });
             }
-            let taken = match stepper.attempt() {
+            if work.steps >= taken + CREEPING_STEPS {
+                let moved = (stepper.time() - left).abs();
+                if moved < CREEPING * (stepper.time() - start.t).abs() {
+                    return Err(StopCause::Creeping { steps: work.steps - taken, moved });
+                }
+                (taken, left) = (work.steps, stepper.time());
+            }
+            let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {
                     system.count_rejected(rejected);
                     self.take(stepper, &mut watch, t)
@@ -83,7 +96,7 @@ impl Record<'_, '_> {
                 Attempt::Failed(failure) => Err(failure),
                 Attempt::GaveUp(cause) => return Err(failure.map_or(cause, StopCause::from)),
             };
-            match taken {
+            match accepted {
                 Ok(None) => {
                     stepper.advance()?;
                     watch.advance();

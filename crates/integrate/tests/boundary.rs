@@ -3,7 +3,7 @@
 use crate::problems::*;
 use integrate::{BoundaryError, CallError, Options, ShootOptions, Start, StopCause, fit, integrate, shoot};
 
-/// y'' = 3y²/2, y(0) = 4, y(1) = 1: y = 4/(1 + t)², and a second solution (Stoer and Bulirsch, section 7.3.1).
+/// y'' = 3y²/2, y(0) = 4, y(1) = 1: y = 4/(1 + t)², and a second solution (Stoer, Bulirsch, section 7.3.1).
 fn cubic() -> Case {
     Case::new(2, |_, y| vec![y[1].clone(), &(&y[0] * &y[0]) * 1.5])
 }

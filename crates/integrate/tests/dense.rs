@@ -26,8 +26,8 @@ fn it_is_continuous_also_where_states_are_projected() {
 
 #[test]
 fn it_is_as_good_as_the_steps() {
-    // Within a small factor of the error at the ends of the steps, for every method. Those of Radau5 are of an order that its polynomial does not have,
-    // and the measure is the tolerance.
+    // Within a small factor of the error at the ends of the steps, for every method. Those of Radau5 are of
+    // an order that its polynomial does not have, and the measure is the tolerance.
     for method in Method::ALL {
         let options = Options { method, ..Options::with_tolerance(1e-7) };
         let solution = run(&mut oscillator(), 0.0, &[1.0, 0.0], 10.0, &options);

@@ -30,7 +30,7 @@ fn stopped_at(solution: &integrate::Solution, event: usize) -> f64 {
 
 #[test]
 fn the_pendulum_swings_in_its_period() {
-    // ω = 0 holds at the start and is passed over; it holds next after half a period, at the other turning point.
+    // ω = 0 at the start is passed over; next it holds after half a period, at the other turning point
     for amplitude in [0.1, 1.0, 2.0, 3.0] {
         let mut case = pendulum().with_events(1, |_, y, g| {
             g[0] = y[1];

@@ -35,11 +35,11 @@ fn errors_fall_with_the_order_of_the_method() {
 
 #[test]
 fn stiff_problems_agree_with_their_references() {
-    // Robertson at t = 40 and van der Pol (μ = 1000) at t = 2: Hairer and Wanner, Solving Ordinary Differential
-    // Equations II, IV.10, and the Test Set for IVP Solvers.
+    // Robertson at t = 40 and van der Pol (μ = 1000) at t = 2: Hairer and Wanner, Solving Ordinary
+    // Differential Equations II, IV.10, and the Test Set for IVP Solvers.
     let robertson_40 = [0.715_827_068_719_4, 9.185_534_764_557_3e-6, 0.284_163_745_745_8];
     let van_der_pol_2 = [1.706_167_732_170_483, -0.892_809_701_024_797_5];
-    // Radau5 keeps the error of its dense output, of order 3, under the tolerance; at the ends it is better by orders
+    // Radau5 keeps its dense output, of order 3, under the tolerance; the ends are better by orders
     for (method, limit, steps, share) in [
         (Method::Bdf, 2e-6, 1000, 5),
         (Method::TrBdf2, 3e-5, 1000, 5),
@@ -92,8 +92,8 @@ fn projection_keeps_the_radius_and_does_no_harm() {
 
 #[test]
 fn projection_holds_what_would_run_away() {
-    // A turn with radial instability, (r − 1)' = 2 (r − 1): without projection an error grows like exp(2t), e⁴⁰ at t = 20.
-    // Bdf, too, has to be told of the projections then.
+    // A turn with radial instability, (r − 1)' = 2 (r − 1): without projection an error grows like exp(2t),
+    // e⁴⁰ at t = 20. Bdf, too, has to be told of the projections then.
     let case = Case::new(2, |_, y| {
         let radius = (&(&y[0] * &y[0]) + &(&y[1] * &y[1])).powf(-0.5);
         let push = &(&radius.number(1.0) - &radius) * 2.0;
@@ -111,14 +111,14 @@ fn projection_holds_what_would_run_away() {
 
 #[test]
 fn radau_is_exact_where_the_slow_manifold_is_not_left() {
-    // Prothero and Robinson: y' = λ (y − cos t) − sin t, whose solution from 1 is cos t however stiff. Order reduction is bounded by 1/|λ|
+    // Prothero and Robinson: y' = λ (y − cos t) − sin t, from 1: cos t. Order reduction is below 1/|λ|
     for stiffness in [1e2, 1e6, 1e10] {
         let mut case = Case::new(1, move |t, y| vec![&(&(&y[0] - &t.cos()) * -stiffness) - &t.sin()]);
         let options = Options { method: Method::Radau5, ..Options::with_tolerance(1e-8) };
         let solution = run(&mut case, 0.0, &[1.0], 10.0, &options);
         let error = (solution.dense.end_state()[0] - 10f64.cos()).abs();
         assert!(error < 1e-8, "λ = -{stiffness:e}: {error:e}");
-        // what is stiff is not estimated by the method itself: between the steps it is the polynomial that has to be good enough
+        // the method does not estimate what is stiff: between the steps the polynomial has to be good enough
         let between = largest_error(&solution, 10_000, |t| [t.cos()]);
         assert!(between < 1e-7, "λ = -{stiffness:e}: {between:e}");
         assert!(solution.work.steps < 2000, "λ = -{stiffness:e}: {:?}", solution.work);
@@ -128,7 +128,7 @@ fn radau_is_exact_where_the_slow_manifold_is_not_left() {
 /// A velocity `(v₁, v₂)` with strong friction across a direction that turns with the state's own angle `θ`:
 ///
 /// ```text
-/// θ' = 1,     v' = d/dθ (r d) − N n (n·v),     d = (cos θ, sin θ),     n = (−sin θ, cos θ),     r = 1 + ½ sin 2θ
+/// θ' = 1,   v' = d/dθ (r d) − N n (n·v),   d = (cos θ, sin θ),   n = (−sin θ, cos θ),   r = 1 + ½ sin 2θ
 /// ```
 ///
 /// from `d` at `θ = 0`, whatever `N`: `v = r d`.
@@ -145,7 +145,7 @@ fn turning(strength: f64) -> Case {
 
 #[test]
 fn a_stiff_direction_that_turns_is_stepped_over() {
-    // with one Jacobian for all stages of a step, at 1e-7: 826 steps at N = 1e4, 33 000 at 1e10, and still more tries that Newton's iteration gives up
+    // with one Jacobian for all stages, at 1e-7: 826 steps at N = 1e4, 33 000 at 1e10, and more failed tries
     for (tolerance, most) in [(1e-5, 150), (1e-7, 350), (1e-9, 1000)] {
         for strength in [1e2, 1e4, 1e6, 1e8, 1e10] {
             let options = Options { method: Method::Radau5, ..Options::with_tolerance(tolerance) };

@@ -20,7 +20,12 @@ fn nothing_gets_past_a_blow_up() {
                 };
                 assert!((t.abs() - 1.0).abs() < limit, "{method:?} {tolerance:e}: stopped at {t}");
                 assert!(
-                    matches!(cause, StopCause::StepTooSmall { .. } | StopCause::NotFinite { component: 0 }),
+                    matches!(
+                        cause,
+                        StopCause::StepTooSmall { .. }
+                            | StopCause::NotFinite { component: 0 }
+                            | StopCause::Creeping { .. }
+                    ),
                     "{method:?} {tolerance:e}: {cause:?}"
                 );
                 assert!(solution.dense.end_state()[0].is_finite());
@@ -56,8 +61,8 @@ fn rates_that_are_not_finite_are_named() {
 
 #[test]
 fn a_wall_is_walked_up_to_and_reported_in_the_problems_words() {
-    // y' = −√(1 + y), y(0) = 0: y = (1 − t/2)² − 1 reaches the wall y = −1 at t = 2, with zero slope; y' = −1/y runs
-    // into y = 0 at t = 1/2, with infinite slope. Backwards alike.
+    // y' = −√(1 + y), y(0) = 0: y = (1 − t/2)² − 1 reaches the wall y = −1 at t = 2, with zero slope; y' =
+    // −1/y runs into y = 0 at t = 1/2, with infinite slope. Backwards alike.
     let gentle = Case::new(1, |_, y| vec![-&(&y[0] + &y[0].number(1.0)).powf(0.5)])
         .with_refusal(|_, y| (y[0] < -0.75).then(|| format!("depth {} under the floor −0.75", y[0])));
     let steep =
@@ -122,6 +127,20 @@ fn failing_projections_and_jacobians_stop_the_run() {
             "{method:?} {status:?}"
         );
     }
+}
+
+#[test]
+fn a_run_that_creeps_up_to_a_singularity_says_so() {
+    // turned by the angle 1e-3/(1 - t): ever faster up to t = 1
+    let mut case = Case::new(2, |t, y| {
+        let rate = &(&t.number(1.0) - t).powf(-2.0) * 1e-3;
+        vec![-&(&rate * &y[1]), &rate * &y[0]]
+    });
+    let solution = attempt(&mut case, 0.0, &[1.0, 0.0], 2.0, &options(Method::Dop853));
+    let Status::Stopped { t, cause: StopCause::Creeping { steps, moved } } = solution.status else {
+        panic!("{:?}", solution.status)
+    };
+    assert!(steps >= 3_000 && moved < 1e-6 && (t - 1.0).abs() < 1e-3, "{t} {steps} {moved}");
 }
 
 #[test]

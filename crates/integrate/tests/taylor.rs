@@ -76,7 +76,7 @@ fn coefficients_that_vanish_in_groups_do_not_mislead() {
 
 #[test]
 fn a_branch_point_is_not_passed() {
-    // y' = −√(1 + y): y = (1 − t/2)² − 1 up to t = 2, where the polynomial rises again and the solution stays at −1.
+    // y' = −√(1 + y): y = (1 − t/2)² − 1 up to t = 2; there the polynomial rises, the solution stays at −1.
     let mut case = Case::new(1, |_, y| vec![-&(&y[0] + &y[0].number(1.0)).powf(0.5)]);
     let options = Options { max_steps: 1000, ..options(1e-9) };
     let solution = attempt(&mut case, 0.0, &[0.0], 9.0, &options);

@@ -1,7 +1,7 @@
 //! # The family between the vakonomic and the Chetaev formulation
 //!
-//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`, forces `Q` and a number `κ ≥ 0`, the parameter
-//! `kappa` of the system, in 1/s. Write `A = ∂f/∂v` (h×n) and `𝓛 = L + μ·f` with multipliers `μ(t) ∈ Rʰ`.
+//! Given: coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`, forces `Q` and
+//! `κ ≥ 0`, the parameter `kappa`, in 1/s. `A = ∂f/∂v` (h×n), `𝓛 = L + μ·f`, multipliers `μ(t) ∈ Rʰ`.
 //!
 //! **The equations.**
 //!
@@ -9,11 +9,11 @@
 //! d/dt ∂𝓛/∂v − ∂𝓛/∂q = Q − κ Aᵀ μ ,        f(q, v, t) = 0 .
 //! ```
 //!
-//! `κ = 0` is vakonomic. As `κ → ∞` the motion tends to Chetaev's, with the error 1/κ: `μ` goes to `−λ/κ` within the time 1/κ, and what is left of
-//! the right-hand side is `Aᵀ λ`.
+//! `κ = 0` is vakonomic. As `κ → ∞` the motion tends to Chetaev's, with the error 1/κ: `μ` goes to `−λ/κ`
+//! within the time 1/κ, and what is left of the right-hand side is `Aᵀ λ`.
 //!
-//! **What it is for.** A constraint that is kept by large added mass `½ N f·f` *and* large viscous friction `−κ N Aᵀ f` together leads, as `N → ∞`,
-//! to neither of the two but to this: `μ` is the limit of `N f`. The ratio of friction to mass is `κ`.
+//! **What it is for.** A constraint kept by large added mass `½ N f·f` *and* large viscous friction `−κ N Aᵀ
+//! f` leads, as `N → ∞`, to neither of the two but to this: `μ = lim N f`. Friction over mass is `κ`.
 //!
 //! **One instant.** With the state `(q, v, μ)` the equations are linear in `(a, μ̇)`:
 //!
@@ -22,10 +22,10 @@
 //! [ A      0 ] [ μ̇ ] = [ −(f_q v + f_t)                    ]
 //! ```
 //!
-//! **What the motion depends on.** On `(q₀, v₀)`, on `μ₀ ∈ Rʰ` and on `κ`. Large `κ` makes the equations stiff.
+//! **What the motion depends on.** `(q₀, v₀)`, `μ₀ ∈ Rʰ` and `κ`. Large `κ` makes the equations stiff.
 //!
-//! **What stays constant.** Nothing in general: the energy `v·𝓛_v − 𝓛` changes at the rate `v·(Q − κ Aᵀ μ)`, which is zero where `Q = 0` and `A v = f`,
-//! for constraints linear in `v` and without a free term.
+//! **What stays constant.** Nothing in general: the energy `v·𝓛_v − 𝓛` changes at the rate `v·(Q − κ Aᵀ μ)`,
+//! which is zero where `Q = 0` and `A v = f`, for constraints linear in `v` and without a free term.
 //!
 //! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1992.
 
@@ -52,7 +52,7 @@ pub const FORMULATION: Formulation = Formulation {
 /// [`DerivationError::ParameterMissing`] where the system has no parameter `kappa`.
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// # let symbol = system.graph.symbol("kappa");

@@ -1,6 +1,6 @@
 //! Removals that nobody had to write: for constraints linear in the velocities.
 //!
-//! With `f = A v + b` and dependent velocities `v_d`, chosen by pivoting so that `A_d` (h×h) is regular at the start,
+//! With `f = A v + b` and dependent velocities `v_d`, pivoted so that `A_d` (h×h) is regular at the start,
 //!
 //! ```text
 //! v_d = K v_i + c ,      K = −A_d⁻¹ A_i ,   c = −A_d⁻¹ b .
@@ -15,14 +15,14 @@ impl Removal {
     /// *Coordinate removal.* `u` are `n − h` of the coordinates, the others are memory with `ẇ = K u̇ + c`.
     ///
     /// # Errors
-    /// [`RemovalError::NotLinear`] where a constraint is not linear in `v`; [`RemovalError::Dependent`] where `A` at `state` has
-    /// no full row rank.
+    /// [`RemovalError::NotLinear`] where a constraint is not linear in `v`; [`RemovalError::Dependent`] where
+    /// `A` at `state` has no full row rank.
     ///
     /// ```
-    /// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+    /// # let mut system = mechanics::System::new(<_>::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
     /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
     /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-    /// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
+    /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
     /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
     /// let removal = mechanics::Removal::by_coordinates(&system, &start)?;
     /// let names: Vec<String> = removal.parameters.iter().map(|u| system.graph.name(u.symbol)).collect();
@@ -48,19 +48,19 @@ impl Removal {
         })
     }
 
-    /// *Quasi-velocity removal.* `q̇ = N(q) u̇ + c(q)`, the columns of `N` a basis of the kernel of `A`, cleared of denominators.
+    /// *Quasi-velocity removal.* `q̇ = N(q) u̇ + c(q)`, `N` a basis of ker `A`, cleared of denominators.
     ///
-    /// A column with one entry is a coordinate and stays one; every other coordinate is memory. Knife edge: `u̇` is the
-    /// speed along the blade.
+    /// A column with one entry is a coordinate and stays one; every other coordinate is memory. Knife edge:
+    /// `u̇` is the speed along the blade.
     ///
     /// # Errors
     /// As [`Removal::by_coordinates`].
     ///
     /// ```
-    /// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+    /// # let mut system = mechanics::System::new(<_>::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
     /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
     /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-    /// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
+    /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
     /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
     /// let removal = mechanics::Removal::by_quasi_velocities(&system, &start)?;
     /// let rates: Vec<String> = removal.memory.iter().map(|w| system.graph.plain(w.rate)).collect();
@@ -113,7 +113,7 @@ impl Removal {
     }
 }
 
-/// `u_x` for the coordinate `x`, with underscores until it is no name of the system. Removals may share symbols.
+/// `u_x` for the coordinate `x`, with underscores until it is a new name. Removals may share symbols.
 fn parameter_name(system: &System, i: usize) -> String {
     let g = &system.graph;
     let taken = |name: &str| {

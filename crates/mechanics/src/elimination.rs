@@ -1,16 +1,13 @@
-//! Elimination of sparse linear equations in expressions: what removals, quasi-velocities, sums of squares
-//! and plans have in common.
+//! Elimination of sparse linear expressions, for removals, quasi-velocities, sums of squares and plans.
 //!
-//! With a pivot `a_pc`, taken out with its row and column ([`SparseMatrix::take`]), every row that contained
-//! the unknown `c` becomes
+//! With a pivot `a_pc` and its row and column taken out ([`SparseMatrix::take`]), rows with `c` become
 //!
 //! ```text
 //! a_ij ← a_ij − a_ic a_pj / a_pc .
 //! ```
 //!
-//! How the quotient and the difference are written is that of the caller: at once, factored, by way of names,
-//! or as terms that are added up later. So is the order of pivots, but for the choice by size
-//! ([`choose_pivot`]).
+//! The caller writes quotient and difference: at once, factored, by way of names, or as terms that are added
+//! up later. It also orders the pivots, but for the choice by size ([`choose_pivot`]).
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -24,8 +21,7 @@ const PIVOT_CHOICE: f64 = 0.2;
 /// Pivots under this size, rows scaled to 1, are zero: the equations are dependent.
 const PIVOT_LIMIT: f64 = 1e-10;
 
-/// A sparse matrix by rows that knows which rows contain a column. An entry is whatever stands for a
-/// coefficient.
+/// A sparse matrix by rows that knows which rows contain a column. Entries are what stands for coefficients.
 #[derive(Clone, Debug)]
 pub struct SparseMatrix<T> {
     rows: Vec<BTreeMap<usize, T>>,

@@ -43,7 +43,7 @@ pub enum Integrability {
     },
 }
 
-/// Nodes of a bracket over which it is too long: they become several times longer with every bracket around them.
+/// Nodes over which a bracket is too long: each bracket around it makes it several times longer.
 const LONGEST: usize = 10_000;
 
 impl Integrability {
@@ -79,18 +79,18 @@ impl std::fmt::Display for Integrability {
 
 /// Frobenius' test for constraints `A(q,t) v + b(q,t) = 0`.
 ///
-/// The admissible directions in the space of `(q, t)` are spanned by fields `X₁ … X_m` (and `T = c ∂_q + ∂_t` where anything depends on time or
-/// `b ≠ 0`). Brackets `[X, Y] = Y_x X − X_x Y` are added until the rank no longer grows; what is missing to the full dimension is the number of
-/// integrals. Ranks are taken at random points; fields are differentiated exactly.
+/// Fields `X₁ … X_m` span the admissible directions in `(q, t)` (with `T = c ∂_q + ∂_t` where anything
+/// depends on time or `b ≠ 0`). Brackets `[X, Y] = Y_x X − X_x Y` are added until the rank stays; what it
+/// lacks is the number of integrals. Ranks are taken at random points; fields are differentiated exactly.
 ///
 /// # Errors
 /// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-/// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
+/// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
 /// use mechanics::{Integrability, integrability};
 /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
 /// assert_eq!(integrability(&system, &start)?, Integrability::Nonintegrable { depth: 1 });

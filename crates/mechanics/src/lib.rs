@@ -1,37 +1,53 @@
 //! # Mechanical systems with velocity constraints
 //!
-//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ`
-//! and generalized forces `Q(q, v, t)`: a [`System`]. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n). This
-//! crate knows what can be said about a system before any principle of mechanics is chosen.
+//! What can be said about a system before any principle of mechanics is chosen. A [`System`] has coordinates
+//! `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇`, constraints `f(q, v, t) = 0 ∈ Rʰ` and generalized
+//! forces `Q(q, v, t) ∈ Rⁿ`, on the side of `∂L/∂q`. Write `A = ∂f/∂v` (h×n) and `M = ∂²L/∂v²` (n×n).
 //!
-//! **The start** ([`complete_start`], [`project_velocity`], [`check_regularity`]). Of `v₀` as many entries
-//! are given as the constraints leave open; the others solve
+//! **The start** ([`complete_start`], [`project_velocity`], [`check_regularity`]). Some velocities are given;
+//! the constraints supply the others, `f(q₀, v, t₀) = 0`, by one Gauss–Newton iteration ([`newton`]).
 //!
-//! ```text
-//! f(q₀, v, t₀) = 0
-//! ```
+//! A motion starts only where `A` has full row rank and `M` is regular on its kernel; `M` itself may be
+//! singular. Constraints that are nearly dependent there are replaced by `T f` with a constant, regular `T`
+//! (h×h), which have the same motion ([`Recombination`]).
 //!
-//! by one Gauss–Newton iteration ([`newton`]), and a motion starts there only if `A` has full row rank and
-//! `M` is regular on its kernel. Constraints that are nearly dependent there have the same motion as
-//! `T f = 0` with a constant, regular `T` ([`Recombination`]).
-//!
-//! **Removing the constraints** ([`Removal`]). New displacement parameters `u ∈ Rⁿ⁻ʰ` and memory variables
-//! `w` such that
+//! **Removing the constraints** ([`Removal`]). With displacement parameters `u ∈ Rⁿ⁻ʰ` and memory variables
+//! `w ∈ Rᵏ`
 //!
 //! ```text
 //! q = q(u̇, u, w, t) ,   ẇ = B(ü, u̇, u, w, t)      make      f(q, q̇, t) = 0   hold identically.
 //! ```
 //!
-//! A removal is written by hand, or found where `f = A v + b` is linear in `v`, by one elimination of the
-//! dependent velocities in expressions: `v_d = K v_i + c` ([`Removal::by_coordinates`],
-//! [`Removal::by_quasi_velocities`]).
+//! A removal is written by hand and verified, or found where `f = A v + b` by elimination of the dependent
+//! velocities, `v_d = K v_i + c` ([`Removal::by_coordinates`], [`Removal::by_quasi_velocities`]).
 //!
 //! **Integrability** ([`integrability()`]). The fields that span the kernel of `A`, in the space of `(q, t)`,
-//! span an involutive distribution just where the constraints can be integrated (Frobenius); then all
-//! formulations agree, otherwise they need not.
+//! are closed under brackets just where the constraints can be integrated (Frobenius). Then Chetaev's and the
+//! vakonomic motion agree.
 //!
-//! What it does not know: how a system is written in a file, what the equations of motion are, how time
-//! advances.
+//! ```
+//! use mechanics::{Integrability, Removal, State, System, integrability};
+//! use symbolic::Graph;
+//!
+//! // an ice sledge: no velocity across the blade
+//! let mut sledge = System::new(Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+//! sledge.lagrangian = sledge.expression("(x'^2 + y'^2 + phi'^2)/2")?;
+//! sledge.constraints = vec![sledge.expression("y'*cos(phi) - x'*sin(phi)")?];
+//! let start = State { t: 0.0, q: vec![0.0; 3], v: vec![1.0, 0.0, 0.5] };
+//!
+//! assert_eq!(integrability(&sledge, &start)?, Integrability::Nonintegrable { depth: 1 });
+//! // u is the distance run along the blade
+//! let removal = Removal::by_quasi_velocities(&sledge, &start)?;
+//! assert_eq!(sledge.graph.plain(removal.memory[1].rate), "u_x'*sin(phi)");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **What it refuses.** Starts that are open, contradictory, ambiguous or singular ([`StartError`]), and
+//! removals that do not remove ([`RemovalError`]), each with what was measured and the limit. It knows no
+//! file, no equation of motion and no time step.
+//!
+//! Sources: Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, 1972; of removals P. Y. Gao
+//! 2017.
 
 mod automatic_removal;
 pub mod elimination;
@@ -41,6 +57,7 @@ pub mod newton;
 mod rank;
 mod removal;
 mod removal_error;
+mod singular_values;
 mod solved_constraints;
 mod start;
 mod system;
@@ -49,6 +66,7 @@ pub use integrability::{Integrability, integrability};
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use removal_error::RemovalError;
+pub use singular_values::SingularValues;
 pub use start::{
     Completion, Quantity, Recombination, RemovalStart, StartData, StartError, check_regularity, complete_removal_start,
     complete_start, project_velocity,

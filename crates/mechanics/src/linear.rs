@@ -1,7 +1,8 @@
 //! Small dense linear systems in place, without allocation: the one solve of every instant.
 //!
-//! In `f64`, and in the wide types of references. Written here and not taken from a crate because it runs once an evaluation on matrices of 1 to 20 rows, where the
-//! allocation of a general factorization costs more than the elimination.
+//! In `f64` and the wide types of references. Written here as it runs once an evaluation on matrices of 1 to
+//! 20 rows, where a general factorization spends more on allocation than on elimination. What
+//! runs once is left to nalgebra.
 
 use symbolic::Scalar;
 
@@ -28,7 +29,7 @@ pub struct Singular {
 /// Pivots under this fraction of the scaled matrix are taken for zero.
 pub const PIVOT_LIMIT: f64 = 1e-13;
 
-/// LU factors of an n×n matrix, row-major, with partial pivoting; rows and columns scaled so that units do not matter.
+/// LU factors of an n×n matrix, row-major, partial pivoting; rows and columns scaled against units.
 #[derive(Clone, Debug)]
 pub struct Factors<T = f64> {
     n: usize,

@@ -5,14 +5,16 @@ use std::collections::{BTreeSet, HashMap};
 use nalgebra::DMatrix;
 use symbolic::{Bounded, Evaluator, Graph, Matrix, Scalar, SplitMix, Symbol};
 
+use crate::SingularValues;
+
 /// Singular values under this fraction of the largest count as zero.
 pub(crate) const RANK_LIMIT: f64 = 1e-9;
 
 /// Points at which a generic rank is taken.
 const POINTS: u64 = 6;
 
-/// Numerical rank that `matrix` has at least if each entry is off by as much as the one of `errors`: the number of singular values over [`RANK_LIMIT`]
-/// times the largest, rows scaled to their largest entry, and over the norm of all errors, by which these move a singular value at most.
+/// Least numerical rank of `matrix` with entries off by `errors`: how many singular values are over
+/// [`RANK_LIMIT`] times the largest, rows scaled to their largest entry, and over the norm of the errors.
 fn certain_rank(mut matrix: DMatrix<f64>, mut errors: DMatrix<f64>) -> usize {
     for (mut row, mut errors) in matrix.row_iter_mut().zip(errors.row_iter_mut()) {
         let scale = row.amax();
@@ -21,14 +23,14 @@ fn certain_rank(mut matrix: DMatrix<f64>, mut errors: DMatrix<f64>) -> usize {
             errors /= scale;
         }
     }
-    let singular = matrix.singular_values();
-    let largest = singular.iter().fold(0.0_f64, |a, &b| a.max(b));
+    let singular = SingularValues::of(&matrix).values;
+    let largest = singular.max();
     let limit = errors.norm().max(RANK_LIMIT * largest);
     singular.iter().filter(|&&s| largest > 0.0 && s > limit).count()
 }
 
-/// The rank that `matrix` has almost everywhere: the largest found at a few points with fixed pseudo-random coordinates,
-/// those not counted at which an entry is not finite. `constants` keep their values. An entry that is round-off of larger terms counts as zero.
+/// The rank of `matrix` almost everywhere: the largest at a few pseudo-random points where all entries are
+/// finite. `constants` keep their values. An entry that is round-off of larger terms counts as zero.
 pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, f64>) -> usize {
     if matrix.rows() == 0 || matrix.columns() == 0 {
         return 0;

@@ -1,4 +1,4 @@
-//! Removal of constraints: new displacement parameters `u` and memory variables `w` such that `f` holds identically.
+//! Removal of constraints: displacement parameters `u` and memory variables `w` make `f` hold identically.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -58,8 +58,8 @@ pub struct Removal {
     pub memory: Vec<MemoryVariable>,
     /// `q(u̇, u, w, t)`, length n.
     pub coordinates: Vec<Expr>,
-    /// Start values of parameters, their rates and memory variables that are not coordinates, as expressions in `(q₀, v₀, t₀)`.
-    /// What is left out is solved from `(q₀, v₀)`, nearest to zero.
+    /// Start values of parameters, their rates and memory variables that are not coordinates, as expressions
+    /// in `(q₀, v₀, t₀)`. What is left out is solved from `(q₀, v₀)`, nearest to zero.
     pub start: BTreeMap<Symbol, Expr>,
     /// The constants that a run uses unless told otherwise.
     pub constants: ConstantsRule,
@@ -89,7 +89,7 @@ impl Removal {
         self.coordinates.iter().map(|&q| system.graph.total_derivative(q, &flow)).collect()
     }
 
-    /// What vanishes where the parametrization is at `(q, q̇)`: `qᵢ(u̇, u, w, t) − qᵢ` and its rate minus `q̇ᵢ`, what vanishes anyway left out.
+    /// What vanishes at `(q, q̇)`, unless trivially: `qᵢ(u̇, u, w, t) − qᵢ` and its rate minus `q̇ᵢ`.
     pub fn residuals(&self, system: &System) -> Vec<Expr> {
         let g = &system.graph;
         let velocities = self.velocities(system);
@@ -114,8 +114,8 @@ impl Removal {
     /// Substitutes the parametrization into every constraint; each must vanish identically.
     ///
     /// # Errors
-    /// [`RemovalError::ConstraintRemains`] with the constraint, its residual and the round-off bound;
-    /// [`RemovalError::NotCheckable`] where it is finite at no point tried; [`RemovalError::WrongCount`] where there are not `n − h` parameters.
+    /// [`RemovalError::ConstraintRemains`] with its residual and bound; [`RemovalError::NotCheckable`] where
+    /// it is finite at no point tried; [`RemovalError::WrongCount`] without `n − h` parameters.
     pub fn verify(&self, system: &System) -> Result<(), RemovalError> {
         let expected = system.dimension().saturating_sub(system.constraints.len());
         if self.parameters.len() != expected {

@@ -39,8 +39,7 @@ impl SolvedConstraints {
                 for (&j, &e) in &row {
                     let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
                     let rest = g.sub(before, g.mul(factor, e));
-                    // what cancels without simplifying would be taken for a pivot, or for a dependence that
-                    // is not there
+                    // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
                     matrix.set(i, j, (!g.vanishes(rest, &constants).is_zero()).then_some(rest));
                 }
             }

@@ -1,7 +1,7 @@
-//! Start data: velocities that the constraints supply, projection onto the constraint, start values of a removal.
+//! Start data: velocities from the constraints, projection onto the constraint, start values of a removal.
 //!
-//! A scene gives some velocities; the others solve `f(q₀, v, t₀) = 0`. Too few given ones and contradictory ones are errors
-//! that say by how much.
+//! A scene gives some velocities; the others solve `f(q₀, v, t₀) = 0`. Too few given ones and contradictory
+//! ones are errors that say by how much.
 
 mod complete;
 mod data;

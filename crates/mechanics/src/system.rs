@@ -91,7 +91,7 @@ impl System {
         }
     }
 
-    /// Reads an expression in names that [`System::graph`] knows: coordinates, their velocities, parameters, time.
+    /// Reads an expression in names that [`System::graph`] knows: coordinates, velocities, parameters, time.
     ///
     /// # Errors
     /// [`ParseError`] with its place.

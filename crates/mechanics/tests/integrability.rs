@@ -114,7 +114,7 @@ fn dependent_constraints_are_refused() {
     assert!(matches!(error, RemovalError::Dependent { pivot, limit } if pivot < limit), "{error}");
 }
 
-/// A car with `n` trailers, each body by its place and heading: hitches are 2n constraints that can be integrated, the n + 1 axles none.
+/// A car with `n` trailers, each with place and heading: 2n hitches are integrable, n + 1 axles are not.
 fn train(n: usize) -> Integrability {
     let coordinates: Vec<String> = (0..=n).flat_map(|i| ["x", "y", "theta"].map(|name| format!("{name}{i}"))).collect();
     let axles = (0..=n).map(|i| format!("y{i}'*cos(theta{i}) - x{i}'*sin(theta{i})"));

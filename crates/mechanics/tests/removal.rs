@@ -131,7 +131,7 @@ fn quasi_velocity_of_the_knife_edge_is_the_arc_length() {
     }
 }
 
-/// Found by random systems: what is zero without simplifying to zero was taken for a rate, and `q2' = 0` could not be started.
+/// Found by random systems: a zero that did not simplify counted as a rate, and `q2' = 0` could not start.
 #[test]
 fn what_cancels_without_simplifying_is_zero() {
     let integrable = "(16*q3' - 3*q1'*cos(q1))";

@@ -1,7 +1,6 @@
 //! From values to lengths along an axis, and the ticks that stand there.
 //!
-//! Everything here works in the *measure* of an axis: the value itself on a linear axis, its decimal logarithm on a
-//! logarithmic one.
+//! Everything works in the *measure* of an axis: the value, or on a logarithmic axis its decimal logarithm.
 
 use super::text::{decimal, power_of_ten, width};
 use super::{Axis, PictureError, Scale};
@@ -214,7 +213,7 @@ fn log_ticks(interval: Interval, length: f64, direction: Direction) -> Ticks {
         .map(|stride| (stride, decades(stride)))
         .find(|(_, labelled)| labelled.len() <= room(length, direction) && apart(labelled, interval, length, direction))
         .unwrap_or_else(|| (1000, decades(1000)));
-    // Between labelled decades: 2 to 9 where they are neighbours and wide, the decades themselves where they are not.
+    // Between labelled decades: 2 to 9 where they are neighbours and wide, else the decades themselves.
     let minor: Vec<f64> = if stride > 1 {
         (first..=last).map(f64::from).collect()
     } else if length / interval.span() >= 30.0 {
@@ -227,8 +226,7 @@ fn log_ticks(interval: Interval, length: f64, direction: Direction) -> Ticks {
     Ticks { labelled, minor: minor.into_iter().filter(|at| interval.contains(*at)).collect(), factor: None }
 }
 
-/// Ticks of a logarithmic axis with less than two whole decades: 1, 2, 5 times powers of ten if there are three of
-/// them, else those of a linear axis.
+/// Ticks of under two decades: 1, 2, 5 times powers of ten if three of them, else those of a linear axis.
 fn short_log_ticks(interval: Interval, length: f64, direction: Direction) -> Ticks {
     let exponents = (interval.low - 1.0).floor() as i32..=(interval.high + 1.0).floor() as i32;
     let plain = exponents.clone().all(|exponent| (-4..=4).contains(&exponent));

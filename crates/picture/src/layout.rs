@@ -122,7 +122,7 @@ impl Entry {
     }
 }
 
-/// The legend: one entry for each style and label, in the order of the curves. Thresholds are named where they stand.
+/// The legend: an entry per style and label, in the order of curves. Thresholds are named where they stand.
 pub(super) fn legend(plots: &Picture, measured: &[Vec<Measured>]) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for (panel, measured) in plots.panels.iter().zip(measured) {

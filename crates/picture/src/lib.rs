@@ -1,23 +1,23 @@
 //! Pictures for the reports: curves over two axes, written as SVG.
 //!
-//! A [`Picture`] is one plot: a gap over time on two logarithmic axes with its certainty limit, or plane motions over
-//! one another ([`Picture::plane`]); or several over one shared horizontal axis ([`Picture::panels`]): positions over
-//! time, one panel a coordinate.
+//! A [`Picture`] is one plot: a gap over time on two logarithmic axes with its certainty limit, or plane
+//! motions over one another ([`Picture::plane`]); or several over one shared horizontal axis
+//! ([`Picture::panels`]): positions over time, one panel a coordinate.
 //!
 //! What every picture keeps:
-//! - A [`Style`] has one colour, one dash and one width, the same everywhere. Styles are nested (wide solid below, narrow
-//!   broken above), so that identical motions show all of themselves.
-//! - The same input gives the same bytes. Coordinates are rounded to 0.1 px, and points that do not move the drawn line
-//!   by more than that are left out. A file that would pass 60 kB is thinned further, to 1.6 px at the coarsest; a long curve
-//!   that fills the plane may pass it all the same.
-//! - The ground is transparent. Ink is `currentColor`: a mid-grey that is legible on white and on black, and which a
-//!   viewer that knows `prefers-color-scheme` makes darker or lighter.
-//! - A point that cannot be drawn (not finite, over 1e300 in magnitude, or under 1e-300 on a logarithmic axis) breaks
-//!   the line, and the legend says how many there were.
+//! - A [`Style`] has one colour, one dash and one width, the same everywhere. Styles are nested (wide solid
+//!   below, narrow broken above), so that identical motions show all of themselves.
+//! - The same input gives the same bytes. Coordinates are rounded to 0.1 px, and points that do not move the
+//!   drawn line by more than that are left out. A file that would pass 60 kB is thinned further, to 1.6 px at
+//!   the coarsest; a long curve that fills the plane may pass it all the same.
+//! - The ground is transparent. Ink is `currentColor`: a mid-grey that is legible on white and on black, and
+//!   which a viewer that knows `prefers-color-scheme` makes darker or lighter.
+//! - A point that cannot be drawn (not finite, over 1e300 in magnitude, or under 1e-300 on a logarithmic
+//!   axis) breaks the line, and the legend says how many there were.
 //!
-//! The SVG is written here rather than through `plotters` (0.3.7), whose SVG backend has fixed colours only: no `class`, no
-//! `currentColor`, no dashes (a dashed line becomes one element for each dash, which defeats small files), no `<title>`;
-//! and whose legend lies within the plot. What would be left to it is choosing ticks.
+//! The SVG is written here, not by `plotters` (0.3.7): its SVG backend has fixed colours only: no `class`, no
+//! `currentColor`, no dashes (each dash is an element, which defeats small files), no `<title>`; its legend
+//! lies within the plot. It would only choose ticks.
 
 mod axis;
 mod draw;
@@ -34,7 +34,7 @@ pub use style::Style;
 /// One line of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What the legend says. Curves of one style and one label, in different panels, share one line of the legend.
+    /// What the legend says. Curves of one style and label, in different panels, share a line of the legend.
     pub label: String,
     /// Colour, dash and width. A second label of the same style in one picture gets marks along its line.
     pub style: Style,
@@ -58,8 +58,8 @@ pub struct Axis {
     pub label: String,
     /// How values are laid along the axis.
     pub scale: Scale,
-    /// Lowest and highest value shown; `None` takes them from the points, with a small margin. Points that all agree
-    /// within 1e-6 of their magnitude are shown as one value in the middle of a range of ±5 %.
+    /// Lowest and highest value shown; `None` takes them from the points, with a small margin. Points that
+    /// all agree within 1e-6 of their magnitude are shown as one value in the middle of a range of ±5 %.
     pub range: Option<(f64, f64)>,
 }
 
@@ -130,8 +130,7 @@ pub enum PictureError {
         /// Points that are not positive on a logarithmic axis.
         not_positive: usize,
     },
-    /// A range that is not finite, does not rise, is narrower than 1e-9 of its magnitude, or reaches 0 on a
-    /// logarithmic axis.
+    /// A range not finite, not rising, narrower than 1e-9 of its magnitude, or with 0 on a logarithmic axis.
     #[error(
         "axis \"{axis}\" cannot run from {low:e} to {high:e}: the ends must be finite, at most 1e300 in magnitude, rising, \
          at least 1e-9 of their magnitude apart, and positive on a logarithmic axis"

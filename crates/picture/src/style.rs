@@ -2,8 +2,8 @@
 
 /// What a curve stands for, which fixes how it is drawn.
 ///
-/// Colours are those of Okabe and Ito that reach a contrast of 3 on white and on black alike; dash and width tell the
-/// curves apart without colour. Wider lines come first, so that the narrower ones stand on them. A gap between two formulations is drawn in both their colours by turns.
+/// Okabe's and Ito's colours of contrast 3 on white and on black; dash and width tell curves apart without
+/// colour. Narrow lines stand on wide ones. A gap between two formulations alternates their colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
     /// What is to be passed or kept (grey, thin, dashed; named at its right end).
@@ -16,7 +16,7 @@ pub enum Style {
     Vakonomic,
     /// Gap between the Chetaev and the removed-constraint motion.
     ChetaevRemovedConstraint,
-    /// Motion of the deliberately wrong fourth: the constraint put into the Lagrangian (purple, dash and dot).
+    /// The deliberately wrong one: the constraint put into the Lagrangian (purple, dash and dot).
     Substituted,
     /// Gap between the vakonomic and the removed-constraint motion.
     VakonomicRemovedConstraint,
@@ -37,7 +37,7 @@ pub(super) struct Stroke {
     pub(super) round: bool,
 }
 
-/// Shapes set along a curve whose style is taken already, as paths about the origin: circle, square, triangle, diamond.
+/// Shapes along a curve whose style is taken, as paths about the origin: circle, square, triangle, diamond.
 pub(super) const MARKS: [&str; 4] = [
     "m-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0z",
     "m-4.6-4.6h9.2v9.2h-9.2z",

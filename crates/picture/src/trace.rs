@@ -17,8 +17,7 @@ pub(super) struct Extent {
 pub(super) struct Coarseness {
     /// Points closer than this to the line through their neighbours are left out, in pixels.
     pub(super) tolerance: f64,
-    /// Where a curve runs from left to right: of the points within a column of this width, the first, the last, the
-    /// highest and the lowest are kept.
+    /// Width of a column, of whose points the first, last, highest and lowest are kept.
     pub(super) column: f64,
 }
 
@@ -84,7 +83,7 @@ impl Trace {
         out
     }
 
-    /// `count` places at equal distances along the curve, moved along by the fraction `phase` of that distance.
+    /// `count` places at equal distances along the curve, moved along by the fraction `phase` of it.
     pub(super) fn marks(&self, count: u32, phase: f64) -> Vec<Place> {
         let distance = |pair: &[Place]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
         let segments = || self.lines.iter().flat_map(|line| line.windows(2));

@@ -94,7 +94,7 @@ pub(crate) fn array<'py>(py: Python<'py>, values: Vec<f64>, count: Option<usize>
     PyArray1::from_vec(py, values).reshape(shape)
 }
 
-/// Columns by name: element `i` of each row, as an array of shape `(count,)`, or as a number for a single row.
+/// Columns by name: element `i` of each row, as an array of shape `(count,)`, or a number for a single row.
 pub(crate) fn columns<'py, 'a>(
     py: Python<'py>,
     names: &[String],

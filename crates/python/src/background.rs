@@ -15,8 +15,8 @@ const POLL: Duration = Duration::from_millis(50);
 /// Stack of the thread: that of a main thread, for formulas that are deep.
 const STACK: usize = 16 << 20;
 
-/// Runs `work` while other threads of Python go on. A signal handler that raises, as Ctrl-C does, raises `interrupt`; when `work` has come to
-/// its end by that, the exception is handed on.
+/// Runs `work` while other threads of Python go on. A signal handler that raises, as Ctrl-C does, raises
+/// `interrupt`; when `work` has come to its end by that, the exception is handed on.
 pub(crate) fn run<T: Send>(py: Python<'_>, interrupt: &Interrupt, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let (sender, mut receiver) = channel();
     scope(|threads| {

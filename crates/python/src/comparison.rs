@@ -23,7 +23,7 @@ pub(crate) struct Growth {
     length: f64,
 }
 
-/// The leading term of the second motion minus the first, from the Taylor coefficients of their accelerations.
+/// The leading term of the second motion minus the first, by Taylor coefficients of their accelerations.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct LeadingTerm {
     /// Exponent of t - t0.
@@ -67,7 +67,7 @@ pub(crate) struct Pair {
     limit: Py<PyArrayDyn<f64>>,
     /// Growth near the start, None where the gap does not stand out from the errors there.
     growth: Option<Py<Growth>>,
-    /// Predicted leading term; None where the gap has no growth, or the pair cannot be followed in Taylor series.
+    /// Predicted leading term; None if the gap has no growth, or the pair has no Taylor series.
     predicted: Option<Py<LeadingTerm>>,
 }
 
@@ -125,7 +125,7 @@ pub(crate) struct Decided {
     dimension: Option<usize>,
     /// The constants as functions of the start, where an identity was found.
     identity: Option<Vec<String>>,
-    /// Least mismatch of accelerations over the motion's own acceleration, None where nothing could be computed.
+    /// Least mismatch of accelerations over the motion's own, None where nothing could be computed.
     mismatch: Option<f64>,
 }
 
@@ -207,7 +207,7 @@ pub(crate) struct Comparison {
 
 #[pymethods]
 impl Comparison {
-    /// The pair of two runs, in either order. A run is named by its label, or by its formulation where that is the first of its kind.
+    /// The pair of two runs, in either order, named by label, or by formulation for the first of its kind.
     ///
     /// KeyError where there is no such run, or where the two were not compared.
     #[pyo3(signature = (a, b))]

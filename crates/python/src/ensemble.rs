@@ -84,7 +84,7 @@ pub(crate) struct Integrated {
     choice: Choice,
 }
 
-/// The times at which a run is read off, in ascending order, from the start on, by default the end; and the end.
+/// The times at which a run is read off, ascending, from the start on, by default the end; and the end.
 pub(crate) fn times(given: Option<FloatList<'_>>, scene: &Scene) -> PyResult<(Vec<f64>, f64)> {
     let end = setting(scene).end;
     let Some(given) = given else { return Ok((vec![end], end)) };
@@ -146,8 +146,8 @@ impl Task<'_> {
 
 /// Motions of m members of one system: different starts or parameters, one formulation.
 ///
-/// `times` are those asked for; all arrays belong to members and times. What a member did not reach is NaN: `reached` counts the times that it
-/// did, `status` and `cause` say why.
+/// `times` are those asked for; all arrays belong to members and times. What a member did not reach is NaN:
+/// `reached` counts the times that it did, `status` and `cause` say why.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Ensemble {
     /// Name of the formulation.
@@ -170,7 +170,7 @@ pub(crate) struct Ensemble {
     error_estimate: Py<PyArrayDyn<f64>>,
     /// The error estimate over the largest distance from the start at these times, shape (m,).
     relative_error_estimate: Py<PyArrayDyn<f64>>,
-    /// Of each member "completed", "untrusted" (too large an error estimate), "stopped" or "refused" (there is no motion).
+    /// Per member "completed", "untrusted" (too large an error estimate), "stopped" or "refused" (no motion).
     status: Vec<&'static str>,
     /// Of each member why it is not completed, else None.
     cause: Vec<Option<String>>,

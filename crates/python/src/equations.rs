@@ -18,8 +18,8 @@ use crate::{arguments, background, ensemble, errors};
 
 /// The equations of motion y' = F(t, y) of a system under one formulation.
 ///
-/// States y are named in `states`; what (q0, v0) leaves open is named in `constants`. All callables take one state, t a number and y of shape
-/// (m,), or k of them at once, y of shape (k, m) with t a number or of shape (k,).
+/// `states` names the states y, `constants` what (q0, v0) leaves open. All callables take one state, t a
+/// number and y of shape (m,), or k of them at once, y of shape (k, m) with t a number or of shape (k,).
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Equations {
     ready: Mutex<Prepared>,
@@ -39,7 +39,7 @@ pub(crate) struct Equations {
     constants: Vec<String>,
 }
 
-/// One run of the time loop. No second run stands beside it: nothing is known of its error but what its tolerance says.
+/// One run of the time loop, without a second one: only its tolerance tells anything of its error.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Trajectory {
     /// The times asked for that were reached, shape (k,).
@@ -94,7 +94,7 @@ impl Equations {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Reads `t` and `y`, and calls `body` with the compiled equations, which start from the same guess in each call.
+    /// Reads `t` and `y`, calls `body` with the compiled equations, from the same guess in each call.
     fn evaluate<T>(
         &self,
         t: &Floats<'_>,
@@ -182,7 +182,7 @@ impl Equations {
 
     /// The state y(t0) that belongs to the start of the system, shape (m,).
     ///
-    /// constants: the free constants, "zero", {"horizon": T} (natural at time T) or an array. By default those that `System.equations` was given.
+    /// constants: the free constants, "zero", {"horizon": T} (natural at T) or an array; default: as derived.
     #[pyo3(signature = (constants=None))]
     fn initial_state<'py>(&self, py: Python<'py>, constants: Option<Bound<'_, PyAny>>) -> Array<'py> {
         let rule = arguments::constants(constants.as_ref(), None)?;
@@ -263,13 +263,13 @@ impl Equations {
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
-    /// One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending order: half of what
-    /// `System.solve` does, for those who know the error from elsewhere.
+    /// One run of the time loop from the start of the system to the last of `times`, shape (k,), in ascending
+    /// order: half of what `System.solve` does, for those who know the error from elsewhere.
     ///
-    /// method: one of METHODS; what it needs beyond the rates is compiled by the first run with it. tolerance: relative and absolute.
-    /// project, max_steps: as in `System.solve`. Where the start and the last time alone are asked for, nothing is kept in between.
+    /// method: one of METHODS; its first run compiles what it needs. tolerance: relative and absolute.
+    /// project, max_steps: as in `System.solve`. For the start and the last time alone nothing else is kept.
     ///
-    /// Other threads go on meanwhile; Ctrl-C ends it. SolveError where there is no run; one that stops early says so in `status`.
+    /// Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
     #[pyo3(signature = (times, *, method="dop853", tolerance=1e-11, project=true, max_steps=1_000_000))]
     fn integrate(
         &self,

@@ -1,7 +1,7 @@
 //! The Python module `deltaq`: scenes, equations as functions of arrays, motions, ensembles, comparisons.
 //!
-//! Nothing is derived, integrated or decided here: arguments are read, the facade is called, arrays are handed back. What integrates runs on
-//! a thread of its own without Python's lock ([`background`]).
+//! Nothing is derived, integrated or decided here: arguments are read, the facade is called, arrays are
+//! handed back. What integrates runs on a thread of its own without Python's lock ([`background`]).
 
 mod arguments;
 mod arrays;

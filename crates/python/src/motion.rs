@@ -109,7 +109,7 @@ impl Sampled {
 
 /// One motion: the trajectory of a system under one formulation, with its error estimate.
 ///
-/// `times` are those asked for that were reached; all arrays belong to them. `at(t)` reads the motion off at any other time.
+/// `times` are those asked for and reached; all arrays belong to them. `at(t)` gives any other time.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Motion {
     motion: Mutex<deltaq::Motion>,
@@ -136,7 +136,7 @@ pub(crate) struct Motion {
     /// Quantities that should stay constant by name, each of shape (k,).
     #[pyo3(get)]
     invariants: Py<PyDict>,
-    /// Largest difference of the two runs, in the kinetic metric sqrt(dq' M dq): a bound in practice for the error of the coordinates.
+    /// Largest difference of the two runs, in the kinetic metric sqrt(dq' M dq): in practice an error bound.
     #[pyo3(get)]
     error_estimate: f64,
     /// The error estimate over the largest distance from the start.

@@ -11,7 +11,7 @@ use crate::system::{Overrides, System};
 
 /// A system from a scene file of at most 1 MiB.
 ///
-/// overrides: name to number, in the place of a parameter, a start value ("x", "x'"), "time", "duration", or a multiplier ("mu1", ...).
+/// overrides: name to number: parameter, start value ("x", "x'"), "time", "duration", multiplier ("mu1").
 #[pyfunction]
 #[pyo3(signature = (path, overrides=None))]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<String, f64>>) -> PyResult<System> {

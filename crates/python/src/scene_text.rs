@@ -1,5 +1,5 @@
-//! A scene from the arguments of `System(...)`: they are written as the text of a scene file and read as one, so that there is one
-//! way to read a system and every fault has a place.
+//! A scene from the arguments of `System(...)`: they are written as the text of a scene file and read as one,
+//! so that there is one way to read a system and every fault has a place.
 
 use std::fmt::Write;
 
@@ -96,7 +96,7 @@ fn value(object: &Bound<'_, PyAny>) -> PyResult<String> {
     }
 }
 
-/// A basic string. Line breaks and tabs mean nothing in a formula, and a place is easier to find without escapes.
+/// A basic string. Line breaks and tabs mean nothing in formulas; places are easier without escapes.
 fn quoted(text: &str) -> String {
     scene::quoted(&text.replace(['\n', '\r', '\t'], " "))
 }

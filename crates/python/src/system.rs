@@ -19,17 +19,15 @@ use crate::{arguments, background, errors};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
-/// Expressions are strings in the language of scene files, in coordinates, their velocities (`x'`), parameters and time `t`; or numbers.
+/// Expressions: numbers, or strings as in scene files: coordinates, velocities (`x'`), parameters, time `t`.
 ///
-/// coordinates: names of the n coordinates.
-/// lagrangian: L(q, v, t).
-/// constraints: f(q, v, t), h of them, each to be zero.
-/// parameters: name to number. definitions: name to expression, usable in all others.
-/// units: coordinate to text. forces: coordinate to expression, generalized forces Q.
-/// start: every coordinate to its start. velocities: some velocities ("x'") to their start; the constraints supply the others.
-/// guess: velocities near which the others are sought. project: whether given velocities are moved onto the constraints.
-/// removals: name to {"parameters": [...], "rates": {...}, ...}, as in the sections [removal.NAME] of scene files.
-/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run.
+/// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
+/// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
+/// coordinate to text. forces: coordinate to expression, generalized forces Q. start: every coordinate to its
+/// start. velocities: some ("x'") to their start; constraints supply the others. guess: velocities near which
+/// the others are sought. project: move given velocities onto the constraints. removals: name to
+/// {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files. multipliers: mu0, shape
+/// (h,), zero by default. time: t0. duration: length of the run.
 ///
 /// SceneError names the line of the scene file that the arguments amount to.
 #[pyclass(frozen, module = "deltaq")]
@@ -199,7 +197,7 @@ impl System {
         self.scene().duration
     }
 
-    /// Names of the removals that the removed-constraint formulation can use: those written by hand, then automatic ones.
+    /// Names of removals for the removed-constraint formulation: those written by hand, then automatic ones.
     ///
     /// RemovalError where there is none.
     #[getter]
@@ -215,20 +213,20 @@ impl System {
         Ok(integrability(&scene.system, &scene.start).map_err(errors::solve)?.to_string())
     }
 
-    /// The system as the text of a scene file, with every start value as a number; `parse` of it gives the same system.
+    /// The system as a scene file's text, every start value a number; `parse` of it gives the same system.
     #[pyo3(signature = ())]
     fn to_toml(&self) -> String {
         self.scene().to_toml()
     }
 
-    /// Residuals f(q, v, t) of the constraints, shape (h,) or (k, h): q and v of shape (n,) or (k, n), t a number or of shape (k,).
+    /// Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,).
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
         let (values, count) = at_points(&self.scene().system, [t, q, v], |system| system.constraints.clone())?;
         array(py, values, count, &[self.scene().system.constraints.len()])
     }
 
-    /// The mass matrix M(q, v, t), the second derivative of L by velocities, shape (n, n) or (k, n, n); arguments as in `constraint`.
+    /// Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
     ///
     /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
     #[pyo3(signature = (t, q, v))]
@@ -242,7 +240,7 @@ impl System {
     /// The equations of motion under a formulation, one of FORMULATIONS.
     ///
     /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// constants: the free constants, from which `Equations.initial_state` follows; as in `solve`, but zero by default where they are natural at a horizon.
+    /// constants: those of `Equations.initial_state`, as in `solve`; by default zero if natural at a horizon.
     #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
     fn equations(
         &self,
@@ -272,14 +270,15 @@ impl System {
 
     /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
     ///
-    /// times: where it is read off, shape (k,), from the start on; it is integrated up to the last. By default 101 times over `duration`.
+    /// times: where it is read off, shape (k,), from the start to the last. By default 101 over `duration`.
     /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// mu0: multipliers at the start of the vakonomic formulations, shape (h,). By default those of the system.
-    /// constants: the free constants, "zero", {"horizon": T} (natural at time T) or an array. By default those of the removal or of the system.
+    /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
+    /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
+    /// removal or of the system.
     /// method: one of METHODS. tolerance: of the looser run; the one that is kept has a hundredth of it.
-    /// project: whether velocities are moved onto the constraint after every step. max_steps: limit on the steps of one run.
+    /// project: move velocities onto the constraint after every step. max_steps: limit on steps of a run.
     ///
-    /// Other threads go on meanwhile; Ctrl-C ends it. SolveError where there is no motion; one that stops early says so in `status`.
+    /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, method="dop853", tolerance=1e-11,
@@ -322,11 +321,11 @@ impl System {
 
     /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
     ///
-    /// vary: name to an array of shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...), as `overrides` in `load`.
-    /// times: where they are read off, shape (k,), in ascending order; they are integrated up to the last. By default the end of `duration` alone.
-    /// threads: 0 for one a processor; results do not depend on it. All else as in `solve`; the free constants given are those of all members.
+    /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...).
+    /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
+    /// threads: 0 for one a processor; results do not depend on it. Else as in `solve`, constants for all.
     ///
-    /// Members that cannot be started or that stop are in the answer with their cause. Other threads go on meanwhile; Ctrl-C ends it.
+    /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
@@ -359,7 +358,7 @@ impl System {
         Ensemble::new(py, integrated.map_err(|refused| ensemble::refused(py, refused))?)
     }
 
-    /// Computes the motions of all formulations and compares them pair by pair; tolerance and max_steps as in `solve`.
+    /// Compares the motions of all formulations pair by pair; tolerance and max_steps as in `solve`.
     #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000))]
     fn compare(&self, py: Python<'_>, tolerance: f64, max_steps: usize) -> PyResult<Comparison> {
         check_tolerance(tolerance)?;

@@ -72,7 +72,7 @@ def test_what_is_changed_is_refused(tmp_path):
     (first, second, *rest), motion, reactions = true["rows"], true["motion"], true["reactions"]
     divided_by = {what: x + 1 for what, x in true["divided_by"].items()}
     for field, others in {
-        "version": [2],
+        "schema": ["deltaq/certificate/2"],
         "prime": [true["prime"] + 2, 2305843009213693921],
         "i": [1, true["prime"] - true["i"]],
         "N": [true["N"] + "0", "1"],

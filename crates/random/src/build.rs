@@ -1,16 +1,17 @@
 //! From a recipe to a scene.
 //!
-//! With independent coordinates `q_i` (m of them, `q₁`, `q₂` the first two) and dependent ones `q_d`, constraint r is
+//! With m independent coordinates `q_i` (first `q₁`, `q₂`) and dependent ones `q_d`, constraint r is
 //!
 //! ```text
 //! f_r = d/dt (q_dr + ψ_r) − s_r(q₁) τ_r(t) (γ v₂ + β) ,
 //! ```
 //!
-//! where `ψ_r` contains `q_i`, `q_d1 … q_dr` and, for some kinds, `t`, with small coefficients, so that `∂f/∂v_d` is lower triangular with a positive diagonal:
-//! full rank everywhere. In the coordinates `(q_i, y)`, `y_r = q_dr + ψ_r`, the admissible directions are
-//! `X₁ = ∂₁`, `X₂ = ∂₂ + γ Σ s_r τ_r ∂_yr`, `T = ∂_t + β Σ s_r τ_r ∂_yr`, the others `∂_i`. All brackets are those of `X₁` with the others,
-//! `ad_X₁ᵏ X₂ = γ Σ s_r⁽ᵏ⁾ τ_r ∂_yr`. So the constraints with `s_r ≡ 0` are the integrals, and the others are completely nonintegrable exactly
-//! where the Wronskian of their `s_r′` is not zero: for distinct powers, and for sines of distinct frequencies.
+//! where `ψ_r` contains `q_i`, `q_d1 … q_dr` and, for some kinds, `t`, with small coefficients: `∂f/∂v_d` is
+//! lower triangular with a positive diagonal, full rank everywhere. In `(q_i, y)`, `y_r = q_dr + ψ_r`, the
+//! admissible directions are `X₁ = ∂₁`, `X₂ = ∂₂ + γ Σ s_r τ_r ∂_yr`, `T = ∂_t + β Σ s_r τ_r ∂_yr`, the
+//! others `∂_i`. All brackets are those of `X₁` with the others, `ad_X₁ᵏ X₂ = γ Σ s_r⁽ᵏ⁾ τ_r ∂_yr`. So the
+//! constraints with `s_r ≡ 0` are the integrals, the others completely nonintegrable where the Wronskian of
+//! their `s_r′` is not zero: for distinct powers or frequencies of sines.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -172,7 +173,7 @@ impl<'a> Builder<'a> {
         g.product(&[g.ratio(row.curvature, 8), function, motion, g.add(along, drift)])
     }
 
-    /// Rates of the dependent coordinates as expressions in the rates `of_independent` of the others: what the constraints say.
+    /// Rates of the dependent coordinates, by the constraints, in the rates `of_independent` of the others.
     fn dependent_rates(&self, of_independent: &[Expr]) -> Vec<Expr> {
         let g = &self.system.graph;
         if self.recipe.kind == Kind::Nonlinear {
@@ -251,7 +252,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// `G f` with `G` lower triangular, then upper triangular with ones, the diagonal between them `1 + ¼ sin q₁`.
+    /// `G f`: `G` is lower triangular, the diagonal `1 + ¼ sin q₁`, then upper triangular with ones.
     fn recombined(&self, rows: &[Expr]) -> Vec<Expr> {
         let g = &self.system.graph;
         let mut rows = rows.to_vec();
@@ -274,8 +275,8 @@ impl<'a> Builder<'a> {
         rows
     }
 
-    /// `v_i = S(q) u̇` with `S` lower triangular and positive on its diagonal, all coordinates memory; for nonlinear constraints, and where `S = 1`,
-    /// the independent coordinates themselves.
+    /// `v_i = S(q) u̇` with `S` lower triangular and positive on its diagonal, all coordinates memory; for
+    /// nonlinear constraints, and where `S = 1`, the independent coordinates themselves.
     fn removal(&self) -> Removal {
         let g = &self.system.graph;
         let plain = self.recipe.kind == Kind::Nonlinear;
@@ -342,7 +343,7 @@ impl<'a> Builder<'a> {
         State { t: 0.0, q, v }
     }
 
-    /// Start velocities with their roots unevaluated; empty where the constraints are linear, and solved in exact numbers.
+    /// Start velocities, roots unevaluated; empty where constraints are linear: solved in exact numbers.
     fn written(&self) -> Vec<(Symbol, Expr)> {
         if self.recipe.kind != Kind::Nonlinear {
             return Vec::new();

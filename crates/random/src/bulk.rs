@@ -54,8 +54,8 @@ impl Batch {
         draw(self.seed, index, &self.kinds).current().scene(&self.name(index))
     }
 
-    /// Puts `count` systems to the test. With a log, those that it holds already are taken from it, and the others are added to it one by one: a
-    /// run that was cut off goes on where it was.
+    /// Puts `count` systems to the test. With a log, those that it holds already are taken from it, and the
+    /// others are added to it one by one: a run that was cut off goes on where it was.
     ///
     /// # Errors
     /// Where the log cannot be read or written, or is of another batch.
@@ -123,7 +123,7 @@ impl Batch {
         Ok((records, file))
     }
 
-    /// The smallest system found on which a claim of `theorem` still fails, as a scene; `None` where it does not fail on the system itself.
+    /// The smallest system on which a claim of `theorem` still fails; `None` where the system itself passes.
     pub fn counterexample(&self, index: u64, theorem: u8) -> Option<Scene> {
         let mut tree = draw(self.seed, index, &self.kinds);
         let scene = |recipe: &Recipe| failing(recipe, theorem);

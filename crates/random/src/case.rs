@@ -5,7 +5,7 @@ use deltaq::{
     compare_motions_by, derive, formulation, membership, setting,
 };
 use equations::Equations;
-use mechanics::{ConstantsRule, Removal, State, System};
+use mechanics::{ConstantsRule, Removal, SingularValues, State, System};
 use nalgebra::DMatrix;
 use scene::Scene;
 use symbolic::Expr;
@@ -58,7 +58,7 @@ pub struct Case {
     pub control: Option<(Removal, Motion)>,
     /// Why the run was shortened, if it was.
     pub shortened: Option<String>,
-    /// Gaps that the round-off of the data alone can make: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
+    /// Gaps by round-off of data: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
     pub floor: f64,
     /// What was found so far.
     pub found: Findings,
@@ -66,7 +66,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Derives and integrates all formulations. Where a motion stops early, the run is shortened until all last.
+    /// Derives and integrates all formulations. If a motion stops early, the run is shortened until all last.
     ///
     /// # Errors
     /// [`SolveError`] where a formulation has no motion from this start.
@@ -146,8 +146,8 @@ impl Case {
         self.scene.start.t + self.scene.duration
     }
 
-    /// A motion of `equations` of another system from `start`, with every block by LU factorization: what is said of the case's own motions is
-    /// said of the forms that were chosen for them, too.
+    /// A motion of `equations` of another system from `start`, with every block by LU factorization: what is
+    /// said of the case's own motions is said of the forms that were chosen for them, too.
     ///
     /// # Errors
     /// [`SolveError`].
@@ -262,8 +262,7 @@ fn some_costates(recipe: &Recipe, equations: &Equations, memory: usize) -> Vec<f
 /// The tighter run's tolerance is not under this part of [`Case::floor`].
 const FLOOR: f64 = 1e-6;
 
-/// Solves at the sharpest of [`TOLERANCES`] at which the motion lasts, leaving out those that `floor` does not allow. `plain`: see
-/// [`Settings::plain`].
+/// Solves at the sharpest of [`TOLERANCES`] that `floor` allows and the motion lasts; [`Settings::plain`].
 fn solve(
     setting: Setting,
     equations: Equations,
@@ -291,8 +290,8 @@ fn solve(
     }
 }
 
-/// `10² ε κ` with the condition `κ` of the saddle-point matrix `[𝓛_vv Aᵀ; A 0]` at the start: data that are known to round-off only determine
-/// accelerations, multipliers and costates to `ε κ`, and motions with them. Nearly dependent constraints have `κ ∝ 1/angle²`.
+/// `10² ε κ` with the condition `κ` of the saddle-point matrix `[𝓛_vv Aᵀ; A 0]` at the start: data with
+/// round-off give accelerations, multipliers, costates to `ε κ`. Near dependence means `κ ∝ 1/angle²`.
 fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, SolveError> {
     let h = system.constraints.len();
     if h == 0 {
@@ -309,7 +308,7 @@ fn floor(system: &System, start: &State, multipliers: &[f64]) -> Result<f64, Sol
     saddle.view_mut((0, 0), (n, n)).copy_from(&hessian);
     saddle.view_mut((0, n), (n, h)).copy_from(&a.transpose());
     saddle.view_mut((n, 0), (h, n)).copy_from(&a);
-    let singular = saddle.singular_values();
+    let singular = SingularValues::of(&saddle).values;
     let (smallest, largest) = singular.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &s| (a.min(s), b.max(s)));
     Ok(1e2 * f64::EPSILON * largest / smallest)
 }

@@ -92,7 +92,7 @@ impl Findings {
         self.observe(theorem, what, f64::from(u8::from(so)));
     }
 
-    /// The word on a theorem: it fails if one of its claims fails, is undecided if one is; `None` if none applied.
+    /// The word on a theorem: fails if one claim fails, undecided if one is; `None` if none applied.
     pub fn word(&self, theorem: u8) -> Option<Word> {
         let words = || self.findings.iter().filter(|f| f.theorem == theorem).map(|f| f.word);
         [Word::Fails, Word::Undecided, Word::Holds].into_iter().find(|word| words().any(|w| w == *word))

@@ -129,7 +129,7 @@ impl Kind {
         matches!(self, Kind::Affine | Kind::TimeDependent)
     }
 
-    /// Least and largest number of constraints on `n` coordinates; a kind that does not exist for `n` gets `None`.
+    /// Least and largest number of constraints on `n` coordinates; `None` if the kind does not exist.
     pub(super) fn constraints(self, n: usize) -> Option<(usize, usize)> {
         let range = match self {
             Kind::Free => (0, 0),

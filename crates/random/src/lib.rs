@@ -1,8 +1,8 @@
 //! Random systems: what must hold between the formulations, on systems that nobody chose.
 //!
-//! A [`Recipe`] is plain data that proptest draws and shrinks; [`Recipe::scene`] makes a scene of it, of which [`Recipe::truth`] knows by
-//! construction whether its constraints are integrable. A [`Case`] adds the motions of all formulations; [`CHECKS`] are the claims, each
-//! put to the test on a case.
+//! A [`Recipe`] is plain data that proptest draws and shrinks; [`Recipe::scene`] makes a scene of it, of
+//! which [`Recipe::truth`] knows by construction whether its constraints are integrable. A [`Case`] adds the
+//! motions of all formulations; [`CHECKS`] are the claims, each put to the test on a case.
 
 mod build;
 mod bulk;

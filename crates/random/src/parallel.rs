@@ -1,4 +1,6 @@
-//! Independent pieces of work over all processors.
+//! Independent pieces of work over all processors, or over as many threads as the program was told.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -10,12 +12,28 @@ pub fn progress(length: usize, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// `work` of each item, over all processors, results in the order of the items.
-pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
-    deltaq::over_threads(0, items.len(), |index| work(&items[index]))
+/// 0: one a processor.
+static THREADS: AtomicUsize = AtomicUsize::new(0);
+
+/// How many threads all further work of this program has; 0: one a processor. No result depends on it.
+pub fn use_threads(threads: usize) {
+    THREADS.store(threads, Ordering::Relaxed);
 }
 
-/// `work` of each item as [`map`] does it, with a progress bar that says what is worked on; the first failure, if there is one.
+/// How many threads there are for work: never 0.
+pub fn threads() -> usize {
+    match THREADS.load(Ordering::Relaxed) {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        given => given,
+    }
+}
+
+/// `work` of each item, over all processors, results in the order of the items.
+pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
+    deltaq::over_threads(threads(), items.len(), |index| work(&items[index]))
+}
+
+/// `work` of each item as [`map`] does it, with a progress bar for the current ones; the first failure.
 ///
 /// # Errors
 /// That of the first item whose work failed.

@@ -6,8 +6,8 @@
 //! both         L + ½ N f·f and the force −κ N Aᵀ f, started at the same p₀   → d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ
 //! ```
 //!
-//! all at the rate 1/N. For the removed-constraint motion, the added mass has to sit on `ẇ − B(u̇, …)`, with `u` coordinates of their own:
-//! it is the vakonomic motion of that augmented system (T2), and friction there leads elsewhere.
+//! all at the rate 1/N. The removed-constraint motion needs the added mass on `ẇ − B(u̇, …)`, with `u` its
+//! own coordinates: it is the vakonomic motion of that system (T2), and friction there leads elsewhere.
 //!
 //! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1983.
 
@@ -21,7 +21,7 @@ use symbolic::{CompileError, Expr, Graph, Symbol};
 
 use crate::{augmented, equations};
 
-/// Tolerances of the looser of the two runs: where strong added mass leaves round-off that the first cannot go under, the second.
+/// Tolerances of the looser run: the second where strong added mass leaves more round-off than the first.
 const TOLERANCES: [f64; 2] = [1e-9, 1e-7];
 
 /// Limit on the steps of one run.
@@ -44,7 +44,7 @@ pub enum Realization {
     },
 }
 
-/// The motion of the unconstrained system with strength `N` up to `setting.end`; `multipliers` are `μ₀`, which friction alone does not need.
+/// The unconstrained motion with strength `N` to `setting.end`; friction alone needs no `multipliers` `μ₀`.
 ///
 /// # Errors
 /// [`SolveError`] where it cannot be started.
@@ -63,8 +63,8 @@ pub fn realize(kind: Realization, strength: f64, setting: Setting, multipliers: 
     }
 }
 
-/// Added mass on the augmented system of a removal, started at the momenta of the removed-constraint motion with costates `P(t₀)`; its first
-/// outputs are the coordinates of `setting.system`.
+/// Added mass on the augmented system of a removal, started at the momenta of the removed-constraint motion
+/// with costates `P(t₀)`; its first outputs are the coordinates of `setting.system`.
 ///
 /// # Errors
 /// [`SolveError`] where it cannot be started.
@@ -101,7 +101,7 @@ pub fn augmented_start(
     Ok((augmented(setting.system, removal), start, multipliers))
 }
 
-/// Largest distance between two motions over the second half of the first, in the kinetic metric; NaN where the second stops early.
+/// Largest kinetic distance of two motions over the first's second half; NaN if the second stops early.
 ///
 /// # Errors
 /// [`SolveError`] where a motion cannot be read off.
@@ -162,7 +162,7 @@ pub fn with_kappa(system: &System, value: f64) -> System {
     other
 }
 
-/// The velocities with which `massive` has the momenta `L_v + Aᵀ μ₀` of the constrained start: linear equations, as momenta are affine in `v`.
+/// Velocities that give `massive` the start's momenta `L_v + Aᵀ μ₀`: linear, as momenta are affine in `v`.
 ///
 /// # Errors
 /// [`SolveError`] where momenta or the mass matrix have no value.

@@ -1,7 +1,7 @@
 //! Recipes of random systems: plain data with a proptest strategy, so that they can be drawn and shrunk.
 //!
-//! A recipe holds material for the largest system; a smaller one leaves the rest unused. So the number of coordinates shrinks by
-//! itself, and every part of a recipe shrinks independently of the others: towards fewer coordinates, fewer terms, rounder numbers.
+//! A recipe holds material for the largest system; a smaller one leaves the rest unused. So every part
+//! shrinks alone, the number of coordinates too: towards fewer coordinates, fewer terms, rounder numbers.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -24,7 +24,7 @@ pub enum Shape {
     Cosine,
 }
 
-/// `coefficient · shape(q_first [+ q_second])`; places are taken modulo the number of coordinates that may occur.
+/// `coefficient · shape(q_first [+ q_second])`; places count modulo the number of coordinates allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Term {
     /// In sixteenths.
@@ -88,7 +88,7 @@ pub struct Recipe {
     pub driving: i64,
     /// Constraints.
     pub rows: Vec<Row>,
-    /// Recombination of the constraints: entries under the diagonal in eighths, and whether each varies with `q₁`.
+    /// Recombination: entries under the diagonal in eighths, and whether each varies with `q₁`.
     pub mixing: Vec<(i64, bool)>,
     /// Strength of the velocity in the nonintegrable part, in eighths.
     pub along: i64,
@@ -225,7 +225,7 @@ pub fn recipes_of(kinds: &[Kind]) -> impl Strategy<Value = Recipe> + use<> {
     prop::sample::select(kinds.to_vec()).prop_flat_map(recipes)
 }
 
-/// The recipe with its ways to shrink that belongs to `(seed, index)`: a pure function of the two and of the kinds.
+/// The recipe of `(seed, index)` with its ways to shrink: a pure function of the two and of the kinds.
 pub fn draw(seed: u64, index: u64, kinds: &[Kind]) -> impl ValueTree<Value = Recipe> + use<> {
     tree(&recipes(kinds[index as usize % kinds.len()]), seed, index)
 }

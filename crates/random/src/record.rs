@@ -9,7 +9,7 @@ use super::claims::{CHECKS, make};
 use super::finding::Word;
 use super::{Case, Findings, Kind, NullTest, Recipe, null_test};
 
-/// Of the systems of each kind, every so many-th is also put to the thorough checks and followed by a null test.
+/// Of each kind, one system in this many also gets the thorough checks, and a null test after it.
 pub const THOROUGH: u64 = 10;
 
 /// A claim on one system that does not hold.
@@ -46,7 +46,7 @@ pub struct Record {
     pub open: Vec<Open>,
     /// What was measured besides: theorem, what, value.
     pub observed: Vec<(u8, String, f64)>,
-    /// Seconds of work: drawing, derivation and integration of all formulations first, then each theorem's checks.
+    /// Seconds: drawing, derivation and integration of all formulations, then each theorem's checks.
     pub seconds: (f64, Vec<(u8, f64)>),
 }
 

@@ -1,13 +1,13 @@
-//! The deliberately wrong fourth formulation, a control of the harness itself.
+//! The deliberately wrong formulation, a control of the harness itself.
 //!
-//! Lindelöf's mistake of 1895: put the constraint into the Lagrangian and write Lagrange's equations for what is left,
+//! Lindelöf's mistake of 1895: put the constraint into the Lagrangian and take Lagrange's equations of that,
 //!
 //! ```text
 //! L̃(u̇, u, w, t) = L with q, q̇ replaced by the removal,     d/dt ∂L̃/∂u̇ − ∂L̃/∂u = 0 ,     ẇ = B ,
 //! ```
 //!
-//! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form (`w` in neither `L` nor `B`),
-//! and wrong nearly everywhere else. A harness that does not notice is broken.
+//! as if `w` did not depend on the variation of `u`. It is right for integrable constraints in Chaplygin form
+//! (`w` in neither `L` nor `B`), and wrong nearly everywhere else. A harness that does not notice is broken.
 
 use deltaq::{Choice, Run, Settings, setting, solve};
 use equations::{Block, Equations, Role, StateVariable, Statement};
@@ -19,7 +19,7 @@ pub const NAME: &str = "substitution";
 
 /// The wrong equations for `removal`.
 ///
-/// Second rates are treated as Lagrange's equations of first order would: the removal must not bring them into `L`.
+/// Second rates are treated as Lagrange's first-order equations would: no removal may bring them into `L`.
 pub fn derive(system: &System, removal: &Removal) -> Equations {
     let system = system.clone();
     let g = &system.graph;
@@ -57,7 +57,7 @@ pub fn derive(system: &System, removal: &Removal) -> Equations {
     equations.leave_out_unneeded()
 }
 
-/// The control on the first removal among the `choices` of a scene; nothing where there is none, or where forces act.
+/// The control on the first removal among the `choices` of a scene; `None` without one or with forces.
 pub fn run(scene: &Scene, choices: &[Choice], settings: &Settings) -> Option<Run> {
     if scene.system.has_forces() {
         return None;

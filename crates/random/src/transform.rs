@@ -6,7 +6,7 @@ use equations::Equations;
 use mechanics::{Removal, State, System};
 use symbolic::{Expr, Matrix, Symbol};
 
-/// Units: `q_i = a_i q̂_i`, `t = τ t̂`, `L̂ = κ L`, `f̂ = c f`. With `τ = −1` and all else 1, the motion run backwards.
+/// Units: `q_i = a_i q̂_i`, `t = τ t̂`, `L̂ = κ L`, `f̂ = c f`. `τ = −1`, all else 1: the motion backwards.
 ///
 /// Then `v_i = a_i v̂_i / τ`, `μ̂ = κ μ / c`, and of a removal `B̂_k = τ B_k / a_k`, `P̂_k = κ a_k P_k / τ`.
 #[derive(Clone, Debug)]
@@ -141,10 +141,10 @@ impl Rewritten {
     }
 }
 
-/// The augmented system of a removal: coordinates `(q, u)`, Lagrangian `L(q, q̇, t)`, constraints `q̇ = Φ(u̇, q, t)` (T2).
+/// The augmented system of a removal (T2): coordinates `(q, u)`, `L(q, q̇, t)`, `q̇ = Φ(u̇, q, t)`.
 ///
-/// A parameter that is a coordinate is that coordinate. The removal's `q` must be parameters or memory, and `L` of first order in `u`.
-/// The vakonomic multiplier of `ẇ_k − B_k` is `μ_k = −P_k − ∂L/∂ẇ_k`.
+/// A parameter that is a coordinate is that coordinate. The removal's `q` must be parameters or memory, and
+/// `L` of first order in `u`. The vakonomic multiplier of `ẇ_k − B_k` is `μ_k = −P_k − ∂L/∂ẇ_k`.
 pub fn augmented(system: &System, removal: &Removal) -> System {
     let mut names: Vec<String> = system.coordinates.iter().map(|c| c.name.clone()).collect();
     let g = system.graph.clone();

@@ -2,8 +2,8 @@
 
 use equations::{Compiled, Equations};
 
-/// Of equations of one motion, those whose rates take the fewest operations with nothing eliminated ([`Compiled::cost`]) once what
-/// they do not need is left out; to choose a plan for each would take longer than to derive them; the first of equals. Those that do not compile come last.
+/// Of equations of one motion, the first whose rates take fewest operations ([`Compiled::cost`]), nothing
+/// eliminated, the unneeded left out; failed ones last. Plans for each would cost more than deriving them.
 ///
 /// # Panics
 /// If there are none.
@@ -15,7 +15,7 @@ pub fn cheapest(candidates: Vec<Equations>) -> Equations {
     candidates.into_iter().min_by_key(price).expect("at least one candidate")
 }
 
-/// Whether the equations of the instant have a matrix that moves with time or state: one that has to be eliminated along the way.
+/// Whether the matrix of the equations of the instant moves with time or state, so is eliminated every time.
 pub fn matrix_moves(equations: &Equations) -> bool {
     let rows = equations.blocks.iter().flat_map(|b| equations.graph.sparse_jacobian(&b.residuals, &b.unknowns));
     let behind = equations.symbols_behind(rows.flatten().map(|(_, e)| e));

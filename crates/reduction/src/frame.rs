@@ -1,8 +1,6 @@
-//! Frames: velocities `u = U(q) v` in which the kinetic energy is a sum of squares with constant
-//! coefficients.
+//! Frames: velocities `u = U(q) v` with the kinetic energy a sum of squares of constant coefficients.
 //!
-//! Where `L` is quadratic in the velocities, elimination of its mass matrix writes the kinetic energy as a
-//! sum of squares,
+//! For `L` quadratic in the velocities, eliminating its mass matrix writes the kinetic energy as squares,
 //!
 //! ```text
 //! ½ vᵀM(q) v = ½ Σ c_k u_k² ,      u_k = s_k (v_k + Σ l_kj v_j) ,
@@ -20,9 +18,8 @@
 //! constraint then contains one of them only. What is eliminated next are constraints with constant
 //! coefficients, and no mass matrix is left to be eliminated along the way.
 //!
-//! The frame breaks down where an `s_k` vanishes. There `M` is singular. It is taken only where the
-//! constraints do not contain `1/s_k`: then the mass matrix of the admissible velocities is singular there,
-//! too, whatever they are written in.
+//! The frame breaks down where an `s_k` vanishes: `M` is singular. It is taken only if constraints do not
+//! contain `1/s_k`: then the mass matrix of the admissible velocities is singular there in any variables.
 //!
 //! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
 

@@ -12,14 +12,12 @@
 //! formulation, and nothing but speed depends on this crate.
 //!
 //! - [`QuasiVelocities`]: `S` and `s` as a recursion, by sparse elimination of the constraints.
-//! - [`Frame`]: velocities `u = U(q) v` in which the kinetic energy is a sum of squares with constant
-//!   coefficients, with `dω` of its forms.
+//! - [`Frame`]: `u = U(q) v` with the kinetic energy squares of constant coefficients, and `dω` of its forms.
 //! - [`REDUCED_CHETAEV`]: `Sᵀ (d/dt ∂L/∂v − ∂L/∂q − Q) = 0`.
 //! - [`REDUCED_VAKONOMIC`]: `Sᵀ (p − L_v) = 0`, `ṗ = L_q − (∂v/∂q)ᵀ (p − L_v)`.
 //! - [`cheapest`]: which of several ways to write the same motion takes the fewest operations.
 //!
-//! What it does not know: constraints that are not linear in the velocities, the removed-constraint
-//! equations, how time advances.
+//! What it does not know: nonlinear constraints, the removed-constraint equations, how time advances.
 
 mod cost;
 mod expressions;

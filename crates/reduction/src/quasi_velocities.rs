@@ -1,5 +1,4 @@
-//! Quasi-velocities: the velocities that linear constraints admit, as a recursion as long as the constraints
-//! are.
+//! Quasi-velocities: the velocities that linear constraints admit, a recursion as long as the constraints.
 //!
 //! With `f = A v + b`, the constraints are eliminated one by one, sparsely, and every dependent velocity
 //! becomes a short combination of others:

@@ -14,11 +14,11 @@
 //!
 //! The constraint holds in every state `(q, w)`: there is nothing to drift from and nothing to project.
 //!
-//! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and so are its columns, `γ` and the two sides of the equation: each
-//! quantity is a short expression in those before. For a chain of n bodies that is O(n) in all, where `S` put in would be O(n²) or more.
+//! `S` is not written out in `q`: it is a recursion ([`QuasiVelocities`]), as are its columns, `γ` and both
+//! sides of the equation, each quantity short in those before. A chain of n bodies: O(n), not O(n²) or more.
 //!
-//! Where the kinetic energy is seen to be a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, `v` are the
-//! velocities of that frame: `SᵀMS` is then free of how the body is turned, often constant.
+//! Where a [`Frame`] shows the kinetic energy as squares with constant coefficients, and equations are
+//! cheaper so, `v` are its velocities: `SᵀMS` is then free of how the body is turned, often constant.
 //!
 //! Sources: G. Hamel 1904; Ju. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, chapter III.
 
@@ -42,14 +42,14 @@ pub const REDUCED_CHETAEV: Formulation = Formulation {
     derive: derive_chetaev,
 };
 
-/// Derives the Chetaev equations with states `(q, w)` and unknowns `ẇ`. Multipliers are not computed: at a state of the motion
-/// they are an output of the equations with multipliers.
+/// Derives the Chetaev equations with states `(q, w)` and unknowns `ẇ`. Multipliers are not computed: at a
+/// state of the motion they are an output of the equations with multipliers.
 ///
 /// # Errors
-/// [`DerivationError::Reduction`] where a constraint is not linear in the velocities, or constraints are dependent.
+/// [`DerivationError::Reduction`] where constraints are not linear in the velocities, or are dependent.
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
@@ -220,7 +220,7 @@ fn hand_over(equations: &mut Equations, system: &System, quasi: QuasiVelocities,
     }
     equations.coordinates = g.variables(&system.positions());
     equations.velocities = g.variables(&system.velocities());
-    // the energy is constant where the motion itself is a virtual displacement, and momenta on which no reaction acts
+    // energy is constant if the motion itself is a virtual displacement; so are momenta without reactions
     if quasi.homogeneous && system.is_autonomous() && !system.has_forces() {
         let power = g.dot(&g.variables(&system.velocities()), momenta);
         equations.invariants.push(Named { name: "energy".into(), expression: g.sub(power, system.lagrangian) });

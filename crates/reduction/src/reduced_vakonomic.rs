@@ -8,27 +8,27 @@
 //! q̇ = v ,        ṗ = −∂K/∂q |_w = L_q − (∂v/∂q)ᵀ (p − L_v) .
 //! ```
 //!
-//! `H(q, p, t)` is the stationary value of `K` over `w`, so that `∂w/∂q` does not enter. These are the equations of the costate form:
-//! `Sᵀ (p − L_v) = 0` says that `p − L_v = Aᵀ μ`, and `A (S w + s) + b = 0`, differentiated at fixed `w`, that `A ∂v/∂q = −∂f/∂q`; hence
-//! `ṗ = L_q + f_qᵀ μ = ∂(L + μ·f)/∂q`.
+//! `H(q, p, t)` is the stationary value of `K` over `w`, so that `∂w/∂q` does not enter. These are the
+//! equations of the costate form: `Sᵀ (p − L_v) = 0` says that `p − L_v = Aᵀ μ`, and `A (S w + s) + b = 0`,
+//! differentiated at fixed `w`, that `A ∂v/∂q = −∂f/∂q`; hence `ṗ = L_q + f_qᵀ μ = ∂(L + μ·f)/∂q`.
 //!
 //! For `L` quadratic in the velocities, `w` solves n − h linear equations, `SᵀMS w = Sᵀ (p − L_v(q, s, t))`.
 //!
-//! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]), and `(∂v/∂q)ᵀ (p − L_v)` is had by going through it backwards: with
-//! `v̄_k` the derivative of `K` by `v_k` by way of all velocities that contain it,
+//! `S` is not written out in `q`. It is a recursion ([`QuasiVelocities`]); going through it backwards gives
+//! `(∂v/∂q)ᵀ (p − L_v)`: with `v̄_k` the derivative of `K` by `v_k` by way of all velocities that contain it,
 //!
 //! ```text
 //! v_k = Σ S_kj v_j + s_k :      v̄_j += S_kj v̄_k ,      −ṗ += v̄_k (Σ ∂S_kj/∂q v_j + ∂s_k/∂q) .
 //! ```
 //!
-//! Where the kinetic energy is a sum of squares with constant coefficients in a [`Frame`], and the equations are cheaper so, the states are `e_k · p`,
-//! the momenta along the vectors of that frame:
+//! Where the kinetic energy is a sum of squares with constant coefficients in a [`Frame`], and the equations
+//! are cheaper so, the states are `e_k · p`, the momenta along the vectors of that frame:
 //!
 //! ```text
 //! d/dt (e_k · p) = e_k · (R_q − (∂u/∂q)ᵀ (p − L_u)) − Σ_c (e_c · p) dω^c(q̇, e_k) ,      R = L − ½ vᵀMv.
 //! ```
 //!
-//! For a chain of n bodies that is O(n) in all. The multipliers follow by one more recursion ([`crate::EliminatedConstraint`]) where they are asked for.
+//! A chain of n bodies takes O(n). One more recursion gives multipliers: [`crate::EliminatedConstraint`].
 
 use std::collections::HashMap;
 
@@ -58,20 +58,21 @@ pub const REDUCED_VAKONOMIC: Formulation = Formulation {
 
 /// Nodes of an expression that is not multiplied out.
 const LONG: usize = 100;
-/// Coordinates of a system in which velocities are put in, if that is shorter; and nodes of `L` and of `v` over which it is not tried.
+/// Coordinates up to which shorter velocities are put in; nodes of `L` and `v` up to which it is tried.
 const SMALL: usize = 8;
 const WHOLE: usize = 200;
 
-/// Derives the vakonomic equations with states `(q, p)`, or `(q, e_k · p)` in a frame, unknowns `w`, free constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
+/// Derives the vakonomic equations: states `(q, p)`, or `(q, e_k · p)` in a frame, unknowns `w`, free
+/// constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
 ///
-/// The equations for `w` are linear where `L` is quadratic in `v`; otherwise they are solved by Newton's method from the last accepted state.
+/// The equations for `w` are linear where `L` is quadratic in `v`; else Newton from the last accepted state.
 ///
 /// # Errors
-/// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts; [`DerivationError::Reduction`] where a constraint is not
-/// linear in the velocities, or constraints are dependent.
+/// [`DerivationError::ForceInVariationalPrinciple`] for a generalized force; [`DerivationError::Reduction`]
+/// for constraints that are not linear in the velocities, or dependent.
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
@@ -148,8 +149,8 @@ impl Problem {
         (u, momenta)
     }
 
-    /// `ṗ`, where `along` is `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`; in a frame `e_k · (R_q − along) − Σ_c p_c dω^c(q̇, e_k)`, with `R` what `L` is
-    /// without its squares.
+    /// `ṗ`, where `along` is `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`; in a frame `e_k · (R_q − along) − Σ_c p_c
+    /// dω^c(q̇, e_k)`, with `R` what `L` is without its squares.
     fn rates(&self, system: &System, momenta: &[Expr], along: &[Expr]) -> Vec<Expr> {
         let g = &system.graph;
         let q = system.positions();

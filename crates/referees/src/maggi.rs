@@ -1,7 +1,7 @@
 //! Chetaev's motion by Maggi's equations: no multipliers, no bordered matrix of the multiplier method.
 //!
-//! With `M = ∂²L/∂v²` (n×n), `F = L_q − L_vq v − L_vt + Q` (n), `A = ∂f/∂v` (h×n) and `γ = f_q v + f_t` (h), the principle of
-//! d'Alembert and Lagrange with Chetaev's condition, and the constraint differentiated once, are
+//! With `M = ∂²L/∂v²` (n×n), `F = L_q − L_vq v − L_vt + Q` (n), `A = ∂f/∂v` (h×n) and `γ = f_q v + f_t` (h),
+//! d'Alembert's principle with Chetaev's condition and the constraint differentiated once are
 //!
 //! ```text
 //! δq · (M a − F) = 0   for every δq with A δq = 0 ,      A a + γ = 0 .
@@ -14,12 +14,12 @@
 //! [  A  ] a  =  [ −γ  ]          n equations for the n accelerations .
 //! ```
 //!
-//! `N` is not derived but computed: the last m columns of the complete orthogonal factor of `Aᵀ`. The first m rows are
-//! Maggi's equations (1896). `f` may be nonlinear in `v`, and `M` may be singular: only the stacked matrix has to be
-//! regular, that is `NᵀMN`.
+//! `N` is not derived but computed: the last m columns of the complete orthogonal factor of `Aᵀ`. The first m
+//! rows are Maggi's equations (1896). `f` may be nonlinear in `v`, and `M` may be singular: only the stacked
+//! matrix has to be regular, that is `NᵀMN`.
 //!
-//! Scaling: each row of `A` is divided by its length, the rows `NᵀM` together by the largest entry of `M`. So the factors
-//! with which constraints and `L` are written do not matter; the units of the coordinates do.
+//! Scaling: each row of `A` is divided by its length, the rows `NᵀM` together by the largest entry of `M`. So
+//! the factors with which constraints and `L` are written do not matter; the units of the coordinates do.
 //!
 //! Source: J. I. Neimark, N. A. Fufaev, *Dynamics of Nonholonomic Systems*, AMS 1972, chapter III.
 
@@ -38,7 +38,7 @@ pub use motion::{Motion, START_LIMIT};
 /// Smallest over largest diagonal entry of a pivoted QR factorization; under it a matrix counts as singular.
 pub const PIVOT_LIMIT: f64 = 1e-13;
 
-/// How far given accelerations are from Maggi's equations; see [`Maggi::residual`]. Both parts are pure numbers ≥ 0.
+/// How far accelerations are from Maggi's equations ([`Maggi::residual`]). Both parts are pure numbers ≥ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// `|Nᵀ(M a − F)| / (|M| (1 + |a|) + |F|)`, Euclidean (Frobenius) norms.
@@ -126,7 +126,7 @@ impl Maggi {
     /// `(q, v)` need not lie on the constraint: what is solved is `A a + γ = 0`, not `f = 0`.
     ///
     /// # Errors
-    /// [`MaggiError::Length`], [`MaggiError::NotFinite`], [`MaggiError::DependentConstraints`], [`MaggiError::Singular`].
+    /// [`MaggiError`]s `Length`, `NotFinite`, `DependentConstraints`, `Singular`.
     pub fn accelerations(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<Vec<f64>, MaggiError> {
         let mut a = vec![0.0; self.n];
         self.write_accelerations(t, q, v, &mut a)?;
@@ -158,8 +158,8 @@ impl Maggi {
         Ok(())
     }
 
-    /// How far the accelerations `a` (n) are from Maggi's equations at `(t, q, v)`; each part is relative to its terms,
-    /// and absolute where the accelerations are below 1.
+    /// How far the accelerations `a` (n) are from Maggi's equations at `(t, q, v)`; each part is relative to
+    /// its terms, and absolute where the accelerations are below 1.
     ///
     /// # Errors
     /// [`MaggiError::Length`], [`MaggiError::NotFinite`], [`MaggiError::DependentConstraints`].
@@ -182,10 +182,10 @@ impl Maggi {
         Ok(Residual { dynamics: if dynamics == 0.0 { 0.0 } else { dynamics / scale }, constraint })
     }
 
-    /// How far `(t, q, v)` is from the constraint: the largest `|f_i| / (|A_i| (1 + |v|))`; 0 without constraints.
+    /// Distance of `(t, q, v)` from the constraint: the largest `|f_i| / (|A_i| (1 + |v|))`; 0 without any.
     ///
     /// # Errors
-    /// [`MaggiError::Length`], [`MaggiError::NotFinite`]; [`MaggiError::DependentConstraints`] where a row of `A` is zero.
+    /// [`MaggiError`]s `Length`, `NotFinite`; `DependentConstraints` where a row of `A` is zero.
     pub fn constraint_residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<f64, MaggiError> {
         let n = self.n;
         let instant = self.instant(t, q, v)?;
@@ -194,14 +194,14 @@ impl Maggi {
         Ok(instant.constraint.iter().zip(lengths).map(|(f, length)| f.abs() / (length * reach)).fold(0.0, f64::max))
     }
 
-    /// The motion from `start` to the time `end`, forwards or backwards, by [`integrate::Method::Dop853`] with both
-    /// tolerances equal to `tolerance` and without projection: `f` stays zero only as well as the integration is accurate.
+    /// The motion from `start` to `end`, forwards or backwards, by [`integrate::Method::Dop853`], both
+    /// tolerances `tolerance`, without projection: `f` stays zero as well as the integration is accurate.
     ///
     /// How the run ended is [`Motion::ending`], not an error.
     ///
     /// # Errors
-    /// Those of [`Maggi::accelerations`] at the start; [`MaggiError::OffConstraint`]; [`MaggiError::Call`] for a tolerance or an end that makes no
-    /// sense.
+    /// Those of [`Maggi::accelerations`] at the start; [`MaggiError::OffConstraint`]; [`MaggiError::Call`]
+    /// for a tolerance or an end that makes no sense.
     pub fn solve(&mut self, start: &State, end: f64, tolerance: f64) -> Result<Motion, MaggiError> {
         motion::solve(self, start, end, tolerance)
     }
@@ -247,8 +247,8 @@ impl Instant<'_> {
         Err(MaggiError::Singular { t: self.t, found: 0.0, limit: PIVOT_LIMIT })
     }
 
-    /// The factors `Q R` of `Aᵀ` with columns of length 1, and the lengths of the rows of `A`. The last m columns of the
-    /// complete `Q` (which `q_tr_mul` applies) are an orthonormal basis of `ker A`.
+    /// The factors `Q R` of `Aᵀ` with columns of length 1, and the lengths of the rows of `A`. The last m
+    /// columns of the complete `Q` (which `q_tr_mul` applies) are an orthonormal basis of `ker A`.
     fn factor_jacobian(&self, n: usize) -> Result<(Factors, Vec<f64>), MaggiError> {
         let lengths = row_lengths(self.t, self.jacobian, n)?;
         let transposed = DMatrix::from_fn(n, lengths.len(), |j, i| self.jacobian[i * n + j] / lengths[i]);
@@ -270,15 +270,15 @@ fn row_lengths(t: f64, jacobian: &[f64], n: usize) -> Result<Vec<f64>, MaggiErro
     Ok(lengths)
 }
 
-/// Smallest over largest diagonal entry of `R`, for matrices scaled to a natural size of 1: the largest counts as 1 at
-/// least, so that a matrix of nothing but round-off is singular. 1 for an empty matrix.
+/// Smallest over largest diagonal entry of `R`, for matrices scaled to a natural size of 1: the largest
+/// counts as 1 at least, so that a matrix of nothing but round-off is singular. 1 for an empty matrix.
 fn pivot_ratio(factors: &Factors) -> f64 {
     let diagonal = factors.r().diagonal();
     let largest = diagonal.iter().fold(1.0_f64, |largest, &x| largest.max(x));
     diagonal.iter().fold(1.0, |ratio, &x| ratio.min(x / largest))
 }
 
-/// `matrix⁻¹ right`, the matrix scaled as for [`pivot_ratio`], by pivoted QR and one step of iterative refinement.
+/// `matrix⁻¹ right`, scaled as for [`pivot_ratio`], by pivoted QR and one step of iterative refinement.
 fn solve_square(t: f64, matrix: DMatrix<f64>, right: DVector<f64>) -> Result<DVector<f64>, MaggiError> {
     let factors = ColPivQR::new(matrix.clone());
     let found = pivot_ratio(&factors);

@@ -9,12 +9,12 @@ use crate::Wide;
 
 mod functions;
 
-/// A number of about 107 bits (32 decimal digits): the unevaluated sum `high + low` of two `f64`, `|low| ≤ ½ ulp(high)`.
+/// About 107 bits (32 decimal digits): the unevaluated sum `high + low` of two `f64`, `|low| ≤ ½ ulp(high)`.
 ///
-/// Sum and product are algorithms 6 and 10 of Joldes, Muller & Popescu 2017 (relative errors under 3·2⁻¹⁰⁶ and 5·2⁻¹⁰⁶), the quotient is long division.
-/// The reasons for not taking the crate `twofloat` (0.8.4, measured against numbers of 300 bits): its quotient has a relative error of 1e-16, its exponential and
-/// its logarithm 1e-11. And its product asks for a fused multiply-add, which is a call of a function unless the program is built
-/// for one processor; Dekker's exact product is 5 times as fast then.
+/// Sum and product are algorithms 6 and 10 of Joldes, Muller & Popescu 2017 (relative errors under 3·2⁻¹⁰⁶
+/// and 5·2⁻¹⁰⁶), the quotient is long division. Why not the crate `twofloat` (0.8.4, against numbers of 300
+/// bits): the relative error of its quotient is 1e-16, of exponential and logarithm 1e-11; its fused
+/// multiply-add calls a function unless built for one processor: Dekker's exact product is 5 times as fast.
 ///
 /// ```
 /// use reference::DoubleDouble;

@@ -1,12 +1,12 @@
-//! Gragg–Bulirsch–Stoer extrapolation: the modified midpoint rule with 2, 4, 6, … substeps, extrapolated to none.
+//! Gragg–Bulirsch–Stoer extrapolation: the modified midpoint rule with 2, 4, 6, … substeps, taken to none.
 //!
-//! Uses values of `F` only: no derivative, no series. Order and step follow the work per unit of time, as in Hairer, Nørsett & Wanner,
-//! *Solving Ordinary Differential Equations I*, II.9.
+//! Uses values of `F` only: no derivative, no series. Order and step follow the work per unit of time, as in
+//! Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, II.9.
 
 use crate::instant::Instant;
 use crate::{ReferenceError, Wide};
 
-/// Rows of the extrapolation table; order 2 · ROWS. More rows magnify round-off: by 1e3 with these, by 1e5 with 18.
+/// Rows of the table; order 2 · ROWS. More rows magnify round-off: by 1e3 with these, by 1e5 with 18.
 const ROWS: usize = 12;
 
 /// Shortest step, relative to the time.
@@ -66,7 +66,7 @@ pub(crate) fn integrate<T: Wide>(
 
 struct Extrapolation<T> {
     y: Vec<T>,
-    /// The last row of the table of changes; entry `j` is the value extrapolated from the last `j + 1` substep numbers.
+    /// The table's last row of changes; entry `j` is extrapolated from the last `j + 1` substep numbers.
     table: Vec<Vec<T>>,
     tolerance: f64,
 }
@@ -99,7 +99,7 @@ impl<T: Wide> Extrapolation<T> {
                 best = Best { work_per_time: work / factor, factor, row };
             }
             if error <= 1.0 {
-                // the last row was the best: one more is worth trying, with a step as much longer as it costs more
+                // the last row was best: try one more, with a step as much longer as it costs more
                 let longer = if best.row == row { 1.0 + 2.0 * (row + 2) as f64 / work } else { 1.0 };
                 return Ok((
                     (best.factor * longer).min(4.0),
@@ -114,7 +114,7 @@ impl<T: Wide> Extrapolation<T> {
         Ok((best.factor.min(0.7), None))
     }
 
-    /// Adds a row that starts with `value`: `T_{k,j} = T_{k,j−1} + (T_{k,j−1} − T_{k−1,j−1})/((n_k/n_{k−j})² − 1)`.
+    /// A row from `value`: `T_{k,j} = T_{k,j−1} + (T_{k,j−1} − T_{k−1,j−1})/((n_k/n_{k−j})² − 1)`.
     fn extrapolate(&mut self, value: Vec<T>) {
         let row = self.table.len();
         let mut entry = value;
@@ -135,9 +135,9 @@ impl<T: Wide> Extrapolation<T> {
     }
 }
 
-/// What Gragg's modified midpoint rule with an even number of substeps adds to `y`; its error has even powers of their length only.
+/// What Gragg's midpoint rule, evenly many substeps, adds to `y`; its error has even powers of their length.
 ///
-/// The change and not the state, because extrapolation magnifies round-off, and that of the change is smaller.
+/// The change, not the state: extrapolation magnifies round-off, and that of the change is smaller.
 fn midpoint<T: Wide>(
     instant: &mut Instant<T>,
     t: T,

@@ -6,7 +6,7 @@ use symbolic::{CompileError, Evaluator, Expr, SeriesTape, SeriesWorkspace, Symbo
 
 use crate::{ReferenceError, Wide};
 
-/// Newton steps allowed for one instant, and the relative step after which one more step leaves round-off only.
+/// Newton steps allowed for one instant; relative step after which one more leaves round-off only.
 const STEPS: usize = 30;
 const SMALL: f64 = 1e-18;
 
@@ -14,7 +14,7 @@ const INSTANT: &str = "equations of the instant";
 
 /// Where the numbers of a motion stand among the inputs of its tapes: `t, y, z`, free constants, parameters.
 ///
-/// Parameters are inputs and not folded into the tapes: folding rounds them, and their products, as decimal fractions or to `f64`.
+/// Parameters are inputs, not folded into the tapes: folding rounds them and their products.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
     pub(crate) symbols: Vec<Symbol>,

@@ -1,13 +1,13 @@
 //! Reference trajectories with a known error.
 //!
-//! [`reference()`] computes a motion from [`equations::Equations`] in double-double arithmetic by two methods that step time differently, each at two
-//! tolerances, and says how far they are apart.
+//! [`reference()`] computes a motion from [`equations::Equations`] in double-double arithmetic by two methods
+//! that step time differently, each at two tolerances, and says how far they are apart.
 //!
-//! - *Extrapolation* (Gragg, Bulirsch & Stoer): values of `F(t, y)` only, each with a linear solve for the unknowns of the instant.
-//! - *Taylor series* in time: [`symbolic::SeriesTape`] gives coefficients of any order, and the unknowns' coefficients follow from the residuals
-//!   of the instant.
+//! - *Extrapolation* (Gragg, Bulirsch & Stoer): values of `F(t, y)`, each with a linear solve for unknowns.
+//! - *Taylor series* in time: [`symbolic::SeriesTape`] gives coefficients of any order, and the unknowns'
+//!   coefficients follow from the residuals of the instant.
 //!
-//! Runs in `f64` take the same series tape, and extrapolation takes none: where the two methods agree, the recurrences of that tape are right.
+//! Runs in `f64` take the same series tape, extrapolation none: where both agree, that tape is right.
 
 mod double_double;
 mod error;

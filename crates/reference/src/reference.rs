@@ -40,7 +40,8 @@ pub struct Reference<T = DoubleDouble> {
     pub times: Vec<f64>,
     /// The motion there, by the Taylor series at the tighter tolerance.
     pub points: Vec<Point<T>>,
-    /// What of it is in doubt at each time, kinetic metric: the distance from the other method or from the looser tolerance, whichever is larger.
+    /// Its doubt at each time, in the kinetic metric: the distance from the other method or the looser tolerance,
+    /// the larger one.
     pub errors: Vec<f64>,
     /// The largest distances behind that.
     pub agreement: Agreement,
@@ -55,8 +56,8 @@ impl<T: Wide> Reference<T> {
         self.errors.iter().copied().fold(0.0, f64::max)
     }
 
-    /// `√|Δqᵀ M Δq|` between the coordinates `q` and the reference at the time of index `i`, with `M` there: the error of a run that claims `q`. The
-    /// difference is taken in the wide type.
+    /// `√|Δqᵀ M Δq|` between the coordinates `q` and the reference at the time of index `i`, with `M` there:
+    /// the error of a run that claims `q`. The difference is taken in the wide type.
     ///
     /// # Panics
     /// If there is no such time, or `q` has another length than the coordinates.
@@ -65,7 +66,7 @@ impl<T: Wide> Reference<T> {
         self.distance_at(i, q.iter().map(|&x| T::from_f64(x)))
     }
 
-    /// Largest distance `√|Δqᵀ M Δq|` from another reference at the same times, for example of the same motion in another form.
+    /// Largest distance `√|Δqᵀ M Δq|` from another reference at the same times, say in another form.
     ///
     /// # Panics
     /// If the times differ.
@@ -81,7 +82,7 @@ impl<T: Wide> Reference<T> {
     }
 }
 
-/// Tolerance of the first pair of runs over the accuracy that is asked for, and of the second pair over that of the first.
+/// Tolerance of the first pair of runs over the accuracy asked for, and of the second pair over the first.
 const FIRST: f64 = 1e-5;
 const TIGHTER: f64 = 1e-2;
 
@@ -93,15 +94,15 @@ const TRIES: usize = 3;
 
 /// The motion at `times` with an error of at most `accuracy` (kinetic metric) in double-double arithmetic.
 ///
-/// Two methods compute it, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes and a linear solve per evaluation, and Taylor
-/// series of rates and residuals. They share the start, the tapes, the solution of a single instant
-/// and the number type; how they go from one time to the next they do not share. [`Reference::errors`] is how far the kept
-/// run, the Taylor series at the tighter tolerance, is from the other method and from itself at the looser tolerance. While that is over
-/// `accuracy`, tolerances become tighter, three times at most.
+/// Two methods, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes with a linear solve per
+/// evaluation, and Taylor series of rates and residuals. They share start, tapes, the solution of one instant
+/// and the number type, not how they go from time to time. [`Reference::errors`] is how far the kept run,
+/// Taylor series at the tighter tolerance, is from the other method and from the looser tolerance. While that
+/// is over `accuracy`, tolerances become tighter, three times at most.
 ///
-/// Times, parameters, constants and `q₀` are the given `f64`, exactly (0.4 is not 2/5), as they are for a run in `f64`. The velocity at the start is the one
-/// with `f = 0` nearest to `v₀` in the kinetic metric, to the last digit of the wide type: what the projection of a run in `f64` would give
-/// without rounding. How a run rounds its own start is part of its error.
+/// Times, parameters, constants and `q₀` are the given `f64`, exactly (0.4 is not 2/5), as for a run in
+/// `f64`. The velocity at the start is nearest to `v₀` with `f = 0` in the kinetic metric, to the last wide
+/// digit: what a run in `f64` projects to but for rounding. Rounding its own start is part of a run's error.
 ///
 /// ```
 /// use mechanics::State;
@@ -131,7 +132,7 @@ const TRIES: usize = 3;
 /// ```
 ///
 /// # Errors
-/// [`ReferenceError`]; [`ReferenceError::NotReached`] where the number type or the methods do not give the accuracy.
+/// [`ReferenceError`]; [`ReferenceError::NotReached`] where number type or methods miss the accuracy.
 pub fn reference(question: &Question, times: &[f64], accuracy: f64) -> Result<Reference, ReferenceError> {
     reference_in(question, times, accuracy)
 }

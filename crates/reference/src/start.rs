@@ -1,9 +1,9 @@
 //! Where a reference starts: on the constraint, to the last digit of the wide type.
 //!
-//! `(t₀, q₀, v₀)` are `f64` and taken as exact, but `f(q₀, v₀, t₀)` is then zero to round-off only. The reference starts at the velocity with
-//! `f = 0` that is nearest to `v₀` in the metric of `M`: the one to which the projection of every run in `f64` leads but for its own
-//! rounding. How a run in `f64` rounds its start, is part of its error. Everything else (`y₀`, a removal's parameters) is
-//! computed from that velocity in the wide type.
+//! `(t₀, q₀, v₀)` are `f64` and taken as exact, but then `f(q₀, v₀, t₀)` is zero to round-off only. The
+//! reference starts at the velocity with `f = 0` nearest to `v₀` in the metric of `M`, to which every run in
+//! `f64` projects but for rounding. How a run in `f64` rounds its start is part of its error. Everything else
+//! (`y₀`, a removal's parameters) follows from that velocity in the wide type.
 
 use equations::Equations;
 use mechanics::linear::{Factors, Singular};
@@ -76,7 +76,7 @@ pub(crate) fn start<T: Wide>(
 
 /// The velocity nearest to `v₀` with `f = 0`: `M δv + Aᵀ κ = 0`, `f(q₀, v₀ + δv, t₀) = 0`.
 ///
-/// Matrices are those at the current velocity. What that leaves out of Newton's matrix has the size of `κ`, which is that of round-off.
+/// Matrices are those at the current velocity: Newton's matrix lacks only terms of size `κ`, round-off.
 fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Result<Vec<T>, ReferenceError> {
     let (n, h) = (system.dimension(), system.constraints.len());
     let start: Vec<T> = state.v.iter().map(|&x| T::from_f64(x)).collect();
@@ -86,7 +86,7 @@ fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Resul
     let mut program = Evaluator::new(system.graph.compile(&symbols, &outputs, &Default::default())?);
     let size = n + h;
     let mut v = start.clone();
-    // κ of the last step stands in the residual, so that the sum of the steps is the one with the least length
+    // κ of the last step stands in the residual, so that the sum of the steps is the shortest one
     let mut kappa = vec![T::zero(); h];
     newton(VELOCITY, state.t, || {
         let inputs = [&known.values[..], &v].concat();
@@ -117,7 +117,7 @@ fn velocity<T: Wide>(system: &System, state: &State, known: &Values<T>) -> Resul
     Ok(v)
 }
 
-/// Adds the variables of the parametrization, with `q = q₀` and `q̇ = v₀` solved in the wide type from their values in `f64`.
+/// Adds the parametrization's variables: `q = q₀`, `q̇ = v₀` solved in the wide type from `f64` values.
 ///
 /// What the scene names keeps the expression there, what nothing fixes its value in `f64`.
 fn complete<T: Wide>(

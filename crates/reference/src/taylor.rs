@@ -1,7 +1,7 @@
-//! Taylor series in time of high order, their coefficients by the series tape of [`symbolic`] in the wide type.
+//! Taylor series in time of high order, coefficients by the series tape of [`symbolic`] in the wide type.
 //!
-//! Unknowns stay in their equations `R(z; t, y) = 0`, which are solved order by order: with the coefficient `z_k` left at zero, coefficient `k` of `R`
-//! is what is missing, and `∂R/∂z · z_k` has to make up for it, with `∂R/∂z` at the start of the step. Order and step as in Jorba & Zou 2005.
+//! Unknowns' equations `R(z; t, y) = 0` are solved order by order: with the coefficient `z_k` at zero, `R_k`
+//! is missing, and `∂R/∂z · z_k` makes up for it, `∂R/∂z` at the step's start. Steps: Jorba & Zou 2005.
 
 use equations::Equations;
 use symbolic::{CompileError, Expr, SeriesInput, SeriesTape, SeriesWorkspace};

@@ -7,7 +7,7 @@ use symbolic::{Graph, Scalar, SeriesInput, Symbol};
 
 const ORDER: usize = 25;
 
-/// Of `formula` in `a = a₀ + t − t²/2` and `b = 3/4 + t/3`: the sum of its series at `t = 1/100` minus its value there.
+/// For `a = a₀ + t − t²/2`, `b = 3/4 + t/3`: the series of `formula` at `t = 1/100` minus its value there.
 fn misses(formula: &str, a0: &str) -> f64 {
     let g = Graph::new();
     let [t, a, b] = ["t", "a", "b"].map(|name| g.symbol(name));

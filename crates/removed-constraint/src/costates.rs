@@ -23,8 +23,8 @@ struct Costate {
 impl Costates {
     /// Finds the costates that `removal` needs for the rewritten Lagrangian.
     ///
-    /// A memory variable that neither `L` nor a rate `B` with a costate of its own contains is a mere quadrature: its costate does not move, and
-    /// is zero where it starts from zero or ends there. The set of those is the largest consistent one; `all` keeps them.
+    /// A memory variable in neither `L` nor a `B` with a costate is a mere quadrature: its costate does not
+    /// move, and is zero if it starts or ends at zero. Their set is the largest consistent one, unless `all`.
     pub(crate) fn new(g: &Graph, removal: &Removal, lagrangian: Expr, all: bool) -> Self {
         let memory = &removal.memory;
         let named = |stem: &str| -> Vec<Symbol> {

@@ -1,17 +1,18 @@
 //! # The removed-constraint formulation (Gao 2017)
 //!
-//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` and constraints `f(q, v, t) = 0 ∈ Rʰ`. New displacement parameters `u ∈ Rᵐ`,
-//! `m = n − h`, are introduced such that the constraints hold whatever `u(t)` is. The price is integrals over the past; as
-//! *memory variables* `w ∈ Rᵏ` they are
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` and constraints `f(q, v, t) = 0 ∈ Rʰ`. New
+//! displacement parameters `u ∈ Rᵐ`, `m = n − h`, are introduced such that the constraints hold whatever
+//! `u(t)` is. The price is integrals over the past; as *memory variables* `w ∈ Rᵏ` they are
 //!
 //! ```text
 //! ẇ = B(ü, u̇, u, w, t) ,      every qᵢ and q̇ᵢ an expression in (ü, u̇, u, w, t) .
 //! ```
 //!
-//! Knife edge `ẏ cos φ − ẋ sin φ = 0`: with `u̇` the speed along the blade, `ẋ = u̇ cos φ`, `ẏ = u̇ sin φ`; `u` and `φ` are free, `x` and `y` are memory.
+//! Knife edge `ẏ cos φ − ẋ sin φ = 0`: with `u̇` the speed along the blade, `ẋ = u̇ cos φ`, `ẏ = u̇ sin φ`;
+//! `u` and `φ` are free, `x` and `y` are memory.
 //!
-//! **The principle.** The system being unconstrained now, the action `∫ L dt` is stationary for all `δu` that vanish at both ends. What a
-//! variation of `u` does to `w` it does through `B`; `w(t₁)` is free.
+//! **The principle.** The system being unconstrained now, the action `∫ L dt` is stationary for all `δu` that
+//! vanish at both ends. What a variation of `u` does to `w` it does through `B`; `w(t₁)` is free.
 //!
 //! **The equations.** Take `ẇ = B` into account with costates `P ∈ Rᵏ`. With
 //!
@@ -21,10 +22,10 @@
 //! d²/dt² ∂G/∂ü − d/dt ∂G/∂u̇ + ∂G/∂u = 0 ,      Ṗ = −∂G/∂w ,      ẇ = B .
 //! ```
 //!
-//! (Varying `w` in `∫ [L + P·(B − ẇ)] dt` gives `Ṗ = −G_w` and the boundary term `−P(t₁)·δw(t₁)`; varying `u` gives the first.) This one statement
-//! contains the paper's equations (34) and (35): its integration constants `Cᵢ` are `Pᵢ(t₀)`. They can be chosen in three ways, and a motion has to
-//! say which: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon* `P(t₁) = 0`, which is what the variational
-//! principle itself asks for: the motion at time `t` then depends on `t₁`.
+//! (Varying `w` in `∫ [L + P·(B − ẇ)] dt` gives `Ṗ = −G_w` and the boundary term `−P(t₁)·δw(t₁)`; varying `u`
+//! gives the first.) The paper's (34) and (35) are contained: their integration constants `Cᵢ` are `Pᵢ(t₀)`.
+//! A motion has to choose one of three: *given*, *zero at the start* `P(t₀) = 0`, or *natural at a horizon*
+//! `P(t₁) = 0`, which is what the principle itself asks for: the motion at `t` then depends on `t₁`.
 //!
 //! **One instant, L of first order.** State `(u, u̇, w, P)`, linear in the unknown `ü`:
 //!
@@ -32,20 +33,26 @@
 //! G_u̇u̇ ü = G_u − G_u̇u u̇ − G_u̇w B − G_u̇P Ṗ − G_u̇t .
 //! ```
 //!
-//! **One instant, L contains ü.** For those parameters the state also holds `ü` and the momentum `p = G_u̇ − d/dt G_ü`; then
-//! `ṗ = G_u`, and `d/dt G_ü = G_u̇ − p` is linear in the unknown `u⃛`. The Hessian of `G` in the highest rates has to be regular, else
-//! [`DerivationError::SingularHighestHessian`].
+//! **One instant, L contains ü.** For those parameters the state also holds `ü` and the momentum
+//! `p = G_u̇ − d/dt G_ü`; then `ṗ = G_u`, and `d/dt G_ü = G_u̇ − p` is linear in the unknown `u⃛`. The
+//! Hessian of `G` in the highest rates has to be regular, else [`DerivationError::SingularHighestHessian`].
 //!
-//! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice of `u`*: different
-//! parametrizations of the same constraint give different families of motions.
+//! **What the motion depends on.** On `(q₀, v₀)`, on the constants `P(t₀)` or the horizon, *and on the choice
+//! of `u`*: other parametrizations of the same constraint may give another family of motions.
 //!
-//! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇` (or `p`) of a parameter that `G` does not contain.
+//! **What stays constant.** `u̇·G_u̇ − G` (with `ü`: `u̇·p + ü·G_ü − G`) when nothing depends on time; `G_u̇`
+//! (or `p`) of a parameter that `G` does not contain.
 //!
-//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is a quadrature; its costate does
-//! not move. Zero at the start or at the free end it is zero throughout, and takes its terms with it; given, it stays
-//! ([`Derivation::all_costates`]).
+//! **Where it breaks.** Where the chart of the removal does. What coordinates, `B` and `G` divide by is in
+//! the graph, and is collected as guards; a motion stops where one changes its sign. (For `tan` the cosine is
+//! watched.)
 //!
-//! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the principle of removal of constraint*, 2017.
+//! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is
+//! a quadrature; its costate does not move. Zero at the start or at the free end it is zero throughout, and
+//! takes its terms with it; given, it stays ([`Derivation::all_costates`]).
+//!
+//! Source: P. Y. Gao, *Derivation of Lagrange equations of the first-order nonholonomic system based on the
+//! principle of removal of constraint*, 2017.
 
 mod costates;
 
@@ -67,18 +74,18 @@ pub const FORMULATION: Formulation = Formulation {
     derive,
 };
 
-/// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the order of the memory
-/// variables, then `p(t₀)` of parameters whose second rate `L` contains.
+/// Derives the removed-constraint equations for [`Derivation::removal`], with free constants `P(t₀)` in the
+/// order of the memory variables, then `p(t₀)` of parameters whose second rate `L` contains.
 ///
 /// # Errors
 /// [`DerivationError::RemovalMissing`], [`DerivationError::ForceInVariationalPrinciple`],
 /// [`DerivationError::SingularHighestHessian`].
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
-/// # let start = mechanics::State { t: 0.0, q: vec![0.0, 0.0, 0.3], v: vec![0.5, 0.5 * f64::tan(0.3), 1.0] };
+/// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3_f64.tan(), 1.] };
 /// // the ice sledge, L = (x'^2 + y'^2 + phi'^2)/2 + x, with x' = u_x'*cos(phi), y' = u_x'*sin(phi)
 /// let removal = mechanics::Removal::by_quasi_velocities(&system, &start)?;
 /// let derivation = equations::Derivation { removal: Some(&removal), ..Default::default() };
@@ -175,7 +182,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     let mut singular = equations.coordinates.clone();
     singular.extend(removal.memory.iter().map(|w| w.rate));
     singular.push(generating);
-    equations.guards = g.denominators(&singular);
+    equations.guards = [g.denominators(&singular), g.kinks(&singular)].concat();
     equations.guards.retain(|&e| !g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s)));
     equations.removal = Some(removal.clone());
     drop(parameters);

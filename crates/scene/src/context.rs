@@ -29,7 +29,7 @@ impl Context<'_> {
         self.names.parse(self.source, &self.system.graph, text)
     }
 
-    /// The number that `value` is when symbols have `values`; those without one are blamed with the words `known`.
+    /// The number `value` at `values` of symbols; those without one are blamed with the words `known`.
     pub(super) fn evaluate(
         &self,
         value: &Value,

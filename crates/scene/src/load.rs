@@ -17,7 +17,7 @@ impl Scene {
     /// Reads a scene from text. `name` is its name and stands for the file in errors.
     ///
     /// # Errors
-    /// [`SceneError`] with the place of the first fault and what was expected there. Nothing panics, whatever the text.
+    /// [`SceneError`] with the place of the first fault and what is expected there. No text makes it panic.
     ///
     /// ```
     /// let text = r#"
@@ -47,10 +47,10 @@ impl Scene {
         Scene::parse_with(name, text, &[])
     }
 
-    /// Like [`Scene::parse`], with numbers that override those of the text before anything is evaluated: a parameter
-    /// (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or rate, `time`, `duration`, or a
-    /// multiplier (`mu1`, `mu2`, … in the order of the constraints). Parameters and coordinates of these names come first; the last
-    /// override of a name counts.
+    /// Like [`Scene::parse`], with numbers that override those of the text before anything is evaluated: a
+    /// parameter (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or rate, `time`, `duration`,
+    /// or a multiplier (`mu1`, `mu2`, … in the order of the constraints). Parameters and coordinates of these
+    /// names come first; the last override of a name counts.
     ///
     /// # Errors
     /// As [`Scene::parse`]; a fault of an override has line 0.
@@ -61,7 +61,7 @@ impl Scene {
     /// Reads a scene file of at most [`SIZE_LIMIT`] bytes.
     ///
     /// # Errors
-    /// As [`Scene::parse`]; also [`SceneErrorKind::Unreadable`], [`SceneErrorKind::TooLarge`] and [`SceneErrorKind::NotUtf8`].
+    /// As [`Scene::parse`]; [`SceneErrorKind`]s `Unreadable`, `TooLarge` and `NotUtf8`.
     pub fn load(path: &Path) -> Result<Scene, SceneError> {
         Scene::load_with(path, &[])
     }
@@ -79,7 +79,32 @@ impl Scene {
     /// # Errors
     /// [`SceneErrorKind::Unreadable`], [`SceneErrorKind::TooLarge`] and [`SceneErrorKind::NotUtf8`].
     pub fn read(path: &Path) -> Result<String, SceneError> {
-        read(&path.display().to_string(), path)
+        let file = &path.display().to_string();
+        let handle = std::fs::File::open(path).map_err(|error| unreadable(file, error))?;
+        let size = handle.metadata().map_err(|error| unreadable(file, error))?.len();
+        if size > SIZE_LIMIT {
+            return Err(too_large(file, size));
+        }
+        // what is no regular file has no size beforehand
+        Scene::read_from(file, handle)
+    }
+
+    /// The text that comes in; `file` stands for it in errors.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn read_from(file: &str, input: impl Read) -> Result<String, SceneError> {
+        let mut bytes = Vec::new();
+        input.take(SIZE_LIMIT + 1).read_to_end(&mut bytes).map_err(|error| unreadable(file, error))?;
+        if bytes.len() as u64 > SIZE_LIMIT {
+            return Err(too_large(file, bytes.len() as u64));
+        }
+        String::from_utf8(bytes).map_err(|error| {
+            let offset = error.utf8_error().valid_up_to();
+            let byte = error.as_bytes()[offset];
+            let text = String::from_utf8_lossy(error.as_bytes());
+            SceneError::at(file, &text, offset..offset + 1, SceneErrorKind::NotUtf8 { byte, offset })
+        })
     }
 
     /// [`Scene::load_with`] for who has read the file already.
@@ -97,7 +122,7 @@ fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Resu
     let source = Source { file, text };
     let size = text.len() as u64;
     if size > SIZE_LIMIT {
-        return Err(SceneError::outside(file, SceneErrorKind::TooLarge { size, limit: SIZE_LIMIT }));
+        return Err(too_large(file, size));
     }
     let table = DeTable::parse(text).map_err(|error| {
         let kind = SceneErrorKind::Syntax { message: error.message().trim().replace('\n', "; ") };
@@ -152,25 +177,10 @@ fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Resu
     })
 }
 
-/// The text of a file, its size checked before it is read.
-fn read(file: &str, path: &Path) -> Result<String, SceneError> {
-    let unreadable = |e: std::io::Error| SceneError::outside(file, SceneErrorKind::Unreadable { reason: e.kind() });
-    let too_large = |size| SceneError::outside(file, SceneErrorKind::TooLarge { size, limit: SIZE_LIMIT });
-    let handle = std::fs::File::open(path).map_err(unreadable)?;
-    let size = handle.metadata().map_err(unreadable)?.len();
-    if size > SIZE_LIMIT {
-        return Err(too_large(size));
-    }
-    // What is no regular file has no size beforehand.
-    let mut bytes = Vec::new();
-    handle.take(SIZE_LIMIT + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > SIZE_LIMIT {
-        return Err(too_large(bytes.len() as u64));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let offset = error.utf8_error().valid_up_to();
-        let byte = error.as_bytes()[offset];
-        let text = String::from_utf8_lossy(error.as_bytes());
-        SceneError::at(file, &text, offset..offset + 1, SceneErrorKind::NotUtf8 { byte, offset })
-    })
+fn unreadable(file: &str, error: std::io::Error) -> SceneError {
+    SceneError::outside(file, SceneErrorKind::Unreadable { reason: error.kind() })
+}
+
+fn too_large(file: &str, size: u64) -> SceneError {
+    SceneError::outside(file, SceneErrorKind::TooLarge { size, limit: SIZE_LIMIT })
 }

@@ -6,8 +6,7 @@ use crate::Scene;
 use mechanics::{ConstantsRule, Removal, System};
 
 impl Scene {
-    /// The scene as a file, with every start value as a number: [`Scene::parse`] of it gives the same system, start and
-    /// removals.
+    /// The scene as a file, start values numbers: [`Scene::parse`] gives the same system, start, removals.
     pub fn to_toml(&self) -> String {
         written(self)
     }

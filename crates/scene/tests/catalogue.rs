@@ -1,4 +1,4 @@
-//! Every scene that comes with the program loads, starts on its constraint, and survives being written and read.
+//! Every built-in scene loads, starts on its constraint, and survives being written and read.
 
 use std::path::PathBuf;
 

@@ -13,10 +13,9 @@ const LONG_LEAVES: usize = 60;
 const GROUP_LEAVES: usize = 30;
 
 impl Graph {
-    /// Pulls out shared or long subexpressions as named intermediate quantities (names `prefix1`,
-    /// `prefix2`, …) so that what remains can be read: (definitions in order of use, rewritten
-    /// expressions). Later definitions may contain earlier names; putting the definitions back, the
-    /// last first, gives the expressions that were given.
+    /// Pulls out shared or long subexpressions as `prefix1`, `prefix2`, … so that what remains can be read:
+    /// (definitions in order of use, rewritten expressions). Later definitions may contain earlier names;
+    /// putting them back, the last first, gives the given expressions.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -76,8 +75,7 @@ impl Names<'_> {
 }
 
 impl Arena {
-    /// A long sum as a sum of names for groups of its terms; a long product with names for its long
-    /// factors.
+    /// A long sum as a sum of names for groups of its terms; a long product with names for its long factors.
     fn split_long(&mut self, e: Expr, names: &mut Names) -> Expr {
         match self.node(e).clone() {
             Node::Sum(constant, terms) if terms.len() > 1 => {

@@ -9,8 +9,7 @@ const RELATIVE_BOUND: f64 = 1e-11;
 /// Added in every product, so that what underflows counts as round-off.
 const UNDERFLOW: f64 = 1e-300;
 
-/// A value and what round-off in it is measured by: the sum of all that was added up on the way, each
-/// times how much the value depends on it.
+/// A value and its round-off measure: all that was added up, each times how much the value depends on it.
 ///
 /// ```
 /// use std::collections::HashMap;

@@ -74,8 +74,7 @@ impl Graph {
         Matrix::new(es.len(), symbols.len(), entries)
     }
 
-    /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs. Explicit time has to be among
-    /// them as (t, 1).
+    /// de/dt = Σ ∂e/∂s · rate over the given (symbol, rate) pairs; explicit time among them as (t, 1).
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -89,7 +88,7 @@ impl Graph {
         self.total_derivatives(&[e], rates)[0]
     }
 
-    /// [`Graph::total_derivative`] of several expressions: the work grows with what each contains, not with the number of rates.
+    /// [`Graph::total_derivative`] of several; the work grows with what they contain, not with the rates.
     #[track_caller]
     pub fn total_derivatives(&self, es: &[Expr], rates: &[(Symbol, Expr)]) -> Vec<Expr> {
         let symbols: Vec<Symbol> = rates.iter().map(|(s, _)| *s).collect();
@@ -184,7 +183,7 @@ impl Arena {
         wanted.into_iter().map(|place| (place, self.derivative(e, places.list[place]))).collect()
     }
 
-    /// Writes down the derivatives of a sum. For each symbol only the terms that contain it are walked through.
+    /// Writes down the derivatives of a sum: for each symbol only from the terms that contain it.
     fn differentiate_sum(&mut self, e: Expr, terms: &[(Expr, Number)], wanted: &[usize], places: &Places) {
         let mut containing: FxHashMap<Symbol, Vec<(Expr, Number)>> = FxHashMap::default();
         for (t, c) in terms {

@@ -50,9 +50,9 @@ impl Graph {
         self.compile_with(inputs, &[], outputs, constants)
     }
 
-    /// [`Graph::compile`] with intermediate quantities: each of `definitions` is computed once, from inputs, constants and earlier
-    /// definitions, and stands under its symbol for the later ones and the outputs. So a long recursion keeps its length, whatever
-    /// it would be with everything put in.
+    /// [`Graph::compile`] with intermediate quantities: each of `definitions` is computed once, from inputs,
+    /// constants and earlier definitions, and stands under its symbol for the later ones and the outputs. So
+    /// a long recursion keeps its length, whatever it would be with everything put in.
     ///
     /// ```
     /// use std::collections::HashMap;
@@ -82,10 +82,10 @@ impl Graph {
         })
     }
 
-    /// A program for the Taylor coefficients of `outputs`, and of the residuals of `blocks` of implicit equations, along a motion.
+    /// Taylor coefficients of `outputs`, and residuals of implicit equations (`blocks`), along a motion.
     ///
-    /// `inputs` says what each symbol is as a function of time; states are integrated by the way. Definitions and constants are as in
-    /// [`Graph::compile_with`].
+    /// `inputs` says what each symbol is as a function of time; states are integrated by the way. Definitions
+    /// and constants are as in [`Graph::compile_with`].
     ///
     /// ```
     /// use std::collections::HashMap;
@@ -173,7 +173,7 @@ impl Graph {
         Ok(tape)
     }
 
-    /// The constants as expressions, made in the order of their symbols: the same nodes in the same order in every run.
+    /// The constants as expressions, in the order of their symbols, so that every run has the same nodes.
     pub(crate) fn as_numbers(&self, constants: &HashMap<Symbol, f64>) -> HashMap<Symbol, Expr> {
         let mut ordered: Vec<(Symbol, f64)> = constants.iter().map(|(&s, &x)| (s, x)).collect();
         ordered.sort_by_key(|(s, _)| *s);

@@ -3,7 +3,7 @@
 /// Characters shown on each side of the place.
 const WINDOW: usize = 60;
 
-/// `line` cut to a window round `column` (in characters, from 1), and a row of carets under the `length` characters that start there.
+/// A window of `line` round `column` (in characters, from 1), with carets under the next `length` characters.
 ///
 /// ```
 /// assert_eq!(symbolic::excerpt("1 + 2 x", 7, 1), ["1 + 2 x", "      ^"]);

@@ -10,9 +10,8 @@ const TERM_LIMIT: usize = 10_000;
 const POWER_LIMIT: i64 = 64;
 
 impl Graph {
-    /// `e` with products of sums and positive integer powers of sums multiplied out, inside functions
-    /// as well. A power above 64 and a product that
-    /// would have more than 10 000 terms stay as they are.
+    /// `e` with products of sums and positive integer powers of sums multiplied out, inside functions as
+    /// well. A power above 64 and a product that would have more than 10 000 terms stay as they are.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -121,8 +120,7 @@ impl Arena {
     }
 }
 
-/// At most this many terms are in the n-th power of a sum of k: (n+k−1 over n); no more than
-/// [`TERM_LIMIT`] + 1 is counted.
+/// Terms in the n-th power of a sum of k, at most: (n+k−1 over n), counted to [`TERM_LIMIT`] + 1.
 fn power_terms(k: usize, n: i64) -> usize {
     let mut count = 1_usize;
     for i in 1..=usize::try_from(n).unwrap_or(usize::MAX) {

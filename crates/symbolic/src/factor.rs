@@ -6,8 +6,8 @@ use crate::{Expr, Function, Graph, Symbol};
 use std::collections::BTreeMap;
 
 impl Graph {
-    /// `e` with the factors that all terms of a sum have in common taken out of it, and 1 − cos²u written as sin²u (1 − sin²u as cos²u).
-    /// What is inside of products and functions stays as it is.
+    /// `e` with the factors that all terms of a sum have in common taken out of it, and 1 − cos²u written as
+    /// sin²u (1 − sin²u as cos²u). What is inside of products and functions stays as it is.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -22,8 +22,8 @@ impl Graph {
         self.arena.borrow_mut().factored(e)
     }
 
-    /// `es` with factors that several terms of a sum have in common drawn out of these terms, the most frequent factor first:
-    /// a x + b x + c = x (a + b) + c. Factors that contain no symbols but `constants` stay.
+    /// Draws out the factors that several terms of a sum share, the most frequent first: a x + b x + c = x
+    /// (a + b) + c. Factors that contain no symbols but `constants` stay.
     ///
     /// ```
     /// let g = symbolic::Graph::new();

@@ -1,10 +1,8 @@
-//! Faults on purpose: one operation of a derivation is made wrong, so that a test can see whether anybody
-//! notices.
+//! Faults on purpose: one operation of a derivation is made wrong, to test whether anybody notices.
 //!
-//! Constructors, derivatives, substitutions and questions of a [`Graph`] ask here whether they are to go
-//! wrong, and how: each such *chance* has a number, counted from the beginning of the work. [`chances`]
-//! counts them, [`spoiled`] lets one of them happen. What a graph remembers of an expression (its
-//! derivatives) stays right.
+//! Constructors, derivatives, substitutions and questions of a [`Graph`] ask here whether and how to go
+//! wrong: each such *chance* has a number, counted from the beginning of the work. [`chances`] counts them,
+//! [`spoiled`] lets one happen. What a graph remembers (derivatives) stays right.
 //!
 //! Outside of a test this is one look at a flag of the thread. A cargo feature would cost more: the programs
 //! and the tests would no longer share their crates. The flag belongs to the thread, not to the graph,

@@ -6,11 +6,9 @@ use crate::number::{Number, Rational};
 use crate::{Expr, Function, Symbol, faults};
 use std::cell::RefCell;
 
-/// The store of expressions. Building needs only `&Graph`; it is `Send`, not `Sync`, and a clone
-/// keeps all ids.
+/// The store of expressions. Building needs only `&Graph`; it is `Send`, not `Sync`; clones keep all ids.
 ///
-/// An [`Expr`] or [`Symbol`] belongs to the graph that made it (and to clones made later); in another
-/// graph it means something else or panics.
+/// An [`Expr`] or [`Symbol`] belongs to its graph and later clones; others misread it or panic.
 ///
 /// ```
 /// use symbolic::Graph;
@@ -35,8 +33,7 @@ impl Graph {
         Self::default()
     }
 
-    /// The symbol of that name: an identifier followed by primes, such as `x`, `x'` or `mu_1'`. The
-    /// same name is the same symbol.
+    /// The symbol of that name, always the same: an identifier and primes, as in `x`, `x'` or `mu_1'`.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -109,20 +106,17 @@ impl Graph {
         self.arena.borrow_mut().number(Number::ratio(numerator, denominator))
     }
 
-    /// The number x; exactly the fraction of its shortest decimal where that fits, so that
-    /// `number(9.81)` is 981/100.
+    /// The number x; exactly its shortest decimal's fraction where that fits: `number(9.81)` is 981/100.
     pub fn number(&self, x: f64) -> Expr {
         self.arena.borrow_mut().number(Number::from_f64(x))
     }
 
-    /// The value of `e`, if it is a number. A division by zero among numbers is a number that is not
-    /// finite.
+    /// The value of `e`, if it is a number. A division by zero among numbers is a number that is not finite.
     pub fn as_number(&self, e: Expr) -> Option<f64> {
         self.arena.borrow().as_number(e).map(Number::to_f64)
     }
 
-    /// Structurally the number 0 (see [`Graph::vanishes`] for the test that also expands and
-    /// samples).
+    /// Structurally the number 0 (see [`Graph::vanishes`] for the test that also expands and samples).
     #[track_caller]
     pub fn is_zero(&self, e: Expr) -> bool {
         (e == Arena::ZERO) != faults::goes_wrong("answer turned")

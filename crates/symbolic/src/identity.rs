@@ -76,7 +76,7 @@ impl Graph {
         }
         let mut sampled = self.sample(e, &HashMap::new());
         if matches!(sampled, Vanishing::No { .. }) && e != open && self.arena.borrow().contains_float(e) {
-            // a float that is left of others says no more of their size: with the constants as inputs it is kept
+            // what cancelled floats leave does not tell their size; constants as inputs keep it
             let again = self.sample(open, constants);
             if again.is_zero() {
                 sampled = again;

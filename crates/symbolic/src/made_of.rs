@@ -1,6 +1,7 @@
 //! What an expression is made of.
 
 use crate::arena::Node;
+use crate::number::Rational;
 use crate::{Expr, Function, Graph, Symbol, faults};
 use std::collections::BTreeSet;
 
@@ -54,6 +55,26 @@ impl Graph {
             }
         }
         bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
+    }
+
+    /// Every distinct base of an even power under a root in `es`, not a number: `√(a²) = |a|` has a kink
+    /// where `a` is zero, and its radicand does not change its sign there.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
+    /// let both = g.sum(&[g.powi(x, 2), g.powi(y, 2)]);
+    /// assert_eq!(g.kinks(&[g.sqrt(g.powi(x, 2)), g.sqrt(both), g.sqrt(y)]), [x]);
+    /// ```
+    pub fn kinks(&self, es: &[Expr]) -> Vec<Expr> {
+        let arena = self.arena.borrow();
+        let under = |e: Expr, wanted: fn(&Rational) -> bool| -> Vec<Expr> {
+            let Node::Product(factors) = arena.node(e) else { return Vec::new() };
+            factors.iter().filter(|(_, r)| wanted(r)).map(|(b, _)| *b).collect()
+        };
+        let roots = arena.reachable(es, |_| true).into_iter().flat_map(|e| under(e, |r| r.as_integer().is_none()));
+        let even = |r: &Rational| r.as_integer().is_some_and(|n| n % 2 == 0);
+        roots.flat_map(|root| under(root, even)).collect::<BTreeSet<Expr>>().into_iter().collect()
     }
 
     /// Arguments of every call of `function` in `es`.

@@ -11,8 +11,7 @@ const MULTIPLE_LIMIT: i64 = 8;
 const ROUNDS: usize = 4;
 
 impl Arena {
-    /// The numerator of `e` as a polynomial in sines, cosines, roots and symbols, with sin² replaced by
-    /// 1 − cos²; `None` where it grows over `limit` terms.
+    /// The numerator of `e` in sines, cosines, roots and symbols, sin² = 1 − cos²; `None` over `limit` terms.
     ///
     /// It is zero only if `e` is; an identity between other functions it may miss.
     pub(crate) fn normal_numerator(&mut self, e: Expr, limit: usize) -> Option<Expr> {

@@ -12,8 +12,7 @@ impl Graph {
     /// 2^3^2 = 512; parentheses; names with primes; the functions of [`Function`], `sqrt`, `ln`,
     /// `sec`, `csc`, `cot`, `atan2(y, x)`, `pow(a, b)`; the constant `pi`.
     ///
-    /// `scope` maps a name (with its primes) to an expression; `None` means undefined. `known` are
-    /// the names to suggest for an undefined one.
+    /// `scope` maps a name (with primes) to an expression, if defined; `known` are names to suggest instead.
     ///
     /// # Errors
     /// A [`ParseError`] with the place and, where there is one, a hint.

@@ -1,5 +1,4 @@
-//! What the printers of plain text and LaTeX share: writing without recursion, and the order and
-//! signs of terms.
+//! Shared by the printers of plain text and LaTeX: writing without recursion, order and signs of terms.
 
 use crate::Expr;
 use crate::arena::{Arena, Node};

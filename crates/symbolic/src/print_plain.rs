@@ -6,8 +6,7 @@ use crate::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, signed, text, w
 use crate::{Expr, Graph};
 
 impl Graph {
-    /// `e` as text that [`Graph::parse`] reads back to the same node, if all its numbers are finite
-    /// and its symbols have names that can be parsed.
+    /// `e` as text that [`Graph::parse`] reads back, if numbers are finite and names can be parsed.
     ///
     /// ```
     /// let g = symbolic::Graph::new();

@@ -1,5 +1,4 @@
-//! Straight-line programs in which every value is computed once: what a graph is lowered to before
-//! registers are given out.
+//! Straight-line programs, every value computed once: a graph lowered, before registers are given out.
 
 use crate::Function;
 use crate::number::Number;

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A closed interval; its ends may be infinite.
 ///
-/// Ends are computed in ordinary round-off: a range says something about what is well inside or well outside of it.
+/// Ends are computed in ordinary round-off: trust a range only well inside or well outside of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Lower end.
@@ -89,8 +89,8 @@ impl Range {
 }
 
 impl Graph {
-    /// An interval that contains every finite value of `e`; symbols that are not in `known` may have any value. It need not be the smallest
-    /// one: `x − x²` is not seen to have a largest value.
+    /// An interval that contains every finite value of `e`; symbols that are not in `known` may have any
+    /// value. It need not be the smallest one: `x − x²` is not seen to have a largest value.
     ///
     /// ```
     /// use std::collections::HashMap;

@@ -43,8 +43,8 @@ pub(crate) struct Bilinear {
     pub(crate) right: Row,
 }
 
-/// `target = start + Σ weight · row`, coefficients of the same order or, where a term is late, `weight · unit · row` with that of the order
-/// before. Two terms each: a longer sum starts from what is in its target already, so that no sum is a loop of its own.
+/// `target = start + Σ weight · row`, of the same order, or `weight · unit · row` of the order before where a
+/// term is late. Two terms each: a longer sum starts from what is in its target already, without a loop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addition {
     pub(crate) target: Row,
@@ -77,29 +77,29 @@ pub(crate) struct Implicit {
 /// A flat program that computes Taylor coefficients of expressions whose inputs move by these expressions.
 ///
 /// # How
-/// At order 0 every value and every partial derivative of one operation is computed by a [`Tape`]. Whatever the operation, its coefficient of order
-/// `k ≥ 1` is
+/// At order 0 a [`Tape`] computes every value and partial derivative of an operation. Its order `k ≥ 1` is
 ///
 /// ```text
 /// c_k = Σ_m w_m · (operand m)_k + Σ_p s_p Σ_{i+j=k; i,j≥1} (a_p)_i (b_p)_j · (1 or 1/k)
 /// ```
 ///
-/// with weights `w`, `s` of order 0: a product has `w = (b₀, a₀)` and the one pair `(a, b)`; a quotient `c = a/b`, from `b c = a`,
-/// `w = (1/b₀, −c₀/b₀)` and the pair `(b, c)` with `−1/b₀`; `e = exp a`, from `e' = a' e`, `w = e₀` and the pair `(τ a', e)` with `1/k`. The other
-/// functions satisfy such an equation, too, some with one hidden series (`1 + tan²`, `√(1 − a²)`). So there are two loops
-/// and no dispatch on operations: over pairs (these need orders below `k` only, so that none waits for another) and over the linear terms.
-/// Sums are taken into what uses them.
+/// with weights `w`, `s` of order 0: a product has `w = (b₀, a₀)` and the one pair `(a, b)`; a quotient
+/// `c = a/b`, from `b c = a`, `w = (1/b₀, −c₀/b₀)` and the pair `(b, c)` with `−1/b₀`; `e = exp a`, from
+/// `e' = a' e`, `w = e₀` and the pair `(τ a', e)` with `1/k`. The other functions satisfy such equations,
+/// too, some with a hidden series (`1 + tan²`, `√(1 − a²)`). So two loops, without dispatch on operations, do
+/// all: over pairs (of orders below `k`, so none waits for another) and over the linear terms.
 ///
-/// What inputs do in time saves pairs. A factor that is linear in time, as a state with a constant rate is, has two coefficients:
-/// `(a b)_k = a₀ b_k + a₁ b_{k−1}`. And a function of a linear combination of states is integrated like these, `(sin φ)' = φ' cos φ`: the pair is
-/// that of a product of which equations of motion are full, and which is often there already; where φ' is constant there is none.
+/// A factor linear in time, as a state with a constant rate, has two coefficients: `(a b)_k = a₀ b_k + a₁
+/// b_{k−1}`. A function of a linear combination of states is integrated, `(sin φ)' = φ' cos φ`: equations of
+/// motion often contain the pair of that product already. A constant φ' needs none.
 ///
-/// Sources: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order Taylor methods*, Experimental
-/// Mathematics 14 (2005), section 2; A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13.
+/// Sources: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of
+/// high-order Taylor methods*, Exp. Math. 14 (2005), section 2; A. Griewank, A. Walther, *Evaluating
+/// Derivatives*, 2nd ed., SIAM 2008, chapter 13.
 ///
 /// # Implicit equations
-/// Inputs may be unknowns `z` of blocks `R(z; …) = 0`. Order 0 is given; at order `k` the residual with `z_k = 0` is handed to the caller, who takes
-/// `z_k = −(∂R/∂z)⁻¹ R_k`, with `∂R/∂z` at order 0: `R_k` is linear in `z_k`, whatever `R` is.
+/// Inputs may be unknowns `z` of blocks `R(z; …) = 0`. Order 0 is given; at order `k` the caller takes
+/// `z_k = −(∂R/∂z)⁻¹ R_k` from the residual `R_k` at `z_k = 0` and `∂R/∂z` of order 0: it is linear in `z_k`.
 #[derive(Clone, Debug)]
 pub struct SeriesTape {
     /// Outputs: order 0 of each row, then what the slots name.
@@ -191,7 +191,7 @@ impl SeriesTape {
         self.outputs.len()
     }
 
-    /// Number of products of series, and of linear terms (an odd one in a sum counts as two), in one order: what an order costs.
+    /// What one order costs: products of series, and linear terms (an odd one in a sum counts as two).
     pub fn work(&self) -> (usize, usize) {
         (self.products[0].len() + self.products[1].len(), 2 * self.additions.len())
     }
@@ -236,10 +236,10 @@ impl SeriesTape {
         SeriesWorkspace { rows: vec![zero; T::room(self.rows, stride)], used: self.rows * stride, plan }
     }
 
-    /// Computes the coefficients of all orders, from the inputs at order 0; unknowns must solve their equations there.
+    /// Computes all orders from the inputs at order 0, where unknowns must solve their equations.
     ///
-    /// Coefficients are those of powers of `τ / unit`, with τ the time from where the inputs are given, so that they neither
-    /// overflow nor underflow where `unit` is about as long as a step.
+    /// Coefficients are those of powers of `τ / unit`, with τ the time from where the inputs are given, so
+    /// that they neither overflow nor underflow where `unit` is about as long as a step.
     ///
     /// `sweeps` corrections are made at each order of each block: one where `correct` is exact.
     ///

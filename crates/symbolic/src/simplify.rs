@@ -170,8 +170,7 @@ impl Arena {
         if coefficient.is_one() { product } else { self.scale(coefficient, product) }
     }
 
-    /// One factor base^exponent: numbers go to the coefficient, nested products to `work`, and what
-    /// cannot be taken apart to `done`.
+    /// One factor base^exponent: numbers go to the coefficient, products to `work`, the rest to `done`.
     fn split_factor(
         &mut self,
         base: Expr,
@@ -227,8 +226,7 @@ impl Arena {
         }
     }
 
-    /// Exact powers go to the coefficient; √2 and its like stay as an integer base with an exponent
-    /// between 0 and 1.
+    /// Exact powers go to the coefficient; √2 and its like stay, an integer to an exponent between 0 and 1.
     fn split_number(
         &mut self,
         n: Number,

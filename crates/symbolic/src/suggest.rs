@@ -31,8 +31,7 @@ pub(crate) fn smooth_substitute(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The nearest of `names` but `name` itself by edit distance (swaps of neighbours count as one, case does not count), if it is
-/// near enough to be a slip.
+/// The nearest other of `names` by edit distance (swaps of neighbours: one; case: none), if near enough.
 ///
 /// ```
 /// assert_eq!(symbolic::nearest("lagrangain", ["forces", "lagrangian"]).as_deref(), Some("lagrangian"));

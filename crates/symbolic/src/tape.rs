@@ -31,8 +31,7 @@ enum Instruction {
     Mul3(Register, Register, Register, Register),
 }
 
-/// A flat program that computes expressions from the values of some symbols, generic over the number
-/// type; `Send + Sync`.
+/// A flat program from values of symbols to values of expressions, in any number type; `Send + Sync`.
 ///
 /// ```
 /// use std::collections::HashMap;
@@ -98,12 +97,10 @@ impl Tape {
         Workspace { registers }
     }
 
-    /// Evaluates all outputs; allocates nothing. Where a formula is singular, so is its output (∞ or
-    /// NaN): the caller has to look.
+    /// Evaluates all outputs; allocates nothing. A singular formula has singular output (∞ or NaN): look.
     ///
     /// # Panics
-    /// If the slices do not have as many entries as there are inputs and outputs, or the workspace is
-    /// of another size than this tape's.
+    /// If the slices are not as long as the inputs and outputs, or the workspace is another tape's.
     pub fn evaluate<T: Scalar>(&self, inputs: &[T], workspace: &mut Workspace<T>, outputs: &mut [T]) {
         let registers = &mut workspace.registers[..];
         assert_eq!(inputs.len(), self.inputs, "inputs of a tape");

@@ -177,8 +177,7 @@ fn by_tape(g: &Graph, e: Expr, at: &[f64; 3]) -> Option<f64> {
     Some(output[0])
 }
 
-/// The values agree to round-off. Where the tree as written is singular or very ill conditioned, there
-/// is nothing to compare.
+/// The values agree to round-off, unless the tree as written is singular or very ill conditioned.
 fn check(g: &Graph, e: Expr, expected: Value, at: &[f64; 3]) -> Result<(), TestCaseError> {
     let bound = ROUND_OFF * expected.error + f64::MIN_POSITIVE;
     prop_assume!(expected.value.is_finite() && expected.error.is_finite());

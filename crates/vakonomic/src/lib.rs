@@ -1,51 +1,52 @@
 //! # The vakonomic formulation (stationary action among the curves that satisfy the constraint)
 //!
-//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints `f(q, v, t) = 0 ∈ Rʰ`.
-//! Write `A = ∂f/∂v` (h×n).
+//! Given are coordinates `q ∈ Rⁿ`, a Lagrangian `L(q, v, t)` with `v = q̇` and constraints
+//! `f(q, v, t) = 0 ∈ Rʰ`. Write `A = ∂f/∂v` (h×n).
 //!
-//! **The principle.** Among all curves with fixed ends that satisfy the constraint, the motion makes the action stationary. Varied
-//! curves satisfy the constraint too, so to first order
+//! **The principle.** Among all curves with fixed ends that satisfy the constraint, the motion makes the
+//! action stationary. Varied curves satisfy the constraint too, so to first order
 //!
 //! ```text
 //! δ ∫ L dt = 0     for all δq with   f_v δq̇ + f_q δq = 0 ,   δq = 0 at both ends.
 //! ```
 //!
-//! **The equations.** With multipliers `μ(t) ∈ Rʰ` the constraint is taken into the Lagrangian, `𝓛 = L + μ·f`, and
+//! **The equations.** Multipliers `μ(t) ∈ Rʰ` take the constraint into the Lagrangian, `𝓛 = L + μ·f`, and
 //!
 //! ```text
 //! d/dt ∂𝓛/∂v − ∂𝓛/∂q = 0 ,        f(q, v, t) = 0 .
 //! ```
 //!
-//! Written out, `d/dt L_v − L_q = (f_qᵀ − Ȧᵀ) μ − Aᵀ μ̇`: what stands where Chetaev's `Aᵀ λ` stood also depends on the
-//! *curvature* `f_qᵀ − Ȧᵀ` of the constraint, and `−μ̇` is what corresponds to `λ`. For integrable constraints the curvature vanishes and
-//! the two formulations agree. `μᵢ` has the unit of action over that of `∫ fᵢ dt`.
+//! Written out, `d/dt L_v − L_q = (f_qᵀ − Ȧᵀ) μ − Aᵀ μ̇`: where Chetaev's `Aᵀ λ` stood, the *curvature*
+//! `f_qᵀ − Ȧᵀ` of the constraint enters too, and `−μ̇` corresponds to `λ`. The curvature vanishes where `f`
+//! is a total time derivative; for all integrable constraints the two formulations agree. `μᵢ` has the unit
+//! of action over that of `∫ fᵢ dt`.
 //!
-//! **One instant, multiplier form** ([`derive()`]). With the state `(q, v, μ)` the equations are linear in `(a, μ̇)`:
+//! **One instant, multiplier form** ([`derive()`]). In the state `(q, v, μ)`, linear in `(a, μ̇)`:
 //!
 //! ```text
 //! [ 𝓛_vv  Aᵀ ] [ a  ]   [ 𝓛_q − 𝓛_vq v − 𝓛_vt ]
 //! [ A      0 ] [ μ̇ ] = [ −(f_q v + f_t)       ]
 //! ```
 //!
-//! **One instant, costate form** ([`derive_costate_form`]). With costates `p = ∂𝓛/∂v` the state is `(q, p)`, and
+//! **One instant, costate form** ([`derive_costate_form`]). With costates `p = ∂𝓛/∂v`, the state `(q, p)`,
 //!
 //! ```text
 //! p − L_v − Aᵀ μ = 0 ,   f = 0    determine (v, μ);        q̇ = v ,   ṗ = ∂𝓛/∂q .
 //! ```
 //!
-//! These are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with `f = 0`. The constraint holds at every instant,
-//! not only by its derivative. For `L` kinetic energy the motions are the normal sub-Riemannian geodesics. The two
-//! forms are derived differently and have to agree.
+//! These are Hamilton's equations of `H(q, p, t)` = stationary value of `p·v − L` over `v` with `f = 0`. The
+//! constraint holds at every instant, not only by its derivative. For `L` kinetic energy the motions are the
+//! normal sub-Riemannian geodesics. The two forms are derived differently and have to agree.
 //!
-//! **What the motion depends on.** On `(q₀, v₀)` *and on* `μ₀ ∈ Rʰ`: one start, a family of motions with `h` parameters.
+//! **What the motion depends on.** `(q₀, v₀)` *and* `μ₀ ∈ Rʰ`: one start, an `h`-parameter family of motions.
 //!
-//! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of every coordinate that
-//! neither `L` nor `f` contains.
+//! **What stays constant.** The energy `v·𝓛_v − 𝓛` when nothing depends on time; the momentum `∂𝓛/∂vᵢ` of
+//! every coordinate that neither `L` nor `f` contains.
 //!
 //! A generalized force has no place in a variational principle and is refused.
 //!
-//! Sources: V. V. Kozlov 1983; V. I. Arnold, V. V. Kozlov, A. I. Neishtadt, *Mathematical Aspects of Classical and Celestial
-//! Mechanics*, chapter 1.
+//! Sources: V. V. Kozlov 1983; V. I. Arnold, V. V. Kozlov, A. I. Neishtadt, *Mathematical Aspects of
+//! Classical and Celestial Mechanics*, chapter 1.
 
 use equations::{
     Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role,
@@ -114,7 +115,7 @@ impl Augmented {
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)
@@ -174,7 +175,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
 /// [`DerivationError::ForceInVariationalPrinciple`] where a generalized force acts.
 ///
 /// ```
-/// # let mut system = mechanics::System::new(symbolic::Graph::new(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
+/// # let mut system = mechanics::System::new(Default::default(), &[("x", "m"), ("y", "m"), ("phi", "rad")]);
 /// # system.lagrangian = system.expression("(x'^2 + y'^2 + phi'^2)/2 + x")?;
 /// # system.constraints = vec![system.expression("y'*cos(phi) - x'*sin(phi)")?];
 /// // the ice sledge: L = (x'^2 + y'^2 + phi'^2)/2 + x, f = y'*cos(phi) - x'*sin(phi)

@@ -1,7 +1,7 @@
 //! Every check, and how they are run.
 //!
-//! All that compiles is compiled in the release profile: integration needs the optimisation, the reports are written
-//! by a release build, and so the dependencies are built once.
+//! All that compiles is compiled in the release profile: integration needs the optimisation, the reports are
+//! written by a release build, and so the dependencies are built once.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,12 @@ pub(crate) fn all() -> Vec<Check> {
     let check = |name, about, mend, run: fn() -> Result<Outcome>| Check { name, about, mend, run };
     vec![
         check("fmt", "sources are formatted", "cargo fmt --all", fmt),
-        check("lengths", "no Rust source is over 400 lines", "split the file by what its parts know", sources::lengths),
+        check(
+            "lengths",
+            "no Rust source is over 400 lines, no comment over 110 columns",
+            "split the file by what its parts know; say the sentence shorter",
+            sources::lengths,
+        ),
         check(
             "paths",
             "no file names a place on one machine or a private registry",
@@ -65,6 +70,12 @@ pub(crate) fn all() -> Vec<Check> {
             "licences, sources and advisories of every dependency, and how many packages are compiled",
             "do without the package (cargo tree --workspace --invert PACKAGE), or say in deny.toml why not",
             dependencies::check,
+        ),
+        check(
+            "package",
+            "every crate can be packaged",
+            "name version and path of what it is built on in the table of the workspace (cargo package --workspace)",
+            dependencies::package,
         ),
         check(
             "python",

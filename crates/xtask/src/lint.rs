@@ -1,8 +1,8 @@
 //! clippy and rustdoc on our own crates, beside dependencies as the build left them.
 //!
-//! `cargo clippy` and `cargo doc` check every dependency once more, which is nine tenths of their work. Here cargo builds
-//! the workspace with this program in the place of rustc for our own crates (`RUSTC_WORKSPACE_WRAPPER`). It hands each call
-//! to clippy-driver, asks for metadata in the place of code, and has rustdoc read what is no test.
+//! `cargo clippy` and `cargo doc` check every dependency once more, nine tenths of their work. Here cargo
+//! builds the workspace with this program as rustc for our own crates (`RUSTC_WORKSPACE_WRAPPER`): each call
+//! goes to clippy-driver and asks for metadata, not code; rustdoc reads what is no test.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -46,7 +46,9 @@ fn lint(tools: &Path, call: &[OsString]) -> std::io::Result<ExitCode> {
     let Some(source) = words.iter().find(|word| word.ends_with(".rs")) else {
         return Ok(run(Command::new(&call[0]).args(&call[1..]))?.into());
     };
-    let metadata = without_code(&words);
+    // a build script is run
+    let script = follows(&words, "--crate-name", "build_script_build");
+    let metadata = if script { words.clone() } else { without_code(&words) };
     let code = run(Command::new(tools.join("clippy-driver")).args(&metadata))?;
     let documented = ["lib", "bin"].iter().any(|kind| follows(&words, "--crate-type", kind));
     if code != 0 || !documented || words.iter().any(|word| word == "--test") {

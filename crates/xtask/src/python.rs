@@ -1,4 +1,4 @@
-//! The Python module: laid out as a wheel would install it, and tested; and the environment of Python that checks share.
+//! The Python module, laid out as a wheel installs it, and tested; the Python environment that checks share.
 
 use std::collections::hash_map::DefaultHasher;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
@@ -82,8 +82,8 @@ pub(crate) fn environment() -> Result<PathBuf> {
     MADE.get_or_init(|| made().map_err(|error| format!("{error:#}"))).clone().map_err(anyhow::Error::msg)
 }
 
-/// The Python of an environment with what a file of requirements pins. It is built once for each content of that file: in a folder beside its
-/// place, and then moved, so that half an environment is never used.
+/// The Python of an environment with what a file of requirements pins. It is built once for each content of
+/// that file: in a folder beside its place, and then moved, so that half an environment is never used.
 fn make(target: &Path, name: &str, requirements: &Path) -> Result<PathBuf> {
     let text = std::fs::read_to_string(requirements).with_context(|| requirements.display().to_string())?;
     let (program, version) = interpreter()?;

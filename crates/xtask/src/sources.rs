@@ -6,8 +6,9 @@ use anyhow::{Context, Result, bail, ensure};
 
 use crate::checks::Outcome;
 
-/// Longest Rust source, in lines.
+/// Longest Rust source, in lines; widest comment in it, in columns.
 const LINES: usize = 400;
+const COLUMNS: usize = 110;
 /// Folders at the root of a file system that hold what belongs to one machine.
 const PLACES: [&str; 12] =
     ["home", "root", "Users", "work", "workspace", "workspaces", "builds", "mnt", "opt", "private", "tmp", "var"];
@@ -16,7 +17,7 @@ const REGISTRIES: [(&str, &str); 3] = [("arti", "factory"), ("jf", "rog.io"), ("
 /// The one registry that a lock file may name.
 const INDEX: &str = "registry+https://github.com/rust-lang/crates.io-index";
 
-/// No Rust source is over [`LINES`].
+/// No Rust source is over [`LINES`], no comment in it over [`COLUMNS`].
 pub(crate) fn lengths() -> Result<Outcome> {
     let mut count = 0;
     let mut long = Vec::new();
@@ -26,11 +27,20 @@ pub(crate) fn lengths() -> Result<Outcome> {
         if lines > LINES {
             long.push(format!("{name} has {lines} lines"));
         }
+        let wide = (1..).zip(text.lines()).filter(|(_, line)| is_wide(line));
+        long.extend(wide.map(|(number, _)| format!("the comment at {name}:{number} is over {COLUMNS} columns")));
     }
     if !long.is_empty() {
         bail!("{}", long.join("; "));
     }
     Ok(Outcome(format!(", {count} files")))
+}
+
+/// Is it a comment over [`COLUMNS`] that can be broken: no row of a table, and with a blank after column 40?
+fn is_wide(line: &str) -> bool {
+    let text = line.trim_start();
+    let row = text.trim_start_matches(['/', '!', ' ']).starts_with('|');
+    text.starts_with("//") && !row && line.chars().count() > COLUMNS && line.chars().skip(40).any(|c| c == ' ')
 }
 
 /// No file names a place on one machine or a private registry.
@@ -101,6 +111,16 @@ mod tests {
         }
         for line in ["a/home/b", "../tmp/x", "/usr/bin/env", "m/s", "https://example.org/work/1", "/target"] {
             assert_eq!(private("notes.md", line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn wide_comments_are_found() {
+        let words = "ω ".repeat(60);
+        assert!(is_wide(&format!("    //! {words}")));
+        let (short, one) = ("ω ".repeat(50), "ω".repeat(120));
+        for line in [format!("/// {short}"), format!("/// | {words}|"), format!("// {one}"), format!("let {words}")] {
+            assert!(!is_wide(&line), "{line}");
         }
     }
 

@@ -1,4 +1,4 @@
-//! What derivations hand over besides the motion: equations for the reader, invariants, projections, guards, and what was left out.
+//! What derivations give besides motions: readers' equations, invariants, projections, guards, omissions.
 
 use std::collections::BTreeSet;
 
@@ -79,7 +79,7 @@ fn first_order_is_said_where_no_second_rate_is_needed() {
 
 const GUARDED: &str = include_str!("../scenes/guarded.toml");
 
-/// `y` comes from `L`; `x` and `2 + w` from rates that `L` needs, `3 + y` from the rate of a quadrature; `k` is a parameter and cannot vanish on the way.
+/// `y` is in `L`; `x`, `2 + w` in rates of `L`, `3 + y` in a quadrature's; `k`, a parameter, cannot vanish.
 #[test]
 fn what_the_equations_divide_by_is_watched() {
     let scene = Scene::parse("guarded", GUARDED).unwrap_or_else(|e| panic!("{e}"));

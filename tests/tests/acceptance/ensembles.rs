@@ -1,4 +1,4 @@
-//! Members of ensembles against motions of scenes that are derived and solved one by one, in every formulation of every scene.
+//! Members of ensembles against motions derived and solved one by one, in every formulation of every scene.
 
 use deltaq::{
     Choice, Ending, Ensemble, EnsembleOptions, EnsembleStart, Settings, choices, constants_of, error_estimate, forms,
@@ -80,7 +80,7 @@ fn compare(name: &str, base: &Scene, choice: &Choice, count: &mut Count) {
         };
         let there = error_estimate(&mut single, setting(scene)).expect("a motion that can be read off");
         let estimate = here.estimate.expect("an estimate").absolute + there.absolute;
-        // pivots are chosen at a start: that of the ensemble is not that of the member, and forms with other pivots end elsewhere
+        // pivots depend on the start (ensemble's or member's): forms with other pivots end elsewhere
         let same = guards(ensemble.equations()) == guards(&single.equations);
         match (&here.run.ending, &single.ending) {
             _ if !same => count.other_pivots += 1,
@@ -103,7 +103,7 @@ fn compare(name: &str, base: &Scene, choice: &Choice, count: &mut Count) {
             let expected = single.at(t).expect("a time that was reached");
             let size = expected.coordinates.iter().fold(1.0_f64, |a, x| a.max(x.abs()));
             for (a, b) in outputs.coordinates.iter().zip(&expected.coordinates) {
-                // what is estimated in the kinetic metric is 100 times smaller than this in any coordinate of these scenes
+                // an estimate in the kinetic metric is 100 times smaller than this in every coordinate here
                 let limit = 1e-9 * size + 1e2 * estimate;
                 assert!((a - b).abs() <= limit, "{what} at {t}: {a} and {b}, limit {limit:.1e}");
             }

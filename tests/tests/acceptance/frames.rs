@@ -1,4 +1,4 @@
-//! Quasi-velocities in a frame: against Maggi's equations and the costate form on bodies that turn, roll and slide, and up to where the frame ends.
+//! Quasi-velocities in a frame against Maggi and costate form: bodies turn, roll, slide to the frame's end.
 
 use std::cell::Cell;
 
@@ -11,7 +11,7 @@ use scene::{Scene, SceneError};
 use super::support::{derived, equations, known_gap, motion_of, must, scene, some_multipliers, tight};
 use super::{reduced_form, reduced_vakonomic};
 
-/// Bodies of revolution in Euler angles, and a plane in polar coordinates, with the velocities that are given.
+/// Bodies of revolution in Euler angles, and a plane in polar coordinates, with their given velocities.
 const SCENES: [(&str, &[&str]); 5] = [
     (include_str!("../scenes/frame-0.toml"), &["psi'", "theta'", "phi'"]),
     (include_str!("../scenes/frame-1.toml"), &["psi'", "theta'", "phi'"]),
@@ -91,7 +91,7 @@ fn balls_are_written_in_a_frame() {
     assert!(printed.chosen.is_empty(), "{:?}", printed.chosen);
 }
 
-/// Near the pole of the Euler angles and near the apex, where frame and mass matrix end, motions in a frame are those of the multiplier forms.
+/// Near Euler's pole and the apex, where frame and mass matrix end, frames agree with multiplier forms.
 #[test]
 fn motions_near_the_ends_of_the_frame_are_those_of_the_multiplier_form() {
     let near: [(&str, &[(&str, f64)]); 5] = [

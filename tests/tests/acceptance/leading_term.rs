@@ -1,4 +1,4 @@
-//! How vakonomic and Chetaev motions part: the predicted coefficient, seen without the fit that the claim T5 makes.
+//! How vakonomic and Chetaev motions part: the predicted coefficient, seen without the fit of claim T5.
 
 use deltaq::{LeadingTerm, Pairing, choices};
 use scene::Scene;

@@ -95,7 +95,7 @@ fn three_cylinders_by_turn_is_vakonomic_and_keeps_its_constraints() {
 
 #[test]
 fn mass_matrix_is_needed_only_on_the_kernel() {
-    // Heisenberg: M is singular, and still everything above held; make sure that it is the case it claims to be
+    // Heisenberg: M is singular, and still everything above held; make sure of that
     let scene = scene("heisenberg", &[]);
     let system = scene.system.clone();
     let mass = matrix(&system.graph, &system.velocity_hessian(), &values(&system, &scene.start));

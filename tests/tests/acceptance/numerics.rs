@@ -1,4 +1,4 @@
-//! Methods of integration against a closed form, exact Jacobians against differences, and the branch of an implicit form.
+//! Integration methods against a closed form, exact Jacobians against differences, an implicit form's branch.
 
 use deltaq::{Motion, Settings};
 use integrate::Method;
@@ -17,7 +17,7 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
     let exact = sledge(&scene);
     let end = exact.at(10.0);
     let size = end.x.hypot(end.y);
-    // tolerance of the looser run, and what the tighter run, at a hundredth of it, may be wrong by over its own tolerance
+    // tolerance of the looser run; most error of the tighter one, at a hundredth of it, in its own tolerances
     for (method, tolerance, factor) in [
         (Method::Taylor, 1e-9, 100.0),
         (Method::Dop853, 1e-9, 100.0),
@@ -79,7 +79,7 @@ fn implicit_methods_use_those_jacobians() {
     }
 }
 
-/// Found by random systems (seed 2, index 8808): `∂²𝓛/∂v²` is nearly singular in `q4'`, the equations for `(v, μ)` have another root close by.
+/// Random system (seed 2, index 8808): `∂²𝓛/∂v²` nearly singular in `q4'`, another root of `(v, μ)` close by.
 const NEAR_A_FOLD: &str = include_str!("../scenes/near-a-fold.toml");
 
 #[test]

@@ -1,4 +1,4 @@
-//! Chetaev in quasi-velocities is Chetaev: against the saddle-point form, and against Maggi's equations, which share no derivation with either.
+//! Chetaev in quasi-velocities is Chetaev: against the saddle-point form and Maggi's, derived independently.
 
 use equations::{Compiled, Equations};
 use mechanics::State;
@@ -44,7 +44,7 @@ fn states_and_rates(scene: &Scene, equations: &Equations, state: &State, a: &[f6
     (values, rates)
 }
 
-/// Largest difference of the rates from those by Maggi's accelerations, relative to the largest of these; and that of the velocities.
+/// Largest difference of rates from Maggi's accelerations, relative to the largest; the same of velocities.
 pub fn differences(scene: &Scene, equations: &Equations, state: &State) -> (f64, f64) {
     let mut maggi = Maggi::new(&scene.system).expect("differentiates");
     let a = maggi.accelerations(state.t, &state.q, &state.v).expect("regular");

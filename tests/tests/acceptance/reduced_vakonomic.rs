@@ -1,4 +1,4 @@
-//! The vakonomic equations in quasi-velocities are those of the costate form, instant by instant, and their motions those of the multiplier form.
+//! Vakonomic in quasi-velocities: instants against the costate form, motions against the multiplier form.
 
 use std::cell::Cell;
 
@@ -55,7 +55,7 @@ fn in_the_states_of_a_frame(scene: &Scene, y: &[f64], rates: &[f64]) -> Vec<f64>
     [&rates[..n], &values].concat()
 }
 
-/// Differences of rates, velocities and multipliers between the two forms, the reduced one in the form chosen and in the plain one.
+/// Differences of rates, velocities and multipliers of the two forms; the reduced one as chosen and plain.
 pub fn differences(scene: &Scene, mu: &[f64]) -> [f64; 3] {
     let (costate, reduced) = (raw(scene, "vakonomic-costate"), raw(scene, "vakonomic-reduced"));
     let (rates, outputs) = instant(scene, &costate, Compiled::plain(&costate).expect("compiles"), mu);

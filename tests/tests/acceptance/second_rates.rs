@@ -1,6 +1,6 @@
 //! The general second-order statement: a parametrization that puts `ü` into `L`.
 //!
-//! `x = u + ε u̇` in the oscillator `L = ẋ²/2 − x²/2`, without a constraint. With `E = ẍ + x` the equation for `u` is
+//! `x = u + ε u̇` in `L = ẋ²/2 − x²/2`, without a constraint. With `E = ẍ + x` the equation for `u` is
 //!
 //! ```text
 //! d²/dt² G_ü − d/dt G_u̇ + G_u = ε Ė − E = 0      so   E = E₀ e^{(t − t₀)/ε} ,

@@ -34,7 +34,7 @@ pub fn constrained_scenes() -> Vec<Scene> {
     scenes().into_iter().filter(|scene| !scene.system.constraints.is_empty()).collect()
 }
 
-/// Puts `test` to random systems whose constraints are linear (or affine) in the velocities, or that have none.
+/// Puts `test` to random systems whose constraints, if any, are linear (or affine) in the velocities.
 pub fn for_all_linear(seed: u64, test: impl Fn(&Scene) -> Result<(), TestCaseError>) {
     let rng_seed = RngSeed::Fixed(seed);
     let config = Config { cases: 256, failure_persistence: None, rng_seed, ..Config::default() };
@@ -134,8 +134,7 @@ pub fn at(motion: &mut Motion, t: f64) -> Outputs {
     motion.at(t).unwrap_or_else(|e| panic!("at t = {t}: {e}"))
 }
 
-/// Equidistant times from start to the last one that both motions reached; where a motion stopped at a singularity, a tenth of the
-/// way before it is left out.
+/// Equidistant times from the start to where both motions last, less a tenth before a singularity.
 pub fn common_times(motions: &[&Motion]) -> Vec<f64> {
     let start = motions[0].start();
     let end = |m: &&Motion| if m.is_complete() { m.end() } else { start + 0.9 * (m.end() - start) };
@@ -154,8 +153,8 @@ pub fn gap(one: &mut Motion, two: &mut Motion) -> (f64, f64) {
 /// What two runs of one motion may differ by for it to count as known.
 const KNOWN: f64 = 3e-10;
 
-/// As [`gap`], up to the time at which one of the motions is itself no longer known to that: some scenes multiply every error a
-/// thousandfold each second. Also says up to when.
+/// As [`gap`], up to the time at which one of the motions is itself no longer known to that: some scenes
+/// multiply every error a thousandfold each second. Also says up to when.
 pub fn known_gap(one: &mut Motion, two: &mut Motion) -> (f64, f64) {
     let (mut largest, mut end) = (0.0_f64, one.start());
     for t in common_times(&[one, two]) {
@@ -221,7 +220,7 @@ pub fn start(scene: &Scene, equations: &Equations, constants: &[f64]) -> (Vec<f6
     (y, guess)
 }
 
-/// Largest deviation of the exact Jacobian at the start from central differences, and the largest entry where that is over 1.
+/// Largest deviation of the exact Jacobian from differences at the start; the largest entry if over 1.
 pub fn jacobian_error(scene: &Scene, equations: &Equations, constants: &[f64]) -> (f64, f64) {
     let compiled = Compiled::new(equations).expect("compiles");
     let mut compiled = compiled.with_jacobian(equations).expect("compiles");
@@ -306,10 +305,10 @@ pub fn removal_values(system: &System, removal: &Removal, state: &State) -> Hash
     values
 }
 
-/// The `μ₀` whose vakonomic motion should be the removed-constraint motion `motion`, and the largest residual of the equations for it (T2).
+/// `μ₀` that should give `motion`, removed-constraint, as vakonomic, and the largest residual for it (T2).
 ///
-/// In the coordinates `Q = (u, w)` the motion has `p_Q = (G_u̇, −P)`. In the coordinates `q` of the system that is
-/// `p_q` with `p_Q = (∂q/∂Q)ᵀ p_q`, and `μ₀` solves `Aᵀ μ₀ = p_q − L_v`.
+/// In the coordinates `Q = (u, w)` the motion has `p_Q = (G_u̇, −P)`. In the coordinates `q` of the system
+/// that is `p_q` with `p_Q = (∂q/∂Q)ᵀ p_q`, and `μ₀` solves `Aᵀ μ₀ = p_q − L_v`.
 pub fn matching_multipliers(scene: &Scene, removal: &Removal, motion: &mut Motion) -> (Vec<f64>, f64) {
     let system = scene.system.clone();
     let g = &system.graph;

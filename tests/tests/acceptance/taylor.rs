@@ -10,8 +10,8 @@ use super::support::{all_equations, equations, known_gap, motion_of, must, scene
 
 const ORDER: usize = 24;
 
-/// The series at the start to order 24, and how far its slope is from the rates at `h = 0.1 ‖y‖/‖y'‖` (less where it converges less fast), over
-/// the size of the rates: what is left out there is smaller than 1e-10.
+/// The series at the start to order 24, and how far its slope is from the rates at `h = 0.1 ‖y‖/‖y'‖` (less
+/// where it converges less fast), over the size of the rates: what is left out there is smaller than 1e-10.
 fn defect(scene: &Scene, equations: Equations, constants: &[f64]) -> f64 {
     let settings = Settings { method: Method::Taylor, ..Settings::default() };
     let rule = ConstantsRule::Given(constants.to_vec());

@@ -36,8 +36,8 @@ const NEVER: [(&str, &str); 19] = [
     ("newcomer", "symbolic"),
 ];
 
-/// What each member may be built on, by the table in `ARCHITECTURE.md`: names in backticks, up to a colon with remarks behind it.
-/// A member that is not named there may be built on none.
+/// What each member may be built on, by the table in `ARCHITECTURE.md`: names in backticks, up to a colon
+/// with remarks behind it. A member that is not named there may be built on none.
 fn table() -> Vec<(String, Vec<String>)> {
     let text = include_str!("../../../ARCHITECTURE.md");
     let names = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<String>>();
@@ -67,19 +67,25 @@ pub fn packages() -> Vec<Value> {
     metadata["packages"].as_array().expect("packages").clone()
 }
 
+/// The short name of a member, that of its folder.
+pub fn name(package: &Value) -> String {
+    let manifest = Path::new(package["manifest_path"].as_str().expect("a path"));
+    let folder = manifest.parent().and_then(Path::file_name).expect("a folder");
+    folder.to_string_lossy().into_owned()
+}
+
 /// Every arrow between members, dependencies for tests and builds included.
 fn arrows() -> BTreeSet<Arrow> {
     let packages = packages();
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     // A dependency on a member is one with a path: other crates may bear the same name.
     let member = |path: &str| {
         let manifest = Path::new(path).join("Cargo.toml");
         let package =
             packages.iter().find(|package| package["manifest_path"].as_str().map(Path::new) == Some(&manifest));
-        package.map(|package| text(&package["name"]))
+        package.map(name)
     };
     let of = |package: &Value| {
-        let from = text(&package["name"]);
+        let from = name(package);
         let dependencies = package["dependencies"].as_array().cloned().unwrap_or_default().into_iter();
         let members = dependencies.filter_map(|dependency| member(dependency["path"].as_str()?));
         // a package may ask for itself: with other features, for its tests

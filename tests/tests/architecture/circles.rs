@@ -1,15 +1,15 @@
 //! No module of a crate is built, by way of others, on itself.
 //!
-//! A file and the files in its folder are one room: a child may name what its parent's file defines, and the parent may call the
-//! child. Such an arrow upwards is not counted; all others are, so that a room as a whole lies on no circle either. The root of a
-//! crate is no such room: what its modules need of one another stands in modules.
+//! A file and the files in its folder are one room: a child may name what its parent's file defines, and the
+//! parent may call it. Such an arrow upwards does not count; all others do, so that rooms as a whole lie on
+//! no circle either. A crate's root is no such room: what modules need of one another stands in modules.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::Value;
 
-use super::arrows::packages;
+use super::arrows::{name, packages};
 use super::modules::Modules;
 
 type Arrows = BTreeMap<String, BTreeSet<String>>;
@@ -63,7 +63,7 @@ fn words(circle: &Circle, arrows: &Arrows) -> String {
     circle.iter().map(|file| format!("\n  {file} names items of {}", within(file))).collect()
 }
 
-/// The arrows of every crate, by the name of its package; a program beside a library has its own.
+/// The arrows of every crate, by its short name; a program beside a library has its own.
 fn workspace() -> Vec<(String, Arrows)> {
     let read = |path: &Path| std::fs::read_to_string(path).ok();
     let mut crates = Vec::new();
@@ -72,8 +72,7 @@ fn workspace() -> Vec<(String, Arrows)> {
             let kinds: Vec<&str> = target["kind"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
             if kinds.iter().any(|kind| ["lib", "cdylib", "bin"].contains(kind)) {
                 let root = Path::new(target["src_path"].as_str().expect("a path"));
-                let name = package["name"].as_str().expect("a name");
-                crates.push((name.to_owned(), between_rooms(Modules::of(root, &read).arrows())));
+                crates.push((name(&package), between_rooms(Modules::of(root, &read).arrows())));
             }
         }
     }

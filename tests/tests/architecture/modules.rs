@@ -1,7 +1,7 @@
 //! The modules of one crate, and which names the items of which others.
 //!
-//! An arrow goes from a file to the file that owns the item it names: re-exports are followed to where the item stands. What a
-//! module says of its children by `mod` or `pub use` is no arrow, since it names them and does not need them; nor are tests.
+//! An arrow goes from a file to the file that owns the item it names: re-exports are followed. What a module
+//! says of its children by `mod` or `pub use` is no arrow: it names them without need; nor are tests.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

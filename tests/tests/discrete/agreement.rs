@@ -1,4 +1,4 @@
-//! Every scene, and systems that nobody chose: the discrete motion of order 8 comes to the one by derived equations.
+//! Every scene, and systems that nobody chose: discrete motions of order 8 come to the derived ones.
 
 use deltaq::{Choice, Motion, Settings, SolveError, Steps, choices, solve_by_steps, solve_choice};
 use discrete::{Composition, DiscreteError};
@@ -7,8 +7,8 @@ use random::{Case, Kind, draw_recipe};
 use scene::Scene;
 use validation::catalogue::{SCENES, find};
 
-/// The horizon is at most this, s, and no later than the continuous motion needs so many steps for: near the edge of a chart (the ball in the
-/// cone after 0.4 s) a motion has time scales of a millisecond, of which a grid knows nothing.
+/// The horizon, s, at most, and the steps that the continuous motion may need for it: near the edge of a
+/// chart (the ball in the cone after 0.4 s) time scales are a millisecond, which no grid knows.
 const HORIZON: f64 = 0.5;
 const OWN_STEPS: usize = 20;
 

@@ -1,4 +1,4 @@
-//! Discrete variational principles against the motions of deltaq: no equation of motion stands between `L`, `f` and the referee.
+//! Discrete variational principles against deltaq's motions: from `L`, `f` without equations of motion.
 
 mod agreement;
 mod orders;

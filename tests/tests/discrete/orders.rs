@@ -1,4 +1,4 @@
-//! Orders of the discrete principles and their compositions: error against step, above the plateau of round-off.
+//! Orders of discrete principles and compositions: error against step, above the plateau of round-off.
 
 use deltaq::{Choice, Motion, Settings, Steps, choices, solve_by_steps, solve_choice};
 use discrete::Composition;
@@ -7,7 +7,7 @@ use scene::Scene;
 use validation::catalogue::find;
 use validation::scaling::exponent;
 
-/// An error under this times the size of the motion is round-off; what is over [`COARSE`] says nothing of the order yet.
+/// Errors under this times the size of the motion are round-off; over [`COARSE`] they tell no order yet.
 const PLATEAU: f64 = 2e-13;
 const COARSE: f64 = 1e-4;
 

@@ -58,7 +58,7 @@ const OWN: [(&str, &str); 5] = [
     ("memory", include_str!("memory.toml")),
 ];
 
-/// Faults that no judge can notice: the end of the file's path, the line, what goes wrong there, and the reason.
+/// Faults that no judge can notice: the end of the path, the line, what goes wrong there, the reason.
 const EXPLAINED: [[&str; 4]; 1] = [[
     "mechanics/src/automatic_removal.rs",
     "let denominator = g.product(&g.denominators(&entries));",
@@ -67,7 +67,7 @@ const EXPLAINED: [[&str; 4]; 1] = [[
      chart is shown by the example of the function",
 ]];
 
-/// Faults that are tried on one road of those that one place has there; `FAULTS_A_PLACE=N` tries more, or all.
+/// Faults tried on one road, of those of one place; `FAULTS_A_PLACE=N` tries more, or all.
 const A_PLACE: usize = 6;
 
 /// A road that is yet to be taken.

@@ -96,8 +96,7 @@ pub fn samples(scene: &Scene, truth: &Truth, removal: Option<&Removal>, count: u
     (0..40).filter_map(around).take(count).collect()
 }
 
-/// Reads equations off in the given states, in a form or in the plain one; `near` is a state of which the
-/// rates are wanted besides.
+/// Reads equations off in the given states, in a form or plain; `near`: a state whose rates are wanted.
 pub fn read(
     equations: &Equations,
     form: Option<&Plan>,
@@ -204,8 +203,7 @@ impl<'a> Reader<'a> {
         Ok(rates)
     }
 
-    /// For each guard that changes sign on a line through `y`: whether the rates lose their digits there, or
-    /// grow beyond all bounds.
+    /// For each guard that changes sign on a line through `y`: do rates lose digits there, or grow unbounded?
     fn guarded(&mut self, t: f64, y: &[f64]) -> Result<Vec<bool>, String> {
         let mut guarded = Vec::new();
         for j in 0..self.compiled.guards() {

@@ -1,5 +1,4 @@
-//! The judge of the removed-constraint equations, from the values of `L`, of `q(ü, u̇, u, w, t)` with its
-//! rate and of `B` alone.
+//! Judge of the removed-constraint equations, by values of `L`, `q(ü, u̇, u, w, t)` with its rate, and `B`.
 
 use std::cell::RefCell;
 

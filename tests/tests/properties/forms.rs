@@ -15,8 +15,8 @@ const INSTANTS: usize = 8;
 /// Round-off over the condition of the block, relative to the largest unknown.
 const ROUND_OFF: f64 = 2e-14;
 
-/// Largest condition number of the blocks at `inputs = (t, y, constants)`, rows and columns scaled, times what was added up to an entry: forms add up in
-/// different orders, and entries in which terms cancel differ by that much round-off.
+/// Largest condition number of blocks at `inputs = (t, y, constants)`, rows and columns scaled, times what
+/// added up to an entry: forms add in different orders, and cancelling entries differ by that round-off.
 fn condition(equations: &Equations, inputs: &[f64]) -> f64 {
     let g = &equations.graph;
     let mut largest = 1.0_f64;
@@ -51,7 +51,7 @@ struct Found {
     left: usize,
 }
 
-/// Compares rates and outputs of the form that is chosen at the start with those of the plain one; `None` where a block is not linear.
+/// Compares rates and outputs of the form chosen at the start and the plain one; `None` if not linear.
 fn compare(motion: &mut Motion) -> Option<Found> {
     let equations = motion.equations.clone();
     let constants = motion.constants.clone();

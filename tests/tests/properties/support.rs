@@ -40,7 +40,7 @@ pub fn for_all<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) ->
     }
 }
 
-/// Puts the checks of a theorem to the test on `cases` systems of `kinds`: none of its claims may fail, and next to none be undecided.
+/// A theorem's checks on `cases` systems of `kinds`: no claim may fail, next to none be undecided.
 pub fn holds(theorem: u8, kinds: &[Kind], cases: u32) -> Findings {
     let all = RefCell::new((0_u32, 0_u32, Findings::default()));
     for_all(cases, &recipes_of(kinds), |recipe: Recipe| {

@@ -50,8 +50,8 @@ impl EulerAngles {
 }
 
 impl Pose {
-    /// `sqrt(|Δc|² + (k β)²)` in m: the kinetic metric over `sqrt(m)`, with the radius of gyration `k` in m and the angle
-    /// `β ∈ [0, π]` of the rotation between the attitudes. It knows no chart, so angles need no unwrapping.
+    /// `sqrt(|Δc|² + (k β)²)` in m: the kinetic metric over `sqrt(m)`, with the radius of gyration `k` in m
+    /// and the rotation's angle `β ∈ [0, π]` between attitudes. It has no chart: angles need no unwrapping.
     ///
     /// ```
     /// use engine::{EulerAngles, Pose};
@@ -69,8 +69,8 @@ impl Pose {
         (self.centre - other.centre).length().hypot(gyration * angle)
     }
 
-    /// Richardson's extrapolation of a method of first order, `2 X(dt/2) − X(dt)`; `self` is that of the finer step. The quaternions
-    /// are extrapolated by components, with matching signs, and made units again.
+    /// Richardson's extrapolation of a method of first order, `2 X(dt/2) − X(dt)`; `self` is that of the
+    /// finer step. The quaternions are extrapolated by components, with matching signs, and made units again.
     pub fn extrapolated(&self, coarser: &Pose) -> Pose {
         let sign = if self.attitude.dot(coarser.attitude) < 0.0 { -1.0 } else { 1.0 };
         Pose {

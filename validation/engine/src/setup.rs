@@ -6,8 +6,8 @@ use scene::Scene;
 
 use crate::{EngineError, EulerAngles, Pose};
 
-/// Standard gravity where a scene has none, m/s²: it presses the ball onto a level table, and a table that is rough without limit does not
-/// ask how hard.
+/// Standard gravity where a scene has none, m/s²: it presses the ball onto a level table, and a table that is
+/// rough without limit does not ask how hard.
 const PRESSING: f64 = 9.81;
 
 /// How closely the body has to repeat the scene's start, relative to the size of what is compared.
@@ -37,8 +37,8 @@ pub enum Surface {
         /// `Ω`, rad/s.
         rate: f64,
     },
-    /// The inside of the cone with its apex at the origin and its axis upright. The generator at azimuth `γ` runs along
-    /// `(sin α cos γ, sin α sin γ, cos α)`, its normal into the cone is `(−cos α cos γ, −cos α sin γ, sin α)`.
+    /// The inside of the upright cone with its apex at the origin. The generator at azimuth `γ` runs along
+    /// `(sin α cos γ, sin α sin γ, cos α)`, its inward normal is `(−cos α cos γ, −cos α sin γ, sin α)`.
     Cone {
         /// `α`, rad, between axis and generator.
         half_angle: f64,
@@ -46,7 +46,7 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Foot of the perpendicular from `point` onto the surface, and the unit normal there, towards the side of the ball.
+    /// Foot of the perpendicular from `point` onto the surface, and the unit normal towards the ball.
     pub fn foot_and_normal(&self, point: Vector) -> (Vector, Vector) {
         match *self {
             Surface::Incline { slope } => {
@@ -90,15 +90,15 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Velocity of the ball's lowest point over the surface, `v − a ω × n − v_s` in m/s, with the normal `n` at the contact: zero where
-    /// the ball rolls and does not slip.
+    /// Velocity of the ball's lowest point over the surface, `v − a ω × n − v_s` in m/s, with the normal `n`
+    /// at the contact: zero where the ball rolls and does not slip.
     pub fn slip(&self, centre: Vector, velocity: Vector, spin: Vector) -> Vector {
         let (foot, normal) = self.surface.foot_and_normal(centre);
         velocity - self.ball.radius * spin.cross(normal) - self.surface.velocity(foot)
     }
 
-    /// A ball at rest on a plane of slope `α`. While it rolls, its acceleration downhill is `g sin α/(1 + k²/a²)`, for the
-    /// homogeneous ball `5/7 g sin α`.
+    /// A ball at rest on a plane of slope `α`. While it rolls, its acceleration downhill is
+    /// `g sin α/(1 + k²/a²)`, for the homogeneous ball `5/7 g sin α`.
     pub fn incline(slope: f64, ball: Ball, gravity: f64) -> Setup {
         let surface = Surface::Incline { slope };
         let (_, normal) = surface.foot_and_normal(Vector::ZERO);
@@ -116,16 +116,16 @@ impl Setup {
 
 /// Reads a scene's coordinates as poses of a ball.
 ///
-/// Both scenes have homogeneous balls, `k² = 2a²/5`, and Euler angles z-x-z from the ball to the room ([`EulerAngles`]).
+/// Both scenes: homogeneous balls, `k² = 2a²/5`, Euler angles z-x-z from ball to room ([`EulerAngles`]).
 ///
 /// | scene | centre | `ψ` | surface |
 /// |---|---|---|---|
 /// | `turntable` | `(x, y, a)` | `psi` | [`Surface::Table`] with `Omega` |
 /// | `ball-in-cone` | `ρ (cos γ, sin γ, 0) + z e_z` with `ρ = r sin α − a cos α`, `z = r cos α + a sin α` | `chi + gamma` | [`Surface::Cone`] with `alpha` |
 ///
-/// With these signs the condition `v + ω × (−a n) = v_s` at the contact is, component by component, the constraint of the scene: on the
-/// table `x' − a ω_y = −Ω y`, `y' + a ω_x = Ω x`; in the cone along the generator `r' − a ω_γ = 0`, which is (9), and across it
-/// `ρ γ' + a (cos α ω_z + sin α ω_r) = 0`, which is (8) with the coefficient `r sin α` of `γ'`. Sources: Neimark & Fufaev 1972; Gao 2017.
+/// With these signs `v + ω × (−a n) = v_s` at the contact is the scene's constraint: on the table `x' − a
+/// ω_y = −Ω y`, `y' + a ω_x = Ω x`; in the cone along the generator `r' − a ω_γ = 0`, (9), and across it `ρ
+/// γ' + a (cos α ω_z + sin α ω_r) = 0`, (8) with `r sin α` before `γ'`. Neimark & Fufaev 1972; Gao 2017.
 #[derive(Clone, Debug)]
 pub struct Mapping {
     /// What the engine is given.
@@ -136,12 +136,12 @@ pub struct Mapping {
 }
 
 impl Mapping {
-    /// The mapping of a scene, checked at its start: the contact point does not slip, and the kinetic energy is that of the scene's
-    /// Lagrangian, both to 1e-12.
+    /// The mapping of a scene, checked at its start: the contact point does not slip, and the kinetic energy
+    /// is that of the scene's Lagrangian, both to 1e-12.
     ///
     /// # Errors
-    /// [`EngineError::NotMapped`] for any scene but the two; [`EngineError::Missing`], [`EngineError::Mapping`] where the scene
-    /// is not the one that the mapping was written for.
+    /// [`EngineError::NotMapped`] for any scene but the two; [`EngineError::Missing`],
+    /// [`EngineError::Mapping`] where the scene is not the one that the mapping was written for.
     ///
     /// ```
     /// let scene = validation::catalogue::find("turntable", &[])?;

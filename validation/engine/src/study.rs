@@ -78,10 +78,10 @@ pub struct Study {
 }
 
 impl Study {
-    /// A scene with all its formulations (the costate form of the vakonomic one left out: it is the same motion).
+    /// A scene with all formulations (without the vakonomic costate form: it is the same motion).
     ///
     /// # Errors
-    /// [`EngineError`] where the scene is not mapped or the engine loses the ball. A formulation that refuses is a remark.
+    /// [`EngineError`] if the scene is not mapped or the ball is lost. A refusing formulation is a remark.
     pub fn of_scene(scene: &Scene, ladder: Ladder) -> Result<Study, EngineError> {
         let mapping = Mapping::new(scene)?;
         let mut targets = Vec::new();
@@ -110,8 +110,8 @@ impl Study {
         Study::measured([&scene.name, &scene.title], mapping.setup, scene.duration, targets, ladder)
     }
 
-    /// A homogeneous ball (1 kg, 0.1 m) from rest on a plane of slope 0.3 rad, 1 s, against its closed solution: it goes
-    /// `s = ½ · 5/7 g sin α t²` downhill and turns by `s/a`. The constraint is integrable, so that all formulations agree here.
+    /// A homogeneous ball (1 kg, 0.1 m) from rest on a plane of slope 0.3 rad, 1 s, against its closed
+    /// solution: `s = ½ · 5/7 g sin α t²` downhill, turned by `s/a`. Integrable, so all formulations agree.
     ///
     /// # Errors
     /// As [`Study::of_scene`].
@@ -226,7 +226,7 @@ pub struct Finding {
     pub nearest: f64,
     /// The same after Richardson's extrapolation.
     pub extrapolated: f64,
-    /// Whether the last halving of the step still at least halved the extrapolated distance: then no floor has been met.
+    /// Whether the last halving of the step still at least halved the extrapolated distance: no floor yet.
     pub falling: bool,
     /// How many times as far the nearest motion of another formulation is; infinite where there is no other.
     pub others: f64,

@@ -14,13 +14,13 @@ const ROUGH: f64 = 1e9;
 /// How the engine is told to hold contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contacts {
-    /// Every parameter but the time step as the engine ships it: soft contacts, four substeps, a simplified friction, contacts
-    /// kept while the pair has moved little.
+    /// Every parameter but the time step as the engine ships it: soft contacts, four substeps, a simplified
+    /// friction, contacts kept while the pair has moved little.
     AsShipped,
-    /// Contacts of a given natural frequency at a damping ratio of 1, one solver iteration, Coulomb friction at each
-    /// contact point, contacts found anew in every step, no continuous collision detection.
+    /// Contacts of a given natural frequency at a damping ratio of 1, one solver iteration, Coulomb friction
+    /// at each contact point, contacts found anew in every step, no continuous collision detection.
     Stiff {
-        /// Natural frequency of a contact, Hz. It yields noticeably in steps that are not long beside its period.
+        /// Natural frequency of a contact, Hz. It yields noticeably unless steps are long beside its period.
         frequency: f64,
     },
 }
@@ -28,7 +28,7 @@ pub enum Contacts {
 impl Contacts {
     /// 1 GHz: hard at every step used here.
     pub const HARD: Contacts = Contacts::Stiff { frequency: 1e9 };
-    /// 1 MHz, the stiffest that the engine uses by itself (for joints): steps of some microseconds notice that it yields.
+    /// 1 MHz, the stiffest of the engine's own (for joints): steps of some microseconds notice it yield.
     pub const YIELDING: Contacts = Contacts::Stiff { frequency: 1e6 };
 }
 
@@ -59,9 +59,9 @@ pub struct Trajectory {
 impl Run {
     /// Lets the engine move the ball.
     ///
-    /// The engine gets masses, shapes, velocities and gravity. Its contacts on planes are its own. It has no hollow cone, only
-    /// triangles that imitate one, so there each step is told the contact of ball and cone in closed form
-    /// ([`Surface::foot_and_normal`]): a point, a normal, a distance. What follows from the contact is left to it.
+    /// The engine gets masses, shapes, velocities and gravity. Contacts on planes are its own. It has no
+    /// hollow cone, only triangles, so there each step is told the contact of ball and cone in closed form
+    /// ([`Surface::foot_and_normal`]): a point, a normal, a distance. What follows is left to it.
     ///
     /// # Errors
     /// [`EngineError::Steps`], [`EngineError::Lost`].

@@ -20,7 +20,7 @@ fn a_ball_rolls_down_with_five_sevenths() {
     let finding = study.finding();
     assert!((finding.order - 1.0).abs() < 0.02, "{finding:?}");
     assert!(finding.extrapolated < 1e-4, "{finding:?}");
-    // the way is s (1 + c₁ dt + c₂ dt²): the velocity is taken at the end of each step, and the first step knows no friction yet
+    // the way is s (1 + c₁ dt + c₂ dt²): velocity counts at the end of a step, the first has no friction
     let way = |steps| {
         let poses = Run { contacts: Contacts::HARD, duration: 1.0, steps, samples: 1 }.of(&study.setup).unwrap().poses;
         (poses[1].centre - poses[0].centre).length()

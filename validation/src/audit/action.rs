@@ -24,7 +24,7 @@ pub(super) struct Action {
 }
 
 impl Action {
-    /// The action of `lagrangian` in `functions`, with the integrals named, each from `t₀` on; every one has to be there that `L` or an integrand needs.
+    /// The action of `lagrangian` in `functions`, with all integrals needed (by integrands too), from `t₀`.
     pub(super) fn new(
         context: &Context,
         lagrangian: &str,
@@ -89,7 +89,7 @@ impl Action {
         rates.copy_from_slice(self.evaluator.evaluate(&inputs));
     }
 
-    /// `dI/dε` at `ε = 0` along `curve + ε variation`: central differences at two sizes, extrapolated to zero.
+    /// `dI/dε` at `ε = 0` on `curve + ε variation`: central differences of two sizes, extrapolated to zero.
     pub(super) fn derivative(
         &mut self,
         curve: &dyn Fn(f64) -> Vec<Jet>,
@@ -111,7 +111,7 @@ impl Action {
     }
 }
 
-/// Variation number `k` on `[t₀, t₁]`: `16 s²(1 − s)² Tₖ(2s − 1)`, which vanishes at both ends with its first derivative.
+/// Variation `k` on `[t₀, t₁]`: `16 s²(1 − s)² Tₖ(2s − 1)`, zero at both ends with its first derivative.
 pub(super) fn bump(k: usize, [start, end]: [f64; 2], t: f64) -> Jet {
     let length = end - start;
     let s = (t - start) / length;

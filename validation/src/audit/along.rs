@@ -16,8 +16,8 @@ const INSTANTS: usize = 20;
 /// Half the distance of the velocities whose difference is an acceleration.
 const STEP: f64 = 2.5e-4;
 
-/// The largest residual of each formula along the removed-constraint motion of a scene by its first removal. Names are coordinates with
-/// primes (second derivatives are differences of velocities), parameters, `t`, and `t1`, the horizon of the constants.
+/// Each formula's largest residual along the removed-constraint motion of a scene by its first removal.
+/// Names: coordinates with primes (second ones by differences of velocities), parameters, `t`, horizon `t1`.
 pub(super) fn along(context: &Context, scene: &str, lines: &[String]) -> Result<Vec<f64>> {
     let scene = catalogue::find(scene, &[])?;
     let removal = scene.removals.first().context("no removal")?;

@@ -14,11 +14,11 @@ use random::realization::augmented_start;
 pub struct Constants {
     /// Numbers by the name that the page has for them.
     pub numbers: Vec<(&'static str, f64)>,
-    /// Horizons of the sledge: `t₁`, `C = P_x(t₀) = g t₁ sin α`, the multiplier of the closest vakonomic motion that was found, the gap to it.
+    /// Sledge: `t₁`, `C = P_x(t₀) = g t₁ sin α`, multiplier of and gap to the closest vakonomic motion found.
     pub horizons: Vec<[f64; 4]>,
     /// The natural constants at `t₁` = [`HORIZONS`], as the boundary-value problem finds them.
     pub natural: Vec<[f64; 2]>,
-    /// Bridge to augmented systems: the scene, `C_i = P_i(t₀)` as given, the largest difference of any coordinate.
+    /// Bridge to augmented systems: scene, `C_i = P_i(t₀)` as given, largest difference of a coordinate.
     pub augmented: Vec<(&'static str, Vec<f64>, f64)>,
 }
 
@@ -113,7 +113,7 @@ fn planar_body() -> Result<([f64; 2], f64)> {
     Ok(([off, rotation], compare_motions(&mut newton, &mut right, metric)?.largest))
 }
 
-/// The removed-constraint motion with `P(t₀)` against the vakonomic motion of the augmented system with `μ = −P − L_ẇ`.
+/// The removed-constraint motion of `P(t₀)` against the augmented vakonomic motion of `μ = −P − L_ẇ`.
 fn on_augmented(name: &'static str, of: &str, costates: &[f64]) -> Result<(&'static str, Vec<f64>, f64)> {
     let scene = catalogue::find(name, &[("duration".into(), 1.0)])?;
     let removal = removal(&scene, of)?;

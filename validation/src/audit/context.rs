@@ -1,7 +1,7 @@
 //! What the names in an equation stand for.
 //!
-//! A context has constants, free functions of time, integrals (each with its integrand as rate), and definitions. A prime is a time
-//! derivative, of whatever the name stands for: of a free function it is a symbol, of everything else the derivative along the rates.
+//! A context has constants, free functions of time, integrals (with integrands as rates) and definitions. A
+//! prime is a time derivative: a symbol for a free function, else the derivative along the rates.
 
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
@@ -73,7 +73,7 @@ impl Context {
         self.constants.insert(name.into());
     }
 
-    /// `text` as it stands, names as symbols: what is printed. `left = right` gives both sides, anything else has 0 on the right.
+    /// `text` as printed, names as symbols. `left = right` gives both sides, anything else 0 on the right.
     pub(super) fn sides(&self, text: &str) -> Result<[Expr; 2]> {
         let (left, right) = text.split_once('=').unwrap_or((text, "0"));
         Ok([self.raw(left)?, self.raw(right)?])
@@ -106,7 +106,7 @@ impl Context {
         self.rate_deep(e, 0)
     }
 
-    /// A raw expression as LaTeX. Partial derivatives `F_u1` are written `F_{\dot u}`, their time derivatives with `d/dt` before them.
+    /// A raw expression as LaTeX. Partial derivatives `F_u1` are `F_{\dot u}`, their rates with `d/dt`.
     pub(super) fn latex(&self, raw: Expr) -> String {
         let g = &self.graph;
         let mut text = g.latex(raw);
@@ -251,7 +251,7 @@ impl Context {
         Ok(g.total_derivative(e, &rates))
     }
 
-    /// For an action `∫ L dt` with integrals `w` in `L`, each with a costate `P`: with `G = L + P·ẇ` the kernels
+    /// For `∫ L dt` with integrals `w` in `L`, each with a costate `P`: with `G = L + P·ẇ` the kernels
     ///
     /// ```text
     /// K_u = d²/dt² G_ü − d/dt G_u̇ + G_u ,      costate_w = Ṗ + G_w   (zero where P is the right one).
@@ -281,7 +281,7 @@ impl Context {
         self.add_variations(&texts(action, "variation")?)
     }
 
-    /// `delta_F`: the derivative of `F` at `ε = 0` with `ε` times its variation added to every varied name and to its derivatives.
+    /// `delta_F`: the derivative of `F` at `ε = 0`, `ε` variations added to varied names and derivatives.
     fn add_variations(&self, variations: &[(String, String)]) -> Result<()> {
         if variations.is_empty() {
             return Ok(());

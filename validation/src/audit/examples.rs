@@ -1,6 +1,6 @@
-//! Removed-constraint equations written with momenta, so that they can be read, and checked against the derived ones.
+//! Removed-constraint equations written with momenta, for readers, and checked against the derived ones.
 //!
-//! With `V_i` the velocities in terms of the displacement parameters, `p_i = ∂L/∂q̇_i`, and `B_k` the rates of the memory variables:
+//! With velocities `V_i` in the displacement parameters, `p_i = ∂L/∂q̇_i`, rates `B_k` of memory variables:
 //!
 //! ```text
 //! d/dt [ Σ_i p_i ∂V_i/∂u̇ + Σ_k P_k ∂B_k/∂u̇ ] = Σ_i (p_i ∂V_i/∂u + L_{q_i} ∂q_i/∂u) + Σ_k P_k ∂B_k/∂u ,

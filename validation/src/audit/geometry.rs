@@ -1,4 +1,4 @@
-//! Bodies that roll on each other, from positions and rotations alone: what the constraints of examples 1 to 3 have to say.
+//! Bodies rolling on each other, from positions and rotations alone: what constraints 1 to 3 must say.
 
 use anyhow::{Result, bail};
 use symbolic::{Expr, Function, Graph};
@@ -7,7 +7,7 @@ use super::context::Context;
 
 type Vector = [Expr; 3];
 
-/// Definitions of the geometry `name`: slips (velocities of the point of contact, zero where a body rolls), energies.
+/// Definitions of the geometry `name`: slips (contact point velocities, zero for rolling), energies.
 pub(super) fn definitions(name: &str, context: &Context) -> Result<Vec<(String, Expr)>> {
     match name {
         "incline" => incline(context),
@@ -39,8 +39,8 @@ fn incline(context: &Context) -> Result<Vec<(String, Expr)>> {
     Ok(vec![("energy_difference".into(), g.sub(kinetic, potential)), ("slip".into(), dot(g, velocity, across))])
 }
 
-/// Wall direction `s`, inward normal `n`, both at azimuth `γ`; the ball's rotation is `R = R_z(χ+γ) R_x(θ) R_z(φ)`, and `ω` comes from `Ṙ Rᵀ`.
-/// Centre `r s + a n`, contact at `−a n` from it.
+/// Wall direction `s`, inward normal `n`, both at azimuth `γ`; the ball's rotation is
+/// `R = R_z(χ+γ) R_x(θ) R_z(φ)`, and `ω` comes from `Ṙ Rᵀ`. Centre `r s + a n`, contact at `−a n` from it.
 fn ball_in_cone(context: &Context, contact: ContactAt) -> Result<Vec<(String, Expr)>> {
     let g = &context.graph;
     let e = |text: &str| context.expression(text);
@@ -79,8 +79,8 @@ fn ball_in_cone(context: &Context, contact: ContactAt) -> Result<Vec<(String, Ex
     ])
 }
 
-/// Two cylinders of radius `r` roll on the ground, with axes along `(1, 0)` and `(cos α, sin α)`; the upper one, of radius `R` and
-/// heading `θ` and unit mass, lies on both. `m_i`, `I_i`: masses of the lower ones and their moments about their axes.
+/// Two cylinders of radius `r` roll on the ground, axes along `(1, 0)` and `(cos α, sin α)`; one of radius
+/// `R`, heading `θ` and unit mass lies on both. `m_i`, `I_i`: the lower masses and moments about their axes.
 fn cylinders(context: &Context) -> Result<Vec<(String, Expr)>> {
     let g = &context.graph;
     let e = |text: &str| context.expression(text);

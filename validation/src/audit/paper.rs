@@ -90,7 +90,7 @@ pub struct Finding {
     pub corrected: Form,
     /// Other readings.
     pub variants: Vec<Variant>,
-    /// Largest residuals of the printed and the corrected lines along a computed motion, where it is checked on one.
+    /// Largest residuals of the printed and the corrected lines along a computed motion, if checked.
     pub along: Option<[Vec<f64>; 2]>,
     /// Remarks.
     pub note: String,
@@ -268,7 +268,7 @@ impl Paper {
     }
 }
 
-/// The residual of a formula: `left − right − truth`; if a constant `C` is in it, the rate of the `C` that would make it zero.
+/// A formula's residual `left − right − truth`; with a constant `C` in it, the rate of the `C` for zero.
 fn check_line(context: &Context, line: &str, truth: &str, constant: Option<&str>) -> Result<Line> {
     let g = &context.graph;
     let [left, right] = context.sides(line)?;

@@ -1,7 +1,7 @@
 //! Is the action stationary on the motions of (34)? And on those of the statement with `G`?
 //!
-//! The system: `ẏ = ẋ²/2`, removed by `x = u + ε u̇`, `y = λ = ∫ ẋ²/2 dt`, so that `β` contains `ü`; `L = (ẋ² + ẏ² − x² − y²)/2`. Each reading of
-//! (34) is solved for the highest derivative of `u` and integrated backwards from `t₁`, where `P = 0`: the natural constant, without a search.
+//! `ẏ = ẋ²/2`, removed by `x = u + ε u̇`, `y = λ = ∫ ẋ²/2 dt`, so `β` contains `ü`; `L = (ẋ² + ẏ² − x² −
+//! y²)/2`. Each reading of (34), solved for the highest derivative of `u`, goes back from `P(t₁) = 0`.
 
 use std::collections::HashMap;
 
@@ -17,8 +17,8 @@ use super::context::Context;
 use super::paper::Paper;
 use random::equations;
 
-/// Readings of (34), each as what has to be zero, with `P = C − ∫ L_λ dt`. (The fourth, second operator on `L` and first on `β`, divides by `P`, which is
-/// zero at `t₁`.)
+/// Readings of (34), each as what has to be zero, with `P = C − ∫ L_λ dt`. (The fourth, second operator on
+/// `L` and first on `β`, divides by `P`, which is zero at `t₁`.)
 const READINGS: [(&str, &str); 4] = [
     (STATEMENT, "K_u"),
     ("(34), first operator on L, second on β", "L_u2'' - L_u1' + L_u0 - P*(beta_u1' - beta_u0) + beta_u1*L_lambda"),
@@ -59,9 +59,9 @@ impl Reading {
 pub struct Stationarity {
     /// Every reading, the statement with `G` first.
     pub readings: Vec<Reading>,
-    /// Largest difference of `x` and `y` between the motion of the statement here and that of the crate `removed-constraint`.
+    /// Largest difference of `x`, `y` between this statement's motion and that of `removed-constraint`.
     pub gap: f64,
-    /// `dI/dε` of the sledge of example 1 along some curve: measured, by the kernels of `δI` as printed, and as corrected; one entry a variation.
+    /// `dI/dε` of example 1's sledge: measured, by printed and by corrected kernels of `δI`, per variation.
     pub sledge: Vec<[f64; 3]>,
 }
 
@@ -163,7 +163,7 @@ impl Problem for Law {
 /// The same system as a scene.
 const SCENE: &str = include_str!("second-order.toml");
 
-/// How far the motion of the crate `removed-constraint` is from this one, both from the same start and constants.
+/// Distance of this motion from that of `removed-constraint` with the same start and constants.
 fn gap_to_derivation(
     context: &Context,
     law: &mut Law,

@@ -1,7 +1,7 @@
 //! Throughput of ensembles: sledges with random starts one by one, in lanes, and in lanes over all cores.
 //!
-//! All ways take the same members, the same equations compiled once, the same method, tolerance and projection. One by one is the ordinary time
-//! loop, which keeps the ends of a run only ([`integrate::Dense::EndOnly`]).
+//! All ways take the same members, equations compiled once, method, tolerance and projection. One by one is
+//! the ordinary time loop, which keeps the ends of a run only ([`integrate::Dense::EndOnly`]).
 
 use std::time::Instant;
 
@@ -12,6 +12,7 @@ use deltaq::{
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
+use serde::Serialize;
 use symbolic::Xorshift;
 
 use crate::catalogue;
@@ -19,13 +20,13 @@ use crate::catalogue;
 /// The scene whose members they are.
 pub const ENSEMBLE_SCENE: &str = "sledge";
 
-/// Members of an ensemble whose throughput is measured, and in the main job, which has other things to do as well.
+/// Members of an ensemble for throughput, and in the main job, which has other things to do as well.
 pub const MEMBERS: usize = 4096;
 /// See [`MEMBERS`].
 pub const FEW_MEMBERS: usize = 256;
 
 /// What was measured of one formulation.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Throughput {
     /// What the reader sees.
     pub label: String,
@@ -47,18 +48,18 @@ pub struct Throughput {
     pub threads: usize,
     /// Accepted steps of all members, one by one and in lanes.
     pub steps: [usize; 2],
-    /// Largest difference of a state at the end between a member in lanes and the same member one by one, over the larger of 1 and that state.
+    /// Largest difference of a state at the end, in lanes and one by one, over `max(1, |state|)`.
     pub difference: f64,
     /// The same, on one core and on all of them: zero.
     pub over_cores: f64,
 }
 
 /// What something took, the least of several times.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Time {
     /// Seconds of the clock.
     pub clock: f64,
-    /// Seconds of all processors that worked for this process, where the system tells: whatever else they worked for does not count.
+    /// Seconds of all processors for this process alone, where the system tells.
     pub processors: Option<f64>,
 }
 
@@ -98,8 +99,8 @@ impl Throughput {
         self.lanes.clock / self.cores.clock
     }
 
-    /// Processor time in lanes on one core over that on all of them: 1 where dividing the work costs nothing. Times the number of cores, it is what [`Throughput::over_one_core`]
-    /// would be if these had nothing else to do and none waited for another.
+    /// Processor time in lanes on one core over that on all: 1 where dividing the work costs nothing. Times
+    /// the cores, it is [`Throughput::over_one_core`] if they did nothing else and none waited for another.
     pub fn efficiency(&self) -> Option<f64> {
         Some(self.lanes.processors? / self.cores.processors?)
     }
@@ -115,7 +116,7 @@ impl Throughput {
     }
 }
 
-/// Sledges that start anywhere on the slope, in any direction, at up to 2 m/s along the blade and 2 rad/s: on the constraint exactly.
+/// Sledges anywhere on the slope, any heading, ≤ 2 m/s along the blade, ≤ 2 rad/s: on the constraint exactly.
 fn starts(count: usize) -> Vec<State> {
     let mut random = Xorshift::default();
     let mut number = |from: f64, to: f64| from + (to - from) * random.unit();
@@ -143,7 +144,7 @@ pub fn ensemble_throughput(count: usize, tolerance: f64, repeats: usize) -> Resu
 fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, repeats: usize) -> Result<Throughput> {
     let settings = Settings { method: Method::Taylor, tolerance, ..Settings::default() };
     let end = setting(scene).end;
-    // Natural constants belong to the horizon and the parameters, not to the start: those of the scene serve for all.
+    // Natural constants belong to horizon and parameters, not to the start: the scene's serve for all.
     let equations = deltaq::derive_at(&scene.system, &scene.start, &choice)?;
     let mut ready = prepare(setting(scene), equations, &choice.constants, &settings)?;
     let choice = Choice { constants: ConstantsRule::Given(ready.constants.clone()), ..choice };
@@ -159,7 +160,7 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
     let members: Vec<EnsembleMember> =
         starts.iter().map(|state| ensemble.member_at(&start(state))).collect::<Result<_, _>>()?;
     let prepare = clock.elapsed().as_secs_f64();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = random::parallel::threads();
     let mut options = Options::with_tolerance(tolerance);
     (options.method, options.dense) = (Method::Taylor, Dense::EndOnly);
     let one = EnsembleOptions { threads: 1, estimate: false };

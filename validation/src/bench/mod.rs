@@ -1,8 +1,8 @@
-//! Error against run time: every formulation of a scene, by every method, at every tolerance, against a reference.
+//! Error against run time: every formulation of a scene, method and tolerance, against a reference.
 //!
-//! One measurement is one run of the time loop (not the two of [`deltaq::solve`]), dense output included, from equations that are compiled
-//! already. Its time is the least of several; its error is the largest distance from the reference in the kinetic metric, over [`SAMPLES`]
-//! times. A run that fails is listed with its cause.
+//! A measurement is one run of the time loop (not the two of [`deltaq::solve`]) with dense output, from
+//! compiled equations. Its time is the least of several; its error is the largest kinetic distance from the
+//! reference over [`SAMPLES`] times. A run that fails is listed with its cause.
 
 mod ensemble;
 mod measure;
@@ -36,8 +36,8 @@ pub struct Effort {
     pub repeats: usize,
     /// A run that takes more steps than this counts as failed.
     pub max_steps: usize,
-    /// A method's tolerances are not tightened further once a run took longer than this, in seconds; Taylor series and DOP853, which reach the smallest
-    /// errors, have four times as long.
+    /// A method's tolerances are not tightened further once a run took longer than this, in seconds; Taylor
+    /// series and DOP853, which reach the smallest errors, have four times as long.
     pub patience: f64,
 }
 
@@ -141,7 +141,7 @@ pub struct Prepared {
     truths: Vec<(String, Result<Truth, String>)>,
 }
 
-/// Every formulation of a scene, and further forms that hold everywhere: one with guards stops where its quasi-velocities break down.
+/// Every formulation of a scene, and forms without guards: guards stop a run where quasi-velocities break.
 fn entries(scene: &Scene) -> Vec<Choice> {
     let regular = |form: &Choice| derive_at(&scene.system, &scene.start, form).is_ok_and(|e| e.guards.is_empty());
     choices(scene).into_iter().chain(forms(scene).into_iter().filter(regular)).collect()
@@ -156,7 +156,7 @@ fn motion(choice: &Choice) -> String {
     }
 }
 
-/// Computes the references of `name`, a built-in scene or the path of a scene file: nothing is timed, so that several may be prepared at once.
+/// References of `name`, a built-in scene or a scene file's path: not timed, several may run at once.
 ///
 /// # Errors
 /// Where the scene cannot be read.

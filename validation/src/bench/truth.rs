@@ -34,7 +34,7 @@ const PART: f64 = 0.9;
 const ACCURACY: f64 = 1e-15;
 
 impl Truth {
-    /// `count` times of the motion that `ready` starts, up to the end of the scene or a little before the motion's own.
+    /// `count` times of the motion that `ready` starts, up to the scene's end or just before its own.
     ///
     /// # Errors
     /// Where the motion cannot be had.

@@ -23,10 +23,10 @@ pub enum NotRun {
     NoAnswer(String, String),
 }
 
-/// Files that cargo writes into the folder that it builds into; the first one only where it made that folder itself.
+/// Files that cargo writes into its build folder; the first one only if it made that folder itself.
 const MARKS: [&str; 2] = ["CACHEDIR.TAG", ".rustc_info.json"];
 
-/// Where what can be made again is kept: the folder that cargo built this program into, and for an installed program the user's cache.
+/// Where to keep what can be made again: cargo's target folder; for an installed program the user's cache.
 fn target() -> PathBuf {
     let program = std::env::current_exe().unwrap_or_default();
     let marked = |folder: &&Path| MARKS.iter().any(|mark| folder.join(mark).exists());
@@ -34,7 +34,7 @@ fn target() -> PathBuf {
     built.unwrap_or_else(|| cache(std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from), std::env::home_dir()))
 }
 
-/// The folder of this program in the user's cache, by the rules of the XDG base directories; among the temporary files for a user without a home.
+/// This program's folder in the user's cache (XDG base directories); without a home, among temporary files.
 fn cache(named: Option<PathBuf>, home: Option<PathBuf>) -> PathBuf {
     let named = named.filter(|folder| folder.is_absolute());
     let folder = named.or(home.map(|home| home.join(".cache"))).unwrap_or_else(std::env::temp_dir);
@@ -50,8 +50,8 @@ pub(super) fn files(what: &'static str) -> impl Fn(std::io::Error) -> NotRun {
     move |error| NotRun::Files(what, error.kind())
 }
 
-/// The interpreter of the environment with the packages of `requirements`, made now if it is not there yet. What is half made is never seen: it is built beside its place and
-/// moved there when it is complete.
+/// The interpreter of the environment with the packages of `requirements`, made now if it is not there yet.
+/// What is half made is never seen: it is built beside its place and moved there when it is complete.
 pub(super) fn interpreter(requirements: &str) -> Result<PathBuf, NotRun> {
     let target = target();
     let place = target.join(format!("casadi-{:016x}", hash(requirements)));

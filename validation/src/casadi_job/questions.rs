@@ -19,7 +19,8 @@ pub struct Amount {
     pub times: usize,
 }
 
-/// What a state is and of what: `("q", "x")`, `("v", "x")`, `("mu", "1")`, `("u", "s")`, `("du", "s")`, `("ddu", "s")`, `("p", "s")`, `("w", "x")`, `("P", "x")`.
+/// What a state is, and of what: `("q", "x")`, `("v", "x")`, `("mu", "1")`, `("u", "s")`, `("du", "s")`,
+/// `("ddu", "s")`, `("p", "s")`, `("w", "x")`, `("P", "x")`.
 type Tag = (String, String);
 
 /// One scene.
@@ -38,7 +39,7 @@ pub struct Question {
     pub(super) decision: Option<Decided>,
 }
 
-/// The `μ₀` with which the vakonomic motion is Chetaev's: the dimension of their set and its least-norm element, none where it is empty.
+/// `μ₀` that make the vakonomic motion Chetaev's: their set's dimension and least-norm element, if any.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Decided {
     /// Velocities at the start, rounded: for those that the text does not say.
@@ -154,8 +155,8 @@ impl Question {
         self
     }
 
-    /// Asks for the direct transcription of the action over the first `horizon` of the run, in `intervals` intervals: the vakonomic motion, and
-    /// those of the removals in the text with `P(t₁) = 0` at the horizon.
+    /// Asks for the action's direct transcription over the first `horizon`, in `intervals` intervals: the
+    /// vakonomic motion, and those of the text's removals with `P(t₁) = 0` at the horizon.
     ///
     /// # Errors
     /// Where a motion of ours cannot be computed or read off.
@@ -168,7 +169,7 @@ impl Question {
         Ok(self)
     }
 
-    /// Replaces our equations of the first case of `formulation` by others before they are evaluated: for controls.
+    /// For controls: replaces our equations of the first case of `formulation` before evaluation.
     ///
     /// # Errors
     /// Where the equations cannot be evaluated.
@@ -349,8 +350,8 @@ fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: u
     Ok(MotionTable { tags, start, times, coordinates, differences, complete, multipliers })
 }
 
-/// `None` where the motion does not last that long: the
-/// vakonomic motion of the scene, or the removed-constraint motion with `P(t₁) = 0` at the horizon, at the ends and middles of the intervals.
+/// `None` where the motion does not last that long: the vakonomic motion of the scene, or the
+/// removed-constraint motion with `P(t₁) = 0` at the horizon, at the ends and middles of the intervals.
 fn transcription(scene: &Scene, choice: &Choice, horizon: f64, intervals: usize) -> Result<Option<Transcription>> {
     let Some(full) = equations(scene, choice) else { return Ok(None) };
     let constants = match choice.formulation {

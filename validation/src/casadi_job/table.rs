@@ -1,4 +1,4 @@
-//! The referee's findings for readers and for machines: bounds that are powers of ten, so that they do not change with the last digit.
+//! The referee's findings for readers and machines: bounds are powers of ten, so the last digit changes none.
 
 use std::fmt::Write;
 

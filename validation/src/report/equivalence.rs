@@ -1,4 +1,4 @@
-//! The page about classic systems: is Chetaev's motion vakonomic, at almost every start and at exceptional ones?
+//! The page of classic systems: is Chetaev's motion vakonomic, at almost every and at exceptional starts?
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
@@ -238,7 +238,7 @@ impl EquivalenceReport {
         let starts: usize = self.data.system.iter().map(|system| system.start.len()).sum();
         let open = if open == 0 { String::new() } else { format!("; {open} open") };
         format!(
-            "Of {} classic systems {none} have no $\\mu_0$ with which the vakonomic motion is Chetaev's at almost every start, {some} have one at almost every start{open}. \
+            "Of {} classic systems and variants {none} have no $\\mu_0$ with which the vakonomic motion is Chetaev's at almost every start, {some} have one at almost every start{open}. \
              {starts} further starts, on and beside the exceptional ones, are decided one by one.",
             self.rows.len()
         )

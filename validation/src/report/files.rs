@@ -25,6 +25,11 @@ pub fn write_all(folder: &Path, files: &[File]) -> Result<()> {
         let path = folder.join(&file.path);
         let parent = path.parent().unwrap_or(folder);
         fs::create_dir_all(parent).with_context(|| format!("cannot create {}", parent.display()))?;
+        // a device is written to, not replaced
+        if fs::metadata(&path).is_ok_and(|there| !there.is_file()) {
+            fs::write(&path, &file.text).with_context(|| format!("cannot write {}", path.display()))?;
+            continue;
+        }
         let mut temporary =
             tempfile::NamedTempFile::new_in(parent).with_context(|| format!("cannot write in {}", parent.display()))?;
         temporary.write_all(file.text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;

@@ -116,8 +116,8 @@ impl Case {
 }
 
 impl Claim {
-    /// *confirmed*: found as claimed throughout; *qualified*: just where the condition holds; *refuted*: not throughout;
-    /// *open*: nothing to compute.
+    /// *confirmed*: found as claimed throughout; *qualified*: just where the condition holds; *refuted*: not
+    /// throughout; *open*: nothing to compute.
     fn follows(&self, found: &[Found]) -> &'static str {
         let as_claimed: Vec<bool> = self.case.iter().zip(found).map(|(case, found)| found.is(&case.claimed)).collect();
         let by_condition = || self.case.iter().zip(&as_claimed).all(|(case, yes)| *yes != case.outside);
@@ -169,7 +169,7 @@ impl LiteratureReport {
         let [confirmed, refuted, qualified, open] = ["confirmed", "refuted", "qualified", "open"]
             .map(|word| self.claims.iter().filter(|claim| claim.word == word).count());
         format!(
-            "Of {} published claims {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, {refuted} are refuted, {open} are open.",
+            "Of {} published claims, as abstracts or memory have them, {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, {refuted} are refuted, {open} are open.",
             self.claims.len()
         )
     }

@@ -1,4 +1,4 @@
-//! Reports: Markdown that reads well on a code host, SVG pictures by relative link, one JSON file for machines.
+//! Reports: Markdown that reads well on a code host, SVG by relative link, one JSON file for machines.
 
 mod audit_page;
 mod bench_page;

@@ -1,13 +1,13 @@
 //! The first page of the reports.
 
-use deltaq::{Answer, Comparison, Fit, Verdict};
+use deltaq::{Answer, Comparison, Fit, Membership, Verdict};
 
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
 use crate::report::{Table, fill, membership};
 use random::substitution;
 
-/// One page: the verdict matrix, the findings, what further pages say (`further`: a line and a path), how to regenerate.
+/// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.
 pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {
     let findings = findings(comparisons).into_iter().zip(1..).map(|(finding, i)| format!("{i}. {finding}\n"));
     fill(
@@ -104,7 +104,7 @@ fn findings(comparisons: &[Comparison]) -> Vec<String> {
     let integrable: Vec<&Comparison> = comparisons.iter().filter(|c| c.integrability.is_integrable()).collect();
     let agreeing = names(integrable.iter().copied().filter(|c| all_same(c)));
     findings.push(format!(
-        "**Integrable constraints are beyond dispute.** Frobenius' test finds {} integrable or free of constraints; all formulations agree on {}.",
+        "**Where the constraint can be integrated, the formulations agree on the scenes tried.** Frobenius' test finds {} integrable or free of constraints; all formulations agree on {}.",
         enumerate(&names(integrable.iter().copied())),
         enumerate(&agreeing)
     ));
@@ -153,24 +153,31 @@ fn constants_of_removal(integrable: &[&Comparison]) -> Option<String> {
 }
 
 fn parametrizations(comparisons: &[Comparison]) -> String {
-    let (mut apart, mut one) = (Vec::new(), Vec::new());
+    let (mut has, mut lacks, mut apart) = (Vec::new(), Vec::new(), Vec::new());
     for c in comparisons {
-        let removal = |i: usize| c.runs[i].choice.removal.as_ref().map_or("", |r| r.name.as_str());
-        let removed = |i: usize| c.runs[i].choice.formulation == "removed-constraint";
-        for fit in c.fits.iter().filter(|f| removed(f.run) && removed(f.target)) {
-            let Some(fitted) = &fit.fitted else { continue };
-            let words = format!("`{}`, {} to {}", c.scene.name, removal(fit.run), removal(fit.target));
-            match fitted.gap.verdict {
-                Verdict::Different => apart.push(format!("{words}: {}", short(fitted.gap.largest))),
-                _ => one.push(words),
+        let run = |i: usize| &c.runs[i].choice;
+        let removal = |i: usize| run(i).removal.as_ref().map_or("", |r| r.name.as_str());
+        let removed = |i: usize| run(i).formulation == "removed-constraint";
+        for d in c.decided.iter().filter(|d| removed(d.family) && run(d.curve).formulation == "vakonomic") {
+            let words = format!("`{}` ({})", c.scene.name, removal(d.family));
+            match d.outcome.as_ref().map(Membership::answer) {
+                Ok(Answer::SomeProved | Answer::Some { .. }) => has.push(words),
+                _ => lacks.push(words),
+            }
+        }
+        for p in c.pairs.iter().filter(|p| removed(p.first) && removed(p.second)) {
+            if p.gap.verdict == Verdict::Different {
+                apart.push(format!("`{}`, {} and {}", c.scene.name, removal(p.first), removal(p.second)));
             }
         }
     }
     format!(
-        "**The removed-constraint motion depends on the choice of the parameters.** With the free constants of one removal fitted to the motion of \
-         another removal of the same constraint, a gap remains on {}. No certain difference remains on {}.",
-        enumerate(&apart),
-        enumerate(&one)
+        "**Removal by coordinates has the vakonomic motions and no others; other parameters may have more.** Of removals with variables of their own \
+         and all costates kept, some $P(t_0)$ gives the vakonomic motion on {}; on {} none was found. With the constants that their rules \
+         give, two removals of one constraint have different motions on {}.",
+        enumerate(&has),
+        enumerate(&lacks),
+        enumerate(&apart)
     )
 }
 
@@ -179,7 +186,7 @@ fn control(comparisons: &[Comparison]) -> String {
         names(comparisons.iter().filter(|c| verdict_of(c, "chetaev", substitution::NAME) == Some(verdict)))
     };
     format!(
-        "**The control works.** Putting the constraint into $L$ is flagged on {}, and called right on {}.",
+        "**The wrong formulation is found out.** Putting the constraint into $L$ is flagged on {}, and called right on {}.",
         enumerate(&with(&Verdict::Different)),
         enumerate(&with(&Verdict::Same))
     )
@@ -201,7 +208,7 @@ fn predictions(comparisons: &[Comparison]) -> Option<String> {
     }
     worst.map(|(off, name)| {
         format!(
-            "**The parting is predictable.** For {count} pairs of motions the leading term of the gap follows from the Taylor coefficients of their accelerations at the start; \
+            "**How motions begin to part is predictable.** For {count} pairs of motions the leading term of the gap follows from the Taylor coefficients of their accelerations at the start; \
              the measured one is off by at most {} % (`{name}`).",
             short(100.0 * off)
         )

@@ -17,7 +17,7 @@ fn style(run: &Run) -> Style {
     Style::of_formulation(run.choice.formulation).unwrap_or(Style::Vakonomic)
 }
 
-/// The runs that are drawn: the first of each formulation, the costate form left out (it is the vakonomic motion again).
+/// The runs drawn: the first of each formulation, without the costate form (the vakonomic motion again).
 pub(crate) fn drawn(comparison: &Comparison) -> Vec<usize> {
     ["chetaev", "vakonomic", "removed-constraint", substitution::NAME]
         .iter()

@@ -204,7 +204,7 @@ fn open_words(batch: &Batch, records: &[Record], counterexamples: &[(u8, String)
         let _ = writeln!(text, "\nSmallest system found on which {} fails: [{path}]({path}).", label(*theorem));
     }
     if counterexamples.is_empty() {
-        text += "\nThere is no counterexample; one would be shrunk and stand here as a scene file.\n";
+        text += "\nNo counterexample was found; one would be shrunk and stand here as a scene file.\n";
     }
     text
 }

@@ -102,7 +102,7 @@ impl RealizationReport {
         let within = rates.iter().filter(|r| RATE.contains(r)).count();
         let (least, most) = rates.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
         format!(
-            "Friction leads to Chetaev, added mass to the vakonomic motion, both together to the motion between them with κ = friction over mass, added mass on the augmented system to the removed-constraint motion: \
+            "On three scenes and 50 random systems friction leads to Chetaev, added mass to the vakonomic motion, both together to the motion between them with κ = friction over mass, added mass on the augmented system to the removed-constraint motion: \
              {within} of {} measured rates are 1 within 0.05 in 1/N (from {} to {}).",
             rates.len(),
             short(least),

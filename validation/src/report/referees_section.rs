@@ -15,8 +15,8 @@ const SAME: f64 = 1e-8;
 /// A difference counts as none, too, under this multiple of the error estimates.
 const CERTAINTY: f64 = 10.0;
 
-/// The section, in Markdown; empty where there is nothing to say. Only bounds are printed, powers of ten, so that the page does not
-/// change with the last digit of a difference.
+/// The section, in Markdown; empty where there is nothing to say. Only bounds are printed, powers of ten, so
+/// that the page does not change with the last digit of a difference.
 ///
 /// # Errors
 /// Where a motion cannot be read off.
@@ -27,7 +27,7 @@ pub fn referees_section(comparison: &mut Comparison, casadi: Option<&Outcome>) -
         rows.extend(outcome.rows().iter().filter(|row| row.scene == comparison.scene.name).cloned());
     }
     let mut text = String::from("\n## Referees\n\n");
-    text += "Other derivations of the same equations, by programs that share none with this one.\n\n";
+    text += "Other derivations of the same equations, by programs that share no derivation with this one.\n\n";
     if let Some(Outcome::NotRun(reason)) = casadi {
         text += &format!("CasADi and SymPy: *not run: {reason}.*\n\n");
     }

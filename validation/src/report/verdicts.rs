@@ -73,7 +73,7 @@ fn rounded(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 
-/// Where two sets of verdicts differ: the path to the first difference and the two values. Numbers may differ a little.
+/// The first difference of two sets of verdicts: its path and both values. Numbers may differ a little.
 pub fn difference_of_verdicts(old: &Value, new: &Value) -> Option<String> {
     differ("", old, new)
 }

@@ -1,9 +1,9 @@
 //! How cost grows with the size of a system: the train with n trailers, in every formulation.
 //!
-//! Three costs are measured: the derivation (from `System` to compiled tape, a removal found on the way included), one right-hand side, and a solve over the
-//! duration of the scene. Beside each time stands a count that does not depend on the machine: expressions made, operations of a right-hand
-//! side, evaluations. A formulation is followed to longer trains until a derivation takes longer than [`Limits::seconds`]; solves that
-//! would are left out.
+//! Three costs are measured: derivation (`System` to compiled tape, finding a removal included), one
+//! right-hand side, and a solve over the scene's duration. Each time comes with a count that no machine
+//! changes: expressions made, operations of a right-hand side, evaluations. Trains grow until a formulation's
+//! derivation takes over [`Limits::seconds`]; solves that would are left out.
 
 mod fit;
 
@@ -48,7 +48,7 @@ const STEPS: usize = 20_000;
 pub struct Limits {
     /// Longest train.
     pub trailers: usize,
-    /// After a derivation that took longer than this, longer trains are left out; and solves that would take longer.
+    /// After a longer derivation, longer trains are left out; and solves that would take longer.
     pub seconds: f64,
     /// Repeats of everything that is timed; the shortest time counts.
     pub repeats: usize,
@@ -142,7 +142,7 @@ pub fn line(name: &'static str, limits: &Limits, progress: &mut dyn FnMut(&str, 
     Ok(line)
 }
 
-/// The counts of one formulation at one length, without timing anything: expressions made, operations of a right-hand side.
+/// Counts of one formulation at one length, untimed: expressions made, operations of a right-hand side.
 ///
 /// # Errors
 /// As [`measure`].
@@ -164,7 +164,7 @@ struct Derived {
     constants: ConstantsRule,
 }
 
-/// From `System` to compiled tape, in the form that a run from the start of the scene would take; free constants that are not given are zero.
+/// From `System` to compiled tape, in the form for the scene's start; free constants not given are zero.
 fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
     let name = name.split(' ').next().unwrap_or(name);
     let entry = formulation(name).with_context(|| format!("no formulation {name}"))?;

@@ -65,7 +65,7 @@ impl Verdict {
     }
 }
 
-/// Part of the run over which the first errors are measured: a step of length 10⁻⁶ has no distance of its own worth the name.
+/// Part of the run for the first errors: a step of length 10⁻⁶ has no distance of its own worth the name.
 const FIRST_PART: f64 = 0.1;
 
 /// What is known of a motion at one time; lengths in the kinetic metric.
@@ -90,7 +90,7 @@ pub struct Allowance {
 /// Judges a motion by what is known, which has to reach as far.
 ///
 /// # Errors
-/// [`SolveError`] where the motion cannot be read off before its end; `Question::judged` counts that as refused, since nothing wrong is handed out.
+/// [`SolveError`] where the motion cannot be read off before its end: refused, for `Question::judged`.
 pub fn judge(
     motion: &mut Motion,
     metric: &mut Metric,

@@ -76,8 +76,8 @@ pub struct Long {
     pub reference: Option<fn(&str) -> Reference>,
 }
 
-/// The long motions: those of the sledge have a reference. Its vakonomic and its removed-constraint motion turn ever faster, as `g t/k`, so that equal steps
-/// do for a time only.
+/// The long motions: those of the sledge have a reference. Its vakonomic and its removed-constraint motion
+/// turn ever faster, as `g t/k`, so that equal steps do for a time only.
 pub const LONG: [Long; 4] = [
     sledge("chetaev", 20_000.0),
     sledge("vakonomic", 50.0),
@@ -105,7 +105,7 @@ pub struct LongRun {
     pub steps: usize,
     /// Largest `|E − E₀|`, in parts of the largest `v·Mv`.
     pub energy: f64,
-    /// How far the mean energies of ten parts of the run are apart, in the same unit: what of `energy` is a drift and not an oscillation.
+    /// Spread of the mean energies of ten parts of the run, same unit: drift in `energy`, not oscillation.
     pub trend: f64,
     /// Largest `|f_i|/(|∂f_i/∂v| |v|)`.
     pub constraint: f64,

@@ -1,7 +1,7 @@
 //! Stiff and extreme cases: is what comes back right, and where it is not, does it say so?
 //!
-//! A [`Question`] is one system at one point of one case in one formulation, with a [`Reference`] that does not share the failure it is there
-//! to find. Every method of [`integrate::Method::ALL`] answers it, and [`judge()`] gives each [`Cell`] a word:
+//! A [`Question`] is one system at a point of a case in one formulation, with a [`Reference`] that does not
+//! share the failure sought. All of [`integrate::Method::ALL`] answer; [`judge()`] says a word per [`Cell`]:
 //!
 //! ```text
 //! accurate   complete;  error(t) ≤ max(10 e(t), b s(t)) + u(t) at 201 times t, e ≤ 10⁻³ s at the end
@@ -10,11 +10,12 @@
 //! wrong      anything else
 //! ```
 //!
-//! `e(t)` is the largest difference of the motion's two runs up to `t`; `s(t)` the largest distance from the start up to `t`, the first tenth of the
-//! run at least; `u(t)` what the reference itself may be off by; `b` the larger of 10⁻⁷ and ten times the tolerance that was asked of the kept run.
-//! Lengths in the kinetic metric. Where 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked of it.
+//! `e(t)` is the largest difference of the motion's two runs up to `t`; `s(t)` the largest distance from the
+//! start up to `t`, the first tenth of the run at least; `u(t)` what the reference itself may be off by; `b`
+//! the larger of 10⁻⁷ and ten times the tolerance of the kept run. Lengths are in the kinetic metric. Where
+//! 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked of it.
 //!
-//! [`long_runs`] are judged likewise; where no reference reaches as far, energy and constraint stand in the place of the coordinates.
+//! [`long_runs`] are judged likewise; beyond all references, by energy and constraint, not coordinates.
 
 mod cases;
 mod judge;

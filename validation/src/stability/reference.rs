@@ -21,10 +21,10 @@ pub type Posed = Box<dyn Fn() -> Result<(System, State), String> + Send + Sync>;
 pub enum Reference {
     /// The motion in closed form.
     Closed(Road),
-    /// Chetaev's motion by Maggi's equations, of a system in the same coordinates with equivalent constraints.
+    /// Chetaev's motion by Maggi's equations, in the same coordinates with equivalent constraints.
     Maggi(Posed),
-    /// The motion of the same formulation, free constants zero, of a system in the same coordinates with equivalent constraints that are
-    /// regular where those judged are not. It does not share the failure, but it shares the derivation.
+    /// The same formulation's motion, free constants zero, same coordinates, equivalent constraints that are
+    /// regular where those judged are not. It shares the derivation, not the failure.
     Equivalent {
         /// The system and the start.
         posed: Posed,
@@ -46,17 +46,17 @@ pub enum Reference {
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
 const STEPS: usize = 2_000_000;
 
-/// Tolerances of the two runs of a [`Reference::Maggi`] and of a [`Reference::Equivalent`], whose solves of one instant leave more round-off.
+/// Tolerances of the runs of [`Reference::Maggi`] and [`Reference::Equivalent`]: their solves round off more.
 const MAGGI: [f64; 2] = [1e-10, 1e-12];
 
-/// A reference that stops within this part of the time before the motion stops at the same singularity; nothing is compared in between.
+/// A reference that stops by this part earlier stops at the same singularity; no comparison in between.
 const SAME_STOP: f64 = 1e-3;
 
 /// Length of a run that is needed only for its start.
 const SHORTEST: f64 = 1e-9;
 
-/// A reference, known up to some time: the coordinates at `t`, and those by a second run, whose distance is what they may be off by; `None` between
-/// where the reference stops and where a motion stops at the same singularity.
+/// A reference up to some time: the coordinates at `t`, and those by a second run, whose distance is the
+/// doubt; `None` between its stop and a motion's at the same singularity.
 pub type Known<'a> = Box<dyn FnMut(f64) -> Option<(Vec<f64>, Vec<f64>)> + 'a>;
 
 impl Reference {

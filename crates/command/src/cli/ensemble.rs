@@ -14,7 +14,7 @@ pub const MOST_MEMBERS: usize = 1_000_000;
 pub struct MotionArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced or removed-constraint.
+    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced, removed-constraint, kappa.
     #[arg(long, short)]
     pub formulation: String,
     /// Vakonomic multipliers at the start, one a constraint.
@@ -23,8 +23,8 @@ pub struct MotionArguments {
     /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
     #[arg(long, value_name = "NAME")]
     pub removal: Option<String>,
-    /// Free constants of the removed-constraint equations: `zero`, `horizon=T` or `start=A,B,…` (P(t₀), in the order of the
-    /// memory variables). Those of the removal if left out.
+    /// Free constants of the removed-constraint equations: `zero`, `horizon=T` or `start=A,B,…` (P(t₀), in
+    /// the order of the memory variables). Those of the removal if left out.
     #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
     pub constants: Option<String>,
     /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
@@ -46,15 +46,13 @@ pub struct MotionArguments {
 pub struct EnsembleArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// File with one member a line: commas between numbers, the first line names what they replace (a parameter, a coordinate or a velocity at the start, mu1, …).
+    /// File with one member a line: commas between numbers, the first line names what they replace (a
+    /// parameter, a coordinate or a velocity at the start, mu1, …).
     #[arg(long, value_name = "FILE")]
     pub members: Option<PathBuf>,
-    /// Equidistant values of one of these, both ends included; several are combined with each other and with the lines of the file.
+    /// Equidistant values of one of these, both ends included; several combine with each other and the file.
     #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range, required_unless_present = "members")]
     pub vary: Vec<Range>,
-    /// Number of threads; one a processor if left out. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
     /// File to write; to the terminal if left out.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

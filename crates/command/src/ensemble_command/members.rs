@@ -80,7 +80,7 @@ fn known(scene: &Scene) -> Vec<String> {
     parameters.chain(coordinates).chain(velocities).chain(multipliers).collect()
 }
 
-/// The cells of a line with their columns, in characters from 1, without blanks and quotation marks around them.
+/// The cells of a line with their columns, in characters from 1, without blanks and quotation marks.
 fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut column = 1;
     line.split(',').map(move |cell| {

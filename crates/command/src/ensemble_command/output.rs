@@ -176,6 +176,6 @@ impl<'a> Answers<'a> {
             "members": self.values,
             "seconds": { "start": seconds.start, "derive": seconds.derive, "integrate": seconds.integrate },
         });
-        pretty(&value)
+        pretty("ensemble", &value)
     }
 }

@@ -12,7 +12,7 @@ pub(crate) const ORDERS: usize = 24;
 
 /// `Σ c_k s^k`, known up to `s^{known − 1}`, with no coefficient but zero from `terms` on.
 ///
-/// A constant is known to all orders. Its exact value is followed as long as it is rational, and of moderate size: functions of it need that.
+/// A constant is known to all orders; its exact value, for functions of it, while rational and moderate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Jet<C> {
     coefficients: [C; ORDERS],
@@ -49,7 +49,7 @@ impl<C: Coefficient> Jet<C> {
         }
     }
 
-    /// The series with these coefficients, all that are known; the first is exactly `exact`, where that is known.
+    /// The series with these coefficients, all known ones; the first is exactly `exact`, if that is known.
     pub(crate) fn series(coefficients: &[C], exact: Option<Exact>) -> Self {
         let known = coefficients.len().min(ORDERS);
         let mut all = [C::ZERO; ORDERS];
@@ -88,7 +88,7 @@ impl<C: Coefficient> Jet<C> {
         Jet { coefficients: [C::ZERO; ORDERS], known, terms: terms.min(known).max(1), exact, flaw }
     }
 
-    /// `y` with `y' = u' w` or the like: fills coefficients from 1 on, each from the earlier ones; `next(k, y)` is `k y_k`.
+    /// `y` with `y' = u' w` or so: coefficients from 1 on, each from earlier ones; `next(k, y)` is `k y_k`.
     fn integrated(
         &self,
         first: Result<(C, Option<Exact>), Flaw>,
@@ -374,7 +374,7 @@ impl<C: Coefficient> Scalar for Jet<C> {
     }
 
     fn atan2(self, x: Self) -> Self {
-        // the angle of (x, y) has the rate (x y' − y x')/(x² + y²); its value is followed for x > 0 only, as that of atan(y/x)
+        // the angle of (x, y) has the rate (x y' − y x')/(x² + y²); its value for x > 0 is that of atan(y/x)
         let positive = x.exact.is_some_and(|x| x.is_rational() && x.numerator > 0);
         if positive { (self / x).atan() } else { Jet { flaw: self.flaw.or(Some(Flaw::InverseFunction)), ..self } }
     }

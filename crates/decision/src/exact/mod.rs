@@ -1,4 +1,4 @@
-//! Truncated power series whose coefficients are elements of a finite field, or `f64`: the expressions of the graph evaluated on them.
+//! Truncated power series over a finite field, or `f64`, and the expressions of the graph evaluated on them.
 
 mod jet;
 mod linear;

@@ -1,9 +1,10 @@
 //! The field of `p` elements, and the images in it of the numbers of which jets are made.
 //!
-//! Rational numbers, `i`, `e^{i a}`, `e^a` for rational `a`, and roots of rational numbers: products of the primes up to 47, and of every second larger one.
-//! `e^{i a} ↦ h^a` where `h` has the prime order `r`: the exponent is taken modulo `r`, so that every fraction has its image, whatever its
-//! denominator. `e^{i/N}` is transcendental for every `N`, and independent of `e^{1/N}` (Lindemann, Weierstrass), so that
-//! `T = e^{i/N} ↦ τ = h^{1/N}` is a homomorphism of rings wherever nothing that is divided by has the image 0.
+//! Rational numbers, `i`, `e^{i a}`, `e^a` for rational `a`, and roots of rational numbers: products of the
+//! primes up to 47, and of every second larger one. `e^{i a} ↦ h^a` where `h` has the prime order `r`: the
+//! exponent is modulo `r`, so every fraction has its image, whatever its denominator. `e^{i/N}` is
+//! transcendental for every `N`, independent of `e^{1/N}` (Lindemann, Weierstrass); so
+//! `T = e^{i/N} ↦ τ = h^{1/N}` is a ring homomorphism wherever nothing divided by has the image 0.
 
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
@@ -69,7 +70,7 @@ impl Modular {
         Self::new(IMAGINARY)
     }
 
-    /// `N` in decimals, and the image `τ` of `e^{i/N}`: `N = 10^38 · lcm(1, …, 40)`, of which the denominators of angles are divisors.
+    /// `N = 10^38 · lcm(1, …, 40)`, decimal, a multiple of angles' denominators; the image `τ` of `e^{i/N}`.
     pub(crate) fn turn() -> (String, Self) {
         let root = |base: Self, parts: i128| {
             let part = Exact { numerator: 1, denominator: parts, quarters: 0 };
@@ -187,7 +188,7 @@ impl Modular {
         Some(root)
     }
 
-    /// `√x` for a fraction `x > 0` made of squares and of primes that have roots here: those of different primes are independent, and each prime has one.
+    /// `√x`, `x > 0` a fraction of squares and primes with roots here; roots of several are independent.
     pub(crate) fn root(x: Exact) -> Result<(Self, Option<Exact>), Flaw> {
         if !x.is_rational() || x.numerator < 0 {
             return Err(Flaw::Root);

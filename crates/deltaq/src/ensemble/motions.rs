@@ -14,8 +14,8 @@ use crate::{ErrorEstimate, Metric, SolveError};
 pub struct MemberMotion {
     /// Coordinates, velocities, multipliers and invariants at the times asked for, as far as the motion came.
     pub outputs: Vec<Outputs>,
-    /// Largest difference of the two runs at these times, in the kinetic metric and over the largest distance from the start; zero where there is
-    /// none of these times, none without [`EnsembleOptions::estimate`].
+    /// Largest difference of the two runs at these times, in the kinetic metric and over the largest distance
+    /// from the start; zero where there is none of these times, none without [`EnsembleOptions::estimate`].
     pub estimate: Option<ErrorEstimate>,
     /// The run behind it.
     pub run: MemberRun,
@@ -60,7 +60,7 @@ impl Ensemble {
 }
 
 impl Ensemble {
-    /// [`Ensemble::members`] and [`Ensemble::motions`] of starts of which some may have been refused already, with a cause; an `Err` says why a member was.
+    /// [`Ensemble::members`] and [`Ensemble::motions`] of starts, where an `Err` is a member refused before.
     pub fn answers(
         &self,
         starts: &[Result<EnsembleStart, String>],

@@ -16,8 +16,8 @@ use crate::{Ending, SolveError, TIGHTER};
 pub struct EnsembleOptions {
     /// Number of threads; 0: as many as there are processors. Results do not depend on it.
     pub threads: usize,
-    /// Whether each member is run twice, at the tolerance and at [`TIGHTER`] times it, as single motions are, for the sake of
-    /// [`MemberRun::differences`]. Otherwise it is run at the tolerance, and nothing is known of its error but what that says.
+    /// Whether each member is run twice, at the tolerance and at [`TIGHTER`] times it, as single motions are,
+    /// for [`MemberRun::differences`]. Otherwise only the tolerance tells its error.
     pub estimate: bool,
 }
 
@@ -32,8 +32,8 @@ impl Default for EnsembleOptions {
 pub struct MemberRun {
     /// The states at the times asked for, as far as the motion came.
     pub states: Vec<Vec<f64>>,
-    /// States of the kept run minus those of the looser one at these times: what the looser run was wrong by, and a bound in practice for the kept one.
-    /// Empty without [`EnsembleOptions::estimate`].
+    /// States of the kept run minus those of the looser one at these times: what the looser run was wrong by,
+    /// and a bound in practice for the kept one. Empty without [`EnsembleOptions::estimate`].
     pub differences: Vec<Vec<f64>>,
     /// How it ended.
     pub ending: Ending,
@@ -50,10 +50,10 @@ pub struct MemberRun {
 pub(super) type Outcome = Result<MemberRun, SolveError>;
 
 impl Ensemble {
-    /// Integrates `members`; states are read at `times`, which have to be in the order in which they are passed.
+    /// Integrates `members`; states are read at `times`, in the order in which they are passed.
     ///
-    /// The results are in the order of the members. Each is the same to the last bit whatever the other members, their order and the number of threads.
-    /// An `Err` is a member that could not be started.
+    /// The results are in the order of the members. Each is the same to the last bit whatever the other
+    /// members, their order and the number of threads. An `Err` is a member that could not be started.
     pub fn run(&self, members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions) -> Vec<Outcome> {
         let tolerance = self.settings.tolerance;
         if !options.estimate {

@@ -10,7 +10,7 @@ use integrate::Method;
 
 const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
 
-/// Two states of which the first grows beyond all bounds at `t = 1 / u₀`: `x' = u`, `u' = b u²` by a force of its own.
+/// Two states, the first unbounded at `t = 1 / u₀`: `x' = u`, `u' = b u²` by a force of its own.
 const BLOW_UP: &str = r#"
 title = "Velocity that grows with its square"
 [parameters]

@@ -13,8 +13,8 @@ pub(super) fn number(threads: usize) -> usize {
     }
 }
 
-/// `work` on this thread and, where there are more items than a `group`, on others beside it, `threads` in all (0: as many as there are processors). Each takes
-/// items `0..count` as it gets to them; what came of them is in their order, `None` of those that came to nothing.
+/// `work` on this thread and, for more items than a `group`, on others, `threads` in all (0: one a
+/// processor). Each takes items `0..count` as it gets to them; results are in order, `None` for none.
 pub(super) fn shared<T: Send>(
     threads: usize,
     count: usize,

@@ -31,8 +31,7 @@ pub struct Collected {
 }
 
 impl Plan {
-    /// Largest condition with which the definitions are used. A multiplier of 1000 takes three digits at
-    /// most.
+    /// Largest condition of used definitions. A multiplier of 1000 takes three digits at most.
     pub const LIMIT: f64 = 1e6;
 
     /// The rates as they are evaluated.
@@ -52,8 +51,7 @@ impl Plan {
         [known, self.definitions.clone(), waiting].concat()
     }
 
-    /// Places in `(t, y, constants, z)` of what the definitions take: of `z` the unknowns of blocks that are
-    /// left.
+    /// Places in `(t, y, constants, z)` of what the definitions take: of `z` the unknowns of blocks left.
     pub(crate) fn places(&self, equations: &Equations) -> Vec<usize> {
         let mut first = equations.known_symbols().len();
         let mut places: Vec<usize> = (0..first).collect();

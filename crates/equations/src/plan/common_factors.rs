@@ -1,8 +1,7 @@
 //! Common factors drawn out of the definitions and rates of a plan: `a x + b x = (a + b) x`.
 //!
 //! Elimination leaves sums of products whose terms may meet and cancel; only when nothing more does are they
-//! written shorter. What is drawn out of one sum may have been shared with another, so that instructions are
-//! counted.
+//! shortened. What is drawn out of one sum may have been shared with another: instructions are counted.
 
 use std::collections::HashSet;
 
@@ -11,8 +10,7 @@ use symbolic::{CompileError, Expr, Symbol};
 use super::chosen::{Collected, Plan};
 use crate::equations::Equations;
 
-/// One part in so many of the instructions has to be saved: under that it is as likely that Taylor series
-/// take more products.
+/// One part in so many of the instructions has to be saved: under that, Taylor series may take more products.
 const WORTH_WHILE: usize = 10;
 
 /// What is shorter than `plan` as it is, if anything is.

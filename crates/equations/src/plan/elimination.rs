@@ -15,8 +15,7 @@ const HARMLESS: f64 = 1e4;
 #[derive(Clone, Default)]
 pub(crate) struct Eliminated {
     pub(crate) list: Vec<(Symbol, Expr)>,
-    /// Squares of multipliers (entries over their pivot, scaled as at the start) and of what cancelled in a
-    /// pivot over that pivot.
+    /// Squares of multipliers (entry over pivot, scaled as at the start) and of what cancelled in a pivot.
     pub(crate) watched: Vec<Expr>,
     /// Pivots of which something is watched.
     pub(crate) moving: usize,
@@ -51,8 +50,7 @@ impl<'a> Elimination<'a> {
         Elimination { graph, ranges, inline, names, named: HashMap::new(), found: Eliminated::default() }
     }
 
-    /// Eliminates in the given order; `symmetric` where pivots are on the diagonal of a matrix that is its
-    /// own transpose. `scale`: of the rows.
+    /// Eliminates in the given order; `symmetric`: diagonal pivots of a symmetric matrix; `scale`: of rows.
     ///
     /// `None` where a pivot is identically zero.
     pub(crate) fn run(

@@ -1,5 +1,4 @@
-//! The plan in which equations are evaluated: linear blocks eliminated beforehand, in expressions, where that
-//! is cheap and safe.
+//! The plan of evaluation: linear blocks eliminated beforehand, in expressions, where cheap and safe.
 //!
 //! A block `J(t, y) z = b(t, y)` whose pivots are known beforehand needs no factorization at run time:
 //! elimination in expressions leaves a list of definitions, one after the other, in which structural zeros
@@ -7,8 +6,7 @@
 //! that none is small there (as partial pivoting would choose them); along the motion they may become small.
 //! So the squares of all multipliers, and of what cancelled in a pivot over that pivot, are watched in every
 //! evaluation: where they exceed [`Plan::LIMIT`], or a rate is not finite, the same instant is solved by LU
-//! factorization with pivoting instead, and counted. What is known to stay small (by [`Graph::range`]) is not
-//! watched.
+//! factorization with pivoting, and counted. What is known to stay small ([`Graph::range`]) is not watched.
 
 mod chosen;
 mod common_factors;

@@ -1,13 +1,11 @@
-//! The order in which a sparse linear block is eliminated: few operations, and no pivot that is small where
-//! it was tried.
+//! Order of elimination of a sparse linear block: few operations, and no pivot that is small where tried.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use mechanics::elimination::{Pivot, SparseMatrix};
 
-/// Points at which pivots are tried: at the first ones none may be small, at the others it is better if none
-/// is.
+/// Points at which pivots are tried: at the first none may be small, at the others it is better if none is.
 pub(crate) const POINTS: usize = 10;
 pub(crate) const NEAR: usize = 2;
 
@@ -61,8 +59,7 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// Scales columns, then rows, to a largest entry of 1, as the numerical solve does; `None` where that
-    /// cannot be done near the start.
+    /// Scales columns, then rows, to largest entries of 1, as the numerical solve does; `None` if impossible.
     pub(crate) fn new(mut rows: Vec<BTreeMap<usize, Entry>>) -> Option<Self> {
         let mut row_scale = Vec::new();
         for point in 0..POINTS {

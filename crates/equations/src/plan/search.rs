@@ -23,14 +23,12 @@ const MOST: usize = 20_000;
 /// Multiplications over which only one way is tried.
 const LONG: usize = 400;
 
-/// Points around the start at which the condition of a plan is tried, and the one over which a point counts
-/// as bad.
+/// Points around the start at which a plan's condition is tried, and that over which a point counts as bad.
 const AROUND: usize = 32;
 const BAD: f64 = 1e3;
 
 impl Plan {
-    /// The cheapest plan that is safe near `(t, y, free constants)`, the point given; without one, near a
-    /// point that stands for all.
+    /// The cheapest plan that is safe near `(t, y, free constants)`, or near a point that stands for all.
     ///
     /// # Errors
     /// [`CompileError`] as [`crate::Compiled::new`].

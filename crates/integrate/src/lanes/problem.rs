@@ -22,7 +22,7 @@ pub trait LaneProblem {
     /// Taylor coefficients as those of [`crate::Problem::taylor`]; whether they are to be trusted, by lane.
     fn taylor(&mut self, t: &Lane, y: &[Lane], unit: &Lane, coefficients: &mut [Lane]) -> [bool; LANES];
 
-    /// Moves the states onto the invariant manifold, and says by what Euclidean length; NaN where that is not possible.
+    /// Moves the states onto the invariant manifold; returns the Euclidean length moved, NaN if impossible.
     fn project(&mut self, t: &Lane, y: &mut [Lane]) -> Lane;
 
     /// Values of the event functions.

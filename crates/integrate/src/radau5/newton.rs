@@ -4,9 +4,10 @@
 //! h⁻¹ Σ_j (A⁻¹)_ij z_j = F(t + c_i h, y + z_i),   i = 1, 2, 3,     z_i = Y_i − y
 //! ```
 //!
-//! The simplified Newton iteration puts one Jacobian `J` in the place of all `J_i = ∂F/∂y(t + c_i h, y + z_i)`, so that `T` takes the 3n equations apart
-//! (Hairer and Wanner, II, IV.8). It contracts by about `(A⁻¹/h − J)⁻¹ (J_i − J)`. Where a rate `N` acts in a direction that turns by `δ` within the step
-//! this is `h N δ²` (friction across a blade that turns): the steps would be as short as `(N ω²)^(-1/3)` however smooth the motion is. There
+//! The simplified Newton iteration takes one Jacobian `J` for all `J_i = ∂F/∂y(t + c_i h, y + z_i)`, so that
+//! `T` takes the 3n equations apart (Hairer and Wanner, II, IV.8). It contracts by about
+//! `(A⁻¹/h − J)⁻¹ (J_i − J)`: by `h N δ²` where a rate `N` acts in a direction that turns by `δ` in a step
+//! (friction across a turning blade), so steps are about `(N ω²)^(-1/3)` however smooth the motion. There
 //! Newton's iteration proper is taken, with a matrix of 3n rows,
 //!
 //! ```text
@@ -21,7 +22,7 @@ use super::{Factors, GOOD_CONTRACTION, ITERATIONS, Radau5};
 use crate::radau5_tableau::{NODES, T, T_INVERSE, eigenvalues, inverse};
 use crate::system::Failure;
 
-/// After a step that only Newton's iteration proper could solve, so many are solved by it before the simplified one is tried again.
+/// Steps solved by Newton's iteration proper after one that needs it; then the simplified one is tried.
 const PROPER_STEPS: usize = 20;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -89,7 +90,7 @@ impl Radau5<'_, '_> {
         }
         self.guess(h);
         let solved = self.iterate(h, Iteration::Proper)?;
-        // the error estimate needs the Jacobian of the next step's start; the other iteration does not contract like this one
+        // the estimate needs the Jacobian of the next step's start; the other iteration contracts otherwise
         (self.contraction, self.margin) = (1.0, 1.0);
         self.proper_steps -= 1;
         Ok(solved)

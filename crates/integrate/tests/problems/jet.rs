@@ -85,7 +85,7 @@ impl Div for &Jet {
     }
 }
 
-/// The coefficients of the solution of `y' = F(t, y)`: each order of the rates gives the next one of the states.
+/// Coefficients of the solution of `y' = F(t, y)`: each order of the rates gives the next of the states.
 pub fn solution(rates: &dyn Fn(&Jet, &[Jet]) -> Vec<Jet>, t: f64, y: &[f64], unit: f64, coefficients: &mut [f64]) {
     let n = y.len();
     let orders = coefficients.len() / n;

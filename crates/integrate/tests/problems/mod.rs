@@ -12,8 +12,8 @@ type Refusal = fn(f64, &[f64]) -> Option<String>;
 type Events = fn(f64, &[f64], &mut [f64]) -> Result<(), EvaluationError>;
 type Projection = fn(f64, &mut [f64]) -> Result<f64, EvaluationError>;
 
-/// A problem put together from functions; counts its own evaluations. Rates are written once, for power series: their order 0 are
-/// the rates, and order 1 along each component is the Jacobian.
+/// A problem put together from functions; counts its own evaluations. Rates are written once, for power
+/// series: their order 0 are the rates, and order 1 along each component is the Jacobian.
 #[derive(Clone)]
 pub struct Case {
     pub dimension: usize,

@@ -15,8 +15,8 @@ use crate::{Removal, State, System};
 
 /// Finds the velocities that were not given from `f(q₀, v, t₀) = 0`, checks the start ([`check_regularity`]).
 ///
-/// With rates of removal parameters given, the unknowns are `(ü, u̇, u, w)` with `q(u̇, u, w) = q₀`, the given velocities and
-/// the removal's start expressions; then `v = q̇(ü, u̇, u, w)`.
+/// With rates of removal parameters given, the unknowns are `(ü, u̇, u, w)` with `q(u̇, u, w) = q₀`, the
+/// given velocities and the removal's start expressions; then `v = q̇(ü, u̇, u, w)`.
 ///
 /// # Errors
 /// [`StartError`].

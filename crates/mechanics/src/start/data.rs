@@ -17,7 +17,7 @@ pub struct StartData<'a> {
     pub given: HashMap<Symbol, f64>,
     /// Where Newton's method starts for the others; chooses among several solutions.
     pub guess: HashMap<Symbol, f64>,
-    /// Given velocities need not satisfy the constraints: they are projected as by [`project_velocity`](crate::project_velocity).
+    /// Project given velocities onto the constraints, as [`project_velocity`](crate::project_velocity) does.
     pub project: bool,
     /// The parametrization whose rates are given.
     pub removal: Option<&'a Removal>,
@@ -34,7 +34,7 @@ pub struct Completion {
     pub residual: f64,
     /// Length `√(δvᵀ M δv)` of the projection onto the constraint, where one was asked for.
     pub projected: Option<f64>,
-    /// Positions and given velocities or rates as they were written, in parameters, time and earlier positions: exact where the state is
-    /// rounded. Empty where there are numbers only.
+    /// Positions and given velocities or rates as they were written, in parameters, time and earlier
+    /// positions: exact where the state is rounded. Empty where there are numbers only.
     pub written: Vec<(Symbol, Expr)>,
 }

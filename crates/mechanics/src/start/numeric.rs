@@ -84,7 +84,7 @@ impl<'a> Problem<'a> {
         Ok(match solve(evaluate, start, &NewtonOptions::default()) {
             Ok(root) => Solved::Root(root),
             Err(NewtonError::NotConverged { best, .. }) => Solved::LeastSquares(*best),
-            Err(NewtonError::NotFinite { .. } | NewtonError::Decomposition { .. }) => Solved::Nowhere,
+            Err(NewtonError::NotFinite { .. }) => Solved::Nowhere,
         })
     }
 

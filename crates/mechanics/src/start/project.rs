@@ -8,15 +8,14 @@ use super::regularity::check_constraints;
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, solve};
 use crate::{State, System};
 
-/// The smallest change of velocity, in the metric `M = ∂²L/∂v²` at `state`, after which `f(q, v, t) = 0`; and its length
-/// `√(δvᵀ M δv)`.
+/// The smallest `δv`, in the metric `M = ∂²L/∂v²` at `state`, to `f(q, v, t) = 0`; its length `√(δvᵀ M δv)`.
 ///
-/// Solves `M δv + Aᵀ κ = 0`, `f(q, v + δv, t) = 0` for `(δv, κ)`. `M` regular on the kernel of `A` is enough; where `M` is
-/// indefinite the change is stationary, not smallest, and the length that of `|δvᵀ M δv|`.
+/// Solves `M δv + Aᵀ κ = 0`, `f(q, v + δv, t) = 0` for `(δv, κ)`. `M` regular on the kernel of `A` is enough;
+/// where `M` is indefinite the change is stationary, not smallest, and the length that of `|δvᵀ M δv|`.
 ///
 /// # Errors
-/// [`StartError::Projection`] where Newton's method does not reach the constraint; [`StartError::NotFinite`] and
-/// [`StartError::DependentConstraints`] as in [`check_regularity`](super::check_regularity); [`StartError::WrongLength`].
+/// [`StartError::Projection`] where Newton's method does not reach the constraint;
+/// [`StartError::WrongLength`]; those of [`check_regularity`](super::check_regularity).
 pub fn project_velocity(system: &System, state: &State) -> Result<(State, f64), StartError> {
     check_lengths(system, state)?;
     check_constraints(system, state)?;

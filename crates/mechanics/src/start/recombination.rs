@@ -7,18 +7,18 @@ use super::error::StartError;
 use super::regularity::scaled_constraint_jacobian;
 use crate::{State, System};
 
-/// Ratios of singular values under which constraints are recombined: multipliers of the others lose less than four digits.
+/// Ratio of singular values under which constraints are recombined; over it multipliers lose < 4 digits.
 const NEARLY_DEPENDENT: f64 = 1e-2;
 
-/// `f' = T f` with a constant, regular `T` such that the rows of `A' = T A` are orthonormal at the start, coordinates in the units of their masses.
+/// `f' = T f`, `T` constant and regular: at the start `A' = T A` has orthonormal rows in units of the masses.
 ///
-/// `T f = 0` where `f = 0`, so that the motion is the same; only multipliers change, `λ = Tᵀ λ'`. But rows of `A` at an angle `δ` fix the accelerations
-/// to `ε/δ²`, those of `A'` to `ε/δ`.
+/// `T f = 0` where `f = 0`, so that the motion is the same; only multipliers change, `λ = Tᵀ λ'`. But rows of
+/// `A` at an angle `δ` fix the accelerations to `ε/δ²`, those of `A'` to `ε/δ`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recombination {
     /// `T`, lower triangular.
     pub matrix: DMatrix<f64>,
-    /// Smallest over largest singular value of `A` at the start: for two constraints half the angle between them, nearly.
+    /// Smallest over largest singular value of `A` at the start: for two constraints about half their angle.
     pub ratio: f64,
 }
 

@@ -15,11 +15,11 @@ pub(super) const SINGULAR_LIMIT: f64 = 1e-10;
 const POINTS: u64 = 6;
 const DISTANCE: f64 = 1e-2;
 
-/// Checks that `L`, `f` and `Q` are finite at `state`, that `A = ∂f/∂v` has full row rank there and that `NᵀMN` is regular, where
-/// `M = ∂²L/∂v²` and the columns of `N` are a basis of the kernel of `A`. `M` itself may be singular, or indefinite.
+/// Checks at `state` that `L`, `f` and `Q` are finite, that `A = ∂f/∂v` has full row rank and that `NᵀMN` is
+/// regular: `M = ∂²L/∂v²`, the columns of `N` a basis of ker `A`. `M` itself may be singular, or indefinite.
 ///
-/// Entries are compared with their size at nearby points, row by row and column by column, so that neither units nor
-/// round-off (`sin(pi)`) can feign a rank.
+/// Entries are compared with their size at nearby points, row by row and column by column, so that neither
+/// units nor round-off (`sin(pi)`) can feign a rank.
 ///
 /// # Errors
 /// [`StartError::NotFinite`], [`StartError::DependentConstraints`], [`StartError::SingularMassMatrix`].
@@ -31,7 +31,7 @@ pub fn check_regularity(system: &System, state: &State) -> Result<(), StartError
     scaled.check_mass()
 }
 
-/// `A` in units in which its entries are of order 1, the factors that made its rows so, and the ratio of its singular values.
+/// `A` in units that make its entries of order 1, the factors of its rows, the ratio of its singular values.
 pub(super) fn scaled_constraint_jacobian(
     system: &System,
     state: &State,
@@ -109,7 +109,7 @@ impl ScaledMatrices {
         if self.constraint_jacobian.nrows() == 0 {
             return Ok(1.0);
         }
-        let values = decompose(self.constraint_jacobian.clone())?.values;
+        let values = decompose(&self.constraint_jacobian)?.values;
         let (ratio, singular_values) = ratio(&values);
         if ratio > SINGULAR_LIMIT {
             return Ok(ratio);
@@ -120,11 +120,11 @@ impl ScaledMatrices {
     fn check_mass(&self) -> Result<(), StartError> {
         let (h, n) = self.constraint_jacobian.shape();
         let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
-        let svd = decompose(padded)?;
+        let svd = decompose(&padded)?;
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&a, &b| svd.values[b].total_cmp(&svd.values[a]));
         let kernel = svd.right.select_rows(&order[h..]).transpose();
-        let (ratio, singular_values) = ratio(&decompose(kernel.tr_mul(&(&self.mass * &kernel)))?.values);
+        let (ratio, singular_values) = ratio(&decompose(&kernel.tr_mul(&(&self.mass * &kernel)))?.values);
         if ratio > SINGULAR_LIMIT {
             return Ok(());
         }
@@ -134,7 +134,7 @@ impl ScaledMatrices {
 
 /// Smallest over largest singular value, and all of them in falling order.
 ///
-/// The largest counts as at least 1, the size of the scaled entries: one singular value has no ratio of its own.
+/// The largest counts as at least 1, the size of scaled entries: one singular value has no ratio of its own.
 fn ratio(values: &DVector<f64>) -> (f64, Vec<f64>) {
     let mut sorted: Vec<f64> = values.iter().copied().collect();
     sorted.sort_by(|a, b| b.total_cmp(a));
@@ -146,8 +146,8 @@ fn inverse_or_one(x: f64) -> f64 {
     if x > 0.0 && (1.0 / x).is_finite() { 1.0 / x } else { 1.0 }
 }
 
-/// A unit for each velocity: where `M` knows the coordinate, the one that makes its mass 1; else the one that makes its part
-/// in a constraint as large as that of the others.
+/// A unit for each velocity: where `M` knows the coordinate, the one that makes its mass 1; else the one that
+/// makes its part in a constraint as large as that of the others.
 fn column_scale(usual_a: &DMatrix<f64>, usual_m: &DMatrix<f64>) -> DVector<f64> {
     let n = usual_m.nrows();
     let mut scale = DVector::from_fn(n, |j, _| {

@@ -36,13 +36,13 @@ impl RemovalStart {
 
 /// Start values of `u`, `u̇` and `w` for a motion that starts at `state`.
 ///
-/// What is a coordinate takes its value from `state`; what [`Removal::start`] names, that of the expression there; the
-/// rest solves `q(u̇, u, w, t) = q₀`, `q̇(ü, u̇, u, w, t) = v₀`, nearest to zero where that leaves a choice.
+/// Coordinates take their value from `state`; what [`Removal::start`] names, that of the expression there;
+/// the rest solves `q(u̇, u, w, t) = q₀`, `q̇(ü, u̇, u, w, t) = v₀`, nearest to zero where there is a choice.
 ///
 /// # Errors
-/// [`StartError::RemovalStart`] with the residual where no values of the parameters give this state: its velocity is off the
-/// constraint, the chart of the parametrization breaks here, or a start expression contradicts it;
-/// [`StartError::WrongLength`]; [`StartError::Evaluation`].
+/// [`StartError::RemovalStart`] with the residual where no values of the parameters give this state: its
+/// velocity is off the constraint, the chart of the parametrization breaks here, or a start expression
+/// contradicts it; [`StartError::WrongLength`]; [`StartError::Evaluation`].
 pub fn complete_removal_start(system: &System, removal: &Removal, state: &State) -> Result<RemovalStart, StartError> {
     check_lengths(system, state)?;
     let g = &system.graph;

@@ -12,7 +12,7 @@ use crate::{State, System};
 /// Two velocities closer than this part of the larger are one solution.
 const SAME: f64 = 1e-6;
 
-/// Solves the equations of `problem` and evaluates the velocities `outputs`; of contradictory equations, the least-squares solution.
+/// Solves `problem` and evaluates the velocities `outputs`; of contradictory equations by least squares.
 pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &StartData) -> Result<Vec<f64>, StartError> {
     let mut roots: Vec<(Vec<f64>, Root)> = Vec::new();
     let mut nearest: Option<Root> = None;
@@ -49,8 +49,7 @@ pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &Start
     Ok(v)
 }
 
-/// Values at which unknowns without a guess start: nonlinear equations are solved from several, to see whether they have
-/// more than one solution.
+/// Starts of unknowns without a guess: several, to see whether nonlinear equations have more solutions.
 fn guesses(problem: &Problem, data: &StartData) -> Vec<f64> {
     if problem.is_linear() || !data.guess.is_empty() {
         return vec![0.0];
@@ -68,7 +67,7 @@ fn velocity_name(system: &System, i: usize) -> String {
     system.graph.name(system.coordinates[i].velocity)
 }
 
-/// The velocities at `root`, none of which may be left open. Dependent constraints are the deeper fault and come first.
+/// The velocities at `root`; none may be open. Dependent constraints are the deeper fault and come first.
 fn check_determined(
     problem: &Problem,
     outputs: &[Expr],

@@ -3,7 +3,7 @@
 use deltaq::{
     Choice, Setting, SolveError, costates_of, derive, growth, integrability, integrals_by_ranks, multipliers_of,
 };
-use mechanics::{ConstantsRule, Integrability, Removal, complete_removal_start};
+use mechanics::{ConstantsRule, Integrability, Removal, SingularValues, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use symbolic::Symbol;
 
@@ -38,7 +38,7 @@ pub(super) fn integrable(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// Names of what is counted and measured of a pair: whether it differs, when the gap passes 1e-3, and how it grows at first.
+/// Names of what is counted of a pair: whether it differs, when the gap passes 1e-3, how it grows at first.
 pub struct Divergence {
     /// Counted: whether the two differ.
     pub differs: &'static str,
@@ -115,7 +115,7 @@ pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// T3: `A_wᵀ μ₀ = −P₀ − L_ẇ` is a bijection of the removed family, by coordinates and with all its costates, and the vakonomic one.
+/// T3: `A_wᵀ μ₀ = −P₀ − L_ẇ`: bijection of removed (by coordinates, all costates) and vakonomic family.
 pub(super) fn bijection(case: &mut Case) -> Result<(), CheckError> {
     let (system, given) = (case.scene.system.clone(), case.scene.multipliers.clone());
     for i in (0..case.removed.len()).filter(|_| !given.is_empty()).collect::<Vec<_>>() {
@@ -168,7 +168,7 @@ pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// T14: with `Φ_u̇ᵀ (L_v + P) = 0` at the start, that is `p_u = 0`, removal by the parameters of the recipe is Newton's motion.
+/// T14: with `Φ_u̇ᵀ (L_v + P) = 0` at the start (`p_u = 0`), removal by recipe parameters is Newton's motion.
 pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
     if !case.recipe.kind.is_integrable() {
         return Ok(());
@@ -195,7 +195,7 @@ pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
     let own = phi.select_columns(&columns);
     let solution = match columns.is_empty() {
         true => DVector::zeros(0),
-        false => own.clone().svd(true, true).solve(&right, 1e-12).unwrap_or_else(|_| DVector::zeros(columns.len())),
+        false => SingularValues::of(&own).solve(&right, 1e-12),
     };
     if (own * &solution - &right).norm() > SOLVABLE * size {
         case.found.count(14, "p_u = 0 is within the free constants", false);

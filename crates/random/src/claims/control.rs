@@ -10,11 +10,11 @@ use referees::maggi::Maggi;
 /// Fractions of the run at which the control's equations are put to the test.
 const PLACES: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 0.95];
 
-/// Residual of Maggi's equations on the control motion over which it is wrong, and under which it is right; between them nothing is said.
+/// Over `WRONG` of Maggi's residual the control motion is wrong, under `RIGHT` right, between undecided.
 const WRONG: f64 = 1e-6;
-const RIGHT: f64 = 3e-10;
+const RIGHT: f64 = 1e-12;
 
-/// Flagged wherever Maggi's equations say that it is wrong; called right where it is right, in Chaplygin's integrable form above all.
+/// Flagged wherever Maggi's equations say wrong; called right where right, above all in Chaplygin's form.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     if case.control.is_none() || case.recipe.kind == Kind::Free {
         return Ok(());
@@ -42,8 +42,8 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// Where `L` in the parameters is free of the memory variables, as in Chaplygin's form, the control is the vakonomic motion with `P = 0`, that is `c = 0`
-/// in `(c − L_ṡ)_b 𝓑ᵇ_{αβ} ṙ^β`: right exactly where these multipliers are among those of Chetaev's motion.
+/// Where `L` in the parameters is free of memory variables (Chaplygin's form), the control is the vakonomic
+/// motion with `P = 0`, `c = 0` in `(c − L_ṡ)_b 𝓑ᵇ_{αβ} ṙ^β`: right where Chetaev's admits these.
 fn criterion(case: &mut Case) -> Result<(), CheckError> {
     let (system, Some((removal, _))) = (case.scene.system.clone(), case.control.clone()) else { return Ok(()) };
     let reduced = removal.rewrite(&system, system.lagrangian);

@@ -8,7 +8,7 @@ use super::CheckError;
 use crate::case::{Which, equations};
 use crate::{Case, Kind};
 
-/// Decides of every system whether its Chetaev motion is vakonomic, and finds the multipliers of a vakonomic motion in that motion.
+/// Decides whether the Chetaev motion is vakonomic; finds a vakonomic motion's multipliers from itself.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let Some(found) = case.membership()? else { return Ok(()) };
     planted(case)?;

@@ -21,7 +21,7 @@ const VISIBLE: f64 = 1e-5;
 /// The growth is measured within this part of the time after which another term is the larger one.
 const WITHIN: f64 = 0.5;
 
-/// `q_vak − q_chet = y_k t^{k+2}/((k+1)(k+2))` with the first coefficient `y_k` of the mismatch that is not zero, for every `f` and `μ₀`.
+/// `q_vak − q_chet = y_k t^{k+2}/((k+1)(k+2))`, `y_k ≠ 0` first in the mismatch, for every `f`, `μ₀`.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let (scene, multipliers) = (&case.scene, &case.scene.multipliers);
     if scene.system.constraints.is_empty() {

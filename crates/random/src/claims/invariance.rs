@@ -10,7 +10,7 @@ use crate::case::{Which, equations, free_constants};
 use crate::realization::numbers;
 use crate::transform::{Rewritten, Scaling, recombined};
 
-/// T4: constraints recombined with coefficients that depend on the configuration, `μ₀ → G⁻ᵀ μ₀`; other coordinates.
+/// T4: constraints recombined by coefficients that depend on `q`, `μ₀ → G⁻ᵀ μ₀`; other coordinates.
 pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     let g = &system.graph;
@@ -85,7 +85,7 @@ pub(super) fn reversal_and_units(case: &mut Case) -> Result<(), CheckError> {
     units(case, &Scaling { lengths, time: 0.2, action: 7.0, constraint: 0.05 })
 }
 
-/// The motion of the reversed system from where a motion ended, with multipliers and costates as they were there, runs back.
+/// The reversed system, from the end of a motion with its multipliers and costates there, runs back.
 fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
     let (t0, t1) = (case.scene.start.t, case.end());
     let other = reversal.system(&case.scene.system);

@@ -28,7 +28,7 @@ impl Drift {
     }
 }
 
-/// Follows `e(t, q, v, multipliers)` along a motion: the first of its multipliers, by the names in `multipliers`.
+/// Follows `e(t, q, v, multipliers)` along a motion, whose first multipliers `multipliers` names.
 fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) -> Result<Drift, SolveError> {
     let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
     let mut evaluator = system.evaluator(&symbols, &[e])?;
@@ -48,8 +48,8 @@ fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) 
     Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) })
 }
 
-/// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and with `G`, for the others wherever
-/// nothing depends on time.
+/// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and
+/// with `G`, for the others wherever nothing depends on time.
 pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     let g = &system.graph;

@@ -1,4 +1,4 @@
-//! The claims, T1–T14, each as a check of one random system. What they say is in the reports; what they assume, at each check.
+//! Claims T1–T14, each a check of one random system. Reports say what they say, checks what they assume.
 
 mod agreement;
 mod control;
@@ -48,7 +48,7 @@ pub struct Check {
 /// Every check that is made on a random system. T13 has systems of its own: [`null_test`].
 pub const CHECKS: &[Check] = &[
     check(0, "two derivations of each formulation give one motion, which keeps the constraint", within::check),
-    check(1, "integrable constraints: all formulations agree", agreement::integrable),
+    check(1, "integrable constraints: Chetaev, vakonomic and coordinate removal agree", agreement::integrable),
     check(2, "removed constraint is vakonomic motion of the augmented system", agreement::bridge),
     check(3, "coordinate removal and vakonomic are one family", agreement::bijection),
     check(4, "Chetaev and vakonomic do not depend on how constraints and coordinates are written", invariance::writing),

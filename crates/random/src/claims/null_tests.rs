@@ -1,4 +1,4 @@
-//! T13: systems on which formulations are known to agree, or to differ in a known way, with random numbers in them.
+//! T13: systems on which formulations agree, or differ in a known way, with random numbers in them.
 
 use deltaq::{Motion, SolveError, setting, solve};
 use mechanics::ConstantsRule;
@@ -58,9 +58,9 @@ pub fn null_test(numbers: &NullTest) -> Result<Findings, SolveError> {
     Ok(found)
 }
 
-const APPELL_HAMEL: &str = include_str!("../../../../validation/scenes/appell-hamel.toml");
-const HEISENBERG: &str = include_str!("../../../../validation/scenes/heisenberg.toml");
-const DISC: &str = include_str!("../../../../validation/scenes/disc.toml");
+const APPELL_HAMEL: &str = include_str!("appell-hamel.toml");
+const HEISENBERG: &str = include_str!("heisenberg.toml");
+const DISC: &str = include_str!("disc.toml");
 
 fn scene(text: &str, overrides: &[(&str, f64)]) -> Scene {
     let overrides: Vec<(String, f64)> = overrides.iter().map(|&(n, x)| (n.to_string(), x)).collect();

@@ -8,7 +8,7 @@ use referees::maggi::Maggi;
 /// Instants at which the constraint is looked at.
 const INSTANTS: usize = 12;
 
-/// Chetaev's motion comes out of Maggi's equations, without multipliers; the vakonomic motion comes out of its costate form too; every motion keeps the constraint.
+/// Maggi's equations give Chetaev's motion, the costate form the vakonomic one; all keep the constraint.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     if system.constraints.is_empty() {

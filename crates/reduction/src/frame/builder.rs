@@ -45,7 +45,7 @@ impl<'a> Builder<'a> {
         Builder { system, g: &system.graph, known, names: RefCell::default() }
     }
 
-    /// The frame of the squares, turned to the constraints; `None` where these contain what is singular in it.
+    /// The frame of the squares, turned to the constraints; `None` if these contain a singular part of it.
     pub(super) fn build(&self, squares: Vec<Square>, jacobian: &[Sparse]) -> Option<Building> {
         let mut building = self.inverted(squares);
         let g = self.g;
@@ -141,8 +141,8 @@ impl<'a> Builder<'a> {
         if terms.len() > 1 { shortest(self.g, self.g.sum(&terms)) } else { self.g.sum(&terms) }
     }
 
-    /// Turns two velocities of equal inertia so that a constraint contains one of them only, with a constant coefficient; `false` where there
-    /// are none.
+    /// Turns two velocities of equal inertia so that a constraint contains one of them only, with a constant
+    /// coefficient; `false` where there are none.
     fn turn(&self, building: &mut Building) -> bool {
         let Some((pair, factors)) = building.constraints.iter().find_map(|row| self.couple(row, &building.inertia))
         else {

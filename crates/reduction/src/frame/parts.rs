@@ -52,8 +52,7 @@ pub struct Frame {
     pub turning: Vec<Turning>,
     /// The constraints of the system.
     pub constraints: Vec<FrameConstraint>,
-    /// The `s_k` that are not constant: where one of them vanishes, so does a direction of `M`, and the frame
-    /// ends.
+    /// The `s_k` that are not constant: where one vanishes, so does a direction of `M`, and the frame ends.
     pub ends: Vec<Expr>,
     /// The velocities of the coordinates, and of frames on the way to this one, each in `u` and earlier ones.
     pub recursion: Vec<(Symbol, Expr)>,

@@ -14,9 +14,8 @@ use crate::expressions::{Sparse, point, sparse_rows};
 const SMALL: usize = 8;
 
 impl Frame {
-    /// The frame of `system`, if its kinetic energy is seen to be a sum of squares with constant coefficients
-    /// in other velocities than those of its coordinates. What must not vanish does not at `start`; without a
-    /// start, at a point of no significance.
+    /// The frame of `system`, if its kinetic energy is seen as squares with constant coefficients in other
+    /// velocities than its own. What must not vanish does not at `start`, or at a point of no significance.
     ///
     /// `None` for more than 8 coordinates, where `L` is not quadratic in the velocities or its mass matrix
     /// constant or moving with time, where a constraint is not linear, and where the frame would end before

@@ -47,7 +47,7 @@ impl Known<'_> {
         self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
     }
 
-    /// Elimination with pivots on the diagonal, constant ones first, then those that fill least; `None` where one is no square.
+    /// Eliminates by diagonal pivots: constant ones, then least fill. `None` where one is no square.
     pub(super) fn squares(&self, mass: &[Sparse], tie: Tie) -> Option<Vec<Square>> {
         let g = self.g;
         let mut matrix = SparseMatrix::new(mass.to_vec());

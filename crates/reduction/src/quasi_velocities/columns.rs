@@ -20,7 +20,7 @@ pub struct Columns {
 }
 
 impl QuasiVelocities {
-    /// The columns of `S`, by way of `definitions`, which have [`QuasiVelocities::coefficients`] in them already.
+    /// The columns of `S`, by `definitions`, which contain [`QuasiVelocities::coefficients`] already.
     pub fn columns(&self, g: &Graph, definitions: &mut Definitions) -> Columns {
         let mut columns = vec![Sparse::new(); self.free.len()];
         // row by row: which column has what entry

@@ -12,7 +12,7 @@ use equations::Definitions;
 use mechanics::elimination::{Candidate, LinearForms, SparseMatrix, choose_pivot};
 use mechanics::{Coordinate, RemovalError, State, System, fresh_symbol};
 
-/// Constant pivots under this part of the row's largest coefficient are treated as those that are not constant.
+/// A constant pivot under this part of the row's largest coefficient is treated as not constant.
 const CONSTANT_CHOICE: f64 = 1e-4;
 /// What is left of a difference under this part of its terms is tested for being zero.
 const CANCELLED: f64 = 1e-9;
@@ -44,11 +44,11 @@ struct Couple {
 }
 
 impl QuasiVelocities {
-    /// Eliminates the constraints of `system`, from the velocities of `frame` or, without one, of the coordinates. Where a pivot has to be chosen by
-    /// its size, that at `start` counts; without a start, that at a point of no significance.
+    /// Eliminates the constraints of `system`, from the velocities of `frame` or, without one, of the
+    /// coordinates. Sizes of pivots are those at `start`; without a start, at a point of no significance.
     ///
     /// # Errors
-    /// [`RemovalError::NotLinear`] where a constraint is not linear in `v`; [`RemovalError::Dependent`] where the rows of `A` are dependent.
+    /// [`RemovalError::NotLinear`], [`RemovalError::Dependent`]: constraints not linear in `v`, or dependent.
     pub fn new(system: &System, frame: Option<&Frame>, start: Option<&State>) -> Result<Self, RemovalError> {
         let mut elimination = Elimination::new(system, frame, start)?;
         let homogeneous = elimination.is_homogeneous();
@@ -159,7 +159,7 @@ impl<'a> Elimination<'a> {
         changed.into_iter().for_each(|row| self.enqueue(row));
     }
 
-    /// `v₁ = b w − a r/s`, `v₂ = −a w − b r/s`, with `s = a² + b²` and `r` the rest of the row; `w = (b v₁ − a v₂)/s`.
+    /// `v₁ = b w − a r/s`, `v₂ = −a w − b r/s`, `s = a² + b²`, `r`: rest of row; `w = (b v₁ − a v₂)/s`.
     fn by_couple(&mut self, row: usize, couple: Couple) {
         let g = self.g;
         let (mut terms, offset, mut changed) = self.take(row);
@@ -201,7 +201,7 @@ impl<'a> Elimination<'a> {
         (terms, self.rows[row].offset, neighbours)
     }
 
-    /// Defines the velocity of `column` as `own + scale · (terms + offset)`, and puts that into the other rows.
+    /// Defines the velocity of `column` as `own + scale · (terms + offset)`; puts it into the other rows.
     fn define(
         &mut self,
         column: usize,

@@ -26,8 +26,7 @@ pub struct QuasiVelocity {
 pub struct DependentVelocity {
     /// Symbol of the velocity.
     pub symbol: Symbol,
-    /// Index of the coordinate whose velocity it is, or of the velocity of the frame; none for a
-    /// quasi-velocity that turned out to be dependent.
+    /// The coordinate, or velocity of the frame, whose velocity it is; none for a dependent quasi-velocity.
     pub coordinate: Option<usize>,
     /// Quasi-velocities and earlier dependent velocities, with their coefficients in `(q, t)`.
     pub terms: Vec<(Symbol, Expr)>,
@@ -92,8 +91,7 @@ impl QuasiVelocities {
         self.dependent.iter().filter_map(multiple).collect()
     }
 
-    /// Hands the dependent velocities over, and those that a frame was made from: defined, and stated for the
-    /// reader.
+    /// Hands over the dependent velocities, and those a frame was made from: defined, and stated for readers.
     pub(crate) fn hand_over(
         &self,
         g: &Graph,

@@ -1,7 +1,7 @@
 //! Motions in closed form, to measure solvers against.
 //!
-//! Nothing here calls a solver. Every motion is written so that its removable limits (a sledge that does not turn, a particle that does
-//! not drift) are reached without cancellation. The unit tests put each motion into its equations of motion by central differences.
+//! Nothing here calls a solver. Removable limits (a sledge without turn, a particle without drift) are
+//! reached without cancellation. Unit tests put each motion into its equations by central differences.
 
 mod points;
 #[cfg(test)]
@@ -33,8 +33,8 @@ pub fn sine_defect(z: f64) -> f64 {
 
 /// Ice sledge on an incline, Chetaev.
 ///
-/// `L = ½(ẋ² + ẏ²) + ½k²φ̇² + g x sin α`, `f = ẏ cos φ − ẋ sin φ`. The heading turns uniformly, `φ = φ₀ + ω t`. With
-/// `C = ∫₀ᵗ cos φ`, `S = ∫₀ᵗ sin φ` and `g' = g sin α`:
+/// `L = ½(ẋ² + ẏ²) + ½k²φ̇² + g x sin α`, `f = ẏ cos φ − ẋ sin φ`. The heading turns uniformly,
+/// `φ = φ₀ + ω t`. With `C = ∫₀ᵗ cos φ`, `S = ∫₀ᵗ sin φ` and `g' = g sin α`:
 ///
 /// ```text
 /// v = v₀ + g' C                                   speed along the blade
@@ -105,8 +105,8 @@ impl Sledge {
 
 /// Ball rolling on a turning table, Chetaev: a circle about any point, at a fixed rate.
 ///
-/// Ball of mass `m`, radius `a`, moment `I`; table rate `Ω`. With the contact force `F`, `m v̇ = F`, `I ω̇ = −a e_z × F`, and the rolling
-/// condition `v − a ω × e_z = Ω e_z × r` differentiated:
+/// Ball of mass `m`, radius `a`, moment `I`; table rate `Ω`. With the contact force `F`, `m v̇ = F`,
+/// `I ω̇ = −a e_z × F`, and the rolling condition `v − a ω × e_z = Ω e_z × r` differentiated:
 ///
 /// ```text
 /// v̇ = Ω' e_z × v,   Ω' = Ω I/(I + m a²) = 2Ω/7 for a homogeneous ball
@@ -161,17 +161,17 @@ impl TurntableBall {
 
 /// Chaplygin sleigh, Chetaev.
 ///
-/// `L = ½m((ẋ − aφ̇ sin φ)² + (ẏ + aφ̇ cos φ)²) + ½Iφ̇²`, `f = ẏ cos φ − ẋ sin φ`; `(x, y)` the blade, the mass centre `a` ahead of it.
-/// With `J = I + ma²`:
+/// `L = ½m((ẋ − aφ̇ sin φ)² + (ẏ + aφ̇ cos φ)²) + ½Iφ̇²`, `f = ẏ cos φ − ẋ sin φ`; `(x, y)` the blade, the
+/// mass centre `a` ahead of it. With `J = I + ma²`:
 ///
 /// ```text
 /// v̇ = a ω²,  ω̇ = −m a v ω/J
-/// v = V tanh(κt + c),  ω = W sech(κt + c),   W² = ω₀² + m v₀²/J,  V = W√(J/m),  κ = aW√(m/J),  sinh c = v₀√(m/J)/|ω₀|
+/// v = V tanh(κt+c), ω = W sech(κt+c), W² = ω₀² + m v₀²/J, V = W√(J/m), κ = aW√(m/J), sinh c = v₀√(m/J)/|ω₀|
 /// φ = φ₀ ± (1/a)√(J/m) (gd(κt + c) − gd(c)),   gd s = 2 atan tanh(s/2)
 /// ```
 ///
-/// Closed: `v, ω, φ`. Not closed in general: the blade's path, `∫ v cos φ dt` and `∫ v sin φ dt`, which is elementary only when
-/// `(1/a)√(J/m)` is a whole number. The whole turn from `t = −∞` to `∞` is `π√(J/m)/|a|`. Source: Chaplygin 1911; Neimark & Fufaev 1972.
+/// Closed: `v, ω, φ`. Not closed: the blade's path, `∫ v cos φ dt` and `∫ v sin φ dt`, unless `(1/a)√(J/m)`
+/// is whole. The whole turn from `t = −∞` to `∞` is `π√(J/m)/|a|`. Chaplygin 1911; Neimark & Fufaev 1972.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sleigh {
     /// `m`, kg.

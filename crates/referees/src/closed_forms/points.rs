@@ -39,7 +39,7 @@ impl Particle {
 
 /// Pendulum that swings (does not go over the top), every formulation of `d/dt(x² + y² − ℓ²) = 0`.
 ///
-/// With `θ` from the downward vertical, `x = ℓ sin θ`, `y = −ℓ cos θ`, `n = √(g/ℓ)`, `k² = sin²(θ₀/2) + θ̇₀²/(4n²) < 1`:
+/// With `θ` from below, `x = ℓ sin θ`, `y = −ℓ cos θ`, `n = √(g/ℓ)`, `k² = sin²(θ₀/2) + θ̇₀²/(4n²) < 1`:
 ///
 /// ```text
 /// sin(θ/2) = k sn(nt + u₀ | k),   cos(θ/2) = dn,   θ̇ = 2 n k cn
@@ -101,7 +101,7 @@ impl Pendulum {
     }
 }
 
-/// Jacobi's `(sn, cn, dn)` of argument `u` and modulus `k`, `0 ≤ k < 1`, by descending Landen steps (Abramowitz & Stegun 16.4).
+/// Jacobi's `(sn, cn, dn)(u)`, modulus `0 ≤ k < 1`, by descending Landen steps (Abramowitz & Stegun 16.4).
 #[must_use]
 pub fn jacobi(u: f64, k: f64) -> (f64, f64, f64) {
     let mut a = vec![1.0];

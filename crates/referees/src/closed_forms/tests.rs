@@ -70,7 +70,7 @@ fn sledge_is_continuous_through_no_turning() {
     for (a, b) in [(slow.x, still.x), (slow.y, still.y), (slow.run, still.run), (slow.speed, still.speed)] {
         close(a, b, 3e-8);
     }
-    // the first-order change with ω of y: ∂y/∂ω = v₀ t² cos φ₀/2 + g' t³ (cos 2φ₀/4 + 1/12), to the digits that 1e-9 leaves
+    // first order in ω: ∂y/∂ω = v₀ t² cos φ₀/2 + g' t³ (cos 2φ₀/4 + 1/12), to the digits that 1e-9 leaves
     let expected = 1e-9 * (0.5 * 12.5 * 0.3_f64.cos() + 3.8 * 125.0 * (0.6_f64.cos() / 4.0 + 1.0 / 12.0));
     assert!((slow.y - still.y - expected).abs() < 1e-14);
 }
@@ -87,7 +87,7 @@ fn turntable_ball_circles_and_rolls() {
         let d = derivative(|t| ball.at(t), t);
         same([d[0], d[1]], [vx, vy]);
         close((x - 0.05).hypot(y), 0.6, 1e-14);
-        // spin from rolling, a ω_y = ẋ + Ωy, a ω_x = Ωx − ẏ; its rate must be that of the contact force m v̇: I ω̇ = −a e_z × m v̇
+        // rolling: a ω_y = ẋ + Ωy, a ω_x = Ωx − ẏ; contact force m v̇ on the spin: I ω̇ = −a e_z × m v̇
         let spin = |t: f64| {
             let [x, y, vx, vy] = ball.at(t);
             [(table * x - vy) / a, (vx + table * y) / a]

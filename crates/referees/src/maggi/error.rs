@@ -45,12 +45,12 @@ pub enum MaggiError {
     DependentConstraints {
         /// Time.
         t: f64,
-        /// Smallest over largest diagonal entry of the QR factorization of `Aᵀ`, rows of length 1; 0 where a row of `A` is 0.
+        /// Smallest over largest diagonal entry of the QR of `Aᵀ`, rows of length 1; 0 for a zero row.
         found: f64,
         /// [`super::PIVOT_LIMIT`].
         limit: f64,
     },
-    /// `[NᵀM; A]` is singular: `M` does not determine the motion along the directions that the constraints leave.
+    /// `[NᵀM; A]` is singular: `M` does not determine the motion along the directions left.
     #[error("the accelerations are not determined at t = {t}: smallest over largest pivot {found}, limit {limit}")]
     Singular {
         /// Time.

@@ -17,8 +17,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// How the run ended; where `A` or the stacked matrix became singular, with the words of [`MaggiError`]. Whatever it says, the motion is valid
-    /// up to [`Motion::end`].
+    /// How the run ended; where `A` or the stacked matrix became singular, with the words of [`MaggiError`].
+    /// Whatever it says, the motion is valid up to [`Motion::end`].
     pub fn ending(&self) -> &Status {
         &self.solution.status
     }

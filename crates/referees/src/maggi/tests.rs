@@ -1,4 +1,4 @@
-//! Checks of the referee itself: closed solutions, Gauss's principle, the balance of momenta by differences, errors.
+//! Checks of the referee itself: closed solutions, Gauss's principle, momenta by differences, errors.
 
 use integrate::Status;
 use mechanics::{State, System};
@@ -10,8 +10,8 @@ use crate::closed_forms::{Sledge, SledgeState};
 const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
 const APPELL_HAMEL: &str = include_str!("../../../../validation/scenes/appell-hamel.toml");
 
-/// Everything at once: a mass matrix that depends on the configuration, a gyroscopic term, time in L and in f, a force, two
-/// affine constraints.
+/// Everything at once: a mass matrix that depends on the configuration, a gyroscopic term, time in L and in
+/// f, a force, two affine constraints.
 const GENERAL: &str = r#"
 title = "Four coordinates"
 [coordinates]
@@ -215,7 +215,7 @@ fn without_constraints_it_is_lagrange() {
 #[test]
 fn a_singular_mass_matrix_is_no_obstacle_where_the_constraint_supplies_the_velocity() {
     let mut scene = scene(SLEDGE, &[]);
-    // L = (ẋ² + φ̇²)/2 and ẏ cos φ = ẋ sin φ. The reaction λ (−sin φ, cos φ, 0) has to vanish, since ẏ has no inertia.
+    // L = (ẋ² + φ̇²)/2, ẏ cos φ = ẋ sin φ. The reaction λ (−sin φ, cos φ, 0) has to vanish: ẏ has no inertia
     scene.system.lagrangian = scene.system.expression("(x'^2 + phi'^2)/2").unwrap();
     let mut maggi = Maggi::new(&scene.system).unwrap();
     let a = maggi.accelerations(0.0, &[0.0, 0.0, 0.3], &[1.0, 0.3_f64.tan(), 1.1]).unwrap();

@@ -1,5 +1,5 @@
-//! Roots and elementary functions in double-double arithmetic: argument reduction with constants of three `f64`, Taylor series, and one
-//! Newton step from the value in `f64` for the inverse functions.
+//! Roots and elementary functions in double-double arithmetic: argument reduction with constants of three
+//! `f64`, Taylor series, and one Newton step from the value in `f64` for the inverse functions.
 
 use symbolic::Scalar;
 

@@ -51,7 +51,7 @@ enum Decision {
     Peeled,
 }
 
-/// `weight · row`, of the same order or, `late`, `weight · τ · row`, of the order before; the weight is a value of order 0.
+/// `weight · row` of the same order or, `late`, `weight · τ · row` of the order before; the weight: order 0.
 #[derive(Clone, Copy)]
 struct Part {
     weight: Id,
@@ -89,7 +89,7 @@ struct Builder<'i> {
     motions: Vec<Motion>,
     /// Functions that are integrated.
     integrated: Vec<Integrated>,
-    /// 0: constant in time; else 1 + number of the block on whose unknowns the value depends last, counted from 1.
+    /// 0: constant in time; else 1 + the number, from 1, of the last block whose unknowns the value needs.
     stages: Vec<usize>,
     decisions: Vec<Decision>,
     rows: FxHashMap<Id, Row>,
@@ -268,7 +268,7 @@ impl<'i> Builder<'i> {
         }
     }
 
-    /// `weight · a · b` into the sum; both vary. A factor that is linear in time needs no series: `(a b)_k = a₀ b_k + a₁ b_{k−1}`.
+    /// `weight · a · b` into the sum; both vary. A factor linear in time: `(a b)_k = a₀ b_k + a₁ b_{k−1}`.
     fn product(&mut self, sum: &mut Sum, a: Id, b: Id, weight: Id) {
         let ((a, weight), square) = (self.peel(a, weight), a == b);
         let (b, weight) = self.peel(b, weight);

@@ -9,7 +9,7 @@ use crate::Scalar;
 /// Number of [`Lanes`].
 pub const LANES: usize = 8;
 
-/// Eight numbers, each computed from those of the same place only, as if it were alone: no lane depends on another.
+/// Eight numbers, each computed as if it were alone from those of its own place: no lane depends on another.
 ///
 /// ```
 /// use symbolic::{Lanes, Scalar};

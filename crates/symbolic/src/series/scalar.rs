@@ -1,4 +1,9 @@
 //! The number types of power series, and where coefficients are kept.
+//!
+//! Products go forwards: a new coefficient meets all older ones, in groups of 8 at fixed places, because that
+//! needs no sum across a vector. `pulp` picks the processor's instructions; sums have one order on all, and
+//! so one result. The loops are bound by their number of instructions: linear terms put into one another, so
+//! that none waits for another, made the series of sledge and cone 9 to 26 % slower.
 
 use std::marker::PhantomData;
 
@@ -22,7 +27,7 @@ pub struct Product<T> {
 /// Weights of the terms of products by the order of the older coefficient.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights<'a, T> {
-    /// `of[j]` for the older coefficient of order `j`: a half at `j = newest` (that term is there once only), zero beyond.
+    /// `of[j]` for the older coefficient of order `j`: half at `j = newest` (there once only), zero beyond.
     pub(crate) of: &'a [T],
     /// Are they 1 as long as `j < newest`?
     pub(crate) plain: bool,
@@ -44,17 +49,17 @@ pub trait Store<T> {
     /// What [`Store::window`] gives.
     type Window: Window<T> + ?Sized;
 
-    /// The coefficients from a place on: places of order `k` in all series are those of order 0 in the window from `k` on.
+    /// The coefficients from a place on: order `k` of all series is order 0 in the window from `k` on.
     fn window(&mut self, first: usize) -> &mut Self::Window;
 
-    /// The products of the newest coefficients, of order `newest`, with all those from order 1 on: for each product and `1 ≤ j ≤ newest`
+    /// Products of the newest coefficients with all from order 1 on: for each product and `1 ≤ j ≤ newest`
     ///
     /// ```text
-    /// target[newest + j] += scale (left[newest] right[j] + right[newest] left[j]) weight[j],    newest + j ≤ last
+    /// target[n + j] += scale (left[n] right[j] + right[n] left[j]) weight[j],   n = newest,   n + j ≤ last
     /// ```
     ///
-    /// What is beyond `last` is left undefined. Orders over `newest + 1` may be left for later: called for every `newest` in turn, this has
-    /// added all terms of order `newest + 1` when that order is due.
+    /// What is beyond `last` is left undefined. Orders over `newest + 1` may be left for later: called for
+    /// every `newest` in turn, this has added all terms of order `newest + 1` when that order is due.
     fn multiply(&mut self, products: &[Product<T>], weights: Weights<T>, newest: usize, last: usize);
 }
 
@@ -101,10 +106,10 @@ pub trait Task<T> {
 
 /// A number type of power series.
 ///
-/// The bodies of the methods serve every type. For `f64` they take the processor's vector instructions, found when
-/// the program runs; sums are added up in the same order with and without them, so that results do not depend on the processor.
+/// The methods serve every type. For `f64` they take the processor's vector instructions, found at run time;
+/// sums keep their order, so that results do not depend on the processor.
 pub trait SeriesScalar: Scalar {
-    /// Coefficients of a series are looked at in groups of so many; a series is followed by as many places that may be read.
+    /// Coefficients are looked at in groups of this many; as many readable places follow a series.
     const GROUP: usize = 1;
 
     /// How many places to allocate for so many series, `stride` places each.
@@ -112,13 +117,13 @@ pub trait SeriesScalar: Scalar {
         series * stride
     }
 
-    /// Runs `task` on coefficients, at places below `places`, with the instructions that are best for this type.
+    /// Runs `task` on coefficients, at places below `places`, with the best instructions for this type.
     fn dispatch<F: Task<Self>>(rows: &mut [Self], _places: usize, task: F) {
         task.run(rows);
     }
 }
 
-/// So many places have numbers of 16 bits: these need no check in a window of this size, whose last place is followed by a group.
+/// The places of a 16-bit number: unchecked in a window of this size, whose last place a group follows.
 const PLACES: usize = 1 << 16;
 const WINDOW: usize = PLACES + GROUP;
 

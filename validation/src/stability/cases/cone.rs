@@ -16,7 +16,7 @@ const GYRATION: f64 = 0.4 * RADIUS * RADIUS;
 /// Coordinates that are compared: r and γ.
 const COMPARED: usize = 2;
 
-/// The two forms of the vakonomic equations have the same equations of one instant near the apex; one of them will do.
+/// Near the apex both vakonomic forms have the same equations of one instant; one of them will do.
 const NAMES: [&str; 3] = ["chetaev", "vakonomic", "removed-constraint"];
 
 pub(super) fn apex(d: f64) -> Vec<Question> {
@@ -66,7 +66,7 @@ impl Frame {
     }
 }
 
-/// The ball: contact at distance `r` from the apex, its centre at `ρ = r sin α − a cos α` from the axis, angular velocity `ω` in the frame of the cone.
+/// The ball: contact `r` from the apex, centre `ρ = r sin α − a cos α` off the axis, `ω` in the cone's frame.
 struct Ball {
     r: f64,
     gamma: f64,
@@ -94,7 +94,7 @@ impl Ball {
         Ball { r: q[0], gamma: q[1], spin, r_rate: v[0], gamma_rate: v[1] }
     }
 
-    /// Vakonomic with `μ₀ = 0`; removed constraint with `P(t₀) = 0`, which is the vakonomic motion without momenta of r and γ (T2).
+    /// Vakonomic with `μ₀ = 0`; removed with `P(t₀) = 0`, the vakonomic motion without momenta of r, γ (T2).
     fn reference(&self, formulation: &str) -> Reference {
         let rho = centre(self.r);
         match formulation {
@@ -127,7 +127,8 @@ impl Ball {
         }
     }
 
-    /// `𝓛 = ½(ṙ² + ρ²γ̇² + k²ω²) − g r cos α + μ₁(ργ̇ + a ω·e_r) + μ₂(ṙ − a ω·e_γ)`: states `(r, γ, p_r, p_γ, π)` with `π = ∂𝓛/∂ω`, `π̇ = ω × π`.
+    /// `𝓛 = ½(ṙ² + ρ²γ̇² + k²ω²) − g r cos α + μ₁(ργ̇ + a ω·e_r) + μ₂(ṙ − a ω·e_γ)`: states
+    /// `(r, γ, p_r, p_γ, π)` with `π = ∂𝓛/∂ω`, `π̇ = ω × π`.
     fn lie_poisson(&self, first: f64, second: f64) -> Reference {
         let (rho, frame) = (centre(self.r), Frame::at(self.gamma));
         let momentum = GYRATION * self.spin + RADIUS * (first * frame.along - second * frame.around);

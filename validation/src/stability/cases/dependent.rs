@@ -15,11 +15,12 @@ pub(super) fn questions(exponent: i32) -> Vec<Question> {
     super::questions(d, scene, &FORMULATIONS, reference)
 }
 
-/// With `X = (1, 0, y, −y)` and `Y = (0, 1, 0, x)`, a basis of the kernel of `A`, and their products `G = [1 + 2y², −xy; −xy, 1 + x²]`:
+/// `X = (1, 0, y, −y)`, `Y = (0, 1, 0, x)`: a basis of ker `A`, with products
+/// `G = [1 + 2y², −xy; −xy, 1 + x²]`:
 ///
 /// ```text
-/// Chetaev      G (ẍ, ÿ) = (−yẋẏ, 0)
-/// vakonomic    G (ẋ, ẏ) = (p·X, p·Y),   ṗ_x = −ẏp_w − yẋẏ + xẏ²,   ṗ_y = −ẋ(p_z − p_w) + 2yẋ² − xẋẏ,   p_z, p_w constant
+/// Chetaev    G (ẍ, ÿ) = (−yẋẏ, 0)
+/// vakonomic  G (ẋ, ẏ) = (p·X, p·Y), ṗ_x = −ẏp_w − yẋẏ + xẏ², ṗ_y = −ẋ(p_z − p_w) + 2yẋ² − xẋẏ, ṗ_z = ṗ_w = 0
 /// ```
 ///
 /// The removed-constraint motion with `P(t₀) = 0` is the vakonomic one with `p_z = p_w = 0` (T2).

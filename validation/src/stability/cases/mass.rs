@@ -60,15 +60,15 @@ pub(super) fn ratio(mass: f64) -> Vec<Question> {
                     vec![x, y / s, z / s]
                 }))
             }
-            // with P(t₀) = 0 the removed-constraint motion is the vakonomic one with that of its multipliers that leaves z no momentum (T2)
+            // P(t₀) = 0: the vakonomic motion of the multiplier that leaves z no momentum (T2)
             "removed-constraint" => Reduced { z_mass: mass, weakness: 0.0 }.from(START, -mass * START.1[2]),
             _ => Reduced { z_mass: mass, weakness: 0.0 }.from(START, 0.0),
         },
     )
 }
 
-/// The particle with mass `m` along z and constraint `f = ż − yẋ`, by vakonomic mechanics (`ε = 0`) or by added mass `½f²/ε`. The momenta
-/// `p_x = ẋ − yμ` and `p_z = mż + μ` are constant, and
+/// The particle with mass `m` along z and constraint `f = ż − yẋ`, by vakonomic mechanics (`ε = 0`) or by
+/// added mass `½f²/ε`. The momenta `p_x = ẋ − yμ` and `p_z = mż + μ` are constant, and
 ///
 /// ```text
 /// H = ½p_y² + V(y),   V = ½ (ε (m p_x² + p_z²) + (p_x + y p_z)²) / D,   D = εm + 1 + m y²

@@ -53,7 +53,7 @@ impl Sledge {
     /// k² φ̈ = −u̇ p·n,    u̇ = u̇₀ + p·e − p₀·e₀,    (ẋ, ẏ) = u̇ e
     /// ```
     ///
-    /// Hamilton's equations of `½(p·e)² + ½p_φ²/k² − g x sin α` for `p₀ = u̇₀ e₀ + μ₀ n₀`; those of removal by arc length for `p₀ = −P(t₀)`.
+    /// Hamilton's for `½(p·e)² + ½p_φ²/k² − g x sin α`, `p₀ = u̇₀ e₀ + μ₀ n₀`; by arc length `p₀ = −P(t₀)`.
     fn by_heading(&self, momentum: [f64; 2]) -> Reference {
         let square = self.k * self.k;
         let push = GRAVITY * SLOPE.sin();

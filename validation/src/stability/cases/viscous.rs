@@ -30,7 +30,7 @@ pub(super) fn questions(strength: f64) -> Vec<Question> {
     vec![Question::new(strength, "Newton, with friction", subject, reference)]
 }
 
-/// The sledge that slips, from the origin, without slip at the start. With `v` along and `s` across the blade and `φ = φ₀ + ωt`
+/// The slipping sledge from the origin, without slip at first. With `v` along, `s` across, `φ = φ₀ + ωt`
 ///
 /// ```text
 /// v̇ =  ω s + g' cos φ,     ṡ = −ω v − g' sin φ − N s

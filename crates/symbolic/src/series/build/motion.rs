@@ -77,8 +77,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Finds the functions that are integrated: `(sin φ)' = φ' cos φ` is a product like those that equations of motion are full of, so that it is
-    /// often there already; and where `φ'` is constant it is none.
+    /// Finds the functions that are integrated: `(sin φ)' = φ' cos φ` is a product like those that equations
+    /// of motion are full of, so that it is often there already; and where `φ'` is constant it is none.
     pub(super) fn integrate_functions(&mut self) {
         let mut seen = vec![false; self.program.len()];
         let mut pending = self.outputs.to_vec();

@@ -1,0 +1,64 @@
+"""What the program answers in JSON is what docs/schemas describes; and what is described is not just anything."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+from referencing import Registry
+
+import deltaq
+
+ROOT = Path(__file__).resolve().parents[3]
+# the module is laid out beside the programs of its build
+PROGRAM = Path(deltaq.__file__).resolve().parents[2] / "release" / "deltaq"
+SCHEMAS = {path.stem: json.loads(path.read_text("utf-8")) for path in (ROOT / "docs" / "schemas").glob("*.json")}
+REGISTRY = Registry().with_contents((schema["$id"], schema) for schema in SCHEMAS.values())
+# by kind: calls with their exit codes; FOLDER is an empty one
+ANSWERS = {
+    "solve": {"solve sledge -f chetaev --times 0,1": 0, "solve sledge -f removed-constraint --removal along-x --constants zero": 3},
+    "ensemble": {"ensemble ball-in-cone -f chetaev --vary theta=-0.4..0.4:3": 3},
+    "list": {"list": 0},
+    "show": {"show appell-hamel": 0, "show disc --latex": 0},
+    "compare": {"compare sledge bowl --set duration=1": 0},
+    "prove": {f"prove {scene} --out FOLDER/proof": code for scene, code in {"sledge": 0, "heisenberg": 3, "planar-body": 3}.items()},
+    "certificate": {"prove sledge --out -": 0},
+    "random": {"random --count 3": 0},
+    "random-system": {"random --index 3": 0},
+    "stability": {"stability --case blow-up": 0},
+    "bench": {"bench bowl --seconds 0.0001": 0},
+    "bench-ensemble": {"bench --ensemble 1e-6 --members 16": 0},
+    "scaling": {"scaling --longest 2 --repeats 1": 0},
+    "job": {"--scenes bowl --out FOLDER": 0},
+}
+
+
+def is_valid(kind, answer):
+    return Draft202012Validator(SCHEMAS[kind], registry=REGISTRY).is_valid(answer)
+
+
+def check(kind, text):
+    """The answer is as described, says so at its head, and would not be with a field more, a field less, or of another version."""
+    answer = json.loads(text)
+    Draft202012Validator(SCHEMAS[kind], registry=REGISTRY).validate(answer)
+    assert next(iter(answer)) == "schema"
+    assert not is_valid(kind, answer | {"more": 0}) and not is_valid(kind, answer | {"schema": f"deltaq/{kind}/0"})
+    for name in SCHEMAS[kind]["required"]:
+        assert not is_valid(kind, {other: x for other, x in answer.items() if other != name}), name
+        assert name == "schema" or not is_valid(kind, answer | {name: [[None]]}), name
+
+
+@pytest.mark.parametrize("kind", SCHEMAS.keys() - {"verdicts"})
+def test_answers_are_as_described(kind, tmp_path):
+    Draft202012Validator.check_schema(SCHEMAS[kind])
+    for call, code in ANSWERS[kind].items():
+        form = [] if kind == "certificate" else ["--format", "json"]
+        words = call.replace("FOLDER", str(tmp_path)).split(" ") + form
+        run = subprocess.run([PROGRAM, *words, "--quiet"], capture_output=True, text=True)
+        assert run.returncode == code, (call, run.stderr)
+        check(kind, run.stdout)
+
+
+def test_committed_verdicts_are_as_described():
+    check("verdicts", (ROOT / "reports" / "verdicts.json").read_text("utf-8"))
