@@ -1,5 +1,6 @@
 //! The decision in floating point.
 
+use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 
 use crate::DecisionError;
@@ -12,8 +13,6 @@ pub(crate) const NODES: usize = 4;
 const PANELS: usize = 64;
 /// The question is judged up to these parts of the time.
 const PARTS: [f64; 12] = [0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
-/// Turns of every pair of columns until they are orthogonal: the sixth changes nothing any more.
-const SWEEPS: usize = 10;
 /// A mismatch up to this many times its noise is none.
 const CERTAIN: f64 = 10.0;
 /// What round-off leaves of the rows at best, relative to their size and to what was added up to them.
@@ -238,18 +237,14 @@ pub fn decide_flow(family: &Family, flow: &Flow, settings: &DecisionSettings) ->
 
 fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Vec<String>) -> Decision {
     let last = triangle.ncols() - 1;
-    let goal = -triangle.column(last);
-    let matrix = triangle.columns(0, last).into_owned();
-    let mut point = DVector::zeros(last);
-    let mut directions = Vec::new();
-    let (images, preimages) = orthogonal(&matrix);
-    for (image, preimage) in images.column_iter().zip(preimages.column_iter()) {
-        if image.norm() > CERTAIN * sizes.noise {
-            point += preimage * (image.dot(&goal) / image.norm_squared());
-        } else {
-            directions.push(preimage.iter().copied().collect());
-        }
-    }
+    // as many rows as right singular vectors
+    let padded = triangle.clone().resize_vertically(last.max(triangle.nrows()), 0.0);
+    let (matrix, goal) = (padded.columns(0, last).into_owned(), -padded.column(last));
+    let svd = SingularValues::of(&matrix);
+    let limit = CERTAIN * sizes.noise;
+    let point = svd.solve(&goal, limit);
+    let free = (0..last).filter(|&k| svd.values[k] <= limit);
+    let directions = free.map(|k| svd.right.row(k).iter().copied().collect()).collect();
     let least = (&matrix * &point - &goal).norm();
     let reach = (1.0 + point.norm_squared()).sqrt();
     let noise = sizes.noise * reach;
@@ -280,30 +275,6 @@ fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Ve
 /// The least of `|O c + y₀|` over all constants `c`, for rows `[O | y₀]`.
 pub(crate) fn least(rows: DMatrix<f64>) -> f64 {
     judge(compressed(rows), Sizes::default(), None, Vec::new()).least
-}
-
-/// `A V` with orthogonal columns, and the orthogonal `V` (one-sided Jacobi): small columns stay sharp.
-fn orthogonal(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
-    let size = matrix.ncols();
-    let (mut images, mut preimages) = (matrix.clone(), DMatrix::identity(size, size));
-    for (i, j) in (0..SWEEPS).flat_map(|_| (0..size).flat_map(|i| (0..i).map(move |j| (i, j)))) {
-        let (one, two) = (images.column(i), images.column(j));
-        let (a, b, c) = (one.norm_squared(), two.norm_squared(), one.dot(&two));
-        if c.abs() <= f64::EPSILON * (a * b).sqrt() {
-            continue;
-        }
-        let cotangent = (b - a) / (2.0 * c);
-        let tangent = cotangent.signum() / (cotangent.abs() + cotangent.hypot(1.0));
-        let cosine = tangent.hypot(1.0).recip();
-        for columns in [&mut images, &mut preimages] {
-            for k in 0..columns.nrows() {
-                let (x, y) = (columns[(k, i)], columns[(k, j)]);
-                columns[(k, i)] = cosine * (x - tangent * y);
-                columns[(k, j)] = cosine * (y + tangent * x);
-            }
-        }
-    }
-    (images, preimages)
 }
 
 /// The triangular factor: the same lengths in at most as many rows as columns.

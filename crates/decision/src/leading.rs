@@ -67,8 +67,8 @@ impl Question<'_> {
     }
 
     /// The least mismatch `(∫ |y|²_M dt)^{1/2}` over all constants by the Taylor series at `state`, over that
-    /// part of `time` in which these converge fast: over all of it the least is no less. `None` where there are
-    /// no series, and for removals with variables of their own.
+    /// part of `time` in which these converge fast: over all of it the least is no less. `None` where there
+    /// are no series, and for removals with variables of their own.
     pub fn least_by_series(&self, system: &System, state: &State, time: f64) -> Option<f64> {
         let family = self.family();
         let (curve, series) = self.series(&rounded(system, state), ORDERS).ok()?;

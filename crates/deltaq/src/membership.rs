@@ -153,8 +153,8 @@ impl<'a> Pairing<'a> {
         Ok(Some(LeadingTerm { exponent, coefficient: term.coefficient, length, reach: term.reach, proved: term.exact }))
     }
 
-    /// The least mismatch over all constants by Taylor series at the start; no more than that up to `end`. See
-    /// [`Question::least_by_series`].
+    /// The least mismatch over all constants by Taylor series at the start; no more than that up to `end`.
+    /// See [`Question::least_by_series`].
     ///
     /// # Errors
     /// [`SolveError::Decision`] where an expression cannot be evaluated.
