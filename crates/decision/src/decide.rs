@@ -199,12 +199,13 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             triangle.rows_mut(above + i * n, n).copy_from(&(&here.rows * root));
             if i == panel % NODES {
                 let there = coarse.mismatch(other, t)?;
-                sums.noise += (here.rows - there.rows).norm_squared() * width.abs();
+                sums.noise += (&here.rows - there.rows).norm_squared() * width.abs();
             }
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);
-            sums.terms += (here.terms * root).powi(2);
-            sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * here.terms;
+            let terms = fine.length_of_terms(&here);
+            sums.terms += (terms * root).powi(2);
+            sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * terms;
         }
         triangle = compressed(std::mem::take(&mut triangle));
         let done = panel + 1;

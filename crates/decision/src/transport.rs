@@ -20,11 +20,13 @@ const SMALLEST: f64 = 1e-3;
 pub(crate) struct Mismatch {
     /// n×(constants + 1), whitened: its Euclidean length is the length in the metric `M` on `ker A`.
     pub(crate) rows: DMatrix<f64>,
-    /// How long what was added up to the rows is, without regard to signs: round-off is a part of it.
-    pub(crate) terms: f64,
     /// `√(aᵀ M a)` of the curve's own acceleration, and `√(vᵀ M v)`.
     pub(crate) acceleration: f64,
     pub(crate) speed: f64,
+    /// What it was made of.
+    columns: DMatrix<f64>,
+    unknowns: DMatrix<f64>,
+    whitened: DMatrix<f64>,
 }
 
 /// What was integrated; no dense output where there are no states.
@@ -245,8 +247,14 @@ impl<'a> Transport<'a> {
         };
         let whitened = factor * to_acceleration;
         let rows = &whitened * solved.unknowns.select_rows(&shape.accelerations);
-        let terms = (whitened.abs() * self.terms(&columns, &solved.unknowns).select_rows(&shape.accelerations)).norm();
-        Ok(Mismatch { rows, terms, acceleration: length(&self.point.a), speed: length(&self.point.v) })
+        let (acceleration, speed) = (length(&self.point.a), length(&self.point.v));
+        Ok(Mismatch { rows, acceleration, speed, columns, unknowns: solved.unknowns, whitened })
+    }
+
+    /// How long what was added up to the rows of the last mismatch is, without regard to signs: round-off is a part.
+    pub(crate) fn length_of_terms(&mut self, last: &Mismatch) -> f64 {
+        let terms = self.terms(&last.columns, &last.unknowns);
+        (last.whitened.abs() * terms.select_rows(&self.family.shape.accelerations)).norm()
     }
 }
 

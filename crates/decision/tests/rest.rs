@@ -50,76 +50,52 @@ fn at_rest_for_an_instant_only() {
     assert_eq!((down.verdict, down.set.dimension()), (Verdict::Contained, 0));
 }
 
-const DRIFT: &str = r#"
-title = "A drift that is zero where the particle rests"
+/// A particle at rest at `(x, 0, 0)`, with this potential and one constraint; `more` are further lines of the system.
+fn particle(x: &str, potential: &str, constraint: &str, more: &str) -> String {
+    format!(
+        r#"
+title = "A particle at rest"
 [parameters]
 weight = 0
+push = 2
 [coordinates]
-x = { start = 0 }
-y = { start = 0 }
-z = { start = 0 }
+x = {{ start = {x} }}
+y = {{ start = 0 }}
+z = {{ start = 0 }}
 [system]
-lagrangian = "(x'^2 + y'^2 + z'^2)/2 - x^2 - weight*z"
-constraints = ["z' - 0.3*x - 0.5*x*y'"]
+lagrangian = "(x'^2 + y'^2 + z'^2)/2 - ({potential})"
+constraints = ["{constraint}"]
+{more}
 [start.velocities]
 "x'" = 0
 "y'" = 0
 [run]
 duration = 2
-"#;
+"#
+    )
+}
 
 #[test]
 fn constraints_with_a_curvature_there_do() {
-    // C = (-0.3, 0, 0)': mu = 0; with a weight lambda = 1 drives mu away from there
-    assert_eq!(multipliers(&written(DRIFT, &[])), Some(0));
-    assert_eq!(multipliers(&written(DRIFT, &[("weight", 1.0)])), None);
+    // a drift that is zero where the particle rests: C = (-0.3, 0, 0)': mu = 0;
+    // with a weight lambda = 1 drives mu away from there
+    let drift = particle("0", "x^2 + weight*z", "z' - 0.3*x - 0.5*x*y'", "");
+    assert_eq!(multipliers(&written(&drift, &[])), Some(0));
+    assert_eq!(multipliers(&written(&drift, &[("weight", 1.0)])), None);
 }
-
-const HELD: &str = r#"
-title = "Held by a force"
-[parameters]
-push = 2
-[coordinates]
-x = { start = 0 }
-y = { start = 0 }
-z = { start = 0 }
-[system]
-lagrangian = "(x'^2 + y'^2 + z'^2)/2 + 2*x - 5*z"
-constraints = ["z' - x*y'"]
-forces = { x = "-push" }
-[start.velocities]
-"x'" = 0
-"y'" = 0
-[run]
-duration = 2
-"#;
 
 #[test]
 fn held_by_a_force_or_not() {
-    assert_eq!(multipliers(&written(HELD, &[])), Some(1));
+    let held = particle("0", "5*z - 2*x", "z' - x*y'", r#"forces = { x = "-push" }"#);
+    assert_eq!(multipliers(&written(&held, &[])), Some(1));
     // without it the particle runs along x; there λ = 5
-    assert_eq!(multipliers(&written(HELD, &[("push", 1.9)])), None);
+    assert_eq!(multipliers(&written(&held, &[("push", 1.9)])), None);
 }
-
-const NO_IMAGE: &str = r#"
-title = "At rest at the logarithm of 2, which no decimal is"
-[coordinates]
-x = { start = "log(2)" }
-y = { start = 0 }
-z = { start = 0 }
-[system]
-lagrangian = "(x'^2 + y'^2 + z'^2)/2 - 100*(exp(x) - 2*x)"
-constraints = ["z' - x*y'"]
-[start.velocities]
-"x'" = 0
-"y'" = 0
-[run]
-duration = 2
-"#;
 
 #[test]
 fn round_off_of_what_balances_is_no_motion() {
-    let scene = written(NO_IMAGE, &[]);
+    // at the logarithm of 2, which no decimal is
+    let scene = written(&particle("\"log(2)\"", "100*(exp(x) - 2*x)", "z' - x*y'", ""), &[]);
     let decision = is_vakonomic(&scene);
     println!(
         "{:?} rho {:.1e} noise {:.1e} {:.1e}",

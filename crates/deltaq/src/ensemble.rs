@@ -18,7 +18,7 @@ use crate::constants::free_constants;
 use crate::{Choice, Metric, Prepared, Settings, SolveError, constants_of, derive_at, setting};
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
-pub use threads::over_threads;
+pub use threads::{number_of_threads, over_threads};
 
 /// Equations of a scene in one formulation, derived and compiled once for members that differ by start, by
 /// the values of some parameters, by free constants and by duration.
@@ -210,7 +210,7 @@ impl Ensemble {
     /// [`Ensemble::member_at`] of all of them, over threads as [`EnsembleOptions::threads`] says: constants
     /// that are natural at a horizon take longer to find than a motion to integrate.
     pub fn members(&self, starts: &[EnsembleStart], threads: usize) -> Vec<Result<EnsembleMember, SolveError>> {
-        let threads = threads::number(threads).clamp(1, starts.len().max(1));
+        let threads = number_of_threads(threads).clamp(1, starts.len().max(1));
         let copies: Vec<Mutex<Ensemble>> = (0..threads).map(|_| Mutex::new(self.clone())).collect();
         let next = AtomicUsize::new(0);
         let members = threads::shared(threads, starts.len(), 1, |take| {

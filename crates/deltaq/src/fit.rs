@@ -72,8 +72,13 @@ pub fn best_fit(
         difference(SEARCH_TOLERANCE, &coarse, guess, &mut apart)
             .map_or(f64::INFINITY, |()| apart.iter().map(|d| d * d).sum())
     };
-    let distances: Vec<f64> = guesses.iter().map(&mut begun).collect();
-    let closest = guesses.iter().zip(&distances).min_by(|a, b| a.1.total_cmp(b.1));
+    let closest = match guesses {
+        [only] => Some(only),
+        several => {
+            let distances: Vec<f64> = several.iter().map(&mut begun).collect();
+            several.iter().zip(distances).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(guess, _)| guess)
+        }
+    };
     let mut search = |tolerance: f64, limits: &Settings, guess: &[f64]| {
         let mut options = ShootOptions::with_tolerance(tolerance);
         options.max_iterations = SEARCH_ITERATIONS;
@@ -84,7 +89,7 @@ pub fn best_fit(
             &options,
         )
     };
-    let mut best = closest.and_then(|(guess, _)| search(SEARCH_TOLERANCE, &coarse, guess).ok());
+    let mut best = closest.and_then(|guess| search(SEARCH_TOLERANCE, &coarse, guess).ok());
     if let Some(found) = &best
         && found.residual < CLOSE * way
         && let Ok(refined) = search(settings.tolerance * TIGHTER, settings, &found.unknowns)

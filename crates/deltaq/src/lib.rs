@@ -94,7 +94,9 @@ pub use comparison::{Comparison, compare};
 pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;
-pub use ensemble::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, over_threads};
+pub use ensemble::{
+    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
+};
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate};

@@ -22,10 +22,7 @@ pub fn use_threads(threads: usize) {
 
 /// How many threads there are for work: never 0.
 pub fn threads() -> usize {
-    match THREADS.load(Ordering::Relaxed) {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        given => given,
-    }
+    deltaq::number_of_threads(THREADS.load(Ordering::Relaxed))
 }
 
 /// `work` of each item, over all processors, results in the order of the items.

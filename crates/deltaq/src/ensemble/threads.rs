@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(super) type Take<'a> = &'a dyn Fn() -> Option<usize>;
 
 /// That many threads; 0: as many as there are processors.
-pub(super) fn number(threads: usize) -> usize {
+pub fn number_of_threads(threads: usize) -> usize {
     match threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         given => given,
@@ -21,7 +21,7 @@ pub(super) fn shared<T: Send>(
     group: usize,
     work: impl Fn(Take) -> Vec<(usize, T)> + Sync,
 ) -> Vec<Option<T>> {
-    let threads = number(threads);
+    let threads = number_of_threads(threads);
     let next = AtomicUsize::new(0);
     let take = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&index| index < count);
     let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();

@@ -25,9 +25,8 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     );
     if let (Verdict::Contained, Finding::None(_)) = (decision.verdict, &found.proof.this_start) {
         // a proved mismatch need not stand out from the noise; how large is it?
-        let family = &choices(&case.scene)[1];
-        let curve = Choice { constants: ConstantsRule::Zero, ..choices(&case.scene)[0].clone() };
-        let least = Pairing::new(&case.scene, &curve, family)?.least_by_series(case.end())?;
+        let choices = choices(&case.scene);
+        let least = Pairing::new(&case.scene, &choices[0], &choices[1])?.least_by_series(case.end())?;
         case.found.bound(9, "decision and proof agree", least.unwrap_or(f64::NAN), CERTAIN * decision.noise);
         return Ok(());
     }
