@@ -3,10 +3,10 @@
 use equations::{Equations, Role};
 use integrate::EvaluationError;
 use mechanics::{State, System};
-use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 
 use crate::DecisionError;
+use crate::exact::solve;
 use crate::family::{flow, timeless};
 use crate::program::{Evaluator, Program};
 
@@ -156,18 +156,21 @@ impl Flow {
         constants: &[f64],
         end: f64,
     ) -> Result<Self, DecisionError> {
-        let programs = Dynamics::new(system, equations)?;
+        Ok(Flow::of(Dynamics::new(system, equations)?, system, start, constants, end))
+    }
+
+    pub(crate) fn of(programs: Dynamics, system: &System, start: &State, constants: &[f64], end: f64) -> Self {
         let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();
         let at_start = [&parameters[..], &[start.t], &start.q, &start.v, constants].concat();
         let start_states = programs.start.evaluator().run(&at_start).to_vec();
-        Ok(Flow {
+        Flow {
             instant: programs.instant.evaluator(),
             rates: programs.rates.evaluator(),
             programs,
             inputs: parameters,
             start: start_states,
             span: (start.t, end),
-        })
+        }
     }
 }
 
@@ -185,15 +188,10 @@ impl Curve for Flow {
         self.inputs.push(t);
         self.inputs.extend(states);
         let size = self.programs.unknowns;
-        let values = self.instant.run(&self.inputs);
-        let matrix = DMatrix::from_row_slice(size, size, &values[..size * size]);
-        let rest = DVector::from_column_slice(&values[size * size..]);
-        // nalgebra's LU panics on a matrix without rows
-        let solution = if size == 0 { Some(rest) } else { matrix.lu().solve(&rest) };
-        if let Some(z) = &solution {
-            self.inputs.extend(z.iter().map(|z| -z));
-        }
-        let point = solution.map(|_| {
+        let (matrix, rest) = self.instant.run(&self.inputs).split_at_mut(size * size);
+        let solved = solve(matrix, rest, size, 1, 1.0);
+        let point = solved.map(|_| {
+            self.inputs.extend(rest.iter().map(|z| -z));
             let (of_states, point) = self.rates.run(&self.inputs).split_at(states.len());
             rates.copy_from_slice(of_states);
             let part = |i: usize| point[i * self.programs.coordinates..(i + 1) * self.programs.coordinates].to_vec();

@@ -16,7 +16,7 @@ const HIGHEST: usize = 12;
 const VANISHES: f64 = 1e-9;
 /// Of the time in which coefficients get no larger; and slices of that part.
 const FAST: f64 = 0.5;
-const SLICES: usize = 8;
+const SLICES: usize = 24;
 
 /// The leading term of `q_family − q_curve`: `coefficient · (t − t₀)^exponent`.
 #[derive(Clone, Debug, PartialEq)]

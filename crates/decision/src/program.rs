@@ -3,24 +3,25 @@
 use symbolic::{CompileError, Expr, Graph, Scalar, Symbol, Tape, Workspace};
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A tape whose first inputs are the parameters of a system.
 #[derive(Clone, Debug)]
 pub(crate) struct Program {
-    tape: Tape,
+    tape: Arc<Tape>,
 }
 
 /// A program with registers for numbers of one kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Evaluator<T> {
-    tape: Tape,
+    tape: Arc<Tape>,
     registers: Workspace<T>,
     values: Vec<T>,
 }
 
 impl Program {
     pub(crate) fn new(graph: &Graph, inputs: &[Symbol], outputs: &[Expr]) -> Result<Self, CompileError> {
-        Ok(Program { tape: graph.compile(inputs, outputs, &HashMap::new())? })
+        Ok(Program { tape: Arc::new(graph.compile(inputs, outputs, &HashMap::new())?) })
     }
 
     pub(crate) fn evaluator<T: Scalar>(&self) -> Evaluator<T> {
@@ -30,8 +31,8 @@ impl Program {
 }
 
 impl<T: Scalar> Evaluator<T> {
-    pub(crate) fn run(&mut self, inputs: &[T]) -> &[T] {
+    pub(crate) fn run(&mut self, inputs: &[T]) -> &mut [T] {
         self.tape.evaluate(inputs, &mut self.registers, &mut self.values);
-        &self.values
+        &mut self.values
     }
 }

@@ -1,10 +1,10 @@
 //! The proof over a finite field.
 
 use equations::Equations;
-use mechanics::System;
+use mechanics::{State, System};
 
 use crate::DecisionError;
-use crate::curve::Dynamics;
+use crate::curve::{Dynamics, Flow};
 use crate::exact::{Coefficient, Jet, Modular, ORDERS};
 use crate::family::{Family, inputs};
 use crate::program::Program;
@@ -60,7 +60,7 @@ pub struct Proof {
 
 /// Rows that are independent modulo `p`, each with its pivot.
 #[derive(Default)]
-pub(crate) struct Echelon(Vec<(usize, Vec<Modular>)>);
+pub(crate) struct Echelon(pub(crate) Vec<(usize, Vec<Modular>)>);
 
 impl Echelon {
     /// Whether `row` is independent of the rows so far.
@@ -154,6 +154,11 @@ impl<'a> Question<'a> {
         })
     }
 
+    /// The motion in question, from `start` to `end`.
+    pub fn flow(&self, system: &System, start: &State, end: f64) -> Flow {
+        Flow::of(self.dynamics.clone(), system, start, &self.constants, end)
+    }
+
     pub(crate) fn family(&self) -> &Family {
         self.family
     }
@@ -224,13 +229,11 @@ impl<'a> Question<'a> {
                 Ok(exact) => self.ranks(&exact, |ranks| ranks.settled().is_some()),
                 Err(fault) => return Finding::NotApplicable(fault.to_string()),
             };
-            match ranks {
-                Ok(ranks) => found.push(ranks),
+            match ranks.map(|ranks| (ranks.refuted(), ranks)) {
+                Ok((Some(none), _)) => return Finding::None(none),
+                Ok((None, ranks)) => found.push(ranks),
                 Err(fault) => return Finding::NotApplicable(fault.to_string()),
             }
-        }
-        if let Some(none) = found.iter().find_map(Ranks::refuted) {
-            return Finding::None(none);
         }
         let ranks = &found[0];
         match ranks.settled() {

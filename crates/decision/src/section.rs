@@ -9,7 +9,7 @@ use crate::DecisionError;
 use crate::exact::{Coefficient, Exact, Jet, Modular};
 use crate::family::{CostateRate, Family, inputs};
 use crate::program::Program;
-use crate::proof::Question;
+use crate::proof::{Echelon, Question};
 use crate::start::ExactStart;
 
 /// Points at which an identity is tried again after it was found.
@@ -86,26 +86,25 @@ impl Ansatz<'_> {
     /// Coefficients that solve the equations at random points, as fractions, and hold at further ones.
     fn solve(&self, start: &ExactStart) -> Option<Vec<Exact>> {
         let unknowns = self.family.shape.constants * self.functions.len();
-        let mut echelon: Vec<(usize, Vec<Modular>)> = Vec::new();
+        let mut echelon = Echelon::default();
         let points = (unknowns / self.family.shape.coordinates + 4) as u64;
         for seed in 0..points {
             for row in self.rows(start, seed)? {
-                add(&mut echelon, row);
+                // a pivot in the last column: 0 = 1
+                if echelon.add(row) && echelon.0.last().is_some_and(|(pivot, _)| *pivot == unknowns) {
+                    return None;
+                }
             }
         }
-        // a pivot in the last column: 0 = 1
-        if echelon.iter().any(|(pivot, _)| *pivot == unknowns) {
-            return None;
-        }
         let mut solution = vec![Modular::ZERO; unknowns];
-        let mut rows: Vec<&(usize, Vec<Modular>)> = echelon.iter().collect();
+        let mut rows = echelon.0;
         rows.sort_by_key(|(pivot, _)| std::cmp::Reverse(*pivot));
         for (pivot, row) in rows {
             let mut value = row[unknowns];
             for (j, &x) in row[..unknowns].iter().enumerate().skip(pivot + 1) {
                 value = value - x * solution[j];
             }
-            solution[*pivot] = value;
+            solution[pivot] = value;
         }
         let fractions: Vec<Exact> = solution.iter().map(|&x| fraction(x)).collect::<Option<_>>()?;
         for seed in points..points + TRIALS {
@@ -153,21 +152,6 @@ impl Ansatz<'_> {
         }
         debug_assert!(rows.iter().all(|row| row.len() == k * count + 1));
         Some(rows)
-    }
-}
-
-/// Reduces `row` by the echelon form, and adds what is left.
-fn add(echelon: &mut Vec<(usize, Vec<Modular>)>, mut row: Vec<Modular>) {
-    for (pivot, other) in echelon.iter() {
-        let factor = row[*pivot];
-        if !factor.is_zero() {
-            row.iter_mut().zip(other).for_each(|(x, &y)| *x = *x - factor * y);
-        }
-    }
-    let pivot = row.iter().position(|x| !x.is_zero());
-    if let Some((pivot, over)) = pivot.and_then(|pivot| Some((pivot, row[pivot].inverse()?))) {
-        row.iter_mut().for_each(|x| *x = *x * over);
-        echelon.push((pivot, row));
     }
 }
 

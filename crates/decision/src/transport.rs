@@ -7,6 +7,7 @@ use symbolic::{Bounded, Scalar};
 
 use crate::DecisionError;
 use crate::curve::{Curve, Point};
+use crate::exact::{solve, subtract_product};
 use crate::family::{CostateRate, Family, Instant, Shape};
 use crate::lift::Lift;
 use crate::program::Evaluator;
@@ -47,6 +48,8 @@ pub(crate) struct Transport<'a> {
     bounded: Evaluator<Bounded>,
     inputs: Vec<f64>,
     values: Vec<f64>,
+    matrix: Vec<f64>,
+    unknowns: Vec<f64>,
     point: Point,
 }
 
@@ -54,12 +57,6 @@ struct LiftNumbers<'a> {
     lift: &'a Lift,
     velocities: Evaluator<f64>,
     accelerations: Evaluator<f64>,
-}
-
-/// `[Δz | η̇]` for every column of `[Φ | φ]`.
-struct Solved {
-    unknowns: DMatrix<f64>,
-    rates: DMatrix<f64>,
 }
 
 fn broken(reason: String) -> EvaluationError {
@@ -81,6 +78,8 @@ impl<'a> Transport<'a> {
             bounded: family.evaluator(),
             inputs: Vec::new(),
             values: Vec::new(),
+            matrix: Vec::new(),
+            unknowns: Vec::new(),
             point: Point::default(),
             family,
         }
@@ -140,34 +139,43 @@ impl<'a> Transport<'a> {
         Ok(())
     }
 
-    /// Solves the family's instant for all columns of `[Φ | φ]`; the inputs are loaded.
-    fn solve(&mut self, t: f64, columns: &DMatrix<f64>) -> Result<Solved, EvaluationError> {
+    /// Solves the family's instant for all columns of `[Φ | φ]`: `self.unknowns` are `Δz`, `rates` become `η̇`;
+    /// the inputs are loaded.
+    fn solve(&mut self, t: f64, columns: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
         let shape = &self.family.shape;
+        let (size, k, width) = (shape.unknowns, shape.costates, shape.constants + 1);
         self.values.clear();
-        self.values.extend(self.instant.run(&self.inputs));
+        self.values.extend_from_slice(self.instant.run(&self.inputs));
         let instant = shape.instant(&self.values);
-        let (size, k, last) = (shape.unknowns, shape.costates, shape.constants);
-        let matrix = DMatrix::from_row_slice(size, size, instant.matrix);
-        let mut right = DMatrix::from_row_slice(size, k, instant.by_costate) * columns;
-        for (r, rest) in right.column_mut(last).iter_mut().zip(instant.rest) {
-            *r += rest;
+        self.matrix.clear();
+        self.matrix.extend_from_slice(instant.matrix);
+        self.unknowns.clear();
+        self.unknowns.resize(size * width, 0.0);
+        subtract_product(&mut self.unknowns, instant.by_costate, columns, k, width);
+        for (row, rest) in self.unknowns.chunks_exact_mut(width).zip(instant.rest) {
+            row[width - 1] -= rest;
         }
-        let unknowns = matrix.lu().solve(&-right).filter(|z| z.iter().all(|x| x.is_finite()));
-        let singular =
-            || broken(format!("the equations of the {} family are singular at t = {t}", self.family.formulation));
-        let unknowns = unknowns.ok_or_else(singular)?;
-        let mut rates = DMatrix::zeros(k, last + 1);
-        for (i, rate) in shape.rates.iter().enumerate() {
+        let solved = solve(&mut self.matrix, &mut self.unknowns, size, width, 1.0);
+        if solved.is_none() || !self.unknowns.iter().all(|z| z.is_finite()) {
+            return Err(broken(format!(
+                "the equations of the {} family are singular at t = {t}",
+                self.family.formulation
+            )));
+        }
+        for (row, rate) in rates.chunks_exact_mut(width).zip(&shape.rates) {
             match *rate {
-                CostateRate::Unknown(place) => rates.row_mut(i).copy_from(&unknowns.row(place)),
+                CostateRate::Unknown(place) => row.copy_from_slice(&self.unknowns[place * width..(place + 1) * width]),
                 CostateRate::Explicit(place) => {
-                    let row = &instant.explicit[place * (k + 1)..(place + 1) * (k + 1)];
-                    rates.row_mut(i).copy_from(&(DMatrix::from_row_slice(1, k, &row[..k]) * columns));
-                    rates[(i, last)] += row[k];
+                    let (factors, rest) = instant.explicit[place * (k + 1)..(place + 1) * (k + 1)].split_at(k);
+                    row.fill(0.0);
+                    row[width - 1] = rest[0];
+                    for (factor, column) in factors.iter().zip(columns.chunks_exact(width)) {
+                        row.iter_mut().zip(column).for_each(|(x, c)| *x += factor * c);
+                    }
                 }
             }
         }
-        Ok(Solved { unknowns, rates })
+        Ok(())
     }
 
     /// What adds up in `Δz`: `|J⁻¹| (‖J‖ |Δz| + ‖R_η‖ |η| + ‖R₀‖)`, by column; `‖·‖` sums all terms.
@@ -184,11 +192,6 @@ impl<'a> Transport<'a> {
         }
         let matrix = DMatrix::from_row_slice(size, size, shape.instant(&self.values).matrix);
         matrix.try_inverse().map_or(right.clone(), |inverse| inverse.abs() * right)
-    }
-
-    fn columns(&self, y: &[f64]) -> DMatrix<f64> {
-        let shape = &self.family.shape;
-        DMatrix::from_row_slice(shape.costates, shape.constants + 1, &y[self.own + self.lifted()..])
     }
 
     /// Integrates to the end of the curve, or as far as it comes.
@@ -232,9 +235,12 @@ impl<'a> Transport<'a> {
         }
         let mut rates = vec![0.0; y.len()];
         self.load(t, &y, &mut rates).map_err(|e| fault(e.reason))?;
-        let columns = self.columns(&y);
-        let solved = self.solve(t, &columns).map_err(|e| fault(e.reason))?;
+        let begin = self.own + self.lifted();
+        self.solve(t, &y[begin..], &mut rates[begin..]).map_err(|e| fault(e.reason))?;
         let shape = &self.family.shape;
+        let width = shape.constants + 1;
+        let columns = DMatrix::from_row_slice(shape.costates, width, &y[begin..]);
+        let unknowns = DMatrix::from_row_slice(shape.unknowns, width, &self.unknowns);
         let instant = shape.instant(&self.values);
         let n = shape.coordinates;
         let to_acceleration = DMatrix::from_row_slice(n, shape.accelerations.len(), instant.to_acceleration);
@@ -246,9 +252,9 @@ impl<'a> Transport<'a> {
             x.dot(&(&mass * &x)).max(0.0).sqrt()
         };
         let whitened = factor * to_acceleration;
-        let rows = &whitened * solved.unknowns.select_rows(&shape.accelerations);
+        let rows = &whitened * unknowns.select_rows(&shape.accelerations);
         let (acceleration, speed) = (length(&self.point.a), length(&self.point.v));
-        Ok(Mismatch { rows, acceleration, speed, columns, unknowns: solved.unknowns, whitened })
+        Ok(Mismatch { rows, acceleration, speed, columns, unknowns, whitened })
     }
 
     /// How long what was added up to the rows of the last mismatch is, without regard to signs: round-off is a part.
@@ -276,12 +282,8 @@ impl Problem for Transport<'_> {
 
     fn rates(&mut self, t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
         self.load(t, y, rates)?;
-        let solved = self.solve(t, &self.columns(y))?;
         let begin = self.own + self.lifted();
-        for (rate, x) in rates[begin..].iter_mut().zip(solved.rates.transpose().iter()) {
-            *rate = *x;
-        }
-        Ok(())
+        self.solve(t, &y[begin..], &mut rates[begin..])
     }
 
     fn jacobian(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), EvaluationError> {

@@ -11,8 +11,8 @@ pub const CERTAINTY: f64 = 10.0;
 /// Relative error estimate that both motions have to stay under to be called the same.
 pub const SAME_ESTIMATE: f64 = 1e-8;
 
-/// Relative round-off that no error estimate goes under.
-const ROUND_OFF: f64 = 2e-15;
+/// Round-off of a run relative to its size: what no error estimate goes under, as both runs of a motion share it.
+const ROUND_OFF: f64 = 1e-14;
 
 /// Gaps whose first times are reported.
 pub const THRESHOLDS: [f64; 3] = [1e-6, 1e-3, 1e-1];

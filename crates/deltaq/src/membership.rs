@@ -1,8 +1,8 @@
 //! Is one formulation's motion another's, for some free constants? Decided, not searched; a no is proved.
 
 use decision::{
-    Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Flow, Proof, Question,
-    Section, Verdict, decide_flow,
+    Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Proof, Question, Section,
+    Verdict, decide_flow,
 };
 use equations::{Derivation, Equations};
 use mechanics::{ConstantsRule, Removal, System};
@@ -116,9 +116,9 @@ impl<'a> Pairing<'a> {
     /// [`SolveError::Decision`] where the motion cannot be followed.
     pub fn decide(&self, end: f64) -> Result<Membership, SolveError> {
         let (system, start) = (&self.scene.system, &self.scene.start);
-        let flow = Flow::new(system, &self.curve, start, &self.constants, end)?;
-        let decision = decide_flow(&self.family, &flow, &DecisionSettings::default())?;
         let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
+        let flow = question.flow(system, start, end);
+        let decision = decide_flow(&self.family, &flow, &DecisionSettings::default())?;
         let exact = self.exact_start()?;
         let proof = question.prove(&exact);
         // an identity would be one at almost every start

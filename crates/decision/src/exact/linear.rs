@@ -4,43 +4,49 @@ use super::Coefficient;
 
 /// The inverse of a square matrix, and its determinant; `None` where it is singular.
 pub(crate) fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Option<(Vec<C>, C)> {
-    let mut left = matrix.to_vec();
     let mut right = vec![C::ZERO; size * size];
-    for i in 0..size {
-        right[i * size + i] = one;
-    }
+    right.iter_mut().step_by(size + 1).for_each(|x| *x = one);
+    let determinant = solve(&mut matrix.to_vec(), &mut right, size, size, one)?;
+    Some((right, determinant))
+}
+
+/// Makes `right` (size×width) `matrix⁻¹ · right`, and says the determinant; `None` where that is zero.
+pub(crate) fn solve<C: Coefficient>(matrix: &mut [C], right: &mut [C], size: usize, width: usize, one: C) -> Option<C> {
     let mut determinant = one;
     for column in 0..size {
-        let weight = |row: usize| left[row * size + column].weight();
+        let weight = |row: usize| matrix[row * size + column].weight();
         let pivot = (column..size).max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a)))?;
-        let value = left[pivot * size + column];
+        let value = matrix[pivot * size + column];
         let over = value.inverse()?;
         if pivot != column {
             determinant = -determinant;
-            for j in 0..size {
-                left.swap(pivot * size + j, column * size + j);
-                right.swap(pivot * size + j, column * size + j);
-            }
+            (0..size).for_each(|j| matrix.swap(pivot * size + j, column * size + j));
+            (0..width).for_each(|j| right.swap(pivot * width + j, column * width + j));
         }
         determinant = determinant * value;
-        for half in [&mut left, &mut right] {
-            for j in 0..size {
-                half[column * size + j] = half[column * size + j] * over;
-            }
-        }
-        for row in (0..size).filter(|&row| row != column) {
-            let factor = left[row * size + column];
-            if factor.weight() == 0.0 {
-                continue;
-            }
-            for half in [&mut left, &mut right] {
-                for j in 0..size {
-                    half[row * size + j] = half[row * size + j] - factor * half[column * size + j];
-                }
+        for row in column + 1..size {
+            let factor = matrix[row * size + column] * over;
+            if factor.weight() != 0.0 {
+                subtract_row(matrix, size, column, row, column, factor);
+                subtract_row(right, width, 0, row, column, factor);
             }
         }
     }
-    Some((right, determinant))
+    for column in (0..size).rev() {
+        let over = matrix[column * size + column].inverse()?;
+        right[column * width..(column + 1) * width].iter_mut().for_each(|x| *x = *x * over);
+        (0..column).for_each(|row| subtract_row(right, width, 0, row, column, matrix[row * size + column]));
+    }
+    Some(determinant)
+}
+
+/// Subtracts `factor` times `row` from the row `from`, in the columns from `begin` on.
+fn subtract_row<C: Coefficient>(matrix: &mut [C], width: usize, begin: usize, from: usize, row: usize, factor: C) {
+    let (low, high) = (from.min(row), from.max(row));
+    let (above, below) = matrix.split_at_mut(high * width);
+    let (above, below) = (&mut above[low * width + begin..(low + 1) * width], &mut below[begin..width]);
+    let (into, of) = if from < row { (above, below) } else { (below, above) };
+    into.iter_mut().zip(of).for_each(|(x, y)| *x = *x - factor * *y);
 }
 
 /// `matrix · columns`, of sizes rows×inner and inner×width, added to `into` with a sign.

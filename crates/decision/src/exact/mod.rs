@@ -6,7 +6,7 @@ mod modular;
 mod rational;
 
 pub(crate) use jet::{Jet, ORDERS};
-pub(crate) use linear::{inverse, subtract_product};
+pub(crate) use linear::{inverse, solve, subtract_product};
 pub(crate) use modular::{Modular, PRIME};
 pub(crate) use rational::Exact;
 

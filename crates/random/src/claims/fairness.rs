@@ -24,9 +24,10 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         words(&found.proof.this_start)
     );
     if let (Verdict::Contained, Finding::None(_)) = (decision.verdict, &found.proof.this_start) {
-        // a proved mismatch need not stand out from the noise; how large is it?
+        // a proved mismatch need not stand out from the noise: how large is it as far as was judged?
         let choices = choices(&case.scene);
-        let least = Pairing::new(&case.scene, &choices[0], &choices[1])?.least_by_series(case.end())?;
+        let least = Pairing::new(&case.scene, &choices[0], &choices[1])?
+            .least_by_series(decision.until.unwrap_or(case.end()))?;
         case.found.bound(9, "decision and proof agree", least.unwrap_or(f64::NAN), CERTAIN * decision.noise);
         return Ok(());
     }
