@@ -5,7 +5,7 @@ use deltaq::Settings;
 use serde_json::json;
 
 use crate::cli::CompareArguments;
-use crate::main_job::{protocol, scene_files};
+use crate::main_job::{compared, protocol, scene_files};
 use crate::solve_command::check_tolerance;
 use validation::catalogue;
 use validation::report::verdicts;
@@ -16,9 +16,9 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<String> {
     let settings = Settings { tolerance: arguments.tolerance, ..protocol() };
     let (mut files, mut comparisons) = (Vec::new(), Vec::new());
     for name in &arguments.scenes {
-        let report = scene_files(catalogue::find(name, &arguments.set.overrides)?, &settings)?;
-        files.extend(report.files);
-        comparisons.push(report.comparison);
+        let mut comparison = compared(catalogue::find(name, &arguments.set.overrides)?, &settings)?;
+        files.extend(scene_files(&mut comparison, &settings)?);
+        comparisons.push(comparison);
     }
     let text = || match &arguments.output.out {
         Some(folder) => format!("{} files in {}\n", files.len(), folder.display()),

@@ -2,12 +2,13 @@
 
 use std::panic::resume_unwind;
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 use std::thread::ScopedJoinHandle;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::{CommandFactory, ValueEnum};
-use deltaq::{Comparison, Settings, choices, compare};
+use deltaq::{Comparison, Settings, choices, compare_unfitted};
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -31,19 +32,23 @@ pub struct SceneReport {
     pub files: Vec<File>,
 }
 
-/// Compares all formulations of a scene, the control among them, and writes its page and pictures.
-pub(crate) fn scene_files(scene: Scene, settings: &Settings) -> Result<SceneReport> {
+/// Compares all formulations of a scene, the control among them; [`scene_files`] adds the fits.
+pub(crate) fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
     let name = scene.name.clone();
     let choices = choices(&scene);
     let control = substitution::run(&scene, &choices, settings).into_iter().collect();
-    let mut comparison = compare(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))?;
-    comparison.keep_closer();
-    let mut files = pictures(&mut comparison).with_context(|| format!("pictures of scene `{name}`"))?;
+    compare_unfitted(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))
+}
+
+/// Fits constants, and makes the page and the pictures.
+pub(crate) fn scene_files(comparison: &mut Comparison, settings: &Settings) -> Result<Vec<File>> {
+    let name = comparison.scene.name.clone();
+    comparison.fit(settings).with_context(|| format!("scene `{name}`"))?;
+    let mut files = pictures(comparison).with_context(|| format!("pictures of scene `{name}`"))?;
     let links: Vec<String> =
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();
-    let page = scene_page(&mut comparison, &links)?;
-    files.push(File { path: format!("scenes/{name}.md").into(), text: page });
-    Ok(SceneReport { comparison, files })
+    files.push(File { path: format!("scenes/{name}.md").into(), text: scene_page(comparison, &links)? });
+    Ok(files)
 }
 
 /// Random systems of the main job.
@@ -290,22 +295,34 @@ fn told(of: &str, line: &str) -> String {
     format!("{of:<24} {line}\n")
 }
 
-/// All scenes, over all processors, in the order of `names`; what is found is told at once, unless `quiet`.
+/// All scenes, over all processors, in the order of `names`; answers are told at once, before fits, unless `quiet`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let settings = protocol();
-    let bar = parallel::progress(names.len(), quiet);
-    let reports = parallel::map(names, |name| {
+    let bar = parallel::progress(2 * names.len(), quiet);
+    let found = parallel::map(names, |name| {
         bar.set_message(name.to_string());
-        let report = scene_files(catalogue::find(name, &[])?, &settings)?;
+        let comparison = compared(catalogue::find(name, &[])?, &settings)?;
         if !quiet {
-            let (of, line) = first_sentence(&report.comparison);
+            let (of, line) = first_sentence(&comparison);
             bar.suspend(|| Answer::from(told(&of, &line)).print())?;
         }
         bar.inc(1);
-        Ok(report)
+        Ok(Mutex::new(comparison))
+    });
+    let found = found.into_iter().collect::<Result<Vec<_>>>()?;
+    let files = parallel::map(&found, |comparison| {
+        let mut comparison = comparison.lock().unwrap_or_else(PoisonError::into_inner);
+        bar.set_message(format!("{}, fits", comparison.scene.name));
+        let files = scene_files(&mut comparison, &settings);
+        bar.inc(1);
+        files
     });
     bar.finish_and_clear();
-    reports.into_iter().collect()
+    let whole = |(comparison, files): (Mutex<Comparison>, _)| {
+        let comparison = comparison.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok(SceneReport { comparison, files: files? })
+    };
+    found.into_iter().zip(files).map(whole).collect()
 }
 
 /// References of all scenes over all processors, then measurements one after the other.

@@ -21,7 +21,7 @@ pub struct Comparison {
     pub runs: Vec<Run>,
     /// Pairs of runs that both gave a motion.
     pub pairs: Vec<Pair>,
-    /// Fits of free constants.
+    /// Fits of free constants, if any were asked for.
     pub fits: Vec<Fit>,
     /// Which motions are motions of another formulation for some values of its constants. Of removals by
     /// coordinates nothing is asked: their families are the vakonomic one.
@@ -40,9 +40,20 @@ impl Comparison {
         self.decided.iter().find(|d| (d.family, d.curve) == (family, curve)).map(|d| &d.outcome)
     }
 
+    /// Looks for the constants with which one run comes closest to another, wherever two differ.
+    ///
+    /// # Errors
+    /// [`SolveError`] where a motion cannot be read off.
+    pub fn fit(&mut self, settings: &Settings) -> Result<(), SolveError> {
+        let mut metric = Metric::new(&self.scene.system)?;
+        self.fits = fits(&self.scene, &mut self.runs, &self.pairs, &self.decided, &mut metric, settings)?;
+        self.keep_closer();
+        Ok(())
+    }
+
     /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: fits minimize
     /// the sum of squares, not the largest gap, and a search is no reason to go farther away.
-    pub fn keep_closer(&mut self) {
+    fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));
             let pair = self.pairs.iter().find(|p| (p.first, p.second) == (first, second));
@@ -63,10 +74,10 @@ impl Comparison {
     }
 }
 
-/// Computes `choices` of a scene ([`crate::choices`]: all), adds `extra` runs from elsewhere, compares.
+/// Computes `choices` of a scene ([`crate::choices`]: all), adds `extra` runs from elsewhere, compares and fits.
 ///
 /// # Errors
-/// [`mechanics::RemovalError`] for dependent constraints; [`SolveError`] where a motion cannot be read off.
+/// As [`compare_unfitted`] and [`Comparison::fit`].
 ///
 /// ```
 /// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
@@ -81,6 +92,21 @@ impl Comparison {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn compare(
+    scene: Scene,
+    choices: Vec<Choice>,
+    extra: Vec<Run>,
+    settings: &Settings,
+) -> Result<Comparison, SolveError> {
+    let mut comparison = compare_unfitted(scene, choices, extra, settings)?;
+    comparison.fit(settings)?;
+    Ok(comparison)
+}
+
+/// [`compare`] without fits, which take most of its time: everything is decided, nothing searched.
+///
+/// # Errors
+/// [`mechanics::RemovalError`] for dependent constraints; [`SolveError`] where a motion cannot be read off.
+pub fn compare_unfitted(
     scene: Scene,
     choices: Vec<Choice>,
     extra: Vec<Run>,
@@ -114,8 +140,7 @@ pub fn compare(
         }
     }
     let decided = decided(&scene, &runs);
-    let fits = fits(&scene, &mut runs, &pairs, &decided, &mut metric, settings)?;
-    Ok(Comparison { scene, integrability, runs, pairs, fits, decided })
+    Ok(Comparison { scene, integrability, runs, pairs, fits: Vec::new(), decided })
 }
 
 /// The costate form is compared with the vakonomic one only, a run from outside the table with Chetaev only.

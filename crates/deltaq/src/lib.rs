@@ -90,7 +90,7 @@ pub use choice::{
     Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
     solve_choice,
 };
-pub use comparison::{Comparison, compare};
+pub use comparison::{Comparison, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;
