@@ -1,7 +1,7 @@
 //! One run of the time loop.
 
 use equations::{Compiled, EvaluationFailure, Outputs};
-use integrate::{Options, Problem, Solution, Start};
+use integrate::{Gauge, Options, Problem, Solution, Start};
 
 use crate::SolveError;
 
@@ -147,6 +147,13 @@ impl Problem for Runner<'_> {
             let unknowns = self.compiled.settle(t, y).map_err(refused)?.to_vec();
             self.anchors.push((t, unknowns));
         }
+        Ok(())
+    }
+    fn gauges(&self) -> &[Gauge] {
+        self.compiled.gauges()
+    }
+    fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.compiled.gauged(t, y, arguments);
         Ok(())
     }
     fn events(&self) -> usize {

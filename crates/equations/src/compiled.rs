@@ -23,6 +23,8 @@ pub struct Compiled {
     left: Vec<usize>,
     fallbacks: usize,
     guards: Evaluator<f64>,
+    steep: Evaluator<f64>,
+    gauges: Vec<fn(f64) -> f64>,
     projector: Option<Projector>,
     jacobian: Option<Jacobian>,
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
@@ -131,6 +133,7 @@ impl Compiled {
         let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
+        let steep = equations.steep();
         let planned = (plan.left.len() < blocks.len() || plan.collected.is_some())
             .then(|| Planned::new(equations, plan, &all, &outputs))
             .transpose()?;
@@ -142,6 +145,8 @@ impl Compiled {
             rates: equations.evaluator(&all, &rates)?,
             outputs: equations.evaluator(&all, &outputs)?,
             guards: equations.evaluator(&known, &equations.guards)?,
+            gauges: steep.iter().map(|steep| steep.gauge).collect(),
+            steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             jacobian: None,
             series: None,
@@ -293,6 +298,17 @@ impl Compiled {
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
         values.copy_from_slice(self.guards.evaluate(&self.inputs[..self.sizes.known()]));
+    }
+
+    /// Gauges of functions that may change within little of their arguments: [`symbolic::Steep`].
+    pub fn gauges(&self) -> &[fn(f64) -> f64] {
+        &self.gauges
+    }
+
+    /// The arguments of these functions.
+    pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) {
+        self.load(t, y);
+        arguments.copy_from_slice(self.steep.evaluate(&self.inputs[..self.sizes.known()]));
     }
 
     /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.

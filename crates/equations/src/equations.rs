@@ -5,7 +5,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Scalar, Symbol, Tape};
+use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Range, Scalar, Steep, Symbol, Tape};
 
 use crate::definitions::{needed, symbols_behind};
 use mechanics::{Removal, System};
@@ -260,6 +260,19 @@ impl Equations {
         known.extend(self.state_symbols());
         known.extend(self.constant_symbols());
         known
+    }
+
+    /// Functions in the equations that may change within little of their arguments, where these are known
+    /// before the instant is solved.
+    pub fn steep(&self) -> Vec<Steep> {
+        let values = self.parameters.iter().map(|(&s, &value)| (s, Range::point(value))).collect();
+        let definitions = self.definitions.iter().map(|(_, e)| *e);
+        let residuals = self.blocks.iter().flat_map(|block| block.residuals.iter().copied());
+        let all: Vec<Expr> = definitions.chain(residuals).chain(self.states.iter().map(|y| y.rate)).collect();
+        let unknowns = self.unknowns();
+        let mut steep = self.graph.steep(&all, &values);
+        steep.retain(|steep| self.symbols_behind([steep.argument]).iter().all(|s| !unknowns.contains(s)));
+        steep
     }
 
     /// The symbols in `roots`, and in the definitions by way of which they are computed.

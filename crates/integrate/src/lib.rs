@@ -80,6 +80,7 @@ mod radau5;
 mod radau5_tableau;
 mod root;
 mod status;
+mod steep;
 mod stepper;
 mod system;
 mod taylor;
@@ -91,7 +92,7 @@ pub use dense::DenseOutput;
 pub use error::{CallError, DenseError};
 pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, integrate_lanes};
 pub use options::{Dense, Interrupt, Method, Options, Projection};
-pub use problem::{EvaluationError, Problem, Start};
+pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use root::find_root;
 pub use status::{ProjectionReport, Solution, Status, StopCause, Work};
 

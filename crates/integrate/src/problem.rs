@@ -94,6 +94,21 @@ pub trait Problem {
         0
     }
 
+    /// Gauges `w` of functions `F(x)` in the equations that may change within little of their arguments
+    /// `x(t, y)`: no step is taken along which a gauge grows by more than 4, however little the method sees
+    /// of `F`. So nothing that is switched on and off between two evaluations is passed over.
+    fn gauges(&self) -> &[Gauge] {
+        &[]
+    }
+
+    /// Writes the arguments `x(t, y)` of the [`gauges`](Problem::gauges).
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where they are not defined. The step is retried, shorter.
+    fn gauged(&mut self, _t: f64, _y: &[f64], _arguments: &mut [f64]) -> Result<(), EvaluationError> {
+        Ok(())
+    }
+
     /// Writes the event functions' values `g_k(t, y)`; `values` has length [`events`](Problem::events).
     ///
     /// # Errors
@@ -102,6 +117,10 @@ pub trait Problem {
         Ok(())
     }
 }
+
+/// A monotone function of an argument: where it grows by 1, a function of the argument changes by about its own
+/// size, and where it is constant that hardly changes. For `tanh x`: `x` between −20 and 20.
+pub type Gauge = fn(f64) -> f64;
 
 /// `F` (or its Jacobian, the projection, an event function) could not be evaluated here.
 ///

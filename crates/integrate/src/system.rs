@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use crate::problem::{EvaluationError, Problem};
+use crate::problem::{EvaluationError, Gauge, Problem};
 use crate::status::{StopCause, Work};
 
 /// Why a step could not be taken, though a shorter one may be possible.
@@ -11,6 +11,7 @@ pub(crate) enum Failure {
     Evaluation { reason: String },
     NotFinite { component: usize },
     NotSmooth { component: usize },
+    Steep { t: f64 },
 }
 
 impl From<EvaluationError> for Failure {
@@ -25,6 +26,10 @@ impl From<Failure> for StopCause {
             Failure::Evaluation { reason } => StopCause::Evaluation { reason },
             Failure::NotFinite { component } => StopCause::NotFinite { component },
             Failure::NotSmooth { component } => StopCause::NotSmooth { component },
+            Failure::Steep { t } => {
+                let reason = format!("a function in the equations changes within less than a step near t = {t}");
+                StopCause::Evaluation { reason }
+            }
         }
     }
 }
@@ -191,6 +196,14 @@ impl<'p> System<'p> {
     /// Tells the problem that `y` is accepted.
     pub(crate) fn accepted(&self, t: f64, y: &[f64]) -> Result<(), Failure> {
         Ok(self.inner.borrow_mut().problem.accepted(t, y)?)
+    }
+
+    pub(crate) fn gauges(&self) -> Vec<Gauge> {
+        self.inner.borrow().problem.gauges().to_vec()
+    }
+
+    pub(crate) fn gauged(&self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), Failure> {
+        Ok(self.inner.borrow_mut().problem.gauged(t, y, arguments)?)
     }
 
     pub(crate) fn event_values(&self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {

@@ -5,6 +5,7 @@ use crate::events::{EventWatch, Segment};
 use crate::options::{Dense, Interrupt, Options, Projection};
 use crate::problem::Start;
 use crate::status::{ProjectionReport, Solution, Status, StopCause};
+use crate::steep::SteepWatch;
 use crate::stepper::{Attempt, Stepper};
 use crate::system::{Failure, System, check_finite};
 
@@ -65,6 +66,7 @@ impl Record<'_, '_> {
     fn walk(&mut self, stepper: &mut dyn Stepper, start: &Start, end: f64) -> Result<(), StopCause> {
         let system = self.system;
         let mut watch = EventWatch::new(system, start.t, &start.y)?;
+        let mut steep = SteepWatch::new(system, start.t, &start.y)?;
         // The last failure since the last accepted step, and the number of them.
         let mut failure: Option<Failure> = None;
         let mut failures = 0;
@@ -87,7 +89,7 @@ impl Record<'_, '_> {
             let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {
                     system.count_rejected(rejected);
-                    self.take(stepper, &mut watch, t)
+                    self.take(stepper, &mut watch, &mut steep, t)
                 }
                 Attempt::Rejected => {
                     system.count_rejected(1);
@@ -100,6 +102,7 @@ impl Record<'_, '_> {
                 Ok(None) => {
                     stepper.advance()?;
                     watch.advance();
+                    steep.advance();
                     (failure, failures) = (None, 0);
                 }
                 Ok(Some(index)) => return Err(StopCause::Event { index }),
@@ -117,7 +120,13 @@ impl Record<'_, '_> {
     }
 
     /// Checks, projects and stores the candidate that ends at `t`; returns the event that cuts it short.
-    fn take(&mut self, stepper: &mut dyn Stepper, watch: &mut EventWatch, t: f64) -> Result<Option<usize>, Failure> {
+    fn take(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        watch: &mut EventWatch,
+        steep: &mut SteepWatch,
+        t: f64,
+    ) -> Result<Option<usize>, Failure> {
         let begin = stepper.time();
         let candidate = stepper.candidate();
         check_finite(candidate)?;
@@ -126,14 +135,15 @@ impl Record<'_, '_> {
             moved = Some(self.system.project(t, candidate)?);
         }
         let watching = self.system.events() > 0;
-        let has_room = watching || self.options.dense == Dense::Everywhere;
+        let has_room = watching || steep.is_on() || self.options.dense == Dense::Everywhere;
         let room = if has_room { Some(self.dense.room()) } else { None };
         let found = stepper.finish(moved.is_some_and(|length| length != 0.0), room).and_then(|()| {
-            if !watching {
+            if !watching && !steep.is_on() {
                 return Ok(None);
             }
             let coefficients = self.dense.last_room();
             let segment = Segment { basis: self.dense.basis(), coefficients, begin, width: t - begin, end: t };
+            steep.look(self.system, &segment)?;
             let found = watch.look(self.system, &segment)?;
             Ok(found.map(|found| (found.index, found.theta, segment.time(found.theta))))
         });

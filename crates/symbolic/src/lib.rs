@@ -62,6 +62,7 @@ mod range;
 mod scalar;
 mod series;
 mod simplify;
+mod steep;
 mod suggest;
 mod sum_factor;
 mod tape;
@@ -82,5 +83,6 @@ pub use scalar::Scalar;
 pub use series::{
     Correct, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
 };
+pub use steep::Steep;
 pub use suggest::nearest;
 pub use tape::{Tape, Workspace};
