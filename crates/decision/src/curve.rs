@@ -1,7 +1,7 @@
 //! Curves `q(t)`: given from outside, or integrated from the equations of a formulation.
 
 use equations::{Equations, Role};
-use integrate::EvaluationError;
+use integrate::{EvaluationError, Gauge};
 use mechanics::{State, System};
 use symbolic::Expr;
 
@@ -33,6 +33,14 @@ pub trait Curve {
     fn states(&self) -> Vec<f64> {
         Vec::new()
     }
+
+    /// Gauges of functions that may change within little of their arguments: see [`integrate::Problem::gauges`].
+    fn gauges(&self) -> &[Gauge] {
+        &[]
+    }
+
+    /// Writes the arguments of these functions.
+    fn gauged(&mut self, _t: f64, _states: &[f64], _arguments: &mut [f64]) {}
 
     /// The point at `t`, where the states are `states`; writes their rates.
     ///
@@ -70,6 +78,7 @@ pub struct Flow {
     programs: Dynamics,
     instant: Evaluator<f64>,
     rates: Evaluator<f64>,
+    steep: Evaluator<f64>,
     inputs: Vec<f64>,
     start: Vec<f64>,
     span: (f64, f64),
@@ -87,6 +96,9 @@ pub(crate) struct Dynamics {
     pub(crate) instant: Program,
     /// Rates of `y`, then `q`, `v`, `a`; from parameters, `t, y, z`.
     pub(crate) rates: Program,
+    /// Arguments of steep functions from parameters, `t, y`, and their gauges.
+    steep: Program,
+    gauges: Vec<Gauge>,
     /// `y(t₀)` from parameters, `t, q, v` and the free constants.
     pub(crate) start: Program,
 }
@@ -126,6 +138,9 @@ impl Dynamics {
         let mut instant = matrix.entries().to_vec();
         instant.extend(g.substitute_all(&residuals, &at_zero));
         let instant = Program::new(g, &inputs, &instant)?;
+        let steep = equations.steep();
+        let arguments: Vec<Expr> = steep.iter().map(|steep| steep.argument).collect();
+        let arguments = Program::new(g, &inputs, &arguments)?;
         inputs.extend(&unknowns);
         let mut rates: Vec<Expr> = equations.states.iter().map(|y| y.rate).collect();
         rates.extend(&equations.coordinates);
@@ -138,6 +153,8 @@ impl Dynamics {
             unknowns: unknowns.len(),
             timeless: timeless(system.time, equations),
             instant,
+            steep: arguments,
+            gauges: steep.iter().map(|steep| steep.gauge).collect(),
             rates: Program::new(g, &inputs, &rates)?,
             start: Program::new(g, &at_start, &starts)?,
         })
@@ -166,6 +183,7 @@ impl Flow {
         Flow {
             instant: programs.instant.evaluator(),
             rates: programs.rates.evaluator(),
+            steep: programs.steep.evaluator(),
             programs,
             inputs: parameters,
             start: start_states,
@@ -181,6 +199,18 @@ impl Curve for Flow {
 
     fn states(&self) -> Vec<f64> {
         self.start.clone()
+    }
+
+    fn gauges(&self) -> &[Gauge] {
+        &self.programs.gauges
+    }
+
+    fn gauged(&mut self, t: f64, states: &[f64], arguments: &mut [f64]) {
+        let parameters = self.inputs.len();
+        self.inputs.push(t);
+        self.inputs.extend(states);
+        arguments.copy_from_slice(self.steep.run(&self.inputs));
+        self.inputs.truncate(parameters);
     }
 
     fn point(&mut self, t: f64, states: &[f64], rates: &mut [f64]) -> Result<Point, EvaluationError> {

@@ -1,5 +1,6 @@
 //! The decision in floating point.
 
+use integrate::DenseOutput;
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 
@@ -182,18 +183,20 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     let (start, end) = fine.span();
     let [own, other] = paths;
     let way = (own.end - start).abs().min((other.end - start).abs());
-    let panels = PANELS.max(own.dense.as_ref().map_or(0, |run| run.step_times().len()));
-    let width = way.copysign(end - start) / panels as f64;
+    let bounds = bounds(own, start, way.copysign(end - start));
+    let panels = bounds.len() - 1;
     let constants = fine.family.constants();
     let mut triangle = DMatrix::zeros(0, constants.len() + 1);
     let mut sums = Sizes::default();
     let (nodes, n) = (legendre(), fine.family.shape.coordinates);
     let mut found: Vec<Decision> = Vec::new();
+    let mut parts = PARTS.into_iter().peekable();
     let mut add = |panel: usize| -> Result<(), DecisionError> {
+        let width = bounds[panel + 1] - bounds[panel];
         let above = triangle.nrows();
         triangle = std::mem::take(&mut triangle).resize_vertically(above + NODES * n, 0.0);
         for (i, (x, weight)) in nodes.into_iter().enumerate() {
-            let t = start + width * (panel as f64 + x);
+            let t = bounds[panel] + width * x;
             let root = (weight * width.abs()).sqrt();
             let here = fine.mismatch(own, t)?;
             triangle.rows_mut(above + i * n, n).copy_from(&(&here.rows * root));
@@ -208,11 +211,15 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             sums.speed += (here.speed * root).powi(2);
         }
         triangle = compressed(std::mem::take(&mut triangle));
-        let done = panel + 1;
-        if PARTS.iter().any(|part| done == (part * panels as f64) as usize) {
-            let sizes = sums.lengths(width * done as f64, triangle.norm());
-            let whole = done == panels && way == (end - start).abs();
-            let until = (!whole).then_some(start + width * done as f64);
+        let past = bounds[panel + 1] - start;
+        let mut passed = false;
+        while parts.next_if(|part| past.abs() >= part * way * (1.0 - 1e-9)).is_some() {
+            passed = true;
+        }
+        if passed {
+            let sizes = sums.lengths(past, triangle.norm());
+            let whole = panel + 1 == panels && way == (end - start).abs();
+            let until = (!whole).then_some(bounds[panel + 1]);
             found.push(judge(triangle.clone(), sizes, until, constants.to_vec()));
         }
         Ok(())
@@ -226,6 +233,17 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
         (None, Some(stop)) => Err(own.stop.clone().unwrap_or(stop)),
         (None, None) => unreachable!("every part was judged"),
     }
+}
+
+/// Where panels begin and end: equally long ones, or the steps where these are more, short where much happens.
+fn bounds(path: &Path, start: f64, way: f64) -> Vec<f64> {
+    let steps = path.dense.as_ref().map_or(Vec::new(), DenseOutput::step_times);
+    if steps.len() <= PANELS {
+        return (0..=PANELS).map(|i| start + way * i as f64 / PANELS as f64).collect();
+    }
+    let end = start + way;
+    let before = steps.into_iter().filter(|t| (end - t) * way.signum() > 0.0);
+    before.chain([end]).collect()
 }
 
 /// [`decide`] for a curve that is integrated beside the transport of the constants.

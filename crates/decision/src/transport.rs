@@ -1,6 +1,6 @@
 //! The constants' images along a curve: `η(t) = Φ c + φ`, integrated beside it.
 
-use integrate::{Dense, DenseOutput, EvaluationError, Method, Options, Problem, Start, Status, StopCause, integrate};
+use integrate::{Dense, DenseOutput, EvaluationError, Gauge, Method, Options, Problem, Start, Status, StopCause, integrate};
 use mechanics::{SingularValues, State};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{Bounded, Scalar};
@@ -284,6 +284,15 @@ impl Problem for Transport<'_> {
         self.load(t, y, rates)?;
         let begin = self.own + self.lifted();
         self.solve(t, &y[begin..], &mut rates[begin..])
+    }
+
+    fn gauges(&self) -> &[Gauge] {
+        self.curve.gauges()
+    }
+
+    fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), EvaluationError> {
+        self.curve.gauged(t, &y[..self.own], arguments);
+        Ok(())
     }
 
     fn jacobian(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), EvaluationError> {

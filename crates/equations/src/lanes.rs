@@ -33,6 +33,9 @@ impl LaneEquations {
             let words: Vec<&str> = plan.left.iter().filter_map(|&k| plan.why.get(k)).map(String::as_str).collect();
             return Ok(Err(format!("not in lanes: {}", words.join("; "))));
         }
+        if !equations.steep().is_empty() {
+            return Ok(Err("not in lanes: functions in the equations may change within a step, which looks closer".into()));
+        }
         let projection = match Projection::new(equations, point)? {
             Ok(projection) => projection,
             Err(words) => return Ok(Err(words)),
