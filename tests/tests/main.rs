@@ -5,6 +5,7 @@ mod architecture;
 mod discrete;
 mod faults;
 mod properties;
+mod pulses;
 mod reference_motions;
 mod references;
 mod stability;

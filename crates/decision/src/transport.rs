@@ -1,6 +1,8 @@
 //! The constants' images along a curve: `η(t) = Φ c + φ`, integrated beside it.
 
-use integrate::{Dense, DenseOutput, EvaluationError, Gauge, Method, Options, Problem, Start, Status, StopCause, integrate};
+use integrate::{
+    Dense, DenseOutput, EvaluationError, Gauge, Method, Options, Problem, Start, Status, StopCause, integrate,
+};
 use mechanics::{SingularValues, State};
 use nalgebra::{DMatrix, DVector};
 use symbolic::{Bounded, Scalar};

@@ -34,7 +34,9 @@ impl LaneEquations {
             return Ok(Err(format!("not in lanes: {}", words.join("; "))));
         }
         if !equations.steep().is_empty() {
-            return Ok(Err("not in lanes: functions in the equations may change within a step, which looks closer".into()));
+            return Ok(Err(
+                "not in lanes: functions in the equations may change within a step, which looks closer".into()
+            ));
         }
         let projection = match Projection::new(equations, point)? {
             Ok(projection) => projection,

@@ -1,0 +1,178 @@
+//! What is switched on and off is found: forces and potentials of any width at any time, walls and kinks in the
+//! state, by every method and in ensembles. The referee takes small steps where something is switched.
+
+use deltaq::{
+    Choice, Ensemble, EnsembleOptions, EnsembleStart, Prepared, Settings, choices, constants_of, setting, solve_choice,
+};
+use integrate::Method;
+use scene::Scene;
+use symbolic::SplitMix;
+
+/// So many pulses; `PULSES` asks for more.
+const PULSES: usize = 60;
+/// Largest part of runs that may be refused.
+const REFUSED: f64 = 0.05;
+/// What a run may be off by, of the size of its coordinates: BDF at its tolerance is.
+const ALLOWED: f64 = 1e-4;
+const DURATION: f64 = 10.0;
+
+/// Lagrangian, constraints, coordinates with their starts, velocities given, coordinates pushed.
+struct Body {
+    lagrangian: &'static str,
+    constraints: &'static [&'static str],
+    coordinates: &'static [(&'static str, f64)],
+    given: [&'static str; 2],
+    pushed: [&'static str; 2],
+}
+
+const BODIES: [Body; 4] = [
+    Body {
+        lagrangian: "(x'^2 + y'^2 + phi'^2)/2",
+        constraints: &["y'*cos(phi) - x'*sin(phi)"],
+        coordinates: &[("x", 0.0), ("y", 0.0), ("phi", 0.3)],
+        given: ["x", "phi"],
+        pushed: ["x", "phi"],
+    },
+    Body {
+        lagrangian: "(x'^2 + y'^2 + z'^2)/2",
+        constraints: &["z' - y*x'"],
+        coordinates: &[("x", 0.0), ("y", 0.2), ("z", 0.0)],
+        given: ["x", "y"],
+        pushed: ["x", "y"],
+    },
+    Body {
+        lagrangian: "(x'^2 + y'^2)/2 + a'^2/4 + b'^2/8",
+        constraints: &["x' - a'*cos(b)", "y' - a'*sin(b)"],
+        coordinates: &[("x", 0.0), ("y", 0.0), ("a", 0.1), ("b", 0.4)],
+        given: ["a", "b"],
+        pushed: ["a", "b"],
+    },
+    Body {
+        lagrangian: "(x'^2 + y'^2 + 0.4*a'^2 + 0.4*b'^2)/2",
+        constraints: &["x' - b' + 0.3*y", "y' + a' - 0.3*x"],
+        coordinates: &[("x", 0.5), ("y", 0.0), ("a", 0.0), ("b", 0.0)],
+        given: ["x", "y"],
+        pushed: ["a", "y"],
+    },
+];
+
+/// A pulse around `at`, nothing beyond `reach` of it.
+struct Pulse {
+    at: f64,
+    reach: f64,
+    finest: f64,
+    text: String,
+    scene: String,
+}
+
+impl Pulse {
+    fn new(random: &mut SplitMix) -> Pulse {
+        let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
+        let width = 10.0_f64.powf(between(-3.0, 0.0));
+        let at = between(1.0, DURATION - 1.0 - width);
+        let strength = between(0.5, 2.0);
+        let edge = width / between(4.0, 40.0);
+        let (half, is_bell) = (width / 2.0, between(0.0, 1.0) < 0.3);
+        let shape = match is_bell {
+            true => format!("exp(-((t - {at})/{half})^2)"),
+            false => format!("(tanh((t - {at} + {half})/{edge}) - tanh((t - {at} - {half})/{edge}))/2"),
+        };
+        let (reach, finest) = if is_bell { (6.0 * half, half / 40.0) } else { (half + 18.0 * edge, edge / 12.0) };
+        let body = &BODIES[(between(0.0, 4.0) as usize).min(3)];
+        let is_potential = between(0.0, 1.0) < 0.5;
+        let speed = if between(0.0, 1.0) < 0.5 { 0.0 } else { between(0.1, 0.8) };
+        let text = format!("{strength}*{shape}");
+        let push = [1.0, 0.4].map(|part| format!("{part}*on"));
+        let (added, forces) = if is_potential {
+            let terms: Vec<String> = push.iter().zip(body.pushed).map(|(push, q)| format!(" + {push}*{q}")).collect();
+            (terms.concat(), String::new())
+        } else {
+            let terms: Vec<String> =
+                push.iter().zip(body.pushed).map(|(push, q)| format!("{q} = \"{push}\"")).collect();
+            (String::new(), format!("forces = {{ {} }}", terms.join(", ")))
+        };
+        let coordinates: String =
+            body.coordinates.iter().map(|(q, start)| format!("{q} = {{ unit = \"1\", start = {start} }}\n")).collect();
+        let given: String = body.given.iter().map(|q| format!("\"{q}'\" = {speed}\n")).collect();
+        let (lagrangian, constraints) = (body.lagrangian, body.constraints);
+        let scene = format!(
+            "title = \"pulse\"\n[coordinates]\n{coordinates}[definitions]\non = \"{text}\"\n[system]\n\
+             lagrangian = \"{lagrangian}{added}\"\nconstraints = {constraints:?}\n{forces}\n[start.velocities]\n{given}\
+             [run]\nduration = {DURATION}\n"
+        );
+        Pulse { at, reach, finest, text, scene }
+    }
+
+    /// Coordinates at the end by the classical Runge–Kutta method, in steps that see the pulse.
+    fn end(&self, scene: &Scene, choice: &Choice) -> Vec<f64> {
+        let equations = deltaq::derive_at(&scene.system, &scene.start, choice).expect("equations");
+        let ready = deltaq::prepare(setting(scene), equations, &choice.constants, &Settings::default());
+        let mut ready: Prepared = ready.expect("a start");
+        let (mut t, mut y) = (ready.t, ready.start.clone());
+        let mut rates = |t: f64, y: &[f64]| {
+            let mut rates = vec![0.0; y.len()];
+            ready.compiled.rates(t, y, &mut rates).expect("rates");
+            rates
+        };
+        let moved = |y: &[f64], h: f64, k: &[f64]| -> Vec<f64> { y.iter().zip(k).map(|(y, k)| y + h * k).collect() };
+        let places = [(self.at - self.reach, 2e-3), (self.at + self.reach, self.finest), (DURATION, 2e-3)];
+        for (end, longest) in places {
+            let steps = ((end - t) / longest).ceil().max(1.0);
+            let h = (end - t) / steps;
+            for _ in 0..steps as usize {
+                let a = rates(t, &y);
+                let b = rates(t + h / 2.0, &moved(&y, h / 2.0, &a));
+                let c = rates(t + h / 2.0, &moved(&y, h / 2.0, &b));
+                let d = rates(t + h, &moved(&y, h, &c));
+                for (i, y) in y.iter_mut().enumerate() {
+                    *y += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
+                }
+                t += h;
+            }
+        }
+        ready.compiled.outputs(DURATION, &y).expect("outputs").coordinates
+    }
+}
+
+fn off(found: &[f64], right: &[f64]) -> f64 {
+    let size = right.iter().fold(1.0_f64, |size, q| size.max(q.abs()));
+    found.iter().zip(right).map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max)
+}
+
+#[test]
+fn every_pulse_is_found_by_every_method_and_in_ensembles() {
+    let count = std::env::var("PULSES").ok().and_then(|count| count.parse().ok()).unwrap_or(PULSES);
+    let mut random = SplitMix::new(16);
+    let (mut refused, mut asked) = (0, 0);
+    for index in 0..count {
+        let pulse = Pulse::new(&mut random);
+        let scene = Scene::parse("pulse", &pulse.scene).unwrap_or_else(|error| panic!("{error}\n{}", pulse.scene));
+        let choice = &choices(&scene)[0];
+        let right = pulse.end(&scene, choice);
+        let what = |by: &str| format!("pulse {index} by {by}, {}: {}", pulse.text, pulse.scene);
+        for method in Method::ALL {
+            // the last two have order 2 and 3
+            let tolerance = if matches!(method, Method::TrBdf2 | Method::Esdirk34) { 1e-6 } else { 1e-8 };
+            let settings = Settings { method, tolerance, ..Settings::default() };
+            let mut motion = solve_choice(&scene, choice, &settings).unwrap_or_else(|e| panic!("{}: {e}", what("")));
+            asked += 1;
+            if !motion.is_complete() || motion.doubt.is_some() {
+                refused += 1;
+                continue;
+            }
+            let found = motion.at(motion.end()).expect("an end").coordinates;
+            assert!(off(&found, &right) < ALLOWED, "{}: {found:?}, not {right:?}", what(method.name()));
+        }
+        if index % 10 == 0 {
+            let settings = Settings { method: Method::Taylor, tolerance: 1e-8, ..Settings::default() };
+            let mut ensemble = Ensemble::new(&scene, choice, &[], &settings).expect("an ensemble");
+            let start = EnsembleStart::of(&scene, &[], constants_of(choice, &scene));
+            let member = ensemble.member_at(&start).expect("a member");
+            let motion = ensemble.motions(&[member], &[DURATION], &EnsembleOptions::default()).remove(0);
+            let found = &motion.expect("a motion").outputs[0].coordinates;
+            assert!(off(found, &right) < ALLOWED, "{}: {found:?}, not {right:?}", what("an ensemble"));
+        }
+    }
+    assert!(refused as f64 <= REFUSED * asked as f64, "{refused} of {asked} runs are refused");
+    println!("{count} pulses, {asked} runs, {refused} refused, none passed over");
+}
