@@ -44,6 +44,7 @@ pub(crate) fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> 
 pub(crate) fn scene_files(comparison: &mut Comparison, settings: &Settings) -> Result<Vec<File>> {
     let name = comparison.scene.name.clone();
     comparison.fit(settings).with_context(|| format!("scene `{name}`"))?;
+    comparison.keep_closer();
     let mut files = pictures(comparison).with_context(|| format!("pictures of scene `{name}`"))?;
     let links: Vec<String> =
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();
@@ -295,7 +296,8 @@ fn told(of: &str, line: &str) -> String {
     format!("{of:<24} {line}\n")
 }
 
-/// All scenes, over all processors, in the order of `names`; answers are told at once, before fits, unless `quiet`.
+/// All scenes, over all processors, in the order of `names`; answers are told at once, before fits, unless
+/// `quiet`.
 fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let settings = protocol();
     let bar = parallel::progress(2 * names.len(), quiet);

@@ -34,7 +34,8 @@ pub trait Curve {
         Vec::new()
     }
 
-    /// Gauges of functions that may change within little of their arguments: see [`integrate::Problem::gauges`].
+    /// Gauges of functions that may change within little of their arguments: see
+    /// [`integrate::Problem::gauges`].
     fn gauges(&self) -> &[Gauge] {
         &[]
     }

@@ -235,7 +235,8 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     }
 }
 
-/// Where panels begin and end: equally long ones, or the steps where these are more, short where much happens.
+/// Where panels begin and end: equally long ones, or the steps where these are more, short where much
+/// happens.
 fn bounds(path: &Path, start: f64, way: f64) -> Vec<f64> {
     let steps = path.dense.as_ref().map_or(Vec::new(), DenseOutput::step_times);
     if steps.len() <= PANELS {

@@ -141,8 +141,8 @@ impl<'a> Transport<'a> {
         Ok(())
     }
 
-    /// Solves the family's instant for all columns of `[Φ | φ]`: `self.unknowns` are `Δz`, `rates` become `η̇`;
-    /// the inputs are loaded.
+    /// Solves the family's instant for all columns of `[Φ | φ]`: `self.unknowns` are `Δz`, `rates` become
+    /// `η̇`; the inputs are loaded.
     fn solve(&mut self, t: f64, columns: &[f64], rates: &mut [f64]) -> Result<(), EvaluationError> {
         let shape = &self.family.shape;
         let (size, k, width) = (shape.unknowns, shape.costates, shape.constants + 1);
@@ -259,7 +259,8 @@ impl<'a> Transport<'a> {
         Ok(Mismatch { rows, acceleration, speed, columns, unknowns, whitened })
     }
 
-    /// How long what was added up to the rows of the last mismatch is, without regard to signs: round-off is a part.
+    /// How long what was added up to the rows of the last mismatch is, without regard to signs: round-off is
+    /// a part.
     pub(crate) fn length_of_terms(&mut self, last: &Mismatch) -> f64 {
         let terms = self.terms(&last.columns, &last.unknowns);
         (last.whitened.abs() * terms.select_rows(&self.family.shape.accelerations)).norm()

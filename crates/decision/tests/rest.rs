@@ -50,7 +50,8 @@ fn at_rest_for_an_instant_only() {
     assert_eq!((down.verdict, down.set.dimension()), (Verdict::Contained, 0));
 }
 
-/// A particle at rest at `(x, 0, 0)`, with this potential and one constraint; `more` are further lines of the system.
+/// A particle at rest at `(x, 0, 0)`, with this potential and one constraint; `more` are further lines of the
+/// system.
 fn particle(x: &str, potential: &str, constraint: &str, more: &str) -> String {
     format!(
         r#"

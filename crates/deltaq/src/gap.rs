@@ -11,7 +11,8 @@ pub const CERTAINTY: f64 = 10.0;
 /// Relative error estimate that both motions have to stay under to be called the same.
 pub const SAME_ESTIMATE: f64 = 1e-8;
 
-/// Round-off of a run relative to its size: what no error estimate goes under, as both runs of a motion share it.
+/// Round-off of a run relative to its size: what no error estimate goes under, as both runs of a motion share
+/// it.
 const ROUND_OFF: f64 = 1e-14;
 
 /// Gaps whose first times are reported.

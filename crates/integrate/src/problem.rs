@@ -118,8 +118,8 @@ pub trait Problem {
     }
 }
 
-/// A monotone function of an argument: where it grows by 1, a function of the argument changes by about its own
-/// size, and where it is constant that hardly changes. For `tanh x`: `x` between −20 and 20.
+/// A monotone function of an argument: where it grows by 1, a function of the argument changes by about its
+/// own size, and where it is constant that hardly changes. For `tanh x`: `x` between −20 and 20.
 pub type Gauge = fn(f64) -> f64;
 
 /// `F` (or its Jacobian, the projection, an event function) could not be evaluated here.

@@ -53,7 +53,8 @@ impl Graph {
     /// use std::collections::HashMap;
     /// let g = symbolic::Graph::new();
     /// let x = g.variable(g.symbol("x"));
-    /// let steep = g.steep(&[g.call(symbolic::Function::Tanh, x), g.recip(x), g.sin(x)], &HashMap::new());
+    /// let (tanh, sin) = (g.call(symbolic::Function::Tanh, x), g.call(symbolic::Function::Sin, x));
+    /// let steep = g.steep(&[tanh, sin, g.powi(x, -1)], &HashMap::new());
     /// assert_eq!(steep.len(), 1);
     /// assert_eq!(((steep[0].gauge)(-500.0), (steep[0].gauge)(0.5)), (-20.0, 0.5));
     /// ```
