@@ -1,5 +1,5 @@
-//! What is switched on and off is found: forces and potentials of any width at any time, walls and kinks in
-//! the state, by every method and in ensembles. The referee takes small steps where something is switched.
+//! What is switched on and off is found: forces and potentials of any width at any time, by every method and
+//! in ensembles. The referee takes small steps where something is switched.
 
 use deltaq::{
     Choice, Ensemble, EnsembleOptions, EnsembleStart, Prepared, Settings, choices, constants_of, setting, solve_choice,
