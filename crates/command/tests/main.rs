@@ -7,4 +7,5 @@ mod ensemble_command;
 mod output;
 mod random_command;
 mod shell;
+mod singularities;
 mod support;

@@ -295,6 +295,17 @@ impl Compiled {
         values.copy_from_slice(self.guards.evaluate(&self.inputs[..self.sizes.known()]));
     }
 
+    /// The matrices `∂R/∂z` of the blocks at `(t, y)`, row-major; of those that are not linear at the last `z`.
+    pub fn block_matrices(&mut self, t: f64, y: &[f64]) -> Vec<Vec<f64>> {
+        self.load(t, y);
+        let (inputs, known) = (&self.inputs, self.sizes.known());
+        let matrix = |block: &mut CompiledBlock| {
+            let inputs = if block.linear { &inputs[..known] } else { &inputs[..] };
+            block.program.evaluate(inputs)[..block.size * block.size].to_vec()
+        };
+        self.equations_of_instant.iter_mut().map(matrix).collect()
+    }
+
     /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.
     ///
     /// # Errors
