@@ -191,8 +191,8 @@ pub struct SolveArguments {
     /// equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
     #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "dop853")]
     pub method: Stepping,
-    /// Longest step of `--method leapfrog`, at most the duration; the number of steps is even, and a second
-    /// run in half as many gives the error estimate.
+    /// Longest step of `--method leapfrog`, at most the duration, which is cut into two at least. A second
+    /// run in half as many steps gives the error estimate.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.

@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     let is_reached = |t: f64| t <= motion.end();
     grid.retain(|&t| is_reached(t));
     (reached, so_far) = reached.into_iter().zip(so_far).filter(|(t, _)| is_reached(*t)).unzip();
-    let (status, mut complaint) = motion.status(&estimate);
+    let (status, mut complaint) = estimate.status(&motion);
     if let (true, Some(words)) = (motion.is_complete() && motion.doubt.is_none(), &mut complaint) {
         *words += if steps.is_some() { "; ask for a smaller --step" } else { "; ask for a smaller --tolerance" };
     }

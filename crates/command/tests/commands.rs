@@ -199,7 +199,7 @@ fn no_step_is_compared_with_itself() {
         println!("--step {step}: {} {}, {}", value["status"], value["coordinates"]["y"], value["error_estimate"]);
         exit(&output, 3);
         assert_eq!(value["status"], "untrusted", "--step {step}");
-        assert!(value["work"]["steps"].as_u64().is_some_and(|steps| steps >= 2 && steps % 2 == 0));
+        assert!(value["work"]["steps"].as_u64().is_some_and(|steps| steps >= 2));
     }
     refused(&["solve", "sledge", "-f", "chetaev", "--method", "leapfrog", "--step", "10.1"], &["10.1", "a time of 10"]);
 }

@@ -39,6 +39,17 @@ impl ErrorEstimate {
         let (of, relative) = std::iter::once(whole).chain(one).find(|(_, relative)| !is_trusted(*relative))?;
         Some(format!("not to be trusted: relative error estimate{of} {relative:.1e}, limit {TRUSTED:.0e}"))
     }
+
+    /// [`crate::Ending::status`] of the motion that this estimates, untrusted also where it is doubted.
+    pub fn status(&self, motion: &Motion) -> (&'static str, Option<String>) {
+        let doubt = motion.doubt.as_ref().map(|doubt| doubt.because.clone());
+        match (motion.ending.status(doubt.clone().or_else(|| self.complaint())), doubt) {
+            ((status, Some(cause)), Some(doubt)) if !motion.is_complete() => {
+                (status, Some(format!("{cause}; {doubt}")))
+            }
+            (status, _) => status,
+        }
+    }
 }
 
 fn is_trusted(relative: f64) -> bool {

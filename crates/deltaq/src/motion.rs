@@ -9,7 +9,7 @@ use mechanics::ConstantsRule;
 use crate::constants::resolve;
 use crate::metric::subtract;
 use crate::trajectory::Trajectory;
-use crate::{Doubt, Ending, ErrorEstimate, Prepared, Setting, Settings, SolveError, TIGHTER};
+use crate::{Doubt, Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 
 /// Wall-clock seconds spent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -75,15 +75,6 @@ impl Motion {
     /// Whether at `t` the difference of the two runs is no error estimate.
     pub fn is_doubted(&self, t: f64) -> bool {
         self.doubt.as_ref().is_some_and(|doubt| (t - doubt.from) * (self.kept.ends()[1] - self.start()) >= 0.0)
-    }
-
-    /// [`Ending::status`] with this estimate of the whole motion, untrusted also where it is doubted.
-    pub fn status(&self, estimate: &ErrorEstimate) -> (&'static str, Option<String>) {
-        let doubt = self.doubt.as_ref().map(|doubt| doubt.because.clone());
-        match (self.ending.status(doubt.clone().or_else(|| estimate.complaint())), doubt) {
-            ((status, Some(cause)), Some(doubt)) if !self.is_complete() => (status, Some(format!("{cause}; {doubt}"))),
-            (status, _) => status,
-        }
     }
 
     /// End points of the steps of the kept run.

@@ -18,7 +18,7 @@ pub const STEP_LIMIT: usize = 10_000_000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
     /// Longest step > 0, not above the time to go, in the scene's unit of time; that is cut into as few equal
-    /// steps as this allows, an even number.
+    /// steps as this allows, at least two.
     pub step: f64,
     /// Order 2, 4, 6 or 8.
     pub composition: Composition,
@@ -76,13 +76,13 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// ```
 pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &Settings) -> Result<Motion, SolveError> {
     let (length, round_off) = (scene.duration.abs(), 1e-9);
-    // a step that divides the time up to round-off divides it; the other run takes half as many
-    let half = (length / steps.step / 2.0 - round_off).ceil();
+    // a step that divides the time up to round-off divides it; the other run has longer ones
+    let count = (length / steps.step - round_off).ceil().max(2.0);
     let possible = steps.step > 0.0 && steps.step <= length * (1.0 + round_off);
-    if !(possible && 2.0 * half <= STEP_LIMIT as f64) {
+    if !(possible && count <= STEP_LIMIT as f64) {
         return Err(SolveError::Step { step: steps.step, length: scene.duration, limit: STEP_LIMIT });
     }
-    let half = half as usize;
+    let count = count as usize;
     let clock = Instant::now();
     let equations = derive(&scene.system, choice)?;
     let derive = clock.elapsed().as_secs_f64();
@@ -100,7 +100,7 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
             cause.or_else(|| options.interrupt.as_ref()?.pass(t, taken)).map(|cause| cause.to_string())
         })
     };
-    let (kept, looser) = (run(2 * half)?, run(half)?);
+    let (kept, looser) = (run(count)?, run(count.div_ceil(2))?);
     let integrate = clock.elapsed().as_secs_f64();
     // a motion ends where the first of its runs ends, for that run's reason
     let before = (kept.end() - looser.end()) * scene.duration.signum() > 0.0;

@@ -200,7 +200,7 @@ impl Motion {
         let count = Some(times.len());
         let Outputs { coordinates, velocities, multipliers, invariants } =
             Outputs::new(py, &rows, dimension, &names, count)?;
-        let (status, cause) = motion.status(&estimate);
+        let (status, cause) = estimate.status(&motion);
         let coordinate_errors = so_far.iter().flat_map(|e| e.coordinates.clone()).collect();
         let multiplier_errors = so_far.iter().map(|e| &e.multipliers[..]);
         let constants = constant_names(&motion.equations).into_iter().zip(motion.constants.iter().copied());
