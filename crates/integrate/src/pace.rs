@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn short_steps_and_steps_that_shrink_on_the_way_do_not() {
-        // equal steps, even if they never come to the end; ever faster turns, as g t/k; a layer of 1e-9 that is passed
+        // equal steps, even too many; ever faster turns, as g t/k; a layer of 1e-9 that is passed
         assert_eq!(creeps(1.0, |_, _| 1e-6), None);
         assert_eq!(creeps(1.0, |n, _| 1e-8 * (1.0 + 0.1 * n.sin())), None);
         assert_eq!(creeps(1000.0, |_, t| 0.05 / (1.0 + t)), None);
