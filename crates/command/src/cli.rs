@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-pub use ensemble::{EnsembleArguments, MOST_MEMBERS, MotionArguments, Range};
+pub use ensemble::{EnsembleArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
 use random::Kind;
 use scene::Scene;
 use validation::bench::MEMBERS;
@@ -191,7 +191,8 @@ pub struct SolveArguments {
     /// equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
     #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "dop853")]
     pub method: Stepping,
-    /// Longest step of `--method leapfrog`. A second run in steps twice as long gives the error estimate.
+    /// Longest step of `--method leapfrog`, at most the duration, which is cut into two at least. A second
+    /// run in half as many steps gives the error estimate.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Order of `--method leapfrog`: 2, 4, 6 or 8; 2 if left out.
@@ -212,6 +213,8 @@ pub struct CompareArguments {
     /// Tolerance of the looser of the two runs of every motion.
     #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
     pub tolerance: f64,
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// `deltaq prove`.

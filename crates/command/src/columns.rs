@@ -1,5 +1,6 @@
 //! What is printed of a motion at some times: one column a coordinate, a velocity and a multiplier.
 
+use deltaq::ErrorEstimate;
 use equations::{Equations, Outputs};
 use scene::Scene;
 use serde_json::{Map, Value, json};
@@ -26,16 +27,35 @@ impl Columns {
         time.chain(self.coordinates.iter().cloned()).chain(velocities).chain(self.multipliers.iter().cloned()).collect()
     }
 
+    /// Those of [`error_row`].
+    pub fn error_names(&self) -> Vec<String> {
+        self.coordinates.iter().chain(&self.multipliers).map(|name| format!("error {name}")).collect()
+    }
+
     /// Adds the columns to an object: a list of numbers a name.
     pub fn write(&self, object: &mut Value, rows: &[Outputs]) {
-        let columns = |names: &[String], row: fn(&Outputs) -> &[f64]| -> Value {
-            let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
-            names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
-        };
-        object["coordinates"] = columns(&self.coordinates, |r| &r.coordinates);
-        object["velocities"] = columns(&self.coordinates, |r| &r.velocities);
-        object["multipliers"] = columns(&self.multipliers, |r| &r.multipliers);
+        object["coordinates"] = columns(&self.coordinates, rows, |r| &r.coordinates);
+        object["velocities"] = columns(&self.coordinates, rows, |r| &r.velocities);
+        object["multipliers"] = columns(&self.multipliers, rows, |r| &r.multipliers);
     }
+
+    /// The error estimates up to each time, as an object likewise.
+    pub fn errors(&self, rows: &[ErrorEstimate]) -> Value {
+        json!({
+            "coordinates": columns(&self.coordinates, rows, |r| &r.coordinates),
+            "multipliers": columns(&self.multipliers, rows, |r| &r.multipliers),
+        })
+    }
+}
+
+fn columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> Value {
+    let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
+    names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
+}
+
+/// The error estimates up to one time, between commas.
+pub fn error_row(estimate: &ErrorEstimate) -> String {
+    print(&[&estimate.coordinates[..], &estimate.multipliers].concat())
 }
 
 /// The numbers at one time, between commas.

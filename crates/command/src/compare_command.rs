@@ -6,14 +6,14 @@ use serde_json::json;
 
 use crate::cli::CompareArguments;
 use crate::main_job::{compared, protocol, scene_files};
-use crate::solve_command::check_tolerance;
+use crate::solve_command::{check_tolerance, limited};
 use validation::catalogue;
 use validation::report::verdicts;
 
 /// Returns pages or verdicts, or writes pages and pictures to a folder and says so; on bad input nothing.
 pub(crate) fn run(arguments: &CompareArguments) -> Result<String> {
     check_tolerance(arguments.tolerance)?;
-    let settings = Settings { tolerance: arguments.tolerance, ..protocol() };
+    let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
     let (mut files, mut comparisons) = (Vec::new(), Vec::new());
     for name in &arguments.scenes {
         let mut comparison = compared(catalogue::find(name, &arguments.set.overrides)?, &settings)?;

@@ -94,7 +94,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Random(arguments)) => return random_command::run(&arguments, quiet),
         Some(Command::Stability(arguments)) => return stability_command::run(&arguments, quiet),
         Some(Command::Ensemble(arguments)) => return ensemble_command::run(&arguments),
-        Some(Command::Solve(arguments)) => return solve_command::run(&arguments),
+        Some(Command::Solve(arguments)) => return solve_command::run(&arguments, quiet),
     };
     Ok(text.into())
 }

@@ -1,29 +1,37 @@
 //! `deltaq solve`: one scene, one formulation, one trajectory.
 
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, Ending, FORMS, FORMULATIONS, Motion, Settings, Steps, default_constants, error_estimate, formulation,
-    removal, removal_names, removals, setting, solve_by_steps, solve_choice,
+    Choice, FORMS, FORMULATIONS, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
+    formulation, removal, removal_names, removals, setting, solve_by_steps, solve_choice,
 };
 use discrete::Composition;
-use integrate::Projection;
+use integrate::{Interrupt, Projection};
 use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, pretty};
-use crate::cli::{Format, MotionArguments, SolveArguments};
-use crate::columns::{Columns, row};
+use crate::cli::{Format, Limits, MotionArguments, SolveArguments};
+use crate::columns::{Columns, error_row, row};
+use random::parallel;
 use validation::stability::Stepping;
 
-/// Times at which invariants are sampled.
+/// Times at which invariants are sampled, less one: those of error estimates.
 const SAMPLES: usize = 200;
 
 /// Runs the command.
-pub(crate) fn run(arguments: &SolveArguments) -> Result<Answer> {
+pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     let mut settings = settings(&arguments.motion)?;
-    if let Stepping::Adaptive(method) = arguments.method {
-        settings.method = method;
+    match arguments.method {
+        Stepping::Adaptive(method) => settings.method = method,
+        // as many as --step asks for
+        Stepping::Leapfrog if arguments.motion.limits.max_steps.is_none() => settings.max_steps = STEP_LIMIT,
+        Stepping::Leapfrog => {}
     }
     let scene = arguments.motion.scene.find()?;
     let choice = choice(&scene, &arguments.motion)?;
@@ -31,38 +39,68 @@ pub(crate) fn run(arguments: &SolveArguments) -> Result<Answer> {
         Some(text) => times(text, &scene)?,
         None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
     };
-    let mut motion = match steps(arguments)? {
-        None => solve_choice(&scene, &choice, &settings)?,
-        Some(steps) => solve_by_steps(&scene, &choice, steps, &settings)?,
-    };
-    let estimate = error_estimate(&mut motion, setting(&scene))?;
-    let complaint = match &motion.ending {
-        Ending::Stopped { t, cause } => {
-            let doubt = motion.doubt.as_ref().map_or(String::new(), |doubt| format!("; {}", doubt.because));
-            Some(format!("stopped at t = {t}: {cause}{doubt}"))
-        }
-        Ending::Completed if motion.doubt.is_some() => motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
-        Ending::Completed => {
-            let smaller = if arguments.step.is_some() { "--step" } else { "--tolerance" };
-            estimate.complaint().map(|words| format!("{words}; ask for a smaller {smaller}"))
-        }
-    };
-    let reached: Vec<f64> = wanted.into_iter().filter(|&t| t <= motion.end()).collect();
+    let steps = steps(arguments)?;
+    let watched = Interrupt::default();
+    settings.interrupt = Some(watched.clone());
+    let mut motion = progress(&watched, setting(&scene), quiet, || match steps {
+        None => solve_choice(&scene, &choice, &settings),
+        Some(steps) => solve_by_steps(&scene, &choice, steps, &settings),
+    })?;
+    let (mut reached, mut grid) = (wanted, motion.grid(SAMPLES));
+    reached.retain(|&t| t <= motion.end());
+    let (mut so_far, estimate) = error_estimates(&mut motion, setting(&scene), &reached)?;
+    // it may end earlier by now
+    let is_reached = |t: f64| t <= motion.end();
+    grid.retain(|&t| is_reached(t));
+    (reached, so_far) = reached.into_iter().zip(so_far).filter(|(t, _)| is_reached(*t)).unzip();
+    let (status, mut complaint) = estimate.status(&motion);
+    if let (true, Some(words)) = (motion.is_complete() && motion.doubt.is_none(), &mut complaint) {
+        *words += if steps.is_some() { "; ask for a smaller --step" } else { "; ask for a smaller --tolerance" };
+    }
     let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
     let columns = Columns::of(&scene, &motion.equations);
     let text = match arguments.motion.format {
         Format::Csv => {
-            let rows = rows.iter().zip(&reached).map(|(now, &t)| row(t, now) + "\n");
-            columns.names().join(",") + "\n" + &rows.collect::<String>()
+            let rows = rows.iter().zip(&so_far).zip(&reached);
+            let rows = rows.map(|((now, errors), &t)| row(t, now) + "," + &error_row(errors) + "\n");
+            [columns.names(), columns.error_names()].concat().join(",") + "\n" + &rows.collect::<String>()
         }
         Format::Json => {
-            let mut value = json_of(&scene, &choice, &mut motion, complaint.as_deref())?;
-            (value["times"], value["error_estimate"]) = (json!(reached), json!(estimate.absolute));
+            let mut value = json_of(&scene, &choice, &mut motion, &grid)?;
+            (value["status"], value["cause"], value["times"]) = (json!(status), json!(complaint), json!(reached));
+            (value["error_estimate"], value["error_estimates"]) = (json!(estimate.absolute), columns.errors(&so_far));
             columns.write(&mut value, &rows);
             pretty("solve", &value)
         }
     };
     Ok(Answer { text, complaint })
+}
+
+/// What is not done by then has a progress bar.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Does `work`, and shows on a terminal how far that is which is watched, unless `quiet`.
+fn progress<T>(watched: &Interrupt, setting: Setting, quiet: bool, work: impl FnOnce() -> T) -> T {
+    const PARTS: f64 = 1000.0;
+    let (start, end) = (setting.start.t, setting.end);
+    let (done, news) = channel::<()>();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            let mut bar = None;
+            while news.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                let bar = bar.get_or_insert_with(|| parallel::progress(PARTS as usize, quiet));
+                let (t, steps) = watched.reached();
+                bar.set_position(((t - start) / (end - start) * PARTS) as u64);
+                bar.set_message(format!("t = {t:.6}, {steps} steps"));
+            }
+            if let Some(bar) = bar {
+                bar.finish_and_clear();
+            }
+        });
+        let result = work();
+        drop(done);
+        result
+    })
 }
 
 /// The steps of the method that has no time loop; none for the others.
@@ -84,11 +122,20 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
     Ok(Some(Steps { step, composition: composition.with_context(|| format!("there is no order {order}"))? }))
 }
 
-/// Tolerance and projection that were asked for.
+/// Tolerance, projection and limits that were asked for.
 pub(crate) fn settings(arguments: &MotionArguments) -> Result<Settings> {
     check_tolerance(arguments.tolerance)?;
     let projection = if arguments.no_projection { Projection::Off } else { Projection::EveryStep };
-    Ok(Settings { tolerance: arguments.tolerance, projection, ..Settings::default() })
+    limited(Settings { tolerance: arguments.tolerance, projection, ..Settings::default() }, &arguments.limits)
+}
+
+/// Settings with these limits.
+pub(crate) fn limited(settings: Settings, limits: &Limits) -> Result<Settings> {
+    if let Some(seconds) = limits.time_limit.filter(|seconds| seconds.is_nan() || *seconds <= 0.0) {
+        bail!("--time-limit is {seconds}; it must be above 0");
+    }
+    let max_steps = limits.max_steps.map_or(settings.max_steps, |limit| limit as usize);
+    Ok(Settings { max_steps, time_limit: limits.time_limit, ..settings })
 }
 
 /// Tolerances that make sense.
@@ -172,10 +219,10 @@ pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
     Ok(times)
 }
 
-/// Everything about a motion but where it was.
-fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, complaint: Option<&str>) -> Result<Value> {
+/// Everything about a motion but where it was and how far it is right; invariants are taken at `times`.
+fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, times: &[f64]) -> Result<Value> {
     let invariants: Map<String, Value> = motion
-        .invariant_drift(&motion.grid(SAMPLES))?
+        .invariant_drift(times)?
         .into_iter()
         .map(|(name, start, drift)| (name, json!({ "start": start, "drift": drift })))
         .collect();
@@ -185,8 +232,6 @@ fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, complaint: Optio
         "scene": scene.name,
         "formulation": choice.formulation,
         "removal": choice.removal.as_ref().map(|r| &r.name),
-        "status": motion.ending.status(complaint.map(str::to_owned)).0,
-        "cause": complaint,
         "end": motion.end(),
         "free_constants": constants,
         "invariants": invariants,

@@ -43,10 +43,11 @@ fn members_are_the_motions_of_solve() {
             let set = set.iter().flat_map(|x| ["--set", x]).collect::<Vec<_>>();
             let single = deltaq(&[&["solve"], &arguments[..], &["--method", "taylor"], &set].concat());
             let single = String::from_utf8(single.stdout).expect("UTF-8");
-            let (known, expected) = table(&single);
+            let (mut known, expected) = table(&single);
+            known.retain(|name| !name.starts_with("error "));
             assert_eq!(&names[4..4 + known.len()], known);
             for (row, expected) in member.iter().zip(&expected) {
-                for (here, there) in row[4..].iter().zip(expected) {
+                for (here, there) in row[4..4 + known.len()].iter().zip(expected) {
                     let [here, there] = [here, there].map(|x| x.parse::<f64>().expect("a number"));
                     assert!((here - there).abs() < 1e-8 * there.abs().max(1.0), "{formulation:?} {set:?}: {row:?}");
                 }

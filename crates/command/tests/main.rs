@@ -5,6 +5,8 @@ mod commands;
 mod documents;
 mod ensemble_command;
 mod output;
+mod prove_command;
 mod random_command;
 mod shell;
+mod singularities;
 mod support;

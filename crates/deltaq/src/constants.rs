@@ -1,7 +1,7 @@
 //! Free constants: zero, given, or natural at a horizon.
 
 use equations::Equations;
-use integrate::{BoundaryError, Options, ShootOptions, shoot};
+use integrate::{BoundaryError, Interrupt, Options, ShootOptions, shoot};
 use mechanics::ConstantsRule;
 
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
@@ -120,6 +120,7 @@ fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings)
     let runs = options.max_iterations * (2 * guess.len() + 2);
     let (mut taken, mut limit) = (0, None);
     let mut failure = None;
+    let of_all = settings.options(tolerance);
     let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
         let mut refuse = |error: SolveError| {
             let reason = error.to_string();
@@ -131,7 +132,10 @@ fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings)
             return Err(refuse(SolveError::Search { horizon, steps: taken }));
         }
         prepared.set_constants(constants.to_vec());
-        let run_options = Options { max_steps: left, ..settings.options(tolerance) };
+        if let Some(cause) = of_all.interrupt.as_ref().and_then(Interrupt::cause) {
+            return Err(refuse(SolveError::Ended { horizon, cause }));
+        }
+        let run_options = Options { max_steps: left, ..of_all.clone() };
         let run = prepared.integrate(horizon, &run_options).map_err(&mut refuse)?;
         let steps = run.solution.work.steps + run.solution.work.rejected;
         taken += steps;

@@ -3,7 +3,7 @@
 use decision::DecisionError;
 use discrete::DiscreteError;
 use equations::{DerivationError, EvaluationFailure};
-use integrate::{BoundaryError, CallError};
+use integrate::{BoundaryError, CallError, StopCause};
 use mechanics::{RemovalError, StartError};
 use symbolic::CompileError;
 
@@ -92,6 +92,14 @@ pub enum SolveError {
         /// Steps of all runs together.
         steps: usize,
     },
+    /// The search for free constants was ended.
+    #[error("natural boundary condition at the horizon {horizon}: not found, {cause}")]
+    Ended {
+        /// Horizon asked for.
+        horizon: f64,
+        /// By what.
+        cause: StopCause,
+    },
     /// There is no discrete motion, or it cannot be read off.
     #[error(transparent)]
     Discrete(#[from] DiscreteError),
@@ -103,7 +111,7 @@ pub enum SolveError {
     },
     /// The length of a step makes no sense.
     #[error(
-        "a step of {step} over a time of {length}: 1 to {limit} steps are possible, and the step must be finite and above 0"
+        "a step of {step} over a time of {length}: it must be above 0 and at most that time; at most {limit} steps are possible"
     )]
     Step {
         /// The step asked for.

@@ -1,48 +1,167 @@
-//! The error estimate of a whole motion.
+//! The error estimate of a whole motion, of its coordinates and of its multipliers.
 
+use equations::Outputs;
+
+use crate::metric::subtract;
 use crate::{Metric, Motion, Setting, SolveError};
 
 /// Instants at which it is taken.
 const SAMPLES: usize = 200;
 
-/// Relative error estimate over which a motion is not trusted.
+/// Relative error estimate over which a motion is not trusted, nor a single coordinate.
 pub const TRUSTED: f64 = 1e-3;
 
-/// Largest difference of the two runs of a motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Differences of a coordinate under this part of the largest coordinate are round-off, whatever its own
+/// size.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Largest differences of the two runs of a motion, over the time up to some instant.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
     /// In the kinetic metric.
     pub absolute: f64,
     /// Over the largest distance from the start, where there is one.
     pub relative: f64,
+    /// Of each coordinate, in its unit; length n. The kinetic metric hides those of little inertia.
+    pub coordinates: Vec<f64>,
+    /// Of each multiplier, in its unit.
+    pub multipliers: Vec<f64>,
+    /// The coordinate with the largest difference over its own size, which is the largest value that it has
+    /// or has moved by, and that quotient; `None` where all differences are round-off.
+    pub worst: Option<(String, f64)>,
 }
 
 impl ErrorEstimate {
-    /// This difference in a motion that goes so far from its start.
-    pub(crate) fn over(scale: f64, absolute: f64) -> Self {
-        ErrorEstimate { absolute, relative: if scale > 0.0 { absolute / scale } else { absolute } }
+    /// Why a motion with this estimate is not to be trusted: in the kinetic metric or in one coordinate it is
+    /// over [`TRUSTED`], or no number.
+    pub fn complaint(&self) -> Option<String> {
+        let whole = (String::new(), self.relative);
+        let one = self.worst.iter().map(|(name, relative)| (format!(" of {name}"), *relative));
+        let (of, relative) = std::iter::once(whole).chain(one).find(|(_, relative)| !is_trusted(*relative))?;
+        Some(format!("not to be trusted: relative error estimate{of} {relative:.1e}, limit {TRUSTED:.0e}"))
     }
 
-    /// Why a motion with this estimate is not to be trusted: it is over [`TRUSTED`], or no number.
-    pub fn complaint(&self) -> Option<String> {
-        let trusted = self.relative <= TRUSTED;
-        (!trusted)
-            .then(|| format!("not to be trusted: relative error estimate {:.1e}, limit {TRUSTED:.0e}", self.relative))
+    /// [`crate::Ending::status`] of the motion that this estimates, untrusted also where it is doubted.
+    pub fn status(&self, motion: &Motion) -> (&'static str, Option<String>) {
+        let doubt = motion.doubt.as_ref().map(|doubt| doubt.because.clone());
+        match (motion.ending.status(doubt.clone().or_else(|| self.complaint())), doubt) {
+            ((status, Some(cause)), Some(doubt)) if !motion.is_complete() => {
+                (status, Some(format!("{cause}; {doubt}")))
+            }
+            (status, _) => status,
+        }
     }
 }
 
-/// The error estimate of `motion`, which started at `setting`, at 200 equidistant times.
+fn is_trusted(relative: f64) -> bool {
+    relative <= TRUSTED
+}
+
+/// A difference in a motion that goes so far from its start.
+pub(crate) fn relative_to(scale: f64, absolute: f64) -> f64 {
+    if scale > 0.0 { absolute / scale } else { absolute }
+}
+
+/// The error estimate of `motion`, which started at `setting`, at 200 equidistant times: [`error_estimates`].
 ///
 /// # Errors
-/// [`SolveError`] where the motion cannot be read off.
+/// [`SolveError`] where the motion cannot be read off at its start.
 pub fn error_estimate(motion: &mut Motion, setting: Setting) -> Result<ErrorEstimate, SolveError> {
+    Ok(error_estimates(motion, setting, &[])?.1)
+}
+
+/// The error estimates of `motion` up to each of `times`, and up to its end: at 200 equidistant times
+/// ([`Motion::grid`]) and at these. A motion that cannot be read off at one of them ends at the one before.
+///
+/// # Errors
+/// [`SolveError`] where the motion cannot be read off at its start.
+pub fn error_estimates(
+    motion: &mut Motion,
+    setting: Setting,
+    times: &[f64],
+) -> Result<(Vec<ErrorEstimate>, ErrorEstimate), SolveError> {
     let mut metric = Metric::new(setting.system)?;
-    let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
-    for t in motion.grid(SAMPLES) {
-        let (now, difference) = motion.at_with_difference(t)?;
-        let (q, v) = (&now.coordinates, &now.velocities);
-        absolute = absolute.max(metric.length(t, q, v, &difference));
-        scale = scale.max(metric.distance(t, q, v, &setting.start.q));
+    let names: Vec<String> = setting.system.coordinates.iter().map(|c| c.name.clone()).collect();
+    let mut differences = Differences::from(&names, &setting.start.q);
+    let direction = (motion.end() - motion.start()).signum();
+    let asked = times.iter().zip(0..).map(|(&t, i)| (t, Some(i)));
+    let mut instants: Vec<(f64, Option<usize>)> = motion.grid(SAMPLES).into_iter().map(|t| (t, None)).collect();
+    instants.extend(asked);
+    instants.sort_by(|a, b| (direction * a.0).total_cmp(&(direction * b.0)));
+    let mut so_far = vec![ErrorEstimate::default(); times.len()];
+    let mut read = None;
+    for (t, asked) in instants {
+        let (kept, looser) = match (motion.at_in_both_runs(t), read) {
+            (Ok(outputs), _) => outputs,
+            (Err(error), None) => return Err(error),
+            (Err(error), Some(before)) => {
+                motion.end_at(before, &error);
+                break;
+            }
+        };
+        read = Some(t);
+        differences.add(&mut metric, t, &kept, &looser, 0.0);
+        if let Some(i) = asked {
+            so_far[i] = differences.estimate();
+        }
     }
-    Ok(ErrorEstimate::over(scale, absolute))
+    Ok((so_far, differences.estimate()))
+}
+
+/// Differences of two runs, gathered over time.
+pub(crate) struct Differences<'a> {
+    names: &'a [String],
+    start: &'a [f64],
+    absolute: f64,
+    scale: f64,
+    coordinates: Vec<f64>,
+    sizes: Vec<f64>,
+    multipliers: Vec<f64>,
+}
+
+impl<'a> Differences<'a> {
+    /// Of motions from these coordinates, with their names.
+    pub(crate) fn from(names: &'a [String], start: &'a [f64]) -> Self {
+        let zeros = vec![0.0; start.len()];
+        let (coordinates, sizes, multipliers) = (zeros.clone(), zeros, Vec::new());
+        Differences { names, start, absolute: 0.0, scale: 0.0, coordinates, sizes, multipliers }
+    }
+
+    /// What the two runs are at `t`. Of a motion that is looked at rarely, its velocities times `reach` tell
+    /// sizes, too.
+    pub(crate) fn add(&mut self, metric: &mut Metric, t: f64, kept: &Outputs, looser: &Outputs, reach: f64) {
+        let (q, v) = (&kept.coordinates, &kept.velocities);
+        let difference = subtract(q, &looser.coordinates);
+        self.absolute = larger(self.absolute, metric.length(t, q, v, &difference));
+        self.scale = larger(self.scale, metric.distance(t, q, v, self.start));
+        for (i, size) in self.sizes.iter_mut().enumerate() {
+            let now = q[i].abs().max((q[i] - self.start[i]).abs()).max((v[i] * reach).abs());
+            *size = larger(*size, now);
+            self.coordinates[i] = larger(self.coordinates[i], difference[i].abs());
+        }
+        self.multipliers.resize(kept.multipliers.len(), 0.0);
+        for (m, d) in self.multipliers.iter_mut().zip(subtract(&kept.multipliers, &looser.multipliers)) {
+            *m = larger(*m, d.abs());
+        }
+    }
+
+    /// The estimate so far.
+    pub(crate) fn estimate(&self) -> ErrorEstimate {
+        let least = ROUND_OFF * self.sizes.iter().copied().fold(0.0, larger);
+        let counts = |d: f64| d > least || d.is_nan();
+        let each = self.names.iter().zip(self.coordinates.iter().zip(&self.sizes)).filter(|(_, (d, _))| counts(**d));
+        let worst = each.map(|(name, (d, size))| (name, d / size)).max_by(|a, b| a.1.total_cmp(&b.1));
+        ErrorEstimate {
+            absolute: self.absolute,
+            relative: relative_to(self.scale, self.absolute),
+            coordinates: self.coordinates.clone(),
+            multipliers: self.multipliers.clone(),
+            worst: worst.map(|(name, relative)| (name.clone(), relative)),
+        }
+    }
+}
+
+/// The larger of the two; NaN stays.
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
 }

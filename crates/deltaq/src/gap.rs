@@ -2,8 +2,9 @@
 
 use integrate::find_root;
 
+use crate::error_estimate::relative_to;
 use crate::metric::{Metric, subtract};
-use crate::{Ending, ErrorEstimate, Motion, SolveError};
+use crate::{Ending, Motion, SolveError};
 
 /// A gap has to be this many times the sum of the two error estimates to count as a difference.
 pub const CERTAINTY: f64 = 10.0;
@@ -162,7 +163,7 @@ pub fn compare_motions_by(
     let certain_from = points.iter().find(|p| p.gap > p.limit).map(|p| p.t);
     let complete = first.is_complete() && second.is_complete();
     let estimate = estimates[0].max(estimates[1]);
-    let relative = ErrorEstimate::over(scale, estimate).relative;
+    let relative = relative_to(scale, estimate);
     let doubt = first.doubt.as_ref().or(second.doubt.as_ref());
     let verdict = if certain_from.is_some() {
         Verdict::Different

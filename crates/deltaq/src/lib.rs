@@ -99,7 +99,7 @@ pub use ensemble::{
 };
 pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
-pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate};
+pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use fit::best_fit;
 pub use fits::{Fit, FittedMotion};
 pub use gap::{

@@ -177,6 +177,11 @@ pub fn solve(
 }
 
 impl Motion {
+    /// It ends here: it cannot be read off behind.
+    pub(crate) fn end_at(&mut self, t: f64, error: &SolveError) {
+        (self.end, self.ending) = (t, Ending::Stopped { t, cause: format!("it cannot be read off behind: {error}") });
+    }
+
     /// Of the `kept` and the looser run, told apart by their order only; no work and no projections.
     pub(crate) fn of(
         mut prepared: Prepared,

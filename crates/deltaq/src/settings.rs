@@ -34,6 +34,9 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
+    /// Limit on the seconds of one run, wall clock; for a search of constants and for the members of an
+    /// ensemble on all runs together. None by default: results then do not depend on the machine.
+    pub time_limit: Option<f64>,
     /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that
     /// [`equations::Plan::choose`] finds cheapest. The motion is the same to round-off.
     pub plain: bool,
@@ -44,18 +47,23 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (Method::Dop853, Projection::EveryStep);
-        Settings { tolerance: 1e-11, method, projection, max_steps: 1_000_000, plain: false, interrupt: None }
+        let (max_steps, time_limit, interrupt) = (1_000_000, None, None);
+        Settings { tolerance: 1e-11, method, projection, max_steps, time_limit, plain: false, interrupt }
     }
 }
 
 impl Settings {
-    /// Of one run at `tolerance`.
+    /// Of one run at `tolerance` that begins now.
     pub(crate) fn options(&self, tolerance: f64) -> Options {
+        let interrupt = match self.time_limit {
+            Some(seconds) => Some(self.interrupt.clone().unwrap_or_default().within(seconds)),
+            None => self.interrupt.clone(),
+        };
         Options {
             method: self.method,
             projection: self.projection,
             max_steps: self.max_steps,
-            interrupt: self.interrupt.clone(),
+            interrupt,
             ..Options::with_tolerance(tolerance)
         }
     }

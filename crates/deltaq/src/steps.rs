@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use discrete::{Composition, Discrete, RemovedStart};
-use integrate::Work;
+use integrate::{StopCause, Work};
 use scene::Scene;
 
 use crate::constants::resolve;
@@ -17,7 +17,8 @@ pub const STEP_LIMIT: usize = 10_000_000;
 /// How a motion is stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
-    /// Longest step > 0, in the scene's unit of time; the time is cut into as few equal steps as that allows.
+    /// Longest step > 0, not above the time to go, in the scene's unit of time; that is cut into as few equal
+    /// steps as this allows, at least two.
     pub step: f64,
     /// Order 2, 4, 6 or 8.
     pub composition: Composition,
@@ -51,11 +52,12 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
     }
 }
 
-/// Steps a choice from the scene's start to its end, twice: as `steps` say, which is kept, and twice as long.
+/// Steps a choice from the scene's start to its end, twice: as `steps` say, which is kept, and twice as long,
+/// within the limits of `settings`.
 /// Their difference estimates the error of the longer ones. What is read off at a time, multipliers too, are
 /// the derived outputs at the discrete motion's positions, velocities (and multipliers or costates).
 ///
-/// Free constants that are natural at a horizon are found by the time loop, as `settings` say.
+/// Free constants that are natural at a horizon are found by the time loop, as they say.
 ///
 /// # Errors
 /// [`SolveError::Step`], those of [`discrete_of`] and of [`crate::solve`].
@@ -73,9 +75,11 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &Settings) -> Result<Motion, SolveError> {
-    // a step that divides the time up to round-off divides it
-    let count = (scene.duration.abs() / steps.step - 1e-9).ceil().max(1.0);
-    if !(steps.step > 0.0 && steps.step.is_finite() && count <= STEP_LIMIT as f64) {
+    let (length, round_off) = (scene.duration.abs(), 1e-9);
+    // a step that divides the time up to round-off divides it; the other run has longer ones
+    let count = (length / steps.step - round_off).ceil().max(2.0);
+    let possible = steps.step > 0.0 && steps.step <= length * (1.0 + round_off);
+    if !(possible && count <= STEP_LIMIT as f64) {
         return Err(SolveError::Step { step: steps.step, length: scene.duration, limit: STEP_LIMIT });
     }
     let count = count as usize;
@@ -88,8 +92,15 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
     let clock = Instant::now();
     resolve(&mut prepared, &choice.constants, settings)?;
     let discrete = discrete_of(scene, choice, &prepared.constants)?.composed(steps.composition);
-    let kept = discrete.trajectory(count)?;
-    let looser = discrete.trajectory(count.div_ceil(2))?;
+    let run = |count: usize| {
+        let options = settings.options(settings.tolerance);
+        discrete.trajectory_until(count, |t, taken| {
+            let too_many = taken >= options.max_steps;
+            let cause = too_many.then_some(StopCause::TooManySteps { limit: options.max_steps });
+            cause.or_else(|| options.interrupt.as_ref()?.pass(t, taken)).map(|cause| cause.to_string())
+        })
+    };
+    let (kept, looser) = (run(count)?, run(count.div_ceil(2))?);
     let integrate = clock.elapsed().as_secs_f64();
     // a motion ends where the first of its runs ends, for that run's reason
     let before = (kept.end() - looser.end()) * scene.duration.signum() > 0.0;

@@ -1,4 +1,5 @@
 //! The library as its user meets it: one program, one module a subject.
 
 mod errors;
+mod estimates;
 mod examples;

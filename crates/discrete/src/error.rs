@@ -88,6 +88,12 @@ pub enum DiscreteError {
         /// Correction that would have been accepted.
         limit: f64,
     },
+    /// Somebody ended it on the way ([`crate::Discrete::trajectory_until`]).
+    #[error("{reason}")]
+    Halted {
+        /// Why.
+        reason: String,
+    },
     /// No step is asked for.
     #[error("at least one step is needed")]
     NoSteps,

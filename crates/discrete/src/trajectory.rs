@@ -51,6 +51,19 @@ impl Discrete {
     /// # Errors
     /// [`DiscreteError::NoSteps`]; those of a step where the first one cannot even begin.
     pub fn trajectory(&self, steps: usize) -> Result<Trajectory, DiscreteError> {
+        self.trajectory_until(steps, |_, _| None)
+    }
+
+    /// [`Discrete::trajectory`], that also ends where `halt` of the time and the steps up to a node gives a
+    /// reason, with [`DiscreteError::Halted`]; the last node is not asked of.
+    ///
+    /// # Errors
+    /// As [`Discrete::trajectory`].
+    pub fn trajectory_until(
+        &self,
+        steps: usize,
+        mut halt: impl FnMut(f64, usize) -> Option<String>,
+    ) -> Result<Trajectory, DiscreteError> {
         if steps == 0 {
             return Err(DiscreteError::NoSteps);
         }
@@ -60,7 +73,9 @@ impl Discrete {
         let stop = discrete.march(start, steps, |_, node| {
             times.push(node.t);
             node.write(&mut rows);
-            Ok(())
+            let taken = times.len() - 1;
+            let reason = if taken < steps { halt(node.t, taken) } else { None };
+            reason.map_or(Ok(()), |reason| Err(DiscreteError::Halted { reason }))
         });
         match stop {
             Err(error) if times.is_empty() => Err(error),

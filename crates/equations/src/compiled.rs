@@ -5,6 +5,7 @@ use symbolic::{CompileError, Evaluator, Expr};
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::equations::Equations;
 use crate::jacobian::Jacobian;
+use crate::outputs::{Cost, Outputs, Sizes};
 use crate::plan::Plan;
 use crate::planned::Planned;
 use crate::projection::Projector;
@@ -37,63 +38,11 @@ pub struct Compiled {
     anchor: Vec<f64>,
 }
 
-#[derive(Clone, Copy)]
-struct Sizes {
-    states: usize,
-    constants: usize,
-    coordinates: usize,
-    multipliers: usize,
-    invariants: usize,
-}
-
-impl Sizes {
-    fn known(&self) -> usize {
-        1 + self.states + self.constants
-    }
-
-    fn outputs(&self, values: &[f64]) -> Outputs {
-        let (q, rest) = values.split_at(self.coordinates);
-        let (v, rest) = rest.split_at(self.coordinates);
-        let (m, i) = rest.split_at(self.multipliers);
-        debug_assert_eq!(i.len(), self.invariants);
-        Outputs { coordinates: q.to_vec(), velocities: v.to_vec(), multipliers: m.to_vec(), invariants: i.to_vec() }
-    }
-}
-
 /// Which blocks are solved numerically.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Blocks {
     All,
     Left,
-}
-
-/// What one evaluation of the rates takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cost {
-    /// Instructions of tapes.
-    pub instructions: usize,
-    /// Multiplications of LU factorization and substitution.
-    pub factorization: usize,
-}
-
-impl Cost {
-    /// Both together.
-    pub fn operations(self) -> usize {
-        self.instructions + self.factorization
-    }
-}
-
-/// What is read off a motion at one instant.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outputs {
-    /// `q`.
-    pub coordinates: Vec<f64>,
-    /// `q̇`.
-    pub velocities: Vec<f64>,
-    /// Multipliers or costates.
-    pub multipliers: Vec<f64>,
-    /// Quantities that should be constant.
-    pub invariants: Vec<f64>,
 }
 
 impl Compiled {
@@ -309,6 +258,18 @@ impl Compiled {
     pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) {
         self.load(t, y);
         arguments.copy_from_slice(self.steep.evaluate(&self.inputs[..self.sizes.known()]));
+    }
+
+    /// The matrices `∂R/∂z` of the blocks at `(t, y)`, row-major; of those that are not linear at the last
+    /// `z`.
+    pub fn block_matrices(&mut self, t: f64, y: &[f64]) -> Vec<Vec<f64>> {
+        self.load(t, y);
+        let (inputs, known) = (&self.inputs, self.sizes.known());
+        let matrix = |block: &mut CompiledBlock| {
+            let inputs = if block.linear { &inputs[..known] } else { &inputs[..] };
+            block.program.evaluate(inputs)[..block.size * block.size].to_vec()
+        };
+        self.equations_of_instant.iter_mut().map(matrix).collect()
     }
 
     /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.

@@ -66,6 +66,7 @@ mod formulation;
 mod jacobian;
 mod lanes;
 mod leave_out;
+mod outputs;
 mod plan;
 mod planned;
 mod projection;
@@ -73,11 +74,12 @@ mod recombination;
 mod series;
 
 pub use blocks::EvaluationFailure;
-pub use compiled::{Compiled, Cost, Outputs};
+pub use compiled::Compiled;
 pub use definitions::Definitions;
 pub use equations::{
     Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
 pub use formulation::{Derivation, DerivationError, Formulation, refuse_forces};
 pub use lanes::LaneEquations;
+pub use outputs::{Cost, Outputs};
 pub use plan::{Collected, Plan};

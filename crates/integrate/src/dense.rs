@@ -62,10 +62,13 @@ impl DenseOutput {
         self.coefficients.truncate(self.coefficients.len() - self.terms * self.dimension);
     }
 
-    /// One more step, from `begin` over `width`, valid up to `end`; `y` is the state at `end`.
+    /// One more step, from `begin` over `width`, valid up to `end`; `y` is the state at `end`. It takes room
+    /// where its polynomial does.
     pub(crate) fn push(&mut self, begin: f64, width: f64, end: f64, y: &[f64]) {
-        self.begins.push(begin);
-        self.widths.push(width);
+        if !self.coefficients.is_empty() {
+            self.begins.push(begin);
+            self.widths.push(width);
+        }
         self.end = end;
         self.end_state.copy_from_slice(y);
     }
@@ -99,9 +102,13 @@ impl DenseOutput {
         &self.end_state
     }
 
-    /// The start, then the end of each step; the last one is [`end`](DenseOutput::end).
+    /// The start, then the end of each step, or of all together where only the ends were stored; the last one
+    /// is [`end`](DenseOutput::end).
     pub fn step_times(&self) -> Vec<f64> {
         let mut times = self.begins.clone();
+        if times.is_empty() && self.start != self.end {
+            times.push(self.start);
+        }
         times.push(self.end);
         times
     }

@@ -12,7 +12,9 @@ mod problem;
 use std::array::from_fn;
 
 use crate::events::PARTS;
-use crate::options::{Interrupt, Options, Projection};
+use crate::interrupt::Interrupt;
+use crate::options::{Options, Projection};
+use crate::pace::Pace;
 use crate::status::{ProjectionReport, Work};
 use crate::stepper::shortest_step;
 use crate::taylor_step::{Ends, longest_step, once, order};
@@ -30,6 +32,7 @@ struct Rider {
     /// Its series starts a motion: no step leads to it.
     fresh: bool,
     failures: usize,
+    pace: Pace,
     /// Times that have been passed.
     read: usize,
     run: LaneRun,
@@ -152,7 +155,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.absolute_tolerances[i][lane] = self.options.absolute_tolerance * start.sizes[i];
         }
         let run = LaneRun { states: Vec::new(), work: Work::default(), projection: ProjectionReport::default() };
-        self.riders[lane] = Some(Rider { member, end: start.end, fresh: true, failures: 0, read: 0, run });
+        let pace = Pace::new(start.t, start.end);
+        self.riders[lane] = Some(Rider { member, end: start.end, fresh: true, failures: 0, pace, read: 0, run });
     }
 
     /// The coefficients at the ends of the candidates, and all that tells whether these are to be kept.
@@ -312,13 +316,14 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
 
     /// The next step of a lane.
     fn choose(&mut self, lane: usize, done: Done) {
-        let Some(rider) = &self.riders[lane] else { return };
+        let Some(rider) = &mut self.riders[lane] else { return };
         let (t, step) = (self.t[lane], self.step[lane]);
         let remaining = rider.end - t;
         let last = step >= remaining.abs();
+        let creeps = rider.pace.look(t, &rider.run.work, self.options.max_steps).is_some();
         if rider.run.work.steps + rider.run.work.rejected >= self.options.max_steps {
             self.leave(lane, Left::TooManySteps, done);
-        } else if !last && (step <= shortest_step(t) || step.is_nan()) {
+        } else if !last && (creeps || step <= shortest_step(t) || step.is_nan()) {
             self.leave(lane, Left::StepTooSmall, done);
         } else {
             self.taken[lane] = if last { remaining } else { step * remaining.signum() };

@@ -1,7 +1,6 @@
 //! How to integrate.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::interrupt::Interrupt;
 
 /// The time-stepping method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -91,36 +90,6 @@ pub enum Dense {
     EndOnly,
 }
 
-/// A flag by which another thread ends an integration. Clones share it; two are equal if they are one flag.
-///
-/// ```
-/// use integrate::Interrupt;
-/// let interrupt = Interrupt::default();
-/// let shared = interrupt.clone();
-/// shared.raise();
-/// assert!(interrupt.is_raised() && interrupt == shared && interrupt != Interrupt::default());
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct Interrupt(Arc<AtomicBool>);
-
-impl Interrupt {
-    /// Asks every integration that was given this flag to stop before its next step. It cannot be taken back.
-    pub fn raise(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether it was asked to stop.
-    pub fn is_raised(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
-impl PartialEq for Interrupt {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-}
-
 /// Method, tolerances and limits of an integration.
 ///
 /// The local error `e` of a step is kept below `|e_i| ≤ absolute · size_i + relative · max(|y_i|, |y_i,new|)`
@@ -143,7 +112,7 @@ pub struct Options {
     pub max_steps: usize,
     /// What is kept between the ends.
     pub dense: Dense,
-    /// The flag that ends the run with [`crate::StopCause::Interrupted`]; looked at before each attempt.
+    /// The flag that ends the run, with its cause ([`Interrupt::cause`]); looked at before each attempt.
     pub interrupt: Option<Interrupt>,
 }
 

@@ -86,6 +86,12 @@ pub enum StopCause {
     /// [`crate::Options::interrupt`] was raised.
     #[error("interrupted")]
     Interrupted,
+    /// The time that [`crate::Interrupt::within`] allows is over.
+    #[error("the time limit of {seconds} s is over")]
+    TimeLimit {
+        /// The limit, wall clock.
+        seconds: f64,
+    },
     /// The library behind the method gave up.
     #[error("the solver gave up: {reason}")]
     Solver {

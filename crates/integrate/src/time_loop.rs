@@ -2,7 +2,8 @@
 
 use crate::dense::{Basis, DenseOutput, evaluate_segment};
 use crate::events::{EventWatch, Segment};
-use crate::options::{Dense, Interrupt, Options, Projection};
+use crate::options::{Dense, Options, Projection};
+use crate::pace::Pace;
 use crate::problem::Start;
 use crate::status::{ProjectionReport, Solution, Status, StopCause};
 use crate::steep::SteepWatch;
@@ -11,11 +12,6 @@ use crate::system::{Failure, System, check_finite};
 
 /// So many times in a row is a step that cannot be evaluated halved.
 pub(crate) const HALVINGS: usize = 60;
-
-/// A run creeps where so many steps move the time by less than this part of what it has come: the rest of it
-/// would take more than a thousand million.
-const CREEPING_STEPS: usize = 3_000;
-const CREEPING: f64 = 1e-6;
 
 /// Integrates with `stepper`, or reports that it could not be set up.
 pub(crate) fn drive<S: Stepper>(
@@ -70,21 +66,18 @@ impl Record<'_, '_> {
         // The last failure since the last accepted step, and the number of them.
         let mut failure: Option<Failure> = None;
         let mut failures = 0;
-        let (mut taken, mut left) = (0, start.t);
+        let mut pace = Pace::new(start.t, end);
         while stepper.time() != end {
-            if self.options.interrupt.as_ref().is_some_and(Interrupt::is_raised) {
-                return Err(StopCause::Interrupted);
-            }
             let work = system.work();
+            let (t, interrupt) = (stepper.time(), self.options.interrupt.as_ref());
+            if let Some(cause) = interrupt.and_then(|interrupt| interrupt.pass(t, work.steps)) {
+                return Err(cause);
+            }
             if work.steps + work.rejected >= self.options.max_steps {
                 return Err(StopCause::TooManySteps { limit: self.options.max_steps });
             }
-            if work.steps >= taken + CREEPING_STEPS {
-                let moved = (stepper.time() - left).abs();
-                if moved < CREEPING * (stepper.time() - start.t).abs() {
-                    return Err(StopCause::Creeping { steps: work.steps - taken, moved });
-                }
-                (taken, left) = (work.steps, stepper.time());
+            if let Some(cause) = pace.look(t, &work, self.options.max_steps) {
+                return Err(cause);
             }
             let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {

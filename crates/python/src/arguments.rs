@@ -17,7 +17,11 @@ pub(crate) fn settings(
     tolerance: f64,
     project: bool,
     max_steps: usize,
+    time_limit: Option<f64>,
 ) -> PyResult<(Settings, Interrupt)> {
+    if let Some(seconds) = time_limit.filter(|seconds| seconds.is_nan() || *seconds <= 0.0) {
+        return Err(PyValueError::new_err(format!("time_limit is {seconds}; it must be above 0")));
+    }
     let Some(method) = Method::ALL.into_iter().find(|m| m.name() == method) else {
         return Err(unknown("method", method, Method::ALL.into_iter().map(Method::name)));
     };
@@ -27,6 +31,7 @@ pub(crate) fn settings(
         method,
         projection: if project { Projection::EveryStep } else { Projection::Off },
         max_steps,
+        time_limit,
         plain: false,
         interrupt: Some(interrupt.clone()),
     };

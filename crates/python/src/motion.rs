@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use deltaq::{ErrorEstimate, Seconds, Setting, SolveError, constant_names, error_estimate};
+use deltaq::{ErrorEstimate, Seconds, Setting, SolveError, constant_names, error_estimates};
 use integrate::Work;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
@@ -82,6 +82,7 @@ pub(crate) struct Sampled {
     motion: deltaq::Motion,
     times: Vec<f64>,
     rows: Vec<equations::Outputs>,
+    so_far: Vec<ErrorEstimate>,
     estimate: ErrorEstimate,
     dimension: usize,
 }
@@ -101,9 +102,10 @@ impl Sampled {
             (0..INSTANTS).map(|i| setting.start.t + end * i as f64 / (INSTANTS - 1) as f64).collect()
         });
         times.retain(|&t| t <= motion.end());
+        let (so_far, estimate) = error_estimates(&mut motion, setting, &times)?;
+        let (times, so_far): (Vec<_>, _) = times.into_iter().zip(so_far).filter(|(t, _)| *t <= motion.end()).unzip();
         let rows = times.iter().map(|&t| motion.at(t)).collect::<Result<_, _>>()?;
-        let estimate = error_estimate(&mut motion, setting)?;
-        Ok(Sampled { motion, times, rows, estimate, dimension: setting.system.dimension() })
+        Ok(Sampled { motion, times, rows, so_far, estimate, dimension: setting.system.dimension() })
     }
 }
 
@@ -142,10 +144,18 @@ pub(crate) struct Motion {
     /// The error estimate over the largest distance from the start.
     #[pyo3(get)]
     relative_error_estimate: f64,
-    /// "completed" or "stopped".
+    /// Largest difference of the two runs in each coordinate up to each of `times`, shape (k, n), in the
+    /// units of the system: the kinetic metric hides those of little inertia.
+    #[pyo3(get)]
+    coordinate_error_estimates: Py<PyArrayDyn<f64>>,
+    /// The same of multipliers and costates, by name, each of shape (k,).
+    #[pyo3(get)]
+    multiplier_error_estimates: Py<PyDict>,
+    /// "completed", "untrusted" (the estimate is doubted or too large, for all or for one coordinate),
+    /// "stopped".
     #[pyo3(get)]
     status: &'static str,
-    /// Why the motion stopped, None where it is complete.
+    /// Why the motion is not completed, else None.
     #[pyo3(get)]
     cause: Option<String>,
     /// Why the error estimate is not to be trusted, None where nothing speaks against it.
@@ -186,12 +196,14 @@ pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
 
 impl Motion {
     pub(crate) fn new(py: Python<'_>, sampled: Sampled) -> PyResult<Motion> {
-        let Sampled { motion, times, rows, estimate, dimension } = sampled;
+        let Sampled { motion, times, rows, so_far, estimate, dimension } = sampled;
         let names = Names::of(&motion.equations);
         let count = Some(times.len());
         let Outputs { coordinates, velocities, multipliers, invariants } =
             Outputs::new(py, &rows, dimension, &names, count)?;
-        let (status, cause) = motion.ending.status(None);
+        let (status, cause) = estimate.status(&motion);
+        let coordinate_errors = so_far.iter().flat_map(|e| e.coordinates.clone()).collect();
+        let multiplier_errors = so_far.iter().map(|e| &e.multipliers[..]);
         let constants = constant_names(&motion.equations).into_iter().zip(motion.constants.iter().copied());
         let projection = PyDict::new(py);
         projection.set_item("count", motion.projection.projections)?;
@@ -200,7 +212,6 @@ impl Motion {
         let Seconds { derive, compile, integrate } = motion.seconds;
         let seconds = [("derive", derive), ("compile", compile), ("integrate", integrate)];
         Ok(Motion {
-            names,
             dimension,
             formulation: motion.equations.formulation,
             removal: motion.equations.removal.as_ref().map(|r| r.name.clone()),
@@ -211,6 +222,8 @@ impl Motion {
             invariants,
             error_estimate: estimate.absolute,
             relative_error_estimate: estimate.relative,
+            coordinate_error_estimates: array(py, coordinate_errors, count, &[dimension])?.unbind(),
+            multiplier_error_estimates: columns(py, &names.multipliers, multiplier_errors, count)?.unbind(),
             status,
             cause,
             doubt: motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
@@ -220,6 +233,7 @@ impl Motion {
             work: work(py, &motion.work)?,
             projection: projection.unbind(),
             seconds: seconds.into_py_dict(py)?.unbind(),
+            names,
             motion: Mutex::new(motion),
         })
     }

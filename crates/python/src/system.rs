@@ -251,7 +251,7 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Equations> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000)?;
+        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None)?;
         let scene = self.scene().clone();
         let is_given = given.is_some();
         let mut choice = arguments::choice(&scene, formulation, removal, given)?;
@@ -276,13 +276,14 @@ impl System {
     /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
     /// removal or of the system.
     /// method: one of METHODS. tolerance: of the looser run; the one that is kept has a hundredth of it.
-    /// project: move velocities onto the constraint after every step. max_steps: limit on steps of a run.
+    /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
+    /// steps of a run and on its seconds, after which it stops.
     ///
     /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, method="dop853", tolerance=1e-11,
-        project=true, max_steps=1_000_000
+        project=true, max_steps=1_000_000, time_limit=None
     ))]
     fn solve(
         &self,
@@ -296,9 +297,10 @@ impl System {
         tolerance: f64,
         project: bool,
         max_steps: usize,
+        time_limit: Option<f64>,
     ) -> PyResult<Motion> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps)?;
+        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, time_limit)?;
         let mut scene = self.scene().clone();
         let choice = arguments::choice(&scene, formulation, removal, given)?;
         let times = times.map(|times| finite("times", times.as_array().iter().copied().collect())).transpose()?;
@@ -323,13 +325,14 @@ impl System {
     ///
     /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...).
     /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-    /// threads: 0 for one a processor; results do not depend on it. Else as in `solve`, constants for all.
+    /// threads: 0 for one a processor; results do not depend on it. Else as in `solve`, constants for all,
+    /// and time_limit for one run of all members.
     ///
     /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
-        max_steps=1_000_000, threads=0
+        max_steps=1_000_000, time_limit=None, threads=0
     ))]
     fn ensemble(
         &self,
@@ -343,10 +346,11 @@ impl System {
         tolerance: f64,
         project: bool,
         max_steps: usize,
+        time_limit: Option<f64>,
         threads: usize,
     ) -> PyResult<Ensemble> {
         let constants = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps)?;
+        let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, time_limit)?;
         let (scene, given) = (self.scene().clone(), constants.is_some());
         let choice = arguments::choice(&scene, formulation, removal, constants)?;
         let (times, end) = ensemble::times(times, &scene)?;
@@ -358,11 +362,18 @@ impl System {
         Ensemble::new(py, integrated.map_err(|refused| ensemble::refused(py, refused))?)
     }
 
-    /// Compares the motions of all formulations pair by pair; tolerance and max_steps as in `solve`.
-    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000))]
-    fn compare(&self, py: Python<'_>, tolerance: f64, max_steps: usize) -> PyResult<Comparison> {
+    /// Compares the motions of all formulations pair by pair; tolerance, max_steps and time_limit as in
+    /// `solve`.
+    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, time_limit=None))]
+    fn compare(
+        &self,
+        py: Python<'_>,
+        tolerance: f64,
+        max_steps: usize,
+        time_limit: Option<f64>,
+    ) -> PyResult<Comparison> {
         check_tolerance(tolerance)?;
-        let (settings, interrupt) = arguments::settings("dop853", tolerance, true, max_steps)?;
+        let (settings, interrupt) = arguments::settings("dop853", tolerance, true, max_steps, time_limit)?;
         let scene = self.scene().clone();
         let compared = background::run(py, &interrupt, move || compare(scene, &settings))?;
         Comparison::new(py, compared.map_err(errors::solve)?)

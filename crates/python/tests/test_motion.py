@@ -99,6 +99,36 @@ def test_a_motion_that_stops(sledge):
     assert motion.at(motion.end).coordinates[2] == pytest.approx(np.pi / 2, abs=1e-2)
 
 
-def test_limit_on_steps(system):
+def test_limits_of_a_run(system):
     motion = system.solve(max_steps=5)
     assert motion.status == "stopped" and "more than 5 steps" in motion.cause
+    motion = system.solve(time_limit=1e-9)
+    assert motion.status == "stopped" and "time limit of 0.000000001 s" in motion.cause and motion.end == 0
+    run = system.equations().integrate([0, 10], time_limit=1e-9)
+    assert run.status == "stopped" and "time limit" in run.cause
+    members = system.ensemble(vary={"phi": [0, 1]}, time_limit=1e-9)
+    assert members.status == ["stopped"] * 2 and all("time limit" in cause for cause in members.cause)
+    assert system.solve(time_limit=600).status == "completed"
+    for wrong in (0, -1, np.nan):
+        with pytest.raises(ValueError, match="time_limit"):
+            system.solve(time_limit=wrong)
+
+
+def test_each_coordinate_has_its_error(sledge, system):
+    motion = system.solve(tolerance=1e-6)
+    errors = motion.coordinate_error_estimates
+    assert errors.shape == motion.coordinates.shape and (np.diff(errors, axis=0) >= 0).all()
+    phi = np.abs(motion.coordinates[:, 2] - sledge.phi(motion.times))
+    assert (phi <= errors[:, 2] + 1e-13).all() and 0 < errors[-1, 0] < 1e-4
+    (name,) = motion.multipliers
+    reaction = motion.multiplier_error_estimates[name]
+    assert reaction.shape == motion.times.shape and 0 < reaction[-1] < 1e-3
+
+
+def test_one_wrong_coordinate_is_not_trusted():
+    # z has hardly any inertia, so that the kinetic metric does not see what becomes of it
+    system = deltaq.System(["x", "z"], "x'^2/2 + 1e-18*(z'^2 - 1600*z^2)/2", start={"x": 0, "z": 1e-9}, velocities={"x'": 1, "z'": 1}, duration=2)
+    motion = system.solve(tolerance=1e-3)
+    relative = motion.coordinate_error_estimates[-1, 1] / np.abs(motion.coordinates[:, 1]).max()
+    assert motion.relative_error_estimate < 1e-6 and relative > 1e-3
+    assert motion.status == "untrusted" and "of z" in motion.cause

@@ -36,9 +36,23 @@ pub struct MotionArguments {
     /// No projection onto the constraint.
     #[arg(long)]
     pub no_projection: bool,
+    #[command(flatten)]
+    pub limits: Limits,
     /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     pub format: Format,
+}
+
+/// When a run is given up; it stops then, and what it reached is told.
+#[derive(Args, Debug)]
+pub struct Limits {
+    /// Steps that one run may take; a motion is integrated in two runs. If left out, a limit that only runs
+    /// reach that get nowhere.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_steps: Option<u32>,
+    /// Seconds of the clock that one run may take; of an ensemble, one run of 4096 members.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time_limit: Option<f64>,
 }
 
 /// `deltaq ensemble`.

@@ -45,7 +45,7 @@ impl Outcome {
     }
 
     fn error_estimate(&self) -> Option<f64> {
-        self.motion.as_ref()?.estimate.map(|estimate| estimate.absolute)
+        self.motion.as_ref()?.estimate.as_ref().map(|estimate| estimate.absolute)
     }
 }
 

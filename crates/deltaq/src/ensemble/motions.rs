@@ -5,6 +5,7 @@ use equations::{Compiled, Outputs};
 use super::run::Outcome;
 use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
+use crate::error_estimate::Differences;
 use crate::metric::subtract;
 use crate::single_run::outputs;
 use crate::{ErrorEstimate, Metric, SolveError};
@@ -14,8 +15,8 @@ use crate::{ErrorEstimate, Metric, SolveError};
 pub struct MemberMotion {
     /// Coordinates, velocities, multipliers and invariants at the times asked for, as far as the motion came.
     pub outputs: Vec<Outputs>,
-    /// Largest difference of the two runs at these times, in the kinetic metric and over the largest distance
-    /// from the start; zero where there is none of these times, none without [`EnsembleOptions::estimate`].
+    /// Largest differences of the two runs at these times; zero where there is none of them, none without
+    /// [`EnsembleOptions::estimate`]. A coordinate's size is also how far its velocity may have brought it.
     pub estimate: Option<ErrorEstimate>,
     /// The run behind it.
     pub run: MemberRun,
@@ -24,7 +25,7 @@ pub struct MemberMotion {
 impl MemberMotion {
     /// [`crate::Ending::status`], untrusted where its estimate is too large ([`ErrorEstimate::complaint`]).
     pub fn status(&self) -> (&'static str, Option<String>) {
-        self.run.ending.status(self.estimate.and_then(|estimate| estimate.complaint()))
+        self.run.ending.status(self.estimate.as_ref().and_then(ErrorEstimate::complaint))
     }
 }
 
@@ -40,8 +41,10 @@ impl Ensemble {
     ) -> Vec<Result<MemberMotion, SolveError>> {
         let runs = self.run(members, times, options);
         let (compiled, metric) = (&self.prepared.compiled, &self.metric);
+        let names: Vec<String> = self.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let read = shared(options.threads, members.len(), 1, |take| {
-            let mut reader = Reader { compiled: compiled.clone(), metric: metric.clone(), times };
+            let (compiled, metric) = (compiled.clone(), metric.clone());
+            let mut reader = Reader { names: &names, compiled, metric, times };
             let mut done = Vec::new();
             while let Some(index) = take() {
                 if let Ok(run) = &runs[index] {
@@ -87,6 +90,7 @@ fn of_the_rest<A: Clone, B>(
 }
 
 struct Reader<'a> {
+    names: &'a [String],
     compiled: Compiled,
     metric: Metric,
     times: &'a [f64],
@@ -102,7 +106,7 @@ impl Reader<'_> {
         member.set(&mut self.compiled);
         self.metric.set_parameters(&member.constants[member.constants.len() - self.metric.parameters()..]);
         let start = outputs(&mut self.compiled, member.t, &member.y)?.coordinates;
-        let (mut absolute, mut scale) = (0.0_f64, 0.0_f64);
+        let mut differences = Differences::from(self.names, &start);
         let mut read = Vec::with_capacity(run.states.len());
         for (i, (&t, y)) in self.times.iter().zip(&run.states).enumerate() {
             if let Some(unknowns) = run.unknowns.get(i) {
@@ -110,13 +114,11 @@ impl Reader<'_> {
             }
             let now = outputs(&mut self.compiled, t, y)?;
             if let Some(difference) = run.differences.get(i) {
-                let other = outputs(&mut self.compiled, t, &subtract(y, difference))?.coordinates;
-                let mut length = |d: Vec<f64>| self.metric.length(t, &now.coordinates, &now.velocities, &d);
-                absolute = absolute.max(length(subtract(&now.coordinates, &other)));
-                scale = scale.max(length(subtract(&now.coordinates, &start)));
+                let other = outputs(&mut self.compiled, t, &subtract(y, difference))?;
+                differences.add(&mut self.metric, t, &now, &other, t - member.t);
             }
             read.push(now);
         }
-        Ok((read, options.estimate.then_some(ErrorEstimate::over(scale, absolute))))
+        Ok((read, options.estimate.then(|| differences.estimate())))
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use equations::{Compiled, Equations, LaneEquations};
-use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, Work};
+use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, ProjectionReport, Start, StopCause, Work};
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
@@ -87,8 +87,8 @@ impl Ensemble {
         let group = if task.lanes.is_ok() { LANES } else { 1 };
         let results = shared(threads, members.len(), group, |take| task.work(take));
         let interrupted = |member: &EnsembleMember| {
-            let ending = Ending::Stopped { t: member.t, cause: integrate::StopCause::Interrupted.to_string() };
-            Ok(MemberRun { ending, ..MemberRun::empty() })
+            let cause = options.interrupt.as_ref().and_then(Interrupt::cause).unwrap_or(StopCause::Interrupted);
+            Ok(MemberRun { ending: Ending::Stopped { t: member.t, cause: cause.to_string() }, ..MemberRun::empty() })
         };
         results.into_iter().zip(members).map(|(outcome, m)| outcome.unwrap_or_else(|| interrupted(m))).collect()
     }

@@ -54,7 +54,7 @@ pub enum Left {
     /// An event function changes its sign or vanishes.
     #[error("an event on the way")]
     Event,
-    /// Steps are too short to move the time, or halved too often.
+    /// Steps are too short to move the time, creep or are halved too often.
     #[error("steps too short on the way")]
     StepTooSmall,
     /// [`crate::Options::max_steps`].

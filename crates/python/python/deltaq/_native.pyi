@@ -101,6 +101,7 @@ class System:
         tolerance: float = 1e-11,
         project: bool = True,
         max_steps: int = 1_000_000,
+        time_limit: float | None = None,
     ) -> Motion: ...
     def ensemble(
         self,
@@ -114,9 +115,12 @@ class System:
         tolerance: float = 1e-11,
         project: bool = True,
         max_steps: int = 1_000_000,
+        time_limit: float | None = None,
         threads: int = 0,
     ) -> Ensemble: ...
-    def compare(self, *, tolerance: float = 1e-11, max_steps: int = 1_000_000) -> Comparison: ...
+    def compare(
+        self, *, tolerance: float = 1e-11, max_steps: int = 1_000_000, time_limit: float | None = None
+    ) -> Comparison: ...
 
 @final
 class Outputs:
@@ -146,6 +150,7 @@ class Equations:
         tolerance: float = 1e-11,
         project: bool = True,
         max_steps: int = 1_000_000,
+        time_limit: float | None = None,
     ) -> Trajectory: ...
     def _repr_latex_(self) -> str: ...
 
@@ -169,7 +174,9 @@ class Motion:
     invariants: Final[dict[str, _Array]]
     error_estimate: Final[float]
     relative_error_estimate: Final[float]
-    status: Final[Literal["completed", "stopped"]]
+    coordinate_error_estimates: Final[_Array]
+    multiplier_error_estimates: Final[dict[str, _Array]]
+    status: Final[Literal["completed", "untrusted", "stopped"]]
     cause: Final[str | None]
     doubt: Final[str | None]
     start: Final[float]

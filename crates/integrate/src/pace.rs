@@ -1,0 +1,116 @@
+//! Whether a run gets anywhere.
+
+use crate::status::{StopCause, Work};
+
+/// A run creeps where so many steps move the time by less than this part of what it has come: the rest of it
+/// would take more than a thousand million.
+const FEW: f64 = 1e-6;
+const MANY_STEPS: usize = 3_000;
+
+/// It creeps, too, where the rest would take so many times the attempts that are allowed, and so many in all,
+/// at the pace of each of so many stretches of so many attempts, none of which moves the time by less than
+/// half or more than twice of what the one before did, and the last by less than most of what the first did:
+/// towards a singularity steps that round-off limits shrink as 1/n, without end. Those that follow the
+/// motion shrink by the same factor in every stretch, and far more, until they are too short or past it.
+const TIMES_ALLOWED: f64 = 10.0;
+const TO_GO: f64 = 1e7;
+const STRETCHES: usize = 4;
+const STRETCH: usize = 500;
+const MOST: f64 = 0.8;
+
+/// Time and number of steps, or of attempts, at some point of a run.
+#[derive(Clone, Copy, Debug)]
+struct Mark {
+    t: f64,
+    count: usize,
+}
+
+/// How fast a run moves the time.
+#[derive(Clone, Debug)]
+pub(crate) struct Pace {
+    start: f64,
+    end: f64,
+    many: Mark,
+    stretch: Mark,
+    /// Where the stretches began that get nowhere, how many there are, what the first and the last moved.
+    slow: Mark,
+    stretches: usize,
+    first: f64,
+    last: f64,
+}
+
+impl Pace {
+    pub(crate) fn new(start: f64, end: f64) -> Self {
+        let mark = Mark { t: start, count: 0 };
+        let (stretches, first, last) = (0, 0.0, 0.0);
+        Pace { start, end, many: mark, stretch: mark, slow: mark, stretches, first, last }
+    }
+
+    /// Whether a run creeps that has come to `t` by this work, and may attempt `limit` steps.
+    pub(crate) fn look(&mut self, t: f64, work: &Work, limit: usize) -> Option<StopCause> {
+        let (steps, attempts) = (work.steps, work.steps + work.rejected);
+        let since = |mark: Mark, count: usize| (count - mark.count, (t - mark.t).abs());
+        let (many, moved) = since(self.many, steps);
+        if many >= MANY_STEPS {
+            if moved < FEW * (t - self.start).abs() {
+                return Some(StopCause::Creeping { steps: many, moved });
+            }
+            self.many = Mark { t, count: steps };
+        }
+        let (count, moved) = since(self.stretch, attempts);
+        if count < STRETCH {
+            return None;
+        }
+        let to_go = (self.end - t).abs() / moved * count as f64;
+        if to_go < TO_GO.max(TIMES_ALLOWED * limit as f64) {
+            self.stretches = 0;
+        } else if self.stretches > 0 && moved > 0.5 * self.last && moved < 2.0 * self.last {
+            self.stretches += 1;
+        } else {
+            (self.stretches, self.first, self.slow) = (1, moved, self.stretch);
+        }
+        (self.last, self.stretch) = (moved, Mark { t, count: attempts });
+        if self.stretches < STRETCHES || moved > MOST * self.first {
+            return None;
+        }
+        let (steps, moved) = since(self.slow, attempts);
+        Some(StopCause::Creeping { steps, moved })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The steps after which a run of this pace creeps, of at most a million; `step` gives the step at n, t.
+    fn creeps(end: f64, step: impl Fn(f64, f64) -> f64) -> Option<usize> {
+        let (mut pace, mut t) = (Pace::new(0.0, end), 0.0);
+        (1..1_000_000).find(|&n| {
+            t += step(n as f64, t);
+            // one attempt in four is rejected
+            let work = Work { steps: n - n / 4, rejected: n / 4, ..Work::default() };
+            t.abs() < end.abs() && pace.look(t, &work, 1_000_000).is_some()
+        })
+    }
+
+    #[test]
+    fn steps_that_shrink_without_end_creep() {
+        for direction in [1.0, -1.0] {
+            // the falling bicycle: 3e-8 after 2,000 steps, then as 1/n
+            let found = creeps(direction * 20.0, |n, _| direction * if n < 1700.0 { 2.4e-3 } else { 6e-5 / n });
+            assert!(found.is_some_and(|n| n > 3_000 && n < 6_000), "{found:?}");
+            // all at once
+            let found = creeps(direction * 20.0, |n, _| direction * if n < 100.0 { 0.1 } else { 1e-12 });
+            assert!(found.is_some_and(|n| n > 2_000 && n <= 8_000), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn short_steps_and_steps_that_shrink_on_the_way_do_not() {
+        // equal steps, even too many; ever faster turns, as g t/k; a layer of 1e-9 that is passed
+        assert_eq!(creeps(1.0, |_, _| 1e-6), None);
+        assert_eq!(creeps(1.0, |n, _| 1e-8 * (1.0 + 0.1 * n.sin())), None);
+        assert_eq!(creeps(1000.0, |_, t| 0.05 / (1.0 + t)), None);
+        assert_eq!(creeps(2.0, |_, t| 1e-10 + 1e-2 * (t - 1.0_f64).abs()), None);
+    }
+}
