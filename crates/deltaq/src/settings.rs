@@ -34,6 +34,8 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
+    /// No step is longer; > 0, infinite without a limit. Equal steps have a length of their own.
+    pub max_step: f64,
     /// Limit on the seconds of one run, wall clock; for a search of constants and for the members of an
     /// ensemble on all runs together. None by default: results then do not depend on the machine.
     pub time_limit: Option<f64>,
@@ -47,8 +49,8 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (Method::Dop853, Projection::EveryStep);
-        let (max_steps, time_limit, interrupt) = (1_000_000, None, None);
-        Settings { tolerance: 1e-11, method, projection, max_steps, time_limit, plain: false, interrupt }
+        let (max_steps, max_step, time_limit, interrupt) = (1_000_000, f64::INFINITY, None, None);
+        Settings { tolerance: 1e-11, method, projection, max_steps, max_step, time_limit, plain: false, interrupt }
     }
 }
 
@@ -63,6 +65,7 @@ impl Settings {
             method: self.method,
             projection: self.projection,
             max_steps: self.max_steps,
+            max_step: self.max_step,
             interrupt,
             ..Options::with_tolerance(tolerance)
         }
