@@ -34,7 +34,8 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
-    /// No step is longer; > 0, infinite without a limit. Equal steps have a length of their own.
+    /// No step of the first run is longer, none of the second than half of it: equal steps would hide their
+    /// error. > 0, infinite without a limit. Steps of a given length do not heed it.
     pub max_step: f64,
     /// Limit on the seconds of one run, wall clock; for a search of constants and for the members of an
     /// ensemble on all runs together. None by default: results then do not depend on the machine.
@@ -65,7 +66,7 @@ impl Settings {
             method: self.method,
             projection: self.projection,
             max_steps: self.max_steps,
-            max_step: self.max_step,
+            max_step: if tolerance < self.tolerance { 0.5 * self.max_step } else { self.max_step },
             interrupt,
             ..Options::with_tolerance(tolerance)
         }

@@ -50,7 +50,8 @@ pub struct Limits {
     /// reach that get nowhere.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_steps: Option<u32>,
-    /// Longest step, in the scene's unit of time; without this the tolerance alone decides.
+    /// Longest step, in the scene's unit of time; of the run that is kept, half of it. If left out, the
+    /// tolerance alone decides.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub max_step: Option<f64>,
     /// Seconds of the clock that one run may take; of an ensemble, one run of 4096 members.
