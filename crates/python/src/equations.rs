@@ -190,7 +190,7 @@ impl Equations {
         let start = match rule {
             None => start,
             Some(rule) => {
-                let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None)?;
+                let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None, None)?;
                 let scene = self.scene();
                 let work = move || prepare(setting(&scene), equations, &rule, &settings);
                 background::run(py, &interrupt, work)?.map_err(errors::solve)?.start

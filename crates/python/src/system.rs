@@ -251,7 +251,7 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Equations> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None)?;
+        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None, None)?;
         let scene = self.scene().clone();
         let is_given = given.is_some();
         let mut choice = arguments::choice(&scene, formulation, removal, given)?;
