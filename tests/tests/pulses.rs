@@ -2,8 +2,10 @@
 //! in ensembles. The referee takes small steps where something is switched.
 
 use deltaq::{
-    Choice, Ensemble, EnsembleOptions, EnsembleStart, Prepared, Settings, choices, constants_of, setting, solve_choice,
+    Choice, Ensemble, EnsembleOptions, EnsembleStart, Prepared, Settings, SolveError, Steps, choices, constants_of,
+    error_estimate, setting, solve_by_steps, solve_choice,
 };
+use discrete::Composition;
 use integrate::Method;
 use scene::Scene;
 use symbolic::SplitMix;
@@ -143,7 +145,7 @@ fn off(found: &[f64], right: &[f64]) -> f64 {
 fn every_pulse_is_found_by_every_method_and_in_ensembles() {
     let count = std::env::var("PULSES").ok().and_then(|count| count.parse().ok()).unwrap_or(PULSES);
     let mut random = SplitMix::new(16);
-    let (mut refused, mut asked) = (0, 0);
+    let (mut refused, mut asked, mut equal, mut passed_over) = (0, 0, 0, 0);
     for index in 0..count {
         let pulse = Pulse::new(&mut random);
         let scene = Scene::parse("pulse", &pulse.scene).unwrap_or_else(|error| panic!("{error}\n{}", pulse.scene));
@@ -163,6 +165,27 @@ fn every_pulse_is_found_by_every_method_and_in_ensembles() {
             let found = motion.at(motion.end()).expect("an end").coordinates;
             assert!(off(&found, &right) < ALLOWED, "{}: {found:?}, not {right:?}", what(method.name()));
         }
+        let composition = Composition::ALL[index % 4];
+        for step in [2.0, 0.2, (5.0 * pulse.finest).max(1e-3)] {
+            let by = format!("equal steps of {step}, {composition:?}");
+            match solve_by_steps(&scene, choice, Steps { step, composition }, &Settings::default()) {
+                Ok(mut motion) => {
+                    let estimate = error_estimate(&mut motion, setting(&scene)).expect("an estimate");
+                    let found = motion.at(motion.end()).expect("an end").coordinates;
+                    let allowed = ALLOWED + 10.0 * estimate.relative;
+                    assert!(off(&found, &right) < allowed, "{}: {found:?}, not {right:?}", what(&by));
+                    equal += 1;
+                }
+                Err(SolveError::PassedOver { t, step: length, enough, .. }) => {
+                    let around = t < pulse.at + pulse.reach && t + 2.0 * length > pulse.at - pulse.reach;
+                    assert!(around && enough < length, "{}: {t}, {enough}", what(&by));
+                    passed_over += 1;
+                }
+                // steps too long to be solved
+                Err(SolveError::Discrete(_)) => {}
+                Err(error) => panic!("{}: {error}", what(&by)),
+            }
+        }
         if index % 10 == 0 {
             let settings = Settings { method: Method::Taylor, tolerance: 1e-8, ..Settings::default() };
             let mut ensemble = Ensemble::new(&scene, choice, &[], &settings).expect("an ensemble");
@@ -174,5 +197,68 @@ fn every_pulse_is_found_by_every_method_and_in_ensembles() {
         }
     }
     assert!(refused as f64 <= REFUSED * asked as f64, "{refused} of {asked} runs are refused");
+    assert!(equal > count / 5 && passed_over > count, "{equal} by equal steps, {passed_over} refused");
     println!("{count} pulses, {asked} runs, {refused} refused, none passed over");
+}
+
+/// Half a second of a push on a sledge at rest, as a user would write it.
+const SWITCH: &str = r#"
+title = "switch"
+[coordinates]
+x = { start = 0 }
+y = { start = 0 }
+phi = { start = 0.3 }
+[definitions]
+on = "(tanh((t - 5)/0.01) - tanh((t - 5.5)/0.01))/2"
+[system]
+lagrangian = "(x'^2 + y'^2 + phi'^2)/2"
+constraints = ["y'*cos(phi) - x'*sin(phi)"]
+forces = { x = "on*cos(phi)", y = "on*sin(phi)", phi = "0.4*on" }
+[start.velocities]
+"x'" = 0
+"phi'" = 0
+[run]
+duration = 10
+"#;
+
+#[test]
+fn equal_steps_that_pass_over_a_switch_are_refused_with_what_would_do() {
+    let scene = Scene::parse("switch", SWITCH).expect("a scene");
+    let choice = &choices(&scene)[0];
+    let solve = |step: f64| {
+        solve_by_steps(&scene, choice, Steps { step, composition: Composition::Second }, &Settings::default())
+    };
+    let error = solve(1.0).err().expect("refused");
+    println!("{error}");
+    let SolveError::PassedOver { t, step, function, enough } = error else { panic!("{error}") };
+    assert!((4.0..=5.0).contains(&t) && step == 1.0 && function.contains("tanh of") && function.contains('t'));
+    assert!(enough > 1e-3 && enough < 0.1, "{enough}");
+    let mut motion = solve(enough).expect("a motion");
+    let end = motion.at(10.0).expect("an end").coordinates;
+    assert!((end[0] - 1.6337).abs() < 1e-2 && (end[2] - 1.25).abs() < 1e-3, "{end:?}");
+}
+
+#[test]
+fn every_method_and_ensembles_end_a_step_at_breakpoints() {
+    let scene = Scene::parse("switch", &SWITCH.replace("duration = 10", "duration = 10\nbreakpoints = [5.5, 5, 12]"));
+    let scene = scene.expect("a scene");
+    let again = Scene::parse("switch", &scene.to_toml()).expect("as written");
+    assert_eq!(again.system.breakpoints, [5.5, 5.0, 12.0]);
+    let choice = &choices(&scene)[0];
+    for method in Method::ALL {
+        let settings = Settings { method, tolerance: 1e-6, max_step: 0.5, ..Settings::default() };
+        let mut motion = solve_choice(&scene, choice, &settings).expect("a motion");
+        let times = motion.step_times();
+        assert!([5.0, 5.5].iter().all(|t| times.contains(t)), "{method:?}: {times:?}");
+        assert!(times.windows(2).all(|t| t[1] - t[0] <= 0.5 + 1e-12), "{method:?}: {times:?}");
+        assert!((motion.at(10.0).expect("an end").coordinates[2] - 1.25).abs() < 1e-3, "{method:?}");
+    }
+    let mut ensemble = Ensemble::new(&scene, choice, &[], &Settings::default()).expect("an ensemble");
+    assert!(ensemble.refusal().is_some());
+    let member = ensemble.member(&scene).expect("a member");
+    let run = ensemble.run(&[member], &[10.0], &EnsembleOptions::default()).remove(0).expect("a run");
+    assert!((run.states[0][2] - 1.25).abs() < 1e-9, "{:?}", run.states);
+    let steps = Steps { step: 0.3, composition: Composition::Second };
+    let error = solve_by_steps(&scene, choice, steps, &Settings::default()).err().expect("refused");
+    assert!(matches!(error, SolveError::Breakpoint { t: 5.5 | 5.0, .. }), "{error}");
 }

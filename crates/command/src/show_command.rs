@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
             "show",
             &json!({
                 "scene": scene.name, "title": scene.title, "source": scene.source, "lagrangian": lagrangian,
-                "constraints": constraints, "integrability": integrability,
+                "constraints": constraints, "integrability": integrability, "breakpoints": scene.system.breakpoints,
                 "formulations": equations.iter().map(entry).collect::<Vec<_>>(),
             }),
         ));

@@ -116,6 +116,9 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
     if arguments.motion.no_projection {
         bail!("--no-projection is for the other methods: every step of leapfrog ends on the constraint");
     }
+    if arguments.motion.limits.max_step.is_some() {
+        bail!("--max-step is for the other methods: all steps of leapfrog are as long as --step says");
+    }
     let step = arguments.step.context("--method leapfrog takes equal steps: say how long with --step")?;
     let order = arguments.order.as_deref().unwrap_or("2");
     let composition = order.parse().ok().and_then(Composition::of_order);
@@ -134,8 +137,12 @@ pub(crate) fn limited(settings: Settings, limits: &Limits) -> Result<Settings> {
     if let Some(seconds) = limits.time_limit.filter(|seconds| seconds.is_nan() || *seconds <= 0.0) {
         bail!("--time-limit is {seconds}; it must be above 0");
     }
+    let max_step = limits.max_step.unwrap_or(f64::INFINITY);
+    if max_step.is_nan() || max_step <= 0.0 {
+        bail!("--max-step is {max_step}; it must be above 0");
+    }
     let max_steps = limits.max_steps.map_or(settings.max_steps, |limit| limit as usize);
-    Ok(Settings { max_steps, time_limit: limits.time_limit, ..settings })
+    Ok(Settings { max_steps, max_step, time_limit: limits.time_limit, ..settings })
 }
 
 /// Tolerances that make sense.

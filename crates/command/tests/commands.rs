@@ -240,6 +240,9 @@ fn limits_end_a_run_with_what_was_reached() {
         let (value, cause) = solve(&[method, &["--time-limit", "1e-9"]].concat());
         assert!(cause.contains("the time limit of 0.000000001 s is over") && value["end"] == 0.0, "{cause}");
     }
+    let (value, _) = answer(&["solve", "sledge", "-f", "chetaev", "--max-step", "0.01", "--format", "json"], 0);
+    let steps = serde_json::from_str::<Value>(&value).expect("JSON")["work"]["steps"].as_u64();
+    assert!(steps.is_some_and(|steps| (2000..2200).contains(&steps)), "{steps:?}");
     let limited = ["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..1:3", "--time-limit", "1e-9"];
     let (members, _) = answer(&limited, 3);
     assert_eq!(members.matches("time limit of").count(), 3, "{members}");

@@ -2,11 +2,13 @@
 
 use discrete::{DiscreteError, Trajectory};
 use equations::{Compiled, Equations};
+use integrate::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
 use mechanics::System;
 use symbolic::Symbol;
 
-use crate::SolveError;
+use crate::ending::in_own_names;
 use crate::start_values::StartValues;
+use crate::{Prepared, SolveError};
 
 /// A discrete trajectory; its `(x, v, ν)` give states `y` by the derivation's expressions of start values.
 #[derive(Clone)]
@@ -44,6 +46,39 @@ impl DiscreteRun {
         [self.times()[0], self.trajectory.end()]
     }
 
+    /// Refuses steps within which the gauge of a steep function grows as [`integrate::Problem::gauges`] does
+    /// not let it, on the straight line from node to node: a step knows its middle only. `kept` is the length
+    /// of the steps of the run that is kept. What cannot be read off is no part of the motion.
+    pub(crate) fn look(&mut self, prepared: &mut Prepared, kept: f64) -> Result<(), SolveError> {
+        let Prepared { compiled, equations, .. } = prepared;
+        if compiled.gauges().is_empty() {
+            return Ok(());
+        }
+        let mut from: Option<Node> = None;
+        for t in self.times().to_vec() {
+            let mut y = vec![0.0; compiled.dimension()];
+            let Ok(()) = self.state(compiled, t, &mut y) else { break };
+            if let Some(mut from) = from.replace((t, y.clone()))
+                && let (j, true) = steepest(compiled, &from, &(t, y.clone()))
+            {
+                let (begin, mut to, mut share) = (from.0, (t, y), 1.0);
+                while share > f64::EPSILON && steepest(compiled, &from, &to).1 {
+                    let middle = between(&from, &to, 0.5);
+                    // the half where it is steeper
+                    match steepest(compiled, &from, &middle).1 {
+                        true => to = middle,
+                        false => from = middle,
+                    }
+                    share *= 0.5;
+                }
+                let steep = equations.steep()[j];
+                let function = format!("{} of {}", steep.function, in_own_names(equations, steep.argument));
+                return Err(SolveError::PassedOver { t: begin, step: kept, function, enough: share * kept });
+            }
+        }
+        Ok(())
+    }
+
     pub(crate) fn times(&self) -> &[f64] {
         self.trajectory.times()
     }
@@ -69,4 +104,26 @@ impl DiscreteRun {
         }
         Ok(())
     }
+}
+
+/// Time and state.
+type Node = (f64, Vec<f64>);
+
+fn between(from: &Node, to: &Node, theta: f64) -> Node {
+    let at = |a: f64, b: f64| a + theta * (b - a);
+    (at(from.0, to.0), from.1.iter().zip(&to.1).map(|(a, b)| at(*a, *b)).collect())
+}
+
+/// The gauge that grows most from node to node, and whether it grows too much.
+fn steepest(compiled: &mut Compiled, from: &Node, to: &Node) -> (usize, bool) {
+    let gauges = compiled.gauges().to_vec();
+    let along: [Vec<f64>; GAUGE_NODES] = std::array::from_fn(|k| {
+        let (t, y) = between(from, to, k as f64 / (GAUGE_NODES - 1) as f64);
+        let mut arguments = vec![0.0; gauges.len()];
+        compiled.gauged(t, &y, &mut arguments);
+        arguments
+    });
+    let growth = |j: usize| gauge_growth(gauges[j], &std::array::from_fn(|k| along[k][j]));
+    let (j, growth) = (0..gauges.len()).map(|j| (j, growth(j))).max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
+    (j, growth > GAUGE_LIMIT)
 }

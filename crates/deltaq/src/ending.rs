@@ -6,6 +6,7 @@ use equations::{Block, Compiled, Equations};
 use integrate::{DenseOutput, Solution, Status, StopCause};
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
+use symbolic::Expr;
 
 /// How a motion ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,20 +74,24 @@ impl Ending {
     }
 }
 
-/// A guard in the user's own names: written out where that is short, else by the states that it depends on.
 fn guard_words(equations: &Equations, index: usize) -> String {
+    in_own_names(equations, equations.guards[index])
+}
+
+/// A quantity in the user's own names: written out where that is short, else by the states behind it.
+pub(crate) fn in_own_names(equations: &Equations, mut quantity: Expr) -> String {
     /// Nodes of an expression that can be read.
     const SHORT: usize = 30;
-    let (g, mut guard) = (&equations.graph, equations.guards[index]);
+    let g = &equations.graph;
     for &(symbol, definition) in equations.definitions.iter().rev() {
-        if g.size(&[guard]) <= SHORT && g.depends_on(guard, symbol) {
-            guard = g.substitute(guard, &HashMap::from([(symbol, definition)]));
+        if g.size(&[quantity]) <= SHORT && g.depends_on(quantity, symbol) {
+            quantity = g.substitute(quantity, &HashMap::from([(symbol, definition)]));
         }
     }
-    if g.size(&[guard]) <= SHORT {
-        return g.plain(guard);
+    if g.size(&[quantity]) <= SHORT {
+        return g.plain(quantity);
     }
-    let behind = equations.symbols_behind([guard]);
+    let behind = equations.symbols_behind([quantity]);
     let states = equations.states.iter().filter(|y| behind.contains(&y.symbol));
     let names: Vec<String> = states.map(|y| g.name(y.symbol)).collect();
     format!("a quantity of {}", names.join(", "))

@@ -132,7 +132,10 @@ impl Ensemble {
         let start = Start { t: scene.start.t, y: prepared.start.clone() };
         integrate::check_start(&start, setting(scene).end, &settings.options(settings.tolerance))?;
         let point = [&[start.t], &start.y[..], &prepared.constants].concat();
-        let lanes = LaneEquations::new(&prepared.equations, &prepared.form, &point)?;
+        let lanes = match system.breakpoints.is_empty() {
+            true => LaneEquations::new(&prepared.equations, &prepared.form, &point)?,
+            false => Err("the system has breakpoints, at which a motion begins anew".into()),
+        };
         let symbols: Vec<_> = varied.iter().map(|&place| system.parameters[place].symbol).collect();
         let metric = Metric::varying(&system, &symbols)?;
         let words = Arc::new(Mutex::new(prepared.equations.clone()));

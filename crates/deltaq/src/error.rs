@@ -121,6 +121,28 @@ pub enum SolveError {
         /// Largest number of steps.
         limit: usize,
     },
+    /// No step of those of equal length ends at a breakpoint.
+    #[error("no step ends at the breakpoint {t}: equal steps of {step} do not lead there")]
+    Breakpoint {
+        /// The breakpoint.
+        t: f64,
+        /// The length of the steps.
+        step: f64,
+    },
+    /// Equal steps pass over what a function does within one of them.
+    #[error(
+        "at t = {t} a step of {step:.3e} passes over what {function} does; steps of {enough:.3e} would do there, or a method that chooses its own"
+    )]
+    PassedOver {
+        /// Begin of the step.
+        t: f64,
+        /// Its length.
+        step: f64,
+        /// The function, in the scene's names.
+        function: String,
+        /// Largest halved step that sees it there.
+        enough: f64,
+    },
     /// A motion cannot be a member of an ensemble.
     #[error("not a member of this ensemble: {reason}")]
     Member {

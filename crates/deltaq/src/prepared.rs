@@ -25,6 +25,8 @@ pub struct Prepared {
     /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty if not derived.
     pub guess: Vec<f64>,
     pub(crate) values: StartValues,
+    /// [`mechanics::System::breakpoints`].
+    breakpoints: Vec<f64>,
 }
 
 impl Prepared {
@@ -48,7 +50,9 @@ impl Prepared {
         let form = if settings.plain { Plan::plain(&equations) } else { Plan::choose(&equations, Some(&point))? };
         let compiled = Compiled::with_plan(&equations, &form)?;
         let (start, guess) = (Vec::new(), Vec::new());
-        let mut prepared = Prepared { equations, compiled, form, constants: Vec::new(), t, start, guess, values };
+        let breakpoints = setting.system.breakpoints.clone();
+        let mut prepared =
+            Prepared { equations, compiled, form, constants: Vec::new(), t, start, guess, values, breakpoints };
         prepared.set_constants(constants);
         prepared.complete(settings.method)?;
         Ok(prepared)
@@ -97,7 +101,9 @@ impl Prepared {
 
     fn integrate_from(&mut self, y: Vec<f64>, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
         self.set_compiled();
-        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, options)
+        let mut options = options.clone();
+        options.breakpoints.extend(&self.breakpoints);
+        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, &options)
     }
 
     /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last

@@ -34,6 +34,9 @@ pub struct Settings {
     pub projection: Projection,
     /// Limit on the steps of one run.
     pub max_steps: usize,
+    /// No step of the first run is longer, none of the second than half of it: equal steps would hide their
+    /// error. > 0, infinite without a limit. Steps of a given length do not heed it.
+    pub max_step: f64,
     /// Limit on the seconds of one run, wall clock; for a search of constants and for the members of an
     /// ensemble on all runs together. None by default: results then do not depend on the machine.
     pub time_limit: Option<f64>,
@@ -47,8 +50,8 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (Method::Dop853, Projection::EveryStep);
-        let (max_steps, time_limit, interrupt) = (1_000_000, None, None);
-        Settings { tolerance: 1e-11, method, projection, max_steps, time_limit, plain: false, interrupt }
+        let (max_steps, max_step, time_limit, interrupt) = (1_000_000, f64::INFINITY, None, None);
+        Settings { tolerance: 1e-11, method, projection, max_steps, max_step, time_limit, plain: false, interrupt }
     }
 }
 
@@ -63,6 +66,7 @@ impl Settings {
             method: self.method,
             projection: self.projection,
             max_steps: self.max_steps,
+            max_step: if tolerance < self.tolerance { 0.5 * self.max_step } else { self.max_step },
             interrupt,
             ..Options::with_tolerance(tolerance)
         }

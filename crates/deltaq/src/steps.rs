@@ -60,7 +60,9 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// Free constants that are natural at a horizon are found by the time loop, as they say.
 ///
 /// # Errors
-/// [`SolveError::Step`], those of [`discrete_of`] and of [`crate::solve`].
+/// [`SolveError::Step`], [`SolveError::Breakpoint`]; [`SolveError::PassedOver`] where a gauge
+/// ([`Compiled::gauges`](equations::Compiled)) grows too much within a step of either run; those of
+/// [`discrete_of`] and of [`crate::solve`].
 ///
 /// ```
 /// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
@@ -83,6 +85,12 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
         return Err(SolveError::Step { step: steps.step, length: scene.duration, limit: STEP_LIMIT });
     }
     let count = count as usize;
+    for &t in &scene.system.breakpoints {
+        let steps = (t - scene.start.t) / scene.duration * count as f64;
+        if (0.0..=count as f64).contains(&steps) && (steps - steps.round()).abs() > round_off * count as f64 {
+            return Err(SolveError::Breakpoint { t, step: scene.duration / count as f64 });
+        }
+    }
     let clock = Instant::now();
     let equations = derive(&scene.system, choice)?;
     let derive = clock.elapsed().as_secs_f64();
@@ -110,10 +118,13 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
         (None, None) => Ending::Completed,
     };
     let work = Work { steps: kept.times().len() - 1, ..Work::default() };
-    let runs = [kept, looser].map(|run| {
+    let mut runs = [kept, looser].map(|run| {
         let values = prepared.values.clone();
-        Trajectory::Discrete(Box::new(DiscreteRun::new(run, values, &prepared.equations, &scene.system)))
+        DiscreteRun::new(run, values, &prepared.equations, &scene.system)
     });
+    let step = scene.duration / count as f64;
+    runs.iter_mut().rev().try_for_each(|run| run.look(&mut prepared, step))?;
+    let runs = runs.map(|run| Trajectory::Discrete(Box::new(run)));
     let seconds = Seconds { derive, compile, integrate };
     let mut motion = Motion::of(prepared, ending, runs, seconds);
     motion.work = work;

@@ -101,8 +101,9 @@ impl Trajectory {
     }
 
     /// The motion at `t`: at a node what stands there, else one step of the method from the node before, so
-    /// of the same order. Just behind a node the step starts one node earlier, just behind the start it goes
-    /// back from the next: reactions over a very short step are round-off. Outside, from the nearest node.
+    /// of the same order. Just behind a node the step starts one node earlier: reactions over a very short
+    /// step are round-off. Behind the start it goes back from the next node, whose error it has a part of:
+    /// motions in steps of different lengths differ there, too. Outside, from the nearest node.
     ///
     /// # Errors
     /// Those of a step.
@@ -117,9 +118,9 @@ impl Trajectory {
             return self.discrete.sample(node);
         }
         let from = match near(k, SHORT * self.h.abs()) {
+            _ if k == 0 => 1.min(last),
+            true => k - 1,
             false => k,
-            true if k > 0 => k - 1,
-            true => 1.min(last),
         };
         let mut node = self.node(from);
         self.discrete.step.forget();

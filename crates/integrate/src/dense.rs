@@ -73,6 +73,14 @@ impl DenseOutput {
         self.end_state.copy_from_slice(y);
     }
 
+    /// Goes on with what begins where this ends, of the same method.
+    pub(crate) fn append(&mut self, mut next: DenseOutput) {
+        self.begins.append(&mut next.begins);
+        self.widths.append(&mut next.widths);
+        self.coefficients.append(&mut next.coefficients);
+        (self.end, self.end_state) = (next.end, next.end_state);
+    }
+
     pub(crate) fn basis(&self) -> Basis {
         self.basis
     }

@@ -210,6 +210,13 @@ where
             return Attempt::GaveUp(StopCause::StepTooSmall { step: self.kept_step.abs(), limit });
         }
         *self.solver.config_mut().as_base_mut().minimum_timestep = limit;
+        let (end, longest) = (self.call.end, self.call.options.max_step);
+        let stop = if (end - self.t).abs() > longest { self.t + longest.copysign(end - self.t) } else { end };
+        if longest.is_finite()
+            && let Err(error) = self.solver.set_stop_time(stop)
+        {
+            return Attempt::GaveUp(solver_cause(&error));
+        }
         let rejected = self.rejected_so_far();
         let reason = match self.solver.step() {
             Ok(reason) => reason,
@@ -235,7 +242,7 @@ where
         self.candidate_raw.copy_from_slice(state.y.inner().as_slice());
         self.candidate.copy_from_slice(&self.candidate_raw);
         let at_end = reason == OdeSolverStopReason::TstopReached;
-        self.candidate_t = if at_end { self.call.end } else { state.t };
+        self.candidate_t = if at_end { stop } else { state.t };
         Attempt::Candidate { t: self.candidate_t, rejected: self.rejected_so_far() - rejected }
     }
 

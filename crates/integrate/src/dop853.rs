@@ -171,7 +171,7 @@ impl Stepper for Dop853<'_, '_> {
         if self.step == 0.0 {
             self.choose_first_step();
         }
-        let (h, to) = match next_step(self.t, self.end, self.step, 1.01) {
+        let (h, to) = match next_step((self.t, self.end), self.step, 1.01, self.system.longest) {
             Ok(step) => step,
             Err(cause) => return Attempt::GaveUp(cause),
         };

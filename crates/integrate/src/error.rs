@@ -93,6 +93,22 @@ pub enum CallError {
         /// The feature that builds it in.
         feature: &'static str,
     },
+    /// The longest step is not above 0.
+    #[error("the longest step is {found}, it must be above {limit}")]
+    MaxStep {
+        /// [`crate::Options::max_step`].
+        found: f64,
+        /// 0.
+        limit: f64,
+    },
+    /// A time at which a step is to end is NaN or infinite.
+    #[error("breakpoint {number} is {found}, it must be finite")]
+    Breakpoint {
+        /// Which one, counted from 1.
+        number: usize,
+        /// What was given.
+        found: f64,
+    },
     /// No step is allowed.
     #[error("at most {found} steps are allowed, at least {limit} is needed")]
     MaxSteps {

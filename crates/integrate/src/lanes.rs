@@ -72,7 +72,8 @@ struct Lanes<'a, P> {
 /// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series to the
 /// tolerances of `options`. `done` gets each, with its states at the `times` passed or why it was left.
 ///
-/// `options` must suit [`crate::integrate`]; their sizes and what they say of dense output do not count.
+/// `options` must suit [`crate::integrate`]; their sizes, breakpoints and what they say of dense output do
+/// not count.
 pub fn integrate_lanes<P: LaneProblem>(
     problem: &mut P,
     next: &mut dyn FnMut() -> Option<(usize, LaneStart)>,
@@ -317,7 +318,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
     /// The next step of a lane.
     fn choose(&mut self, lane: usize, done: Done) {
         let Some(rider) = &mut self.riders[lane] else { return };
-        let (t, step) = (self.t[lane], self.step[lane]);
+        let (t, step) = (self.t[lane], self.step[lane].min(self.options.max_step));
         let remaining = rider.end - t;
         let last = step >= remaining.abs();
         let creeps = rider.pace.look(t, &rider.run.work, self.options.max_steps).is_some();

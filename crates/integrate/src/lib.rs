@@ -98,6 +98,7 @@ pub use options::{Dense, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use root::find_root;
 pub use status::{ProjectionReport, Solution, Status, StopCause, Work};
+pub use steep::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
 
 use stepper::shortest_step;
 use system::System;
@@ -114,7 +115,36 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
     if options.method == Method::Taylor && !problem.has_taylor() {
         return Err(CallError::NoTaylor);
     }
-    let system = System::new(problem);
+    let mut all: Option<Solution> = None;
+    for stop in options.stops(start.t, end) {
+        let begin = all.as_ref().map_or(start.clone(), Solution::last);
+        let mut options = options.clone();
+        let taken = all.as_ref().map_or(0, |all| all.work.steps + all.work.rejected);
+        options.max_steps = options.max_steps.saturating_sub(taken);
+        let part = between_breakpoints(problem, &begin, stop, &options)?;
+        let is_complete = part.status == Status::Completed;
+        match &mut all {
+            None => all = Some(part),
+            Some(all) => all.append(part),
+        }
+        if !is_complete {
+            break;
+        }
+    }
+    let Some(mut all) = all else { unreachable!("a run has an end") };
+    if let Status::Stopped { cause: StopCause::TooManySteps { limit }, .. } = &mut all.status {
+        *limit = options.max_steps;
+    }
+    Ok(all)
+}
+
+fn between_breakpoints(
+    problem: &mut dyn Problem,
+    start: &Start,
+    end: f64,
+    options: &Options,
+) -> Result<Solution, CallError> {
+    let system = System::new(problem, options.max_step);
     Ok(match options.method {
         Method::Taylor => {
             time_loop::drive(&system, taylor::Taylor::new(&system, start, end, options), start, end, options)
@@ -172,6 +202,12 @@ fn check_call(dimension: usize, start: &Start, end: f64, options: &Options) -> R
     let limit = shortest_step(start.t.abs().max(end.abs()));
     if (end - start.t).abs() <= limit {
         return Err(CallError::EmptyInterval { start: start.t, end, limit });
+    }
+    if options.max_step.is_nan() || options.max_step <= 0.0 {
+        return Err(CallError::MaxStep { found: options.max_step, limit: 0.0 });
+    }
+    if let Some(i) = options.breakpoints.iter().position(|t| !t.is_finite()) {
+        return Err(CallError::Breakpoint { number: i + 1, found: options.breakpoints[i] });
     }
     if options.max_steps == 0 {
         return Err(CallError::MaxSteps { found: options.max_steps, limit: 1 });

@@ -1,6 +1,7 @@
 //! How to integrate.
 
 use crate::interrupt::Interrupt;
+use crate::stepper::shortest_step;
 
 /// The time-stepping method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -110,6 +111,10 @@ pub struct Options {
     pub projection: Projection,
     /// Limit on the number of attempted (accepted and rejected) steps; > 0.
     pub max_steps: usize,
+    /// No step is longer; > 0, infinite without a limit.
+    pub max_step: f64,
+    /// Times at which a step ends, in any order, where the method begins anew: those within the run.
+    pub breakpoints: Vec<f64>,
     /// What is kept between the ends.
     pub dense: Dense,
     /// The flag that ends the run, with its cause ([`Interrupt::cause`]); looked at before each attempt.
@@ -121,6 +126,22 @@ impl Options {
     pub(crate) fn absolute_tolerances(&self, n: usize) -> Vec<f64> {
         let size = |i: usize| self.sizes.get(i).copied().unwrap_or(1.0);
         (0..n).map(|i| self.absolute_tolerance * size(i)).collect()
+    }
+
+    /// The breakpoints on the way from `start` to `end`, and `end`.
+    pub(crate) fn stops(&self, start: f64, end: f64) -> Vec<f64> {
+        let direction = (end - start).signum();
+        let mut stops = self.breakpoints.clone();
+        stops.sort_by(|a, b| (direction * a).total_cmp(&(direction * b)));
+        let mut last = start;
+        let room = |a: f64, b: f64| (b - a) * direction > shortest_step(start.abs().max(end.abs()));
+        stops.retain(|&t| {
+            let keep = room(last, t) && room(t, end);
+            last = if keep { t } else { last };
+            keep
+        });
+        stops.push(end);
+        stops
     }
 
     /// [`Method::Dop853`], both tolerances equal, projection after each step, dense output, ≤ 100 000 steps.
@@ -138,6 +159,8 @@ impl Options {
             sizes: Vec::new(),
             projection: Projection::EveryStep,
             max_steps: 100_000,
+            max_step: f64::INFINITY,
+            breakpoints: Vec::new(),
             dense: Dense::Everywhere,
             interrupt: None,
         }

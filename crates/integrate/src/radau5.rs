@@ -184,7 +184,7 @@ impl Stepper for Radau5<'_, '_> {
     }
 
     fn attempt(&mut self) -> Attempt {
-        let (h, to) = match next_step(self.t, self.end, self.step, 1.0001) {
+        let (h, to) = match next_step((self.t, self.end), self.step, 1.0001, self.system.longest) {
             Ok(step) => step,
             Err(cause) => return Attempt::GaveUp(cause),
         };

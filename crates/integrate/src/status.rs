@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::dense::DenseOutput;
+use crate::problem::Start;
 
 /// What an integration returns.
 #[derive(Clone, Debug)]
@@ -15,6 +16,28 @@ pub struct Solution {
     pub work: Work,
     /// How far the projections moved the states.
     pub projection: ProjectionReport,
+}
+
+impl Solution {
+    /// Where it ended.
+    pub(crate) fn last(&self) -> Start {
+        Start { t: self.dense.end(), y: self.dense.end_state().to_vec() }
+    }
+
+    /// Goes on with what begins where this ended.
+    pub(crate) fn append(&mut self, next: Solution) {
+        self.status = next.status;
+        self.dense.append(next.dense);
+        let (work, more) = (&mut self.work, next.work);
+        work.steps += more.steps;
+        work.rejected += more.rejected;
+        work.evaluations += more.evaluations;
+        work.jacobians += more.jacobians;
+        work.orders += more.orders;
+        self.projection.projections += next.projection.projections;
+        self.projection.largest = self.projection.largest.max(next.projection.largest);
+        self.projection.total += next.projection.total;
+    }
 }
 
 /// How an integration ended.

@@ -48,11 +48,11 @@ pub(crate) enum Attempt {
     GaveUp(StopCause),
 }
 
-/// Length and end of the next step of a method that wants to go `step` (of either sign) from `t`; a last step
-/// up to `stretch` times as long is better than a tiny one after it.
-pub(crate) fn next_step(t: f64, end: f64, step: f64, stretch: f64) -> Result<(f64, f64), StopCause> {
-    let remaining = end - t;
-    if stretch * step.abs() >= remaining.abs() {
+/// Length and end of the next step of a method that wants to go `step` (of either sign) from `t`, and no
+/// farther than `longest`; a last step up to `stretch` times as long is better than a tiny one after it.
+pub(crate) fn next_step((t, end): (f64, f64), step: f64, stretch: f64, longest: f64) -> Result<(f64, f64), StopCause> {
+    let (remaining, step) = (end - t, step.clamp(-longest, longest));
+    if (stretch * step.abs()).min(longest) >= remaining.abs() {
         return Ok((remaining, end));
     }
     let limit = shortest_step(t);

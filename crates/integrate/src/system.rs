@@ -53,6 +53,8 @@ pub(crate) fn check_finite(values: &[f64]) -> Result<(), Failure> {
 
 /// Shared by the time loop and the stepper; the interior mutability serves diffsol, whose closures are `Fn`.
 pub(crate) struct System<'p> {
+    /// No step is longer.
+    pub(crate) longest: f64,
     dimension: usize,
     events: usize,
     inner: RefCell<Inner<'p>>,
@@ -74,8 +76,9 @@ struct Inner<'p> {
 }
 
 impl<'p> System<'p> {
-    pub(crate) fn new(problem: &'p mut dyn Problem) -> Self {
+    pub(crate) fn new(problem: &'p mut dyn Problem, longest: f64) -> Self {
         Self {
+            longest,
             dimension: problem.dimension(),
             events: problem.events(),
             inner: RefCell::new(Inner {
@@ -203,7 +206,11 @@ impl<'p> System<'p> {
     }
 
     pub(crate) fn gauged(&self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), Failure> {
-        Ok(self.inner.borrow_mut().problem.gauged(t, y, arguments)?)
+        self.inner.borrow_mut().problem.gauged(t, y, arguments)?;
+        match arguments.iter().any(|x| x.is_nan()) {
+            true => Err(Failure::Evaluation { reason: format!("the argument of a function is NaN at t = {t}") }),
+            false => Ok(()),
+        }
     }
 
     pub(crate) fn event_values(&self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {

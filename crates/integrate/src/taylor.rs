@@ -222,7 +222,7 @@ impl Stepper for Taylor<'_, '_> {
 
     fn attempt(&mut self) -> Attempt {
         let step = self.step * (self.end - self.t).signum();
-        (self.taken, self.taken_to) = match next_step(self.t, self.end, step, 1.0) {
+        (self.taken, self.taken_to) = match next_step((self.t, self.end), step, 1.0, self.system.longest) {
             Ok(step) => step,
             Err(cause) => return Attempt::GaveUp(cause),
         };

@@ -137,6 +137,9 @@ impl Record<'_, '_> {
             let coefficients = self.dense.last_room();
             let segment = Segment { basis: self.dense.basis(), coefficients, begin, width: t - begin, end: t };
             steep.look(self.system, &segment)?;
+            if !watching {
+                return Ok(None);
+            }
             let found = watch.look(self.system, &segment)?;
             Ok(found.map(|found| (found.index, found.theta, segment.time(found.theta))))
         });

@@ -228,8 +228,41 @@ fn every_bad_call() {
     let taylor = Options { method: Method::Taylor, ..good.clone() };
     let mut without = Case { taylor: false, ..oscillator() };
     assert_eq!(integrate(&mut without, &start, 1.0, &taylor).err(), Some(CallError::NoTaylor));
+    let longest = |max_step: f64| call(&start, 1.0, &Options { max_step, ..good.clone() });
+    assert_eq!(longest(0.0), Some(CallError::MaxStep { found: 0.0, limit: 0.0 }));
+    assert!(matches!(longest(f64::NAN), Some(CallError::MaxStep { .. })));
+    let breakpoints = vec![0.5, f64::INFINITY];
+    let found = call(&start, 1.0, &Options { breakpoints, ..good.clone() });
+    assert_eq!(found, Some(CallError::Breakpoint { number: 2, found: f64::INFINITY }));
     let options = Options { max_steps: 0, ..good };
     assert_eq!(call(&start, 1.0, &options), Some(CallError::MaxSteps { found: 0, limit: 1 }));
+}
+
+#[test]
+fn steps_are_no_longer_than_allowed_and_end_where_they_are_to() {
+    for method in Method::ALL {
+        for direction in [1.0, -1.0] {
+            let breakpoints = [0.7, 5.0, 0.3, 0.3, -1.0].map(|t| direction * t).to_vec();
+            let options = Options { max_step: 0.01, breakpoints, ..options(method) };
+            let solution = attempt(&mut oscillator(), 0.0, &[1.0, 0.0], direction * 2.0, &options);
+            assert_eq!(solution.status, Status::Completed, "{method:?}");
+            let times = solution.dense.step_times();
+            assert_eq!(solution.work.steps + 1, times.len(), "{method:?}");
+            assert!([0.3, 0.7, 2.0].iter().all(|t| times.contains(&(direction * t))), "{method:?}: {times:?}");
+            let longest = times.windows(2).map(|t| (t[1] - t[0]) * direction).fold(0.0, f64::max);
+            assert!(longest < 0.01 + 1e-12, "{method:?}: {longest}");
+            assert!(method.is_implicit() || longest > 0.0099, "{method:?}: {longest}");
+            for t in [0.2, 0.3, 0.5, 0.9, 2.0] {
+                let mut y = [0.0; 2];
+                solution.dense.evaluate(direction * t, &mut y);
+                assert!((y[0] - t.cos()).abs() < 1e-4, "{method:?} at {t}: {y:?}");
+            }
+            let few = Options { max_steps: 7, ..options };
+            let solution = attempt(&mut oscillator(), 0.0, &[1.0, 0.0], direction * 2.0, &few);
+            let cause = StopCause::TooManySteps { limit: 7 };
+            assert_eq!(solution.status, Status::Stopped { t: solution.dense.end(), cause }, "{method:?}");
+        }
+    }
 }
 
 #[test]

@@ -51,6 +51,9 @@ pub struct System {
     pub constraints: Vec<Expr>,
     /// `Q(q, v, t)`, one a coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
+    /// Times at which a step is to end, where something is switched, in any order; those outside of a run do
+    /// not count.
+    pub breakpoints: Vec<f64>,
 }
 
 /// A point of the motion: time, positions and velocities.
@@ -86,6 +89,7 @@ impl System {
             lagrangian: graph.zero(),
             constraints: Vec::new(),
             forces: vec![graph.zero(); coordinates.len()],
+            breakpoints: Vec::new(),
             coordinates,
             graph,
         }

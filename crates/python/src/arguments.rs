@@ -17,10 +17,15 @@ pub(crate) fn settings(
     tolerance: f64,
     project: bool,
     max_steps: usize,
+    max_step: Option<f64>,
     time_limit: Option<f64>,
 ) -> PyResult<(Settings, Interrupt)> {
     if let Some(seconds) = time_limit.filter(|seconds| seconds.is_nan() || *seconds <= 0.0) {
         return Err(PyValueError::new_err(format!("time_limit is {seconds}; it must be above 0")));
+    }
+    let max_step = max_step.unwrap_or(f64::INFINITY);
+    if max_step.is_nan() || max_step <= 0.0 {
+        return Err(PyValueError::new_err(format!("max_step is {max_step}; it must be above 0")));
     }
     let Some(method) = Method::ALL.into_iter().find(|m| m.name() == method) else {
         return Err(unknown("method", method, Method::ALL.into_iter().map(Method::name)));
@@ -31,6 +36,7 @@ pub(crate) fn settings(
         method,
         projection: if project { Projection::EveryStep } else { Projection::Off },
         max_steps,
+        max_step,
         time_limit,
         plain: false,
         interrupt: Some(interrupt.clone()),

@@ -190,7 +190,7 @@ impl Equations {
         let start = match rule {
             None => start,
             Some(rule) => {
-                let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None)?;
+                let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None, None)?;
                 let scene = self.scene();
                 let work = move || prepare(setting(&scene), equations, &rule, &settings);
                 background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
@@ -267,12 +267,12 @@ impl Equations {
     /// order: half of what `System.solve` does, for those who know the error from elsewhere.
     ///
     /// method: one of METHODS; its first run compiles what it needs. tolerance: relative and absolute.
-    /// project, max_steps, time_limit: as in `System.solve`. For the start and the last time alone nothing
-    /// else is kept.
+    /// project, max_steps, max_step, time_limit: as in `System.solve`. For the start and the last time alone
+    /// nothing else is kept.
     ///
     /// Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (times, *, method="dop853", tolerance=1e-11, project=true, max_steps=1_000_000, time_limit=None))]
+    #[pyo3(signature = (times, *, method="dop853", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn integrate(
         &self,
         py: Python<'_>,
@@ -281,9 +281,10 @@ impl Equations {
         tolerance: f64,
         project: bool,
         max_steps: usize,
+        max_step: Option<f64>,
         time_limit: Option<f64>,
     ) -> PyResult<Trajectory> {
-        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, time_limit)?;
+        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let (mut times, end) = ensemble::times(Some(times), &self.scene())?;
         let mut ready = self.ready();
         let is_end = |&t: &f64| t == ready.t || t == end;
@@ -291,6 +292,7 @@ impl Equations {
             method: settings.method,
             projection: settings.projection,
             max_steps,
+            max_step: settings.max_step,
             dense: if times.iter().all(is_end) { Dense::EndOnly } else { Dense::Everywhere },
             interrupt: Some(time_limit.map_or(interrupt.clone(), |seconds| interrupt.within(seconds))),
             ..Options::with_tolerance(tolerance)

@@ -51,6 +51,8 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::Discrete(_)
         | Error::NoPrinciple { .. }
         | Error::Step { .. }
+        | Error::Breakpoint { .. }
+        | Error::PassedOver { .. }
         | Error::Member { .. } => SolveError::new_err(text),
     }
 }

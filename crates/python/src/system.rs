@@ -251,7 +251,7 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Equations> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None)?;
+        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None, None)?;
         let scene = self.scene().clone();
         let is_given = given.is_some();
         let mut choice = arguments::choice(&scene, formulation, removal, given)?;
@@ -277,13 +277,13 @@ impl System {
     /// removal or of the system.
     /// method: one of METHODS. tolerance: of the looser run; the one that is kept has a hundredth of it.
     /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
-    /// steps of a run and on its seconds, after which it stops.
+    /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
     ///
     /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, method="dop853", tolerance=1e-11,
-        project=true, max_steps=1_000_000, time_limit=None
+        project=true, max_steps=1_000_000, max_step=None, time_limit=None
     ))]
     fn solve(
         &self,
@@ -297,10 +297,11 @@ impl System {
         tolerance: f64,
         project: bool,
         max_steps: usize,
+        max_step: Option<f64>,
         time_limit: Option<f64>,
     ) -> PyResult<Motion> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, time_limit)?;
+        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let mut scene = self.scene().clone();
         let choice = arguments::choice(&scene, formulation, removal, given)?;
         let times = times.map(|times| finite("times", times.as_array().iter().copied().collect())).transpose()?;
@@ -332,7 +333,7 @@ impl System {
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
-        max_steps=1_000_000, time_limit=None, threads=0
+        max_steps=1_000_000, max_step=None, time_limit=None, threads=0
     ))]
     fn ensemble(
         &self,
@@ -346,11 +347,12 @@ impl System {
         tolerance: f64,
         project: bool,
         max_steps: usize,
+        max_step: Option<f64>,
         time_limit: Option<f64>,
         threads: usize,
     ) -> PyResult<Ensemble> {
         let constants = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, time_limit)?;
+        let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
         let (scene, given) = (self.scene().clone(), constants.is_some());
         let choice = arguments::choice(&scene, formulation, removal, constants)?;
         let (times, end) = ensemble::times(times, &scene)?;
@@ -362,18 +364,19 @@ impl System {
         Ensemble::new(py, integrated.map_err(|refused| ensemble::refused(py, refused))?)
     }
 
-    /// Compares the motions of all formulations pair by pair; tolerance, max_steps and time_limit as in
-    /// `solve`.
-    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, time_limit=None))]
+    /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
+    /// as in `solve`.
+    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn compare(
         &self,
         py: Python<'_>,
         tolerance: f64,
         max_steps: usize,
+        max_step: Option<f64>,
         time_limit: Option<f64>,
     ) -> PyResult<Comparison> {
         check_tolerance(tolerance)?;
-        let (settings, interrupt) = arguments::settings("dop853", tolerance, true, max_steps, time_limit)?;
+        let (settings, interrupt) = arguments::settings("dop853", tolerance, true, max_steps, max_step, time_limit)?;
         let scene = self.scene().clone();
         let compared = background::run(py, &interrupt, move || compare(scene, &settings))?;
         Comparison::new(py, compared.map_err(errors::solve)?)

@@ -109,6 +109,11 @@ def test_limits_of_a_run(system):
     members = system.ensemble(vary={"phi": [0, 1]}, time_limit=1e-9)
     assert members.status == ["stopped"] * 2 and all("time limit" in cause for cause in members.cause)
     assert system.solve(time_limit=600).status == "completed"
+    assert 1000 <= system.equations().integrate([0, 10], max_step=0.01).work["steps"] < 1100
+    assert system.ensemble(vary={"phi": [0, 1]}, max_step=0.01).status == ["completed"] * 2
+    assert len(system.compare(max_step=0.1).pairs) > 0
+    with pytest.raises(ValueError, match="max_step"):
+        system.solve(max_step=0)
     for wrong in (0, -1, np.nan):
         with pytest.raises(ValueError, match="time_limit"):
             system.solve(time_limit=wrong)

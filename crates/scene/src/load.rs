@@ -147,9 +147,13 @@ fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Resu
     ])?;
     let title = root.require("title", "a string")?.text("a string")?.text;
     let run = root.require("run", "a table with the duration")?.section()?;
-    run.check_keys(&["duration"])?;
+    run.check_keys(&["duration", "breakpoints"])?;
 
-    let context = system::build(source, root, Overrides::new(source, overrides)?)?;
+    let mut context = system::build(source, root, Overrides::new(source, overrides)?)?;
+    if let Some(breakpoints) = run.get("breakpoints") {
+        let times = breakpoints.elements("a list of times")?;
+        context.system.breakpoints = times.iter().map(|t| t.number()).collect::<Result<_, _>>()?;
+    }
     let removals = removal::read_all(&context)?;
     let (state, completion) = start::complete(&context, &removals)?;
     let multipliers = constants::multipliers(&context)?;

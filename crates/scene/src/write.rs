@@ -49,13 +49,16 @@ fn written(scene: &Scene) -> String {
     for r in &scene.removals {
         removal(&mut text, system, r);
     }
+    let list = |numbers: &[f64]| format!("[{}]", numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "));
     if !scene.multipliers.is_empty() {
         text.header("vakonomic");
-        let numbers: Vec<String> = scene.multipliers.iter().map(|&x| number(x)).collect();
-        text.line("multipliers", &format!("[{}]", numbers.join(", ")));
+        text.line("multipliers", &list(&scene.multipliers));
     }
     text.header("run");
     text.line("duration", &number(scene.duration));
+    if !system.breakpoints.is_empty() {
+        text.line("breakpoints", &list(&system.breakpoints));
+    }
     text.0
 }
 

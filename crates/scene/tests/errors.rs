@@ -96,7 +96,7 @@ sledge:18:1: unknown key `lagrangain` in [system], did you mean `lagrangian`?; k
 fn misspelt_keys() {
     fault!("title", "tilte", Kind::UnknownKey { suggestion: Some(s), .. } if s == "title", "tilte");
     fault!("[run]", "[rum]", Kind::UnknownKey { suggestion: Some(s), .. } if s == "run", "rum");
-    fault!("duration", "length", Kind::UnknownKey { suggestion: None, known, .. } if known == &["duration"], "length");
+    fault!("duration", "length", Kind::UnknownKey { suggestion: None, known, .. } if known == &["duration", "breakpoints"], "length");
     fault!("x   = { unit", "x   = { units", Kind::UnknownKey { suggestion: Some(s), .. } if s == "unit", "units");
     fault!("project", "projekt", Kind::UnknownKey { suggestion: Some(s), .. } if s == "project", "projekt");
     fault!("rates = ", "rate = ", Kind::UnknownKey { suggestion: Some(s), .. } if s == "rates", "rate");
@@ -190,6 +190,7 @@ fn wrong_types() {
     fault!("[\"y'*cos(phi) - x'*sin(phi)\"]", "[1]", Kind::WrongType { .. }, "1");
     fault!("x   = { unit = \"m\", start = 0 }", "x   = 0", Kind::WrongType { expected: "a table", .. }, "0");
     fault!("duration = 10", "duration = \"long\"", Kind::WrongType { .. }, "\"long\"");
+    fault!("duration = 10", "duration = 10\nbreakpoints = 5", Kind::WrongType { .. }, "5");
     fault!("\"phi'\" = 1.1", "\"phi'\" = true", Kind::WrongType { .. }, "true");
     fault!("[0.0]", "[\"0\"]", Kind::WrongType { .. }, "\"0\"");
     fault!("[0.0]", "[0, 0]", Kind::WrongLength { found: 2, expected: 1, .. }, "[0, 0]");
@@ -215,6 +216,7 @@ fn numbers_out_of_range() {
     fault!("duration = 10", "duration = 0", Kind::OutOfRange { limit: 0.0, .. }, "0");
     fault!("duration = 10", "duration = -1", Kind::OutOfRange { value: -1.0, .. }, "-1");
     fault!("duration = 10", "duration = inf", Kind::NotFinite { .. }, "inf");
+    fault!("duration = 10", "duration = 10\nbreakpoints = [5, nan]", Kind::NotFinite { .. }, "nan");
     fault!("horizon = 10", "horizon = 0", Kind::OutOfRange { limit: 0.0, .. }, "0");
     fault!("time = 0", "time = 10", Kind::OutOfRange { limit: 10.0, .. }, "10");
     let large = Scene::parse("a", &SLEDGE.replace("g = 9.81", "g = 0xffffffffffffffffffff")).unwrap();

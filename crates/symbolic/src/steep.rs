@@ -1,12 +1,15 @@
 //! Functions that may change within little of their arguments, so that steps can pass over it unseen.
 
 use crate::arena::Node;
+use crate::number::Rational;
 use crate::{Expr, Function, Graph, Range, Symbol};
 use std::collections::{BTreeSet, HashMap};
 
 /// A call `F(x)` that is nearly constant but for a part of its arguments.
 #[derive(Clone, Copy, Debug)]
 pub struct Steep {
+    /// What `F` is, such as `tanh`, for people.
+    pub function: &'static str,
     /// `x`.
     pub argument: Expr,
     /// `w(x)`, monotone: where it grows by 1, `F` changes by about its own size; where it is constant, `F`
@@ -26,10 +29,14 @@ enum Kind {
 
 /// Beyond this `tanh` is ±1, below minus twice this `exp` is 0, to the last digit of what they are added to.
 const TAIL: f64 = 20.0;
-/// Under a root less than this counts as zero: a kink is not looked at more closely.
-const FLOOR: f64 = 1e-20;
+/// Under a root less than this counts as zero, of what round-off has a part in: a kink is not looked at more
+/// closely. What is divided by may be less.
+const FLOOR: f64 = 1e-15;
+const LEAST: f64 = 1e-20;
 /// A quantity that changes by no more than this factor, whatever its symbols are, makes nothing steep.
 const MODERATE: f64 = 50.0;
+/// From this exponent on a power of what is bounded is nothing but near its largest value.
+const HIGH: f64 = 20.0;
 
 impl Kind {
     fn gauge(self) -> fn(f64) -> f64 {
@@ -38,16 +45,30 @@ impl Kind {
             Kind::Exp => |x| x.max(-2.0 * TAIL),
             Kind::Arctangent => f64::asinh,
             Kind::Root => |x| x.max(FLOOR).ln(),
-            Kind::Quotient => |x| x.max(FLOOR).ln().min(2.0 * TAIL),
+            Kind::Quotient => |x| x.max(LEAST).ln().min(2.0 * TAIL),
             Kind::Angle => |x| 2.0 * x,
+        }
+    }
+
+    fn function(self) -> &'static str {
+        match self {
+            Kind::Tanh => "tanh",
+            Kind::Exp => "exp",
+            Kind::Arctangent => "atan",
+            Kind::Root => "a root",
+            Kind::Quotient => "1 by",
+            Kind::Angle => "sine or cosine",
         }
     }
 }
 
+type Found = BTreeSet<(Expr, Kind)>;
+
 impl Graph {
-    /// Functions in `es` that can be steep without being singular: `tanh`, `exp`, `atan`, roots and quotients
-    /// of what is never negative; and the angles of sines and cosines in their arguments. `known` are ranges
-    /// of symbols, such as the values of parameters.
+    /// Functions in `es` that can be steep without being singular: `tanh`, `exp`, `atan`, powers of
+    /// constants, high powers of what is bounded, roots and quotients of what is never negative, angles of
+    /// points; and the angles of sines and cosines in their arguments. `known` are ranges of symbols, such as
+    /// the values of parameters.
     ///
     /// ```
     /// use std::collections::HashMap;
@@ -57,28 +78,26 @@ impl Graph {
     /// let steep = g.steep(&[tanh, sin, g.powi(x, -1)], &HashMap::new());
     /// assert_eq!(steep.len(), 1);
     /// assert_eq!(((steep[0].gauge)(-500.0), (steep[0].gauge)(0.5)), (-20.0, 0.5));
+    /// // narrow where the sine is 1 or −1
+    /// assert_eq!(g.steep(&[g.powi(sin, 1000)], &HashMap::new()).len(), 3);
     /// ```
     pub fn steep(&self, es: &[Expr], known: &HashMap<Symbol, Range>) -> Vec<Steep> {
-        let mut found: BTreeSet<(Expr, Kind)> = BTreeSet::new();
-        let mut bases = Vec::new();
-        for e in self.arena.borrow().reachable(es, |_| true) {
-            match self.arena.borrow().node(e) {
-                Node::Call(Function::Tanh, x) => found.extend([(*x, Kind::Tanh)]),
-                Node::Call(Function::Exp, x) => found.extend([(*x, Kind::Exp)]),
-                Node::Call(Function::Atan | Function::Asinh, x) => found.extend([(*x, Kind::Arctangent)]),
-                Node::Product(factors) => {
-                    let steep = factors.iter().filter(|(_, r)| r.is_negative() || r.as_integer().is_none());
-                    bases.extend(steep.map(|(base, r)| (*base, r.is_negative())));
+        let mut found = Found::new();
+        let reached = self.arena.borrow().reachable(es, |_| true);
+        for e in reached {
+            let node = self.arena.borrow().node(e).clone();
+            match node {
+                Node::Call(Function::Tanh, x) => found.extend([(x, Kind::Tanh)]),
+                Node::Call(Function::Exp, x) => found.extend([(x, Kind::Exp)]),
+                Node::Call(Function::Atan | Function::Asinh, x) => found.extend([(x, Kind::Arctangent)]),
+                Node::Atan2(y, x) => found.extend([(self.add(self.powi(x, 2), self.powi(y, 2)), Kind::Root)]),
+                Node::Product(factors) => factors.iter().for_each(|(b, r)| self.steep_power(*b, *r, known, &mut found)),
+                Node::Power(base, exponent) => {
+                    self.steep_power(base, Rational::integer(-1), known, &mut found);
+                    if self.range(base, known).low > 0.0 {
+                        found.insert((self.mul(exponent, self.call(Function::Log, base)), Kind::Exp));
+                    }
                 }
-                Node::Power(base, _) => bases.push((*base, true)),
-                _ => {}
-            }
-        }
-        for (base, is_quotient) in bases {
-            let Range { low, high } = self.range(base, known);
-            match is_quotient {
-                true if low > 0.0 && high > MODERATE * low => found.extend([(base, Kind::Quotient)]),
-                false if low >= 0.0 && high > MODERATE * low => found.extend([(base, Kind::Root)]),
                 _ => {}
             }
         }
@@ -92,7 +111,29 @@ impl Graph {
         found
             .into_iter()
             .filter(|(x, _)| varies(x))
-            .map(|(argument, kind)| Steep { argument, gauge: kind.gauge() })
+            .map(|(argument, kind)| Steep { function: kind.function(), argument, gauge: kind.gauge() })
             .collect()
+    }
+
+    fn steep_power(&self, base: Expr, exponent: Rational, known: &HashMap<Symbol, Range>, found: &mut Found) {
+        let Range { low, high } = self.range(base, known);
+        let (power, largest) = (exponent.to_f64(), high.max(-low));
+        if power >= HIGH && largest > 0.0 && largest.is_finite() {
+            // (b/B)^n is less than exp(n (b/B − 1))
+            for sign in [1.0, -1.0].into_iter().filter(|sign| *sign > 0.0 || low < 0.0) {
+                let near = self.add(self.mul(self.number(sign / largest), base), self.number(-1.0));
+                found.insert((self.mul(self.number(power), near), Kind::Exp));
+            }
+        } else if power < 0.0 && low > 0.0 && high > MODERATE * low {
+            found.insert((base, Kind::Quotient));
+            // where these are large they hide what is between
+            for e in self.arena.borrow().reachable(&[base], |_| true) {
+                if let Node::Call(Function::Cosh | Function::Sinh, x) = self.arena.borrow().node(e) {
+                    found.insert((*x, Kind::Tanh));
+                }
+            }
+        } else if power > 0.0 && exponent.as_integer().is_none() && low >= 0.0 && high > MODERATE * low {
+            found.insert((base, Kind::Root));
+        }
     }
 }

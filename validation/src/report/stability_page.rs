@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use anyhow::Result;
+use discrete::Composition;
 use integrate::Method;
 use serde_json::{Map, Value, json};
 
 use crate::report::numbers::short;
 use crate::report::{File, Table, fill};
 use crate::stability::{
-    CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
+    Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
 };
 use picture::{Axis, Curve, Picture, Style};
 
@@ -166,9 +167,11 @@ impl StabilityReport {
         if DRAWN.iter().any(|(name, _)| *name == case.name) {
             let _ = writeln!(page, "![Error over {variable}]({})\n", picture_name(case.name));
         }
-        let methods = Method::ALL.iter().map(|method| format!(">{}", method.name()));
+        let count =
+            if matches!(cells[0].method, Answering::Method(_)) { Method::ALL.len() } else { Composition::ALL.len() };
+        let methods = cells[..count].iter().map(|cell| format!(">{}", cell.method.name()));
         let mut table = Table::new([format!(">{variable}"), "formulation".into()].into_iter().chain(methods));
-        for line in cells.chunks(Method::ALL.len()) {
+        for line in cells.chunks(count) {
             let words = line.iter().map(|cell| words(&cell.verdict));
             table.cells([short(line[0].point), line[0].formulation.clone()].into_iter().chain(words));
         }
@@ -188,8 +191,10 @@ impl StabilityReport {
 
     fn picture(&self, name: &str, formulation: &str) -> Result<String> {
         let curve = |(i, method): (usize, &Method)| {
-            let cells =
-                self.cells.iter().filter(|c| c.case == name && c.formulation == formulation && c.method == *method);
+            let cells = self
+                .cells
+                .iter()
+                .filter(|c| c.case == name && c.formulation == formulation && c.method == Answering::Method(*method));
             let points = cells.map(|cell| match cell.verdict {
                 Verdict::Accurate { error, .. } | Verdict::Admitted { error, .. } | Verdict::Wrong { error, .. } => {
                     (cell.point, error)

@@ -83,6 +83,9 @@ struct Sample {
 pub struct Allowance {
     /// Relative errors under this are passed over.
     pub floor: f64,
+    /// So are errors under this part of the whole way, the tolerance asked for: of a motion that hardly
+    /// begins nobody asks for more.
+    pub asked: f64,
     /// So many coordinates, the first ones, are compared.
     pub compared: usize,
 }
@@ -117,10 +120,12 @@ pub fn judge(
             distance: length(q, &start),
         });
     }
-    Ok(verdict(&samples, &motion.ending, motion.doubt.as_ref().map(|doubt| &doubt.because[..]), allowance.floor))
+    Ok(verdict(&samples, &motion.ending, motion.doubt.as_ref().map(|doubt| &doubt.because[..]), allowance))
 }
 
-fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64) -> Verdict {
+fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, allowance: Allowance) -> Verdict {
+    let Allowance { floor, asked, .. } = allowance;
+    let whole = samples.iter().fold(0.0, |whole, sample| worst(whole, sample.distance));
     let first = (samples.len() as f64 * FIRST_PART) as usize;
     let mut scale = samples[..first].iter().fold(0.0, |scale, sample| worst(scale, sample.distance));
     let (mut largest, mut estimate) = (0.0_f64, 0.0_f64);
@@ -130,7 +135,7 @@ fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, floor: f64)
         let claimed = BETTER_THAN_IT_KNOWS * estimate;
         // an estimate as large as the motion itself claims nothing, nor does one that says so
         let bounded = !sample.doubted && (claimed < scale || scale == 0.0);
-        let allowed = claimed.max(floor * scale) + sample.uncertainty;
+        let allowed = claimed.max(floor * scale).max(asked * whole) + sample.uncertainty;
         let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
         let off = sample.error > allowed || sample.error.is_nan() || allowed.is_nan();
         if (bounded && off) || scale.is_nan() || estimate.is_nan() {

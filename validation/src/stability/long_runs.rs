@@ -163,7 +163,12 @@ impl Long {
             Some(reference) => {
                 let reference = reference(self.formulation);
                 let mut known = reference.up_to(motion.start(), motion.end()).map_err(anyhow::Error::msg)?;
-                judge(&mut motion, &mut metric, &mut known, Allowance { floor: FLOOR, compared: usize::MAX })?
+                judge(
+                    &mut motion,
+                    &mut metric,
+                    &mut known,
+                    Allowance { floor: FLOOR, asked: 0.0, compared: usize::MAX },
+                )?
             }
         };
         Ok(run)

@@ -1,10 +1,11 @@
 //! Stiff and extreme cases: is what comes back right, and where it is not, does it say so?
 //!
 //! A [`Question`] is one system at a point of a case in one formulation, with a [`Reference`] that does not
-//! share the failure sought. All of [`integrate::Method::ALL`] answer; [`judge()`] says a word per [`Cell`]:
+//! share the failure sought. All of [`integrate::Method::ALL`] answer, or structure-preserving steps of a
+//! given length and every order; [`judge()`] says a word per [`Cell`]:
 //!
 //! ```text
-//! accurate   complete;  error(t) ≤ max(10 e(t), b s(t)) + u(t) at 201 times t, e ≤ 10⁻³ s at the end
+//! accurate   complete;  error(t) ≤ max(10 e(t), b s(t), a s(t₁)) + u(t) at 201 times t, e ≤ 10⁻³ s at last
 //! admitted   the same but for the last condition: the run says itself that it is not to be trusted
 //! refused    a typed error; or stopped early with time and cause, and what comes before the stop is as above
 //! wrong      anything else
@@ -12,8 +13,9 @@
 //!
 //! `e(t)` is the largest difference of the motion's two runs up to `t`; `s(t)` the largest distance from the
 //! start up to `t`, the first tenth of the run at least; `u(t)` what the reference itself may be off by; `b`
-//! the larger of 10⁻⁷ and ten times the tolerance of the kept run. Lengths are in the kinetic metric. Where
-//! 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked of it.
+//! the larger of 10⁻⁷ and ten times the tolerance of the kept run, `a` the tolerance asked for. Lengths are
+//! in the kinetic metric. Where 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked
+//! of it.
 //!
 //! [`long_runs`] are judged likewise; beyond all references, by energy and constraint, not coordinates.
 
@@ -26,5 +28,5 @@ mod reference;
 pub use cases::CASES;
 pub use judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 pub use long_runs::{LONG, LONG_RUNS, Long, LongRun, MILLION, Stepping, long_runs};
-pub use question::{Case, Cell, MAX_STEPS, Question, Subject, Texts, run, tolerance};
+pub use question::{Answering, Case, Cell, MAX_STEPS, Question, Stepped, Subject, Texts, run, tolerance};
 pub use reference::{Known, Reference};

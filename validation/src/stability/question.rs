@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use deltaq::{Metric, Motion, Setting, Settings, TIGHTER, solve};
+use discrete::Composition;
 use equations::Equations;
 use integrate::Method;
 use mechanics::{ConstantsRule, State, System};
@@ -21,6 +22,39 @@ pub fn tolerance(method: Method) -> f64 {
         Method::Esdirk34 | Method::Radau5 => 1e-7,
         Method::TrBdf2 => 1e-5,
         _ => 1e-10,
+    }
+}
+
+/// Who answers a question.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Answering {
+    /// A method that chooses its steps.
+    Method(Method),
+    /// Structure-preserving steps of equal length.
+    Steps(Composition),
+}
+
+impl Answering {
+    /// Its name, on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Answering::Method(method) => method.name(),
+            Answering::Steps(Composition::Second) => "leapfrog, order 2",
+            Answering::Steps(Composition::Fourth) => "order 4",
+            Answering::Steps(Composition::Sixth) => "order 6",
+            Answering::Steps(Composition::Eighth) => "order 8",
+        }
+    }
+
+    /// Errors that are passed over whatever the estimate says.
+    fn allowance(self, compared: usize) -> Allowance {
+        match self {
+            Answering::Method(method) => {
+                let asked = tolerance(method);
+                Allowance { floor: FLOOR.max(BETTER_THAN_IT_KNOWS * asked * TIGHTER), asked, compared }
+            }
+            Answering::Steps(_) => Allowance { floor: FLOOR, asked: 0.0, compared },
+        }
     }
 }
 
@@ -73,7 +107,12 @@ pub struct Question {
     pub reference: Reference,
     /// So many coordinates, the first ones, are compared.
     pub compared: usize,
+    /// Its motion in equal steps, of these compositions; without this the methods answer.
+    pub stepped: Option<Stepped>,
 }
+
+/// A motion in equal steps.
+pub type Stepped = Box<dyn Fn(Composition) -> Result<Motion, String> + Send + Sync>;
 
 /// An answer.
 #[derive(Clone, Debug, Serialize)]
@@ -84,9 +123,9 @@ pub struct Cell {
     pub point: f64,
     /// Formulation.
     pub formulation: String,
-    /// Method.
+    /// Who answered.
     #[serde(serialize_with = "name")]
-    pub method: Method,
+    pub method: Answering,
     /// What came of it.
     #[serde(flatten)]
     pub verdict: Verdict,
@@ -94,7 +133,7 @@ pub struct Cell {
     pub steps: usize,
 }
 
-fn name<S: Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error> {
+fn name<S: Serializer>(method: &Answering, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(method.name())
 }
 
@@ -118,17 +157,26 @@ impl Question {
         subject: impl Fn() -> Result<Subject, String> + Send + Sync + 'static,
         reference: Reference,
     ) -> Question {
-        Question { point, formulation: formulation.into(), subject: Box::new(subject), reference, compared: usize::MAX }
+        Question {
+            point,
+            formulation: formulation.into(),
+            subject: Box::new(subject),
+            reference,
+            compared: usize::MAX,
+            stepped: None,
+        }
     }
 
-    /// The answer of every method.
+    /// The answers of all methods, or of steps of all orders.
     ///
     /// # Errors
     /// Where the reference does not reach as far as what it is to judge.
     pub fn cells(&self, case: &'static str) -> Result<Vec<Cell>> {
         let subject = (self.subject)();
-        let mut motions: Vec<(Method, Result<Motion, String>)> =
-            Method::ALL.into_iter().map(|method| (method, motion(&subject, method))).collect();
+        let mut motions: Vec<(Answering, Result<Motion, String>)> = match &self.stepped {
+            None => Method::ALL.into_iter().map(|m| (Answering::Method(m), motion(&subject, m))).collect(),
+            Some(step) => Composition::ALL.into_iter().map(|c| (Answering::Steps(c), step(c))).collect(),
+        };
         let reached = motions.iter().filter_map(|(_, motion)| motion.as_ref().ok());
         // one reference for all, as far as the one that comes furthest
         let furthest = reached.map(|motion| (motion.start(), motion.end())).max_by(|a, b| a.1.total_cmp(&b.1));
@@ -156,9 +204,8 @@ impl Question {
         Ok(cells)
     }
 
-    fn judged(&self, motion: &mut Motion, measured: &System, known: &mut Known, method: Method) -> Result<Verdict> {
-        let floor = FLOOR.max(BETTER_THAN_IT_KNOWS * tolerance(method) * TIGHTER);
-        let allowance = Allowance { floor, compared: self.compared };
+    fn judged(&self, motion: &mut Motion, measured: &System, known: &mut Known, by: Answering) -> Result<Verdict> {
+        let allowance = by.allowance(self.compared);
         let refused = |error: deltaq::SolveError| Verdict::Refused { t: None, cause: error.to_string() };
         Ok(judge(motion, &mut Metric::new(measured)?, known, allowance).unwrap_or_else(refused))
     }

@@ -43,13 +43,17 @@ pub struct MotionArguments {
     pub format: Format,
 }
 
-/// When a run is given up; it stops then, and what it reached is told.
+/// Limits on steps, and when a run is given up; it stops then, and what it reached is told.
 #[derive(Args, Debug)]
 pub struct Limits {
     /// Steps that one run may take; a motion is integrated in two runs. If left out, a limit that only runs
     /// reach that get nowhere.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_steps: Option<u32>,
+    /// Longest step, in the scene's unit of time; of the run that is kept, half of it. If left out, the
+    /// tolerance alone decides.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub max_step: Option<f64>,
     /// Seconds of the clock that one run may take; of an ensemble, one run of 4096 members.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub time_limit: Option<f64>,

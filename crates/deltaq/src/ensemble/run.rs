@@ -73,7 +73,8 @@ impl Ensemble {
         origin: Origin,
         threads: usize,
     ) -> Vec<Outcome> {
-        let options = self.settings.options(tolerance);
+        let mut options = self.settings.options(tolerance);
+        options.breakpoints.clone_from(&self.system.breakpoints);
         let task = Task {
             members,
             times,

@@ -101,6 +101,7 @@ class System:
         tolerance: float = 1e-11,
         project: bool = True,
         max_steps: int = 1_000_000,
+        max_step: float | None = None,
         time_limit: float | None = None,
     ) -> Motion: ...
     def ensemble(
@@ -115,11 +116,17 @@ class System:
         tolerance: float = 1e-11,
         project: bool = True,
         max_steps: int = 1_000_000,
+        max_step: float | None = None,
         time_limit: float | None = None,
         threads: int = 0,
     ) -> Ensemble: ...
     def compare(
-        self, *, tolerance: float = 1e-11, max_steps: int = 1_000_000, time_limit: float | None = None
+        self,
+        *,
+        tolerance: float = 1e-11,
+        max_steps: int = 1_000_000,
+        max_step: float | None = None,
+        time_limit: float | None = None,
     ) -> Comparison: ...
 
 @final
@@ -150,6 +157,7 @@ class Equations:
         tolerance: float = 1e-11,
         project: bool = True,
         max_steps: int = 1_000_000,
+        max_step: float | None = None,
         time_limit: float | None = None,
     ) -> Trajectory: ...
     def _repr_latex_(self) -> str: ...

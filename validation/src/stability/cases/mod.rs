@@ -4,19 +4,23 @@ mod blow_up;
 mod cone;
 mod cylinders;
 mod dependent;
+mod disc;
+mod integral;
 mod mass;
+mod pulse;
 mod sledge;
 mod units;
 mod viscous;
+mod wall;
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use deltaq::{Choice, choices, derive_at, formulation};
+use deltaq::{Choice, Settings, Steps, choices, derive_at, formulation, solve_by_steps};
 use mechanics::ConstantsRule;
 use scene::{Scene, SceneError};
 
-use super::question::{Case, Question, Subject, Texts};
+use super::question::{Case, MAX_STEPS, Question, Subject, Texts};
 use super::reference::Reference;
 
 /// All cases, in the order of the page.
@@ -34,7 +38,7 @@ pub static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
 type Asked = (&'static str, fn() -> Vec<Question>);
 
 /// Names and questions.
-const QUESTIONS: [Asked; 16] = [
+const QUESTIONS: [Asked; 31] = [
     ("viscous", || powers(0, 10, 1).flat_map(viscous::questions).collect()),
     ("added-mass", || powers(0, 12, 1).flat_map(mass::added).collect()),
     ("mass-ratio", || powers(-8, 8, 4).flat_map(mass::ratio).collect()),
@@ -52,6 +56,21 @@ const QUESTIONS: [Asked; 16] = [
     ("unit-of-mass", || powers(-12, 12, 4).flat_map(|unit| units::questions(unit, [0, 0, -1, 0])).collect()),
     ("blow-up", || powers(-2, 2, 1).flat_map(|y| blow_up::questions(y, 0.0, &FORMULATIONS)).collect()),
     ("blow-up-across", || powers(-2, 2, 1).flat_map(|y| blow_up::questions(y, 1.0, &["chetaev"])).collect()),
+    ("pulse-at-rest", || half_powers(-6).flat_map(|width| pulse::forces(width, [0.0, 0.0])).collect()),
+    ("pulse-rolling", || half_powers(-6).flat_map(|width| pulse::forces(width, [0.5, 0.2])).collect()),
+    ("potential-at-rest", || half_powers(-6).flat_map(|width| pulse::potentials(width, 0.0)).collect()),
+    ("potential-rolling", || half_powers(-6).flat_map(|width| pulse::potentials(width, 0.3)).collect()),
+    ("wall-tanh", || powers(-8, 0, 1).flat_map(wall::tanh).collect()),
+    ("wall-exp", || powers(-8, 0, 1).flat_map(wall::exponential).collect()),
+    ("wall-at-rest", || powers(-8, 0, 1).flat_map(wall::on_the_wall).collect()),
+    ("step", || powers(-7, 0, 1).flat_map(wall::step).collect()),
+    ("hill", || powers(-6, 0, 1).flat_map(wall::hill).collect()),
+    ("well", || powers(-6, 0, 1).flat_map(wall::well).collect()),
+    ("valley", || powers(-8, 0, 1).flat_map(wall::valley).collect()),
+    ("kink", || powers(-8, 0, 1).flat_map(wall::kinks).collect()),
+    ("equal-steps", || [0.01, 0.1, 1.0, 2.0, 5.0, 10.0, 20.0, 1000.0].into_iter().flat_map(sledge::steps).collect()),
+    ("equal-steps-pulse", || half_powers(-5).flat_map(pulse::steps).collect()),
+    ("friction", || powers(-10, 0, 1).map(wall::friction).collect()),
 ];
 
 /// What is known of the sledge of the scene, in a formulation.
@@ -101,6 +120,30 @@ fn questions(
         Question::new(point, formulation(name).map_or(name, |f| f.title), subject, reference(name))
     };
     names.iter().map(one).collect()
+}
+
+/// The same by structure-preserving steps of this length.
+fn stepped(
+    mut questions: Vec<Question>,
+    step: f64,
+    scene: impl Fn() -> Result<Scene, SceneError> + Clone + Send + Sync + 'static,
+    names: &[&'static str],
+) -> Vec<Question> {
+    for (question, &name) in questions.iter_mut().zip(names) {
+        let scene = scene.clone();
+        question.stepped = Some(Box::new(move |composition| {
+            let scene = scene().map_err(|error| error.to_string())?;
+            let settings = Settings { max_steps: MAX_STEPS, ..Settings::default() };
+            let choice = choice(&scene, name)?;
+            solve_by_steps(&scene, &choice, Steps { step, composition }, &settings).map_err(|error| error.to_string())
+        }));
+    }
+    questions
+}
+
+/// `10^(from/2), 10^((from + 1)/2), …, 1`.
+fn half_powers(from: i32) -> impl Iterator<Item = f64> {
+    (from..=0).map(|k| 10.0_f64.powf(f64::from(k) / 2.0))
 }
 
 /// `10^from, 10^(from + step), …, 10^to`.

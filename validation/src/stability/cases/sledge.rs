@@ -1,18 +1,24 @@
 //! The sledge with a mass that hardly resists turning, or hardly turns; and for a long time.
 
 use referees::closed_forms;
-use scene::Scene;
+use scene::{Scene, SceneError};
 
 use super::FORMULATIONS;
 use crate::stability::question::Question;
 use crate::stability::reference::Reference;
 
 pub(super) fn questions(point: f64, k: f64, duration: f64) -> Vec<Question> {
-    let scene = move || {
-        let overrides = [("k".into(), k), ("duration".into(), duration)];
-        Scene::parse_with("sledge", include_str!("../../../scenes/sledge.toml"), &overrides)
-    };
-    super::questions(point, scene, &FORMULATIONS, |name| Sledge { k }.reference(name))
+    super::questions(point, move || scene(k, duration), &FORMULATIONS, |name| Sledge { k }.reference(name))
+}
+
+/// The sledge of the scene over 10 s by equal steps.
+pub(super) fn steps(step: f64) -> Vec<Question> {
+    super::stepped(questions(step, RADIUS, 10.0), step, || scene(RADIUS, 10.0), &FORMULATIONS)
+}
+
+fn scene(k: f64, duration: f64) -> Result<Scene, SceneError> {
+    let overrides = [("k".into(), k), ("duration".into(), duration)];
+    Scene::parse_with("sledge", include_str!("../../../scenes/sledge.toml"), &overrides)
 }
 
 /// The sledge of the scene with radius of gyration `k`.
