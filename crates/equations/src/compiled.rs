@@ -42,6 +42,7 @@ struct Sizes {
     coordinates: usize,
     multipliers: usize,
     invariants: usize,
+    guards: usize,
 }
 
 impl Sizes {
@@ -131,6 +132,8 @@ impl Compiled {
         let (multipliers, invariants) = (named(&equations.multipliers), named(&equations.invariants));
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
+        let chart = equations.chart.iter().flat_map(|chart| &chart.coefficients);
+        let guards: Vec<Expr> = equations.guards.iter().chain(chart).copied().collect();
         let planned = (plan.left.len() < blocks.len() || plan.collected.is_some())
             .then(|| Planned::new(equations, plan, &all, &outputs))
             .transpose()?;
@@ -141,7 +144,7 @@ impl Compiled {
             equations_of_instant: blocks,
             rates: equations.evaluator(&all, &rates)?,
             outputs: equations.evaluator(&all, &outputs)?,
-            guards: equations.evaluator(&known, &equations.guards)?,
+            guards: equations.evaluator(&known, &guards)?,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             jacobian: None,
             series: None,
@@ -152,6 +155,7 @@ impl Compiled {
                 coordinates: equations.coordinates.len(),
                 multipliers: multipliers.len(),
                 invariants: invariants.len(),
+                guards: equations.guards.len(),
             },
             anchor: vec![0.0; all.len() - known.len()],
             inputs: vec![0.0; all.len()],
@@ -286,13 +290,24 @@ impl Compiled {
 
     /// Number of guards.
     pub fn guards(&self) -> usize {
-        self.guards.values().len()
+        self.sizes.guards
     }
 
-    /// Values of the guards, whose zeros are singularities.
+    /// Whether other pivots might be taken ([`Equations::chart`]).
+    pub fn has_chart(&self) -> bool {
+        self.guards.values().len() > self.guards()
+    }
+
+    /// Values of the guards, whose zeros are singularities; where there is room for one more, after them the
+    /// sum of the squares of the chart's coefficients.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
-        values.copy_from_slice(self.guards.evaluate(&self.inputs[..self.sizes.known()]));
+        let found = self.guards.evaluate(&self.inputs[..self.sizes.known()]);
+        let (guards, coefficients) = found.split_at(self.sizes.guards);
+        values[..guards.len()].copy_from_slice(guards);
+        if let Some(size) = values.get_mut(guards.len()) {
+            *size = coefficients.iter().map(|x| x * x).sum();
+        }
     }
 
     /// Moves the velocities in `y` onto the constraint; returns the Euclidean length of the move.

@@ -76,7 +76,7 @@ pub use blocks::EvaluationFailure;
 pub use compiled::{Compiled, Cost, Outputs};
 pub use definitions::Definitions;
 pub use equations::{
-    Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
+    Block, Chart, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
 pub use formulation::{Derivation, DerivationError, Formulation, refuse_forces};
 pub use lanes::LaneEquations;

@@ -45,6 +45,7 @@ impl Removal {
             coordinates: system.graph.variables(&system.positions()),
             start: BTreeMap::new(),
             constants: ConstantsRule::Zero,
+            chart: split.quotients,
         })
     }
 
@@ -109,6 +110,7 @@ impl Removal {
             coordinates: g.variables(&system.positions()),
             start,
             constants: ConstantsRule::Zero,
+            chart: Vec::new(),
         })
     }
 }
