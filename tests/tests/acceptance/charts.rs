@@ -127,6 +127,35 @@ fn quasi_velocities_go_on_where_their_pivot_vanishes() {
     }
 }
 
+/// `x' cos φ + y' sin φ` and `y' cos φ − x' sin φ` are solved by way of a pivot that vanishes; what they give
+/// has none, and neither have the rates of a removal by quasi-velocities.
+#[test]
+fn quasi_velocities_without_a_pole_have_none() {
+    for scene in [sleigh(), robot(), car()] {
+        let removal = Removal::by_quasi_velocities(&scene.system, &scene.start).expect("linear constraints");
+        let g = &scene.system.graph;
+        let rates: Vec<_> = removal.memory.iter().map(|w| w.rate).collect();
+        let texts: Vec<String> = rates.iter().map(|&rate| g.plain(rate)).collect();
+        assert_eq!(g.denominators(&rates), [], "{texts:?}");
+        removal.verify(&scene.system).unwrap_or_else(|e| panic!("{e}"));
+        let constants = ConstantsRule::Given(vec![0.01; removal.memory.len()]);
+        let choice = Choice { label: "u".into(), formulation: "removed-constraint", removal: Some(removal), constants };
+        complete(&scene, solve_choice(&scene, &choice, &tight()).unwrap_or_else(|e| panic!("{e}")));
+    }
+}
+
+/// A motion from rest by equations that are not linear in their unknowns, which all vanish there.
+#[test]
+fn unknowns_that_vanish_are_found() {
+    let lagrangian = "-sqrt(1 - x'^2 - y'^2 - z'^2 - phi'^2) + 0.1*x";
+    let constraints = "\"y'*cos(phi) - x'*sin(phi) + 0.3*z'*z\", \"z'*cos(phi) + 0.7*x'*sin(z) - 0.2*phi'\"";
+    let scene = parsed("x y z=0.7 phi=0.3", lagrangian, constraints, "\"x'\" = 0, \"phi'\" = 0", 3.0);
+    for mu0 in [[0.31, 0.47], [-0.2, 0.83], [0.6, -0.09]] {
+        let (mut own, mut whole) = (reduced(&scene, "vakonomic-reduced", &mu0), vakonomic(&scene, &mu0));
+        must("from rest, in quasi-velocities", gap(&mut own, &mut whole).0, 1e-9);
+    }
+}
+
 #[test]
 fn only_charts_of_our_own_are_changed() {
     // no pivot of a disc vanishes
