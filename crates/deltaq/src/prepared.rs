@@ -25,6 +25,8 @@ pub struct Prepared {
     /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty if not derived.
     pub guess: Vec<f64>,
     pub(crate) values: StartValues,
+    /// Where the second run starts, unless where the first does.
+    pub(crate) other_start: Option<Vec<f64>>,
 }
 
 impl Prepared {
@@ -48,7 +50,8 @@ impl Prepared {
         let form = if settings.plain { Plan::plain(&equations) } else { Plan::choose(&equations, Some(&point))? };
         let compiled = Compiled::with_plan(&equations, &form)?;
         let (start, guess) = (Vec::new(), Vec::new());
-        let mut prepared = Prepared { equations, compiled, form, constants: Vec::new(), t, start, guess, values };
+        let (own, other_start) = (Vec::new(), None);
+        let mut prepared = Prepared { equations, compiled, form, constants: own, t, start, guess, values, other_start };
         prepared.set_constants(constants);
         prepared.complete(settings.method)?;
         Ok(prepared)
@@ -90,14 +93,18 @@ impl Prepared {
     /// # Errors
     /// [`SolveError`] where the run cannot be started; how it ended is in [`SingleRun::solution`].
     pub fn integrate(&mut self, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
-        self.complete(options.method)?;
-        let y = self.start.clone();
-        self.integrate_from(y, end, options)
+        self.run(end, options, false)
     }
 
-    fn integrate_from(&mut self, y: Vec<f64>, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
+    /// [`Prepared::integrate`]; ends where other pivots would be better, if `in_chart`.
+    pub(crate) fn run(&mut self, end: f64, options: &Options, in_chart: bool) -> Result<SingleRun, SolveError> {
+        self.complete(options.method)?;
+        self.run_from(self.start.clone(), end, options, in_chart)
+    }
+
+    fn run_from(&mut self, y: Vec<f64>, end: f64, options: &Options, in_chart: bool) -> Result<SingleRun, SolveError> {
         self.set_compiled();
-        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, options)
+        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, options, in_chart)
     }
 
     /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last
@@ -108,16 +115,16 @@ impl Prepared {
         end: f64,
         settings: &Settings,
     ) -> Result<SingleRun, SolveError> {
-        let mut y = self.start.clone();
+        let mut y = self.other_start.as_ref().unwrap_or(&self.start).clone();
         // places are exact; what moves is known as well as the constraints can tell it
         let place = |role: Role| matches!(role, Role::Position | Role::DisplacementParameter | Role::Memory);
         let (states, lost) = (&self.equations.states, self.equations.lost_digits.max(UNITS));
         move_digits(&mut y, |i| if place(states[i].role) { UNITS } else { lost });
         let mut options = settings.options(settings.tolerance);
         if kept.solution.work.steps == 0 || kept.end() == end {
-            return self.integrate_from(y, end, &options);
+            return self.run_from(y, end, &options, false);
         }
         options.sizes.clone_from(&kept.sizes);
-        self.integrate_from(y, kept.end(), &options)
+        self.run_from(y, kept.end(), &options, false)
     }
 }

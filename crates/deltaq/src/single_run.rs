@@ -1,7 +1,7 @@
 //! One run of the time loop.
 
 use equations::{Compiled, EvaluationFailure, Outputs};
-use integrate::{Gauge, Options, Problem, Solution, Start};
+use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
 use crate::SolveError;
 
@@ -16,15 +16,22 @@ pub struct SingleRun {
     anchors: Vec<(f64, Vec<f64>)>,
     /// [`Options::sizes`] of the run.
     pub(crate) sizes: Vec<f64>,
+    /// Whether it ended because other pivots would be better.
+    pub(crate) left_chart: bool,
 }
+
+/// A chart is left where the squares of its coefficients have come to this many times those at its start.
+const GROWTH: f64 = 100.0;
 
 impl SingleRun {
     /// Runs from `start`, with its own sizes unless `options` have some; `compiled` has constants and guess.
+    /// Ends where other pivots would be better, if `in_chart`.
     pub(crate) fn new(
         compiled: &mut Compiled,
         start: &Start,
         end: f64,
         options: &Options,
+        in_chart: bool,
     ) -> Result<SingleRun, SolveError> {
         let mut anchors = Vec::new();
         let unknowns = compiled.settle(start.t, &start.y).map_err(SolveError::AtStart)?.to_vec();
@@ -38,10 +45,15 @@ impl SingleRun {
             options.sizes = sizes(&start.y, &rates, end - start.t);
         }
         let before = compiled.fallbacks();
-        let mut runner = Runner { compiled, anchors };
+        let in_chart = in_chart && compiled.has_chart();
+        let largest = in_chart.then(|| GROWTH * chart_size(compiled, start.t, &start.y).max(1.0));
+        let mut runner = Runner { compiled, anchors, largest };
         let solution = integrate::integrate(&mut runner, start, end, &options)?;
         let anchors = runner.anchors;
-        Ok(SingleRun { solution, anchors, fallbacks: compiled.fallbacks() - before, sizes: options.sizes })
+        let ended_at = |event| matches!(solution.status, Status::Stopped { cause: StopCause::Event { index }, .. } if index == event);
+        let left_chart = ended_at(compiled.guards());
+        let fallbacks = compiled.fallbacks() - before;
+        Ok(SingleRun { solution, anchors, fallbacks, sizes: options.sizes, left_chart })
     }
 
     /// The time reached.
@@ -73,6 +85,13 @@ impl SingleRun {
         let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
         nearest.map(|(_, unknowns)| &unknowns[..])
     }
+}
+
+/// The sum of the squares of the coefficients of the chart.
+pub(crate) fn chart_size(compiled: &mut Compiled, t: f64, y: &[f64]) -> f64 {
+    let mut values = vec![0.0; compiled.guards() + 1];
+    compiled.guard_values(t, y, &mut values);
+    values[compiled.guards()]
 }
 
 /// What is read off at a state.
@@ -111,6 +130,8 @@ pub(crate) fn sizes(y: &[f64], rates: &[f64], length: f64) -> Vec<f64> {
 struct Runner<'a> {
     compiled: &'a mut Compiled,
     anchors: Vec<(f64, Vec<f64>)>,
+    /// Size of the chart at which the run ends, where it may.
+    largest: Option<f64>,
 }
 
 fn refused(failure: EvaluationFailure) -> integrate::EvaluationError {
@@ -157,10 +178,13 @@ impl Problem for Runner<'_> {
         Ok(())
     }
     fn events(&self) -> usize {
-        self.compiled.guards()
+        self.compiled.guards() + usize::from(self.largest.is_some())
     }
     fn event_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
         self.compiled.guard_values(t, y, values);
+        if let (Some(largest), Some(size)) = (self.largest, values.last_mut()) {
+            *size = largest - *size;
+        }
         Ok(())
     }
 }

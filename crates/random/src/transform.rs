@@ -67,6 +67,7 @@ impl Scaling {
             let length = w.coordinate.map_or(1.0, |i| self.lengths[i]);
             w.rate = g.mul(g.number(self.time / length), g.substitute(w.rate, &map));
         }
+        removal.chart = g.substitute_all(&removal.chart, &map);
         for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
             // what the parameter's own rate is at the start has the new unit of time too
             if let Some(start) = removal.start.get_mut(&u.rate) {
