@@ -14,6 +14,26 @@ pub(crate) fn momentum(coordinate: &str) -> String {
     format!("momentum {coordinate}")
 }
 
+/// What is handed over from chart to chart: a state, and multipliers or momenta by name.
+pub(crate) type Point = (State, HashMap<String, f64>);
+
+impl Prepared {
+    /// The states at a point, as one run of the same motion may come to.
+    pub(crate) fn states_of(&mut self, system: &System, (state, named): &Point) -> Vec<f64> {
+        self.values.set(&system.values_at(state));
+        self.values.set_constants(&Names::of(&self.equations).constants(named));
+        self.values.evaluate().0.to_vec()
+    }
+
+    /// Both runs start from these points next.
+    pub(crate) fn enter(&mut self, system: &System, [kept, looser]: &[Point; 2]) {
+        self.other_start = Some(self.states_of(system, looser));
+        self.states_of(system, kept);
+        self.t = kept.0.t;
+        self.set_constants(Names::of(&self.equations).constants(&kept.1));
+    }
+}
+
 /// What the outputs and constants of equations are called in every chart, with the sign that they have there.
 #[derive(Clone)]
 pub(crate) struct Names {
@@ -42,7 +62,7 @@ impl Names {
     }
 
     /// State and named quantities; those of a costate that was left out are missing, for they are zero.
-    pub(crate) fn handed_over(&self, t: f64, outputs: Outputs) -> (State, HashMap<String, f64>) {
+    pub(crate) fn handed_over(&self, t: f64, outputs: Outputs) -> Point {
         let values = outputs.multipliers.into_iter().chain(outputs.invariants);
         let named = self.outputs.iter().zip(values).map(|((name, sign), x)| (name.clone(), sign * x)).collect();
         (State { t, q: outputs.coordinates, v: outputs.velocities }, named)

@@ -16,22 +16,19 @@ pub struct SingleRun {
     anchors: Vec<(f64, Vec<f64>)>,
     /// [`Options::sizes`] of the run.
     pub(crate) sizes: Vec<f64>,
-    /// Whether it ended because other pivots would be better.
+    /// Whether it ended because its pivots have become small.
     pub(crate) left_chart: bool,
 }
 
-/// A chart is left where the squares of its coefficients have come to this many times those at its start.
-const GROWTH: f64 = 100.0;
-
 impl SingleRun {
     /// Runs from `start`, with its own sizes unless `options` have some; `compiled` has constants and guess.
-    /// Ends where other pivots would be better, if `in_chart`.
+    /// Ends where the size of the chart comes to `largest`, if one is given.
     pub(crate) fn new(
         compiled: &mut Compiled,
         start: &Start,
         end: f64,
         options: &Options,
-        in_chart: bool,
+        largest: Option<f64>,
     ) -> Result<SingleRun, SolveError> {
         let mut anchors = Vec::new();
         let unknowns = compiled.settle(start.t, &start.y).map_err(SolveError::AtStart)?.to_vec();
@@ -45,8 +42,6 @@ impl SingleRun {
             options.sizes = sizes(&start.y, &rates, end - start.t);
         }
         let before = compiled.fallbacks();
-        let in_chart = in_chart && compiled.has_chart();
-        let largest = in_chart.then(|| GROWTH * chart_size(compiled, start.t, &start.y).max(1.0));
         let mut runner = Runner { compiled, anchors, largest };
         let solution = integrate::integrate(&mut runner, start, end, &options)?;
         let anchors = runner.anchors;

@@ -7,13 +7,16 @@ use crate::discrete_run::DiscreteRun;
 use crate::later_chart::Later;
 use crate::single_run::{SingleRun, outputs};
 
+/// A run from chart to chart, those after the first with their own equations.
+pub(crate) type Legs = Vec<(SingleRun, Option<Box<Later>>)>;
+
 /// States over time.
 #[derive(Clone)]
 pub(crate) enum Trajectory {
     /// The polynomials of the time loop.
     TimeLoop(Box<SingleRun>),
-    /// The same from chart to chart, those after the first with their own equations.
-    Charts(Vec<(SingleRun, Option<Box<Later>>)>),
+    /// The same from chart to chart.
+    Charts(Legs),
     /// The nodes of a discrete motion.
     Discrete(Box<DiscreteRun>),
 }
@@ -58,18 +61,24 @@ impl Trajectory {
 
     /// What is read off at `t`.
     pub(crate) fn outputs(&mut self, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
-        if let Trajectory::Charts(legs) = self
-            && let (run, Some(later)) = leg(legs, t)
-        {
-            return later.outputs(run, t);
+        if let Trajectory::Charts(legs) = self {
+            return outputs_in(legs, compiled, t);
         }
         let state = self.state(compiled, t)?;
         outputs(compiled, t, &state)
     }
 }
 
+/// What is read off at `t`, as in the first chart, which is `compiled`.
+pub(crate) fn outputs_in(legs: &mut Legs, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
+    match leg(legs, t) {
+        (run, None) => run.at(compiled, t),
+        (run, Some(later)) => later.outputs(run, t),
+    }
+}
+
 /// The chart in which the motion is at `t`.
-fn leg(legs: &mut [(SingleRun, Option<Box<Later>>)], t: f64) -> &mut (SingleRun, Option<Box<Later>>) {
+fn leg(legs: &mut Legs, t: f64) -> &mut (SingleRun, Option<Box<Later>>) {
     let ends = |run: &SingleRun| (run.end() - t) * (run.end() - run.solution.dense.start()) >= 0.0;
     let last = legs.len() - 1;
     let at = legs[..last].iter().position(|(run, _)| ends(run)).unwrap_or(last);

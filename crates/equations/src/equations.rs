@@ -157,7 +157,8 @@ pub struct Equations {
     pub projection: Option<ConstraintProjection>,
     /// Expressions in `(t, y)` whose zero is a singularity of the equations.
     pub guards: Vec<Expr>,
-    /// By which pivots they were derived, where these may become small along a motion and others be taken.
+    /// By which pivots they were derived, where these may become small along a motion and others be taken;
+    /// never where other coordinates are read off than those of the system.
     pub chart: Option<Chart>,
     /// The derived equations, for the reader.
     pub statements: Vec<Statement>,

@@ -97,7 +97,7 @@ pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, integrate_la
 pub use options::{Dense, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use root::find_root;
-pub use status::{ProjectionReport, Solution, Status, StopCause, Work};
+pub use status::{Before, ProjectionReport, Solution, Status, StopCause, Work};
 
 use stepper::shortest_step;
 use system::System;
@@ -114,7 +114,7 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
     if options.method == Method::Taylor && !problem.has_taylor() {
         return Err(CallError::NoTaylor);
     }
-    let system = System::new(problem);
+    let system = System::new(problem, options.before.as_ref().map_or(Work::default(), |before| before.work));
     Ok(match options.method {
         Method::Taylor => {
             time_loop::drive(&system, taylor::Taylor::new(&system, start, end, options), start, end, options)

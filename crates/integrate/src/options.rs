@@ -1,6 +1,7 @@
 //! How to integrate.
 
 use crate::interrupt::Interrupt;
+use crate::status::Before;
 
 /// The time-stepping method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -108,12 +109,14 @@ pub struct Options {
     pub sizes: Vec<f64>,
     /// Whether accepted states are projected.
     pub projection: Projection,
-    /// Limit on the number of attempted (accepted and rejected) steps; > 0.
+    /// Limit on the number of attempted (accepted and rejected) steps, those before too; > 0.
     pub max_steps: usize,
     /// What is kept between the ends.
     pub dense: Dense,
     /// The flag that ends the run, with its cause ([`Interrupt::cause`]); looked at before each attempt.
     pub interrupt: Option<Interrupt>,
+    /// What was done before, by the run that this one goes on from ([`crate::Solution::done`]).
+    pub before: Option<Before>,
 }
 
 impl Options {
@@ -140,6 +143,7 @@ impl Options {
             max_steps: 100_000,
             dense: Dense::Everywhere,
             interrupt: None,
+            before: None,
         }
     }
 }

@@ -18,20 +18,26 @@ const STRETCHES: usize = 4;
 const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
+/// And where the rest would take as long as that at the pace of so many attempts, which move the time by less
+/// than this part of what it has come, so that it once went far faster.
+const LONG: usize = 8_000;
+const LITTLE: f64 = 1e-2;
+
 /// Time and number of steps, or of attempts, at some point of a run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Mark {
     t: f64,
     count: usize,
 }
 
 /// How fast a run moves the time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Pace {
     start: f64,
     end: f64,
     many: Mark,
     stretch: Mark,
+    long: Mark,
     /// Where the stretches began that get nowhere, how many there are, what the first and the last moved.
     slow: Mark,
     stretches: usize,
@@ -43,7 +49,12 @@ impl Pace {
     pub(crate) fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
         let (stretches, first, last) = (0, 0.0, 0.0);
-        Pace { start, end, many: mark, stretch: mark, slow: mark, stretches, first, last }
+        Pace { start, end, many: mark, stretch: mark, long: mark, slow: mark, stretches, first, last }
+    }
+
+    /// Of a run that goes on to `end`.
+    pub(crate) fn on_to(self, end: f64) -> Self {
+        Pace { end, ..self }
     }
 
     /// Whether a run creeps that has come to `t` by this work, and may attempt `limit` steps.
@@ -57,12 +68,21 @@ impl Pace {
             }
             self.many = Mark { t, count: steps };
         }
+        let endless = |count: usize, moved: f64| {
+            (self.end - t).abs() / moved * count as f64 >= TO_GO.max(TIMES_ALLOWED * limit as f64)
+        };
+        let (long, moved) = since(self.long, attempts);
+        if long >= LONG {
+            if endless(long, moved) && moved < LITTLE * (t - self.start).abs() {
+                return Some(StopCause::Creeping { steps: long, moved });
+            }
+            self.long = Mark { t, count: attempts };
+        }
         let (count, moved) = since(self.stretch, attempts);
         if count < STRETCH {
             return None;
         }
-        let to_go = (self.end - t).abs() / moved * count as f64;
-        if to_go < TO_GO.max(TIMES_ALLOWED * limit as f64) {
+        if !endless(count, moved) {
             self.stretches = 0;
         } else if self.stretches > 0 && moved > 0.5 * self.last && moved < 2.0 * self.last {
             self.stretches += 1;
@@ -99,6 +119,9 @@ mod tests {
             // the falling bicycle: 3e-8 after 2,000 steps, then as 1/n
             let found = creeps(direction * 20.0, |n, _| direction * if n < 1700.0 { 2.4e-3 } else { 6e-5 / n });
             assert!(found.is_some_and(|n| n > 3_000 && n < 6_000), "{found:?}");
+            // fast, then at a steady pace that would take 3e8 steps
+            let found = creeps(direction * 20.0, |n, _| direction * if n < 700.0 { 2e-3 } else { 6e-8 });
+            assert!(found.is_some_and(|n| n > 8_000 && n <= 16_000), "{found:?}");
             // all at once
             let found = creeps(direction * 20.0, |n, _| direction * if n < 100.0 { 0.1 } else { 1e-12 });
             assert!(found.is_some_and(|n| n > 2_000 && n <= 8_000), "{found:?}");

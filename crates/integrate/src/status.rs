@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::dense::DenseOutput;
+use crate::pace::Pace;
 
 /// What an integration returns.
 #[derive(Clone, Debug)]
@@ -11,10 +12,26 @@ pub struct Solution {
     pub status: Status,
     /// The solution as a function of time.
     pub dense: DenseOutput,
-    /// What it cost.
+    /// What it cost, with what was done before.
     pub work: Work,
-    /// How far the projections moved the states.
+    /// How far the projections moved the states, with those before.
     pub projection: ProjectionReport,
+    pub(crate) pace: Pace,
+}
+
+impl Solution {
+    /// For a run that goes on from the end of this one, as a part of it: [`crate::Options::before`].
+    pub fn done(&self) -> Before {
+        Before { work: self.work, projection: self.projection, pace: self.pace.clone() }
+    }
+}
+
+/// What was done before a run that goes on from another: it shares the limits, and the steps are counted on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Before {
+    pub(crate) work: Work,
+    pub(crate) projection: ProjectionReport,
+    pub(crate) pace: Pace,
 }
 
 /// How an integration ended.

@@ -74,13 +74,14 @@ struct Inner<'p> {
 }
 
 impl<'p> System<'p> {
-    pub(crate) fn new(problem: &'p mut dyn Problem) -> Self {
+    /// After so much work.
+    pub(crate) fn new(problem: &'p mut dyn Problem, work: Work) -> Self {
         Self {
             dimension: problem.dimension(),
             events: problem.events(),
             inner: RefCell::new(Inner {
                 problem,
-                work: Work::default(),
+                work,
                 #[cfg(feature = "diffsol")]
                 failure: None,
                 #[cfg(feature = "diffsol")]

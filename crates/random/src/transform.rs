@@ -96,7 +96,7 @@ impl Scaling {
         };
         let (coordinates, velocities) =
             (scaled(&equations.coordinates, 1.0), scaled(&equations.velocities, 1.0 / self.time));
-        (equations.coordinates, equations.velocities) = (coordinates, velocities);
+        (equations.coordinates, equations.velocities, equations.chart) = (coordinates, velocities, None);
         equations
     }
 }
@@ -138,6 +138,7 @@ impl Rewritten {
     pub fn outputs(&self, mut equations: Equations) -> Equations {
         equations.coordinates = self.positions.clone();
         equations.velocities = self.velocities.clone();
+        equations.chart = None;
         equations
     }
 }

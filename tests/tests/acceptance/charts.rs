@@ -1,6 +1,6 @@
 //! Motions go on where pivots vanish: by other pivots they are those of the equations with multipliers.
 
-use deltaq::{Choice, Ending, Motion, costates_of, multipliers_of, solve_choice};
+use deltaq::{Choice, Ending, Motion, Settings, costates_of, multipliers_of, solve_choice};
 use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 
@@ -154,6 +154,20 @@ fn unknowns_that_vanish_are_found() {
         let (mut own, mut whole) = (reduced(&scene, "vakonomic-reduced", &mu0), vakonomic(&scene, &mu0));
         must("from rest, in quasi-velocities", gap(&mut own, &mut whole).0, 1e-9);
     }
+}
+
+#[test]
+fn all_charts_of_a_run_share_its_limits() {
+    let scene = sleigh();
+    let (removal, whole) = removed(&scene, ConstantsRule::Zero);
+    let limit = (whole.work.steps + whole.work.rejected) / 2;
+    let constants = ConstantsRule::Zero;
+    let choice = Choice { label: "half".into(), formulation: "removed-constraint", removal: Some(removal), constants };
+    let half = solve_choice(&scene, &choice, &Settings { max_steps: limit, ..tight() }).unwrap();
+    let Ending::Stopped { t, cause } = &half.ending else { panic!("{:?}", half.ending) };
+    assert!(cause.contains(&format!("more than {limit} steps")) && *t > 5.0 && *t < 15.0, "t = {t}: {cause}");
+    let attempts = half.work.steps + half.work.rejected;
+    assert!(!half.charts.is_empty() && attempts >= limit && attempts < limit + 5, "{attempts} of {limit}");
 }
 
 #[test]
