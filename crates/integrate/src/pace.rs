@@ -18,10 +18,10 @@ const STRETCHES: usize = 4;
 const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
-/// And where the rest would take as long as that at the pace of so many attempts, which move the time by less
-/// than this part of what it has come, so that it once went far faster.
+/// And where the rest would take as long as that at the pace of so many attempts, which is under this part of
+/// that of the whole run so far: once it went far faster.
 const LONG: usize = 8_000;
-const LITTLE: f64 = 1e-2;
+const SLOWER: f64 = 1e-2;
 
 /// Time and number of steps, or of attempts, at some point of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +73,8 @@ impl Pace {
         };
         let (long, moved) = since(self.long, attempts);
         if long >= LONG {
-            if endless(long, moved) && moved < LITTLE * (t - self.start).abs() {
+            let pace = (t - self.start).abs() / attempts as f64;
+            if endless(long, moved) && moved < SLOWER * pace * long as f64 {
                 return Some(StopCause::Creeping { steps: long, moved });
             }
             self.long = Mark { t, count: attempts };
