@@ -44,6 +44,7 @@ pub(crate) fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> 
 pub(crate) fn scene_files(comparison: &mut Comparison, settings: &Settings) -> Result<Vec<File>> {
     let name = comparison.scene.name.clone();
     comparison.fit(settings).with_context(|| format!("scene `{name}`"))?;
+    comparison.keep_closer();
     let mut files = pictures(comparison).with_context(|| format!("pictures of scene `{name}`"))?;
     let links: Vec<String> =
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();

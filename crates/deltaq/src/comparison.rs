@@ -47,13 +47,12 @@ impl Comparison {
     pub fn fit(&mut self, settings: &Settings) -> Result<(), SolveError> {
         let mut metric = Metric::new(&self.scene.system)?;
         self.fits = fits(&self.scene, &mut self.runs, &self.pairs, &self.decided, &mut metric, settings)?;
-        self.keep_closer();
         Ok(())
     }
 
     /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: fits minimize
     /// the sum of squares, not the largest gap, and a search is no reason to go farther away.
-    fn keep_closer(&mut self) {
+    pub fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));
             let pair = self.pairs.iter().find(|p| (p.first, p.second) == (first, second));
