@@ -86,8 +86,8 @@ def compare_motion(name, case, instant, solver):
     if not apart <= tolerance and tolerance < found.estimate <= COARSEST:
         tolerance = 10.0 ** np.ceil(np.log10(found.estimate))
         notes.append(f"as close as {solver} is to itself at ten times its tolerance")
-    if not motion["complete"]:
-        notes.append("up to 98 % of the time until it stops")
+    if motion["until"]:
+        notes.append(f"up to 98 % of the time until {motion['until']}")
     if not apart <= tolerance:
         # a motion that magnifies errors is not known better than our two runs agree
         while count > 2 and found.own(count) > OWN_LIMIT:

@@ -248,6 +248,7 @@ fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, times: &[f64]) -
             "orders": motion.work.orders,
         },
         "form": { "why": motion.form.why, "fallbacks": motion.form.fallbacks },
+        "charts": motion.charts.iter().map(|c| json!({ "from": c.t, "independent": c.independent })).collect::<Vec<_>>(),
         "seconds": {
             "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
         },

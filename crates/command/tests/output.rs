@@ -19,7 +19,7 @@ const ANSWERS: [&[&str]; 15] = [
     &["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"],
     &["random", "--count", "1", "--quiet"],
     &["prove", "sledge", "--out", "-"],
-    &["bench", "bowl", "--seconds", "0.0001", "--quiet"],
+    &["bench", "bowl", "--set", "duration=0.01", "--seconds", "0.0001", "--quiet"],
     &["scaling", "--longest", "1", "--repeats", "1", "--quiet"],
     &["stability", "--case", "blow-up", "--quiet"],
     &["completions", "bash"],

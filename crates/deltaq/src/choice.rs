@@ -1,12 +1,10 @@
 //! What is chosen before a motion is computed: formulation, removal, free constants; the resulting equations.
 
-use std::time::Instant;
-
 use equations::{Derivation, Equations, Formulation};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System};
 use scene::Scene;
 
-use crate::{FORMS, FORMULATIONS, Motion, Settings, SolveError, formulation, setting, solve};
+use crate::{FORMS, FORMULATIONS, SolveError, formulation};
 
 /// One formulation of the scene, with all choices made.
 #[derive(Clone)]
@@ -114,33 +112,6 @@ pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equa
             Ok(derive_from(&combined.system(system), Some(start), choice)?.with_multipliers_restored(&combined))
         }
     }
-}
-
-/// Derives and integrates a choice from the start of the scene.
-///
-/// # Errors
-/// [`SolveError`] where there is no motion.
-///
-/// ```
-/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
-/// use deltaq::{Settings, choices, solve_choice};
-/// // the ice sledge turns at a constant rate: phi = 0.3 + t
-/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").unwrap();
-/// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
-/// assert!(motion.is_complete());
-/// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
-    if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
-        removals(scene)?;
-    }
-    let clock = Instant::now();
-    let equations = derive_at(&scene.system, &scene.start, choice)?;
-    let derive = clock.elapsed().as_secs_f64();
-    let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
-    motion.seconds.derive = derive;
-    Ok(motion)
 }
 
 type Automatic = fn(&System, &mechanics::State) -> Result<Removal, RemovalError>;

@@ -140,7 +140,9 @@ fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings)
         let steps = run.solution.work.steps + run.solution.work.rejected;
         taken += steps;
         limit.get_or_insert(LONGER * runs * steps);
-        if let Ending::Stopped { t, cause } = Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution) {
+        if let Ending::Stopped { t, cause } =
+            Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution, &[])
+        {
             return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
         }
         let mut end = vec![0.0; prepared.start.len()];

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use equations::{Block, Compiled, Equations};
+use equations::{Compiled, Equations};
 use integrate::{DenseOutput, Solution, Status, StopCause};
 use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
@@ -32,10 +32,17 @@ impl Ending {
         }
     }
 
-    /// Of one run.
-    pub(crate) fn of(equations: &Equations, compiled: &mut Compiled, run: &Solution) -> Ending {
+    /// Of one run of a motion that was at these points before. That it left a chart is no end.
+    pub(crate) fn of(
+        equations: &Equations,
+        compiled: &mut Compiled,
+        run: &Solution,
+        before: &[(f64, Vec<f64>)],
+    ) -> Ending {
         let Status::Stopped { t, cause } = &run.status else { return Ending::Completed };
+        let creeps = matches!(cause, StopCause::Creeping { .. });
         let cause = match cause {
+            StopCause::Event { index } if *index == equations.guards.len() => return Ending::Completed,
             StopCause::Event { index } => {
                 let guard = guard_words(equations, *index);
                 return Ending::Stopped { t: *t, cause: format!("{guard} vanishes, by which the equations divide") };
@@ -49,8 +56,10 @@ impl Ending {
             }
             other => other.to_string(),
         };
-        let near = nearly_zero_guard(equations, compiled, &run.dense);
-        let near = near.or_else(|| nearly_dependent(equations, compiled, &run.dense));
+        let before = [before, &[(run.dense.start(), run.dense.start_state().to_vec())]].concat();
+        let near = nearly_zero_guard(equations, compiled, &before, &run.dense);
+        let near = near.or_else(|| nearly_dependent(equations, compiled, &before, &run.dense));
+        let near = near.or_else(|| if creeps { fastest(equations, compiled, &run.dense) } else { None });
         Ending::Stopped { t: *t, cause: cause + &near.map_or(String::new(), |words| format!("; {words}")) }
     }
 
@@ -97,31 +106,52 @@ pub(crate) fn in_own_names(equations: &Equations, mut quantity: Expr) -> String 
     format!("a quantity of {}", names.join(", "))
 }
 
-/// A guard is nearly zero when it is under this fraction of its value at the start.
+/// A guard is nearly zero when it is under this fraction of the largest value that it had.
 const NEARLY_ZERO: f64 = 1e-2;
 
-/// The guard that has shrunk most over the run, if it is nearly zero at its end.
-fn nearly_zero_guard(equations: &Equations, compiled: &mut Compiled, dense: &DenseOutput) -> Option<String> {
-    let count = compiled.guards();
-    let (mut start, mut end) = (vec![0.0; count], vec![0.0; count]);
-    compiled.guard_values(dense.start(), dense.start_state(), &mut start);
+/// The guard that has shrunk most since these points, if it is nearly zero at the end of the run.
+fn nearly_zero_guard(
+    equations: &Equations,
+    compiled: &mut Compiled,
+    before: &[(f64, Vec<f64>)],
+    dense: &DenseOutput,
+) -> Option<String> {
+    let (mut values, mut largest) = (vec![0.0; compiled.guards()], vec![0.0_f64; compiled.guards()]);
+    for (t, y) in before {
+        compiled.guard_values(*t, y, &mut values);
+        largest.iter_mut().zip(&values).for_each(|(most, x)| *most = most.max(x.abs()));
+    }
+    let mut end = values;
     compiled.guard_values(dense.end(), dense.end_state(), &mut end);
-    let ratios = start.iter().zip(&end).map(|(a, b)| (b / a).abs());
+    let ratios = largest.iter().zip(&end).map(|(a, b)| (b / a).abs());
     let (index, ratio) = ratios.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let guard = guard_words(equations, index);
     (ratio < NEARLY_ZERO).then(|| format!("{guard}, by which the equations divide, is down to {:.1e}", end[index]))
 }
 
-/// The unknowns of an instant that its equations have nearly ceased to determine over the run, if any.
-fn nearly_dependent(equations: &Equations, compiled: &mut Compiled, dense: &DenseOutput) -> Option<String> {
+/// The unknowns of an instant that its equations have nearly ceased to determine since these points, if any.
+fn nearly_dependent(
+    equations: &Equations,
+    compiled: &mut Compiled,
+    before: &[(f64, Vec<f64>)],
+    dense: &DenseOutput,
+) -> Option<String> {
     /// Parts of the largest component of the direction that is not determined which are told.
     const TOLD: f64 = 0.3;
-    let [start, end] = [(dense.start(), dense.start_state()), (dense.end(), dense.end_state())]
-        .map(|(t, y)| compiled.block_matrices(t, y));
-    let size = |block: &Block| block.unknowns.len();
-    let found = equations.blocks.iter().zip(start.iter().zip(&end)).filter_map(|(block, (start, end))| {
-        let (before, _) = least_determined(size(block), start)?;
-        let (now, direction) = least_determined(size(block), end)?;
+    let [before, end] = [before, &[(dense.end(), dense.end_state().to_vec())]]
+        .map(|points| points.iter().map(|(t, y)| compiled.block_matrices(*t, y)).collect::<Vec<_>>());
+    let found = equations.blocks.iter().enumerate().filter_map(|(i, block)| {
+        let size = block.unknowns.len();
+        let matrix = |of: &Vec<Vec<f64>>| {
+            let finite = size > 0 && of[i].iter().all(|x| x.is_finite());
+            finite.then(|| DMatrix::from_row_slice(size, size, &of[i]))
+        };
+        let scaled = before.iter().filter_map(matrix).map(|matrix| {
+            let factors = equilibration(&matrix);
+            (least_determined(matrix, &factors).0, factors)
+        });
+        let (before, factors) = scaled.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (now, direction) = least_determined(matrix(&end[0])?, &factors);
         (now < NEARLY_ZERO * before).then_some((block, now / before, direction))
     });
     let (block, ratio, direction) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -131,16 +161,29 @@ fn nearly_dependent(equations: &Equations, compiled: &mut Compiled, dense: &Dens
     Some(format!("the equations for {} are nearly dependent, {ratio:.1e} of what they were", names.join(", ")))
 }
 
-/// The ratio of the least to the largest singular value of a matrix with rows and columns of one size, and
-/// the direction that goes with the least.
-fn least_determined(size: usize, matrix: &[f64]) -> Option<(f64, DVector<f64>)> {
-    let mut matrix = DMatrix::from_row_slice(size, size, matrix);
-    if size == 0 || matrix.iter().any(|x| !x.is_finite()) {
-        return None;
-    }
-    let scaled = |largest: f64| if largest > 0.0 { largest.recip() } else { 1.0 };
-    matrix.row_iter_mut().for_each(|mut row| row *= scaled(row.amax()));
-    matrix.column_iter_mut().for_each(|mut column| column *= scaled(column.amax()));
-    let found = SingularValues::of(&matrix);
-    Some((found.values[size - 1] / found.values[0], found.right.row(size - 1).transpose()))
+/// The state that changes fastest at the end of the run, for its size, which counts as 1 if it is less.
+fn fastest(equations: &Equations, compiled: &mut Compiled, dense: &DenseOutput) -> Option<String> {
+    let y = dense.end_state();
+    let mut rates = vec![0.0; y.len()];
+    compiled.rates(dense.end(), y, &mut rates).ok()?;
+    let parts = rates.iter().zip(y).map(|(rate, y)| (rate / y.abs().max(1.0)).abs()).enumerate();
+    let (i, part) = parts.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let name = equations.graph.name(equations.states[i].symbol);
+    Some(format!("{name} changes fastest, in a unit of time by {part:.1e} times its size"))
+}
+
+/// Factors by which the largest entry of each row, then of each column, is 1.
+fn equilibration(matrix: &DMatrix<f64>) -> [DVector<f64>; 2] {
+    let factor = |largest: f64| if largest > 0.0 { largest.recip() } else { 1.0 };
+    let rows = DVector::from_iterator(matrix.nrows(), matrix.row_iter().map(|row| factor(row.amax())));
+    let scaled = DMatrix::from_diagonal(&rows) * matrix;
+    let columns = scaled.column_iter().map(|column| factor(column.amax()));
+    [DVector::from_iterator(matrix.ncols(), columns), rows]
+}
+
+/// The least singular value of a matrix with columns and rows times these factors, and its direction.
+fn least_determined(matrix: DMatrix<f64>, [columns, rows]: &[DVector<f64>; 2]) -> (f64, DVector<f64>) {
+    let found = SingularValues::of(&(DMatrix::from_diagonal(rows) * matrix * DMatrix::from_diagonal(columns)));
+    let last = found.values.len() - 1;
+    (found.values[last], found.right.row(last).transpose())
 }

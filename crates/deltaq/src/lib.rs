@@ -57,6 +57,7 @@
 //! is an [`Ending`]; what was reached stays valid. An error estimate that is not to be trusted says so
 //! ([`Doubt`]).
 
+mod charts;
 mod choice;
 mod comparison;
 mod constants;
@@ -72,6 +73,7 @@ mod fits;
 mod gap;
 mod growth;
 mod integrability;
+mod later_chart;
 mod membership;
 mod metric;
 mod motion;
@@ -86,9 +88,9 @@ mod trajectory;
 
 pub use decision::{Finding, Section};
 
+pub use charts::ChartChange;
 pub use choice::{
     Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
-    solve_choice,
 };
 pub use comparison::{Comparison, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
@@ -109,7 +111,7 @@ pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use metric::Metric;
-pub use motion::{FormReport, Motion, Seconds, solve};
+pub use motion::{FormReport, Motion, Seconds, solve, solve_choice};
 pub use prepared::Prepared;
 pub use runs::{Decided, Pair, Run};
 pub use settings::{Setting, Settings, TIGHTER, setting};

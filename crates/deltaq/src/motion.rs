@@ -5,11 +5,14 @@ use std::time::Instant;
 use equations::{Compiled, Equations, Outputs};
 use integrate::{ProjectionReport, Work};
 use mechanics::ConstantsRule;
+use scene::Scene;
 
+use crate::charts::{self, ChartChange, Runs};
+use crate::choice::{derive_at, removals};
 use crate::constants::resolve;
 use crate::metric::subtract;
 use crate::trajectory::Trajectory;
-use crate::{Doubt, Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
+use crate::{Choice, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
 
 /// Wall-clock seconds spent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,6 +53,9 @@ pub struct Motion {
     pub seconds: Seconds,
     /// In which form the equations were evaluated.
     pub form: FormReport,
+    /// Where pivots became small, so that it went on by others. All that is read off is as in the first
+    /// chart.
+    pub charts: Vec<ChartChange>,
     end: f64,
     compiled: Compiled,
     kept: Trajectory,
@@ -160,19 +166,41 @@ pub fn solve(
     let compile = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     resolve(&mut prepared, constants, settings)?;
-    let kept = prepared.integrate(setting.end, &settings.options(settings.tolerance * TIGHTER))?;
-    let looser = prepared.second_run(&kept, setting.end, settings)?;
-    let integrate = clock.elapsed().as_secs_f64();
-    let [end, other] =
-        [&kept, &looser].map(|run| Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution));
-    let ending = Ending::joint(end, other, [setting.start.t, setting.end]);
-    let (work, projection, fallbacks) = (kept.solution.work, kept.solution.projection, kept.fallbacks);
-    let runs = [kept, looser].map(|run| Trajectory::TimeLoop(Box::new(run)));
-    let seconds = Seconds { derive: 0.0, compile, integrate };
-    let mut motion = Motion { work, projection, ..Motion::of(prepared, ending, runs, seconds) };
+    let Runs { trajectories, changes, ending, work, projection, fallbacks } =
+        charts::run(setting, &mut prepared, settings)?;
+    let seconds = Seconds { derive: 0.0, compile, integrate: clock.elapsed().as_secs_f64() };
+    let motion = Motion::of(prepared, ending, trajectories, seconds);
+    let mut motion = Motion { work, projection, charts: changes, ..motion };
     motion.form.fallbacks = fallbacks;
     let steps = [motion.kept.step_times(), motion.looser.step_times()];
     motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), settings.method);
+    Ok(motion)
+}
+
+/// Derives and integrates a choice from the start of the scene.
+///
+/// # Errors
+/// [`SolveError`] where there is no motion.
+///
+/// ```
+/// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
+/// use deltaq::{Settings, choices, solve_choice};
+/// // the ice sledge turns at a constant rate: phi = 0.3 + t
+/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").unwrap();
+/// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
+/// assert!(motion.is_complete());
+/// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
+    if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
+        removals(scene)?;
+    }
+    let clock = Instant::now();
+    let equations = derive_at(&scene.system, &scene.start, choice)?;
+    let derive = clock.elapsed().as_secs_f64();
+    let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
+    motion.seconds.derive = derive;
     Ok(motion)
 }
 
@@ -197,6 +225,7 @@ impl Motion {
             projection: ProjectionReport::default(),
             seconds,
             form: FormReport { why: prepared.form.why, fallbacks: 0 },
+            charts: Vec::new(),
             doubt: None,
             kept,
             looser,

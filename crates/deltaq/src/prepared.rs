@@ -3,7 +3,7 @@
 use equations::{Compiled, Equations, Plan, Role};
 use integrate::{Method, Options, Start};
 
-use crate::single_run::{SingleRun, UNITS, move_digits};
+use crate::single_run::{SingleRun, UNITS, chart_size, move_digits};
 use crate::start_values::StartValues;
 use crate::{Setting, Settings, SolveError};
 
@@ -27,7 +27,15 @@ pub struct Prepared {
     pub(crate) values: StartValues,
     /// [`mechanics::System::breakpoints`].
     breakpoints: Vec<f64>,
+    /// Where the second run starts, unless where the first does.
+    pub(crate) other_start: Option<Vec<f64>>,
+    /// The size of the chart at which another one is looked for, where there may be others.
+    largest: Option<f64>,
 }
+
+/// Another chart is looked for where the squares of the coefficients have come to this many times those that
+/// it was chosen with.
+const GROWTH: f64 = 100.0;
 
 impl Prepared {
     /// With the free constants zero.
@@ -50,10 +58,24 @@ impl Prepared {
         let form = if settings.plain { Plan::plain(&equations) } else { Plan::choose(&equations, Some(&point))? };
         let compiled = Compiled::with_plan(&equations, &form)?;
         let (start, guess) = (Vec::new(), Vec::new());
-        let breakpoints = setting.system.breakpoints.clone();
-        let mut prepared =
-            Prepared { equations, compiled, form, constants: Vec::new(), t, start, guess, values, breakpoints };
+        let (own, other_start, largest, breakpoints) = (Vec::new(), None, None, setting.system.breakpoints.clone());
+        let mut prepared = Prepared {
+            equations,
+            compiled,
+            form,
+            constants: own,
+            t,
+            start,
+            guess,
+            values,
+            breakpoints,
+            other_start,
+            largest,
+        };
         prepared.set_constants(constants);
+        if prepared.compiled.has_chart() {
+            prepared.largest = Some(GROWTH * chart_size(&mut prepared.compiled, t, &prepared.start).max(1.0));
+        }
         prepared.complete(settings.method)?;
         Ok(prepared)
     }
@@ -95,15 +117,26 @@ impl Prepared {
     /// [`SolveError`] where the run cannot be started; how it ended is in [`SingleRun::solution`].
     pub fn integrate(&mut self, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
         self.complete(options.method)?;
-        let y = self.start.clone();
-        self.integrate_from(y, end, options)
+        self.run_from(self.start.clone(), end, options, None)
     }
 
-    fn integrate_from(&mut self, y: Vec<f64>, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
+    /// [`Prepared::integrate`]; ends where pivots have become small.
+    pub(crate) fn run_in_chart(&mut self, end: f64, options: &Options) -> Result<SingleRun, SolveError> {
+        self.complete(options.method)?;
+        self.run_from(self.start.clone(), end, options, self.largest)
+    }
+
+    fn run_from(
+        &mut self,
+        y: Vec<f64>,
+        end: f64,
+        options: &Options,
+        largest: Option<f64>,
+    ) -> Result<SingleRun, SolveError> {
         self.set_compiled();
         let mut options = options.clone();
         options.breakpoints.extend(&self.breakpoints);
-        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, &options)
+        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, &options, largest)
     }
 
     /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last
@@ -112,18 +145,24 @@ impl Prepared {
         &mut self,
         kept: &SingleRun,
         end: f64,
-        settings: &Settings,
+        options: &Options,
     ) -> Result<SingleRun, SolveError> {
-        let mut y = self.start.clone();
+        let mut y = self.other_start.as_ref().unwrap_or(&self.start).clone();
         // places are exact; what moves is known as well as the constraints can tell it
         let place = |role: Role| matches!(role, Role::Position | Role::DisplacementParameter | Role::Memory);
         let (states, lost) = (&self.equations.states, self.equations.lost_digits.max(UNITS));
         move_digits(&mut y, |i| if place(states[i].role) { UNITS } else { lost });
-        let mut options = settings.options(settings.tolerance);
-        if kept.solution.work.steps == 0 || kept.end() == end {
-            return self.integrate_from(y, end, &options);
+        if kept.end() == end || kept.end() == self.t && !kept.left_chart {
+            return self.run_from(y, end, options, None);
         }
-        options.sizes.clone_from(&kept.sizes);
-        self.integrate_from(y, kept.end(), &options)
+        self.run_from(y, kept.end(), &Options { sizes: kept.sizes.clone(), ..options.clone() }, None)
+    }
+
+    /// What runs next starts where these two have come, and goes on until the chart has become worse again.
+    pub(crate) fn go_on(&mut self, [kept, looser]: [&SingleRun; 2]) {
+        let [start, other] = [kept, looser].map(|run| run.solution.dense.end_state().to_vec());
+        (self.t, self.start, self.other_start) = (kept.end(), start, Some(other));
+        self.largest = self.largest.map(|largest| largest * GROWTH);
+        self.guess = kept.unknowns_near(self.t).map_or(Vec::new(), <[f64]>::to_vec);
     }
 }

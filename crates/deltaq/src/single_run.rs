@@ -1,7 +1,7 @@
 //! One run of the time loop.
 
 use equations::{Compiled, EvaluationFailure, Outputs};
-use integrate::{Gauge, Options, Problem, Solution, Start};
+use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
 use crate::SolveError;
 
@@ -16,15 +16,19 @@ pub struct SingleRun {
     anchors: Vec<(f64, Vec<f64>)>,
     /// [`Options::sizes`] of the run.
     pub(crate) sizes: Vec<f64>,
+    /// Whether it ended because its pivots have become small.
+    pub(crate) left_chart: bool,
 }
 
 impl SingleRun {
     /// Runs from `start`, with its own sizes unless `options` have some; `compiled` has constants and guess.
+    /// Ends where the size of the chart comes to `largest`, if one is given.
     pub(crate) fn new(
         compiled: &mut Compiled,
         start: &Start,
         end: f64,
         options: &Options,
+        largest: Option<f64>,
     ) -> Result<SingleRun, SolveError> {
         let mut anchors = Vec::new();
         let unknowns = compiled.settle(start.t, &start.y).map_err(SolveError::AtStart)?.to_vec();
@@ -38,10 +42,13 @@ impl SingleRun {
             options.sizes = sizes(&start.y, &rates, end - start.t);
         }
         let before = compiled.fallbacks();
-        let mut runner = Runner { compiled, anchors };
+        let mut runner = Runner { compiled, anchors, largest };
         let solution = integrate::integrate(&mut runner, start, end, &options)?;
         let anchors = runner.anchors;
-        Ok(SingleRun { solution, anchors, fallbacks: compiled.fallbacks() - before, sizes: options.sizes })
+        let ended_at = |event| matches!(solution.status, Status::Stopped { cause: StopCause::Event { index }, .. } if index == event);
+        let left_chart = ended_at(compiled.guards());
+        let fallbacks = compiled.fallbacks() - before;
+        Ok(SingleRun { solution, anchors, fallbacks, sizes: options.sizes, left_chart })
     }
 
     /// The time reached.
@@ -73,6 +80,13 @@ impl SingleRun {
         let nearest = self.anchors.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
         nearest.map(|(_, unknowns)| &unknowns[..])
     }
+}
+
+/// The sum of the squares of the coefficients of the chart.
+pub(crate) fn chart_size(compiled: &mut Compiled, t: f64, y: &[f64]) -> f64 {
+    let mut values = vec![0.0; compiled.guards() + 1];
+    compiled.guard_values(t, y, &mut values);
+    values[compiled.guards()]
 }
 
 /// What is read off at a state.
@@ -111,6 +125,8 @@ pub(crate) fn sizes(y: &[f64], rates: &[f64], length: f64) -> Vec<f64> {
 struct Runner<'a> {
     compiled: &'a mut Compiled,
     anchors: Vec<(f64, Vec<f64>)>,
+    /// Size of the chart at which the run ends, where it may.
+    largest: Option<f64>,
 }
 
 fn refused(failure: EvaluationFailure) -> integrate::EvaluationError {
@@ -157,10 +173,13 @@ impl Problem for Runner<'_> {
         Ok(())
     }
     fn events(&self) -> usize {
-        self.compiled.guards()
+        self.compiled.guards() + usize::from(self.largest.is_some())
     }
     fn event_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
         self.compiled.guard_values(t, y, values);
+        if let (Some(largest), Some(size)) = (self.largest, values.last_mut()) {
+            *size = largest - *size;
+        }
         Ok(())
     }
 }

@@ -4,13 +4,19 @@ use equations::{Compiled, Outputs};
 
 use crate::SolveError;
 use crate::discrete_run::DiscreteRun;
+use crate::later_chart::Later;
 use crate::single_run::{SingleRun, outputs};
+
+/// A run from chart to chart, those after the first with their own equations.
+pub(crate) type Legs = Vec<(SingleRun, Option<Box<Later>>)>;
 
 /// States over time.
 #[derive(Clone)]
 pub(crate) enum Trajectory {
     /// The polynomials of the time loop.
     TimeLoop(Box<SingleRun>),
+    /// The same from chart to chart.
+    Charts(Legs),
     /// The nodes of a discrete motion.
     Discrete(Box<DiscreteRun>),
 }
@@ -20,6 +26,7 @@ impl Trajectory {
     pub(crate) fn ends(&self) -> [f64; 2] {
         match self {
             Trajectory::TimeLoop(run) => [run.solution.dense.start(), run.end()],
+            Trajectory::Charts(legs) => [legs[0].0.solution.dense.start(), legs[legs.len() - 1].0.end()],
             Trajectory::Discrete(run) => run.ends(),
         }
     }
@@ -28,15 +35,25 @@ impl Trajectory {
     pub(crate) fn step_times(&self) -> Vec<f64> {
         match self {
             Trajectory::TimeLoop(run) => run.solution.dense.step_times(),
+            Trajectory::Charts(legs) => {
+                let mut times: Vec<f64> = legs.iter().flat_map(|(run, _)| run.solution.dense.step_times()).collect();
+                times.dedup();
+                times
+            }
             Trajectory::Discrete(run) => run.times().to_vec(),
         }
     }
 
-    /// The state at `t`. Equations of the instant with several roots then start from the right one.
+    /// The state at `t`, in the variables of the first chart. Equations of the instant with several roots
+    /// then start from the right one.
     pub(crate) fn state(&mut self, compiled: &mut Compiled, t: f64) -> Result<Vec<f64>, SolveError> {
         let mut state = vec![0.0; compiled.dimension()];
         match self {
             Trajectory::TimeLoop(run) => run.states_at(compiled, t, &mut state),
+            Trajectory::Charts(legs) => match leg(legs, t) {
+                (run, None) => run.states_at(compiled, t, &mut state),
+                (run, Some(later)) => return later.states(run, t),
+            },
             Trajectory::Discrete(run) => run.state(compiled, t, &mut state)?,
         }
         Ok(state)
@@ -44,7 +61,26 @@ impl Trajectory {
 
     /// What is read off at `t`.
     pub(crate) fn outputs(&mut self, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
+        if let Trajectory::Charts(legs) = self {
+            return outputs_in(legs, compiled, t);
+        }
         let state = self.state(compiled, t)?;
         outputs(compiled, t, &state)
     }
+}
+
+/// What is read off at `t`, as in the first chart, which is `compiled`.
+pub(crate) fn outputs_in(legs: &mut Legs, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
+    match leg(legs, t) {
+        (run, None) => run.at(compiled, t),
+        (run, Some(later)) => later.outputs(run, t),
+    }
+}
+
+/// The chart in which the motion is at `t`.
+fn leg(legs: &mut Legs, t: f64) -> &mut (SingleRun, Option<Box<Later>>) {
+    let ends = |run: &SingleRun| (run.end() - t) * (run.end() - run.solution.dense.start()) >= 0.0;
+    let last = legs.len() - 1;
+    let at = legs[..last].iter().position(|(run, _)| ends(run)).unwrap_or(last);
+    &mut legs[at]
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use symbolic::{CompileError, Evaluator, Expr, Symbol};
+use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
 
 use crate::equations::{Block, Equations};
 use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
@@ -98,7 +98,11 @@ impl CompiledBlock {
             if relative <= NEWTON_LIMIT || (relative < 1e-10 && relative >= previous) {
                 return Ok(());
             }
-            let astray = iteration == 1 && relative > FAR && relative > CONTRACTION * previous;
+            let stalls = iteration > 0 && relative > CONTRACTION * previous;
+            if stalls && self.is_round_off(inputs) {
+                return Ok(());
+            }
+            let astray = iteration == 1 && relative > FAR && stalls;
             if !relative.is_finite() || astray {
                 return Err(EvaluationFailure::NotConverged {
                     iterations: iteration + 1,
@@ -109,6 +113,16 @@ impl CompiledBlock {
             previous = relative;
         }
         Err(EvaluationFailure::NotConverged { iterations: NEWTON_STEPS, step: previous, limit: NEWTON_LIMIT })
+    }
+
+    /// Whether what is left of the equations is round-off of their terms. Where `z` vanishes it keeps no
+    /// digits.
+    fn is_round_off(&self, inputs: &[f64]) -> bool {
+        let tape = self.program.tape();
+        let inputs: Vec<Bounded> = inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let mut values = vec![Bounded::from_f64(0.0); self.size * (self.size + 1)];
+        tape.evaluate(&inputs, &mut tape.workspace(), &mut values);
+        values[self.size * self.size..].iter().all(|r| r.value.abs() <= NEWTON_LIMIT * r.magnitude)
     }
 
     /// Compiles a block whose first unknown has place `first` in `z`.

@@ -83,6 +83,8 @@ impl Compiled {
         let outputs: Vec<Expr> =
             [&equations.coordinates[..], &equations.velocities, &multipliers, &invariants].concat();
         let steep = equations.steep();
+        let chart = equations.chart.iter().flat_map(|chart| &chart.coefficients);
+        let guards: Vec<Expr> = equations.guards.iter().chain(chart).copied().collect();
         let planned = (plan.left.len() < blocks.len() || plan.collected.is_some())
             .then(|| Planned::new(equations, plan, &all, &outputs))
             .transpose()?;
@@ -93,7 +95,7 @@ impl Compiled {
             equations_of_instant: blocks,
             rates: equations.evaluator(&all, &rates)?,
             outputs: equations.evaluator(&all, &outputs)?,
-            guards: equations.evaluator(&known, &equations.guards)?,
+            guards: equations.evaluator(&known, &guards)?,
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
             steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
@@ -106,6 +108,7 @@ impl Compiled {
                 coordinates: equations.coordinates.len(),
                 multipliers: multipliers.len(),
                 invariants: invariants.len(),
+                guards: equations.guards.len(),
             },
             anchor: vec![0.0; all.len() - known.len()],
             inputs: vec![0.0; all.len()],
@@ -240,13 +243,24 @@ impl Compiled {
 
     /// Number of guards.
     pub fn guards(&self) -> usize {
-        self.guards.values().len()
+        self.sizes.guards
     }
 
-    /// Values of the guards, whose zeros are singularities.
+    /// Whether other pivots might be taken ([`Equations::chart`]).
+    pub fn has_chart(&self) -> bool {
+        self.guards.values().len() > self.guards()
+    }
+
+    /// Values of the guards, whose zeros are singularities; where there is room for one more, after them the
+    /// sum of the squares of the chart's coefficients.
     pub fn guard_values(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.load(t, y);
-        values.copy_from_slice(self.guards.evaluate(&self.inputs[..self.sizes.known()]));
+        let found = self.guards.evaluate(&self.inputs[..self.sizes.known()]);
+        let (guards, coefficients) = found.split_at(self.sizes.guards);
+        values[..guards.len()].copy_from_slice(guards);
+        if let Some(size) = values.get_mut(guards.len()) {
+            *size = coefficients.iter().map(|x| x * x).sum();
+        }
     }
 
     /// Gauges of functions that may change within little of their arguments: [`symbolic::Steep`].

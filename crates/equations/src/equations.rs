@@ -103,6 +103,15 @@ pub struct Statement {
     pub right: Expr,
 }
 
+/// Which velocities the others are combinations of, where other ones would do as well.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// Names of the velocities, or of the coordinates whose velocities they are.
+    pub independent: Vec<String>,
+    /// The coefficients of the combinations, in `(t, y)`: they grow where a pivot becomes small.
+    pub coefficients: Vec<Expr>,
+}
+
 /// Return onto the constraint: `v ← v + δv` with the smallest `δvᵀ M δv` such that `f(q, v, t) = 0`.
 #[derive(Clone, Debug)]
 pub struct ConstraintProjection {
@@ -148,6 +157,9 @@ pub struct Equations {
     pub projection: Option<ConstraintProjection>,
     /// Expressions in `(t, y)` whose zero is a singularity of the equations.
     pub guards: Vec<Expr>,
+    /// By which pivots they were derived, where these may become small along a motion and others be taken;
+    /// never where other coordinates are read off than those of the system.
+    pub chart: Option<Chart>,
     /// The derived equations, for the reader.
     pub statements: Vec<Statement>,
     /// What this system did not need.
@@ -178,6 +190,7 @@ impl Equations {
             invariants: Vec::new(),
             projection: None,
             guards: Vec::new(),
+            chart: None,
             statements: Vec::new(),
             left_out: Vec::new(),
             lost_digits: 1.0,

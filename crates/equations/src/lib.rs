@@ -77,7 +77,7 @@ pub use blocks::EvaluationFailure;
 pub use compiled::Compiled;
 pub use definitions::Definitions;
 pub use equations::{
-    Block, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
+    Block, Chart, ConstraintProjection, Equations, FreeConstant, LeftOut, Named, Role, StateVariable, Statement,
 };
 pub use formulation::{Derivation, DerivationError, Formulation, refuse_forces};
 pub use lanes::LaneEquations;

@@ -37,6 +37,7 @@ pub(crate) struct Sizes {
     pub(crate) coordinates: usize,
     pub(crate) multipliers: usize,
     pub(crate) invariants: usize,
+    pub(crate) guards: usize,
 }
 
 impl Sizes {

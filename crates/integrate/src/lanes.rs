@@ -321,8 +321,10 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         let (t, step) = (self.t[lane], self.step[lane].min(self.options.max_step));
         let remaining = rider.end - t;
         let last = step >= remaining.abs();
-        let creeps = rider.pace.look(t, &rider.run.work, self.options.max_steps).is_some();
-        if rider.run.work.steps + rider.run.work.rejected >= self.options.max_steps {
+        let (work, limit) = (&rider.run.work, self.options.max_steps);
+        let attempts = work.steps + work.rejected;
+        let creeps = rider.pace.look(t, work.steps, attempts, limit).is_some();
+        if attempts >= limit {
             self.leave(lane, Left::TooManySteps, done);
         } else if !last && (creeps || step <= shortest_step(t) || step.is_nan()) {
             self.leave(lane, Left::StepTooSmall, done);

@@ -97,7 +97,7 @@ pub use lanes::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left, integrate_la
 pub use options::{Dense, Method, Options, Projection};
 pub use problem::{EvaluationError, Gauge, Problem, Start};
 pub use root::find_root;
-pub use status::{ProjectionReport, Solution, Status, StopCause, Work};
+pub use status::{Before, ProjectionReport, Solution, Status, StopCause, Work};
 pub use steep::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
 
 use stepper::shortest_step;
@@ -116,12 +116,11 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
         return Err(CallError::NoTaylor);
     }
     let mut all: Option<Solution> = None;
+    let mut options = options.clone();
     for stop in options.stops(start.t, end) {
         let begin = all.as_ref().map_or(start.clone(), Solution::last);
-        let mut options = options.clone();
-        let taken = all.as_ref().map_or(0, |all| all.work.steps + all.work.rejected);
-        options.max_steps = options.max_steps.saturating_sub(taken);
         let part = between_breakpoints(problem, &begin, stop, &options)?;
+        options.before = Some(part.done());
         let is_complete = part.status == Status::Completed;
         match &mut all {
             None => all = Some(part),
@@ -131,10 +130,7 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
             break;
         }
     }
-    let Some(mut all) = all else { unreachable!("a run has an end") };
-    if let Status::Stopped { cause: StopCause::TooManySteps { limit }, .. } = &mut all.status {
-        *limit = options.max_steps;
-    }
+    let Some(all) = all else { unreachable!("a run has an end") };
     Ok(all)
 }
 
@@ -144,7 +140,8 @@ fn between_breakpoints(
     end: f64,
     options: &Options,
 ) -> Result<Solution, CallError> {
-    let system = System::new(problem, options.max_step);
+    let before = options.before.as_ref().map_or(Work::default(), |before| before.work);
+    let system = System::new(problem, options.max_step, before);
     Ok(match options.method {
         Method::Taylor => {
             time_loop::drive(&system, taylor::Taylor::new(&system, start, end, options), start, end, options)

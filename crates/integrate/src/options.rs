@@ -1,6 +1,7 @@
 //! How to integrate.
 
 use crate::interrupt::Interrupt;
+use crate::status::Before;
 use crate::stepper::shortest_step;
 
 /// The time-stepping method.
@@ -109,7 +110,7 @@ pub struct Options {
     pub sizes: Vec<f64>,
     /// Whether accepted states are projected.
     pub projection: Projection,
-    /// Limit on the number of attempted (accepted and rejected) steps; > 0.
+    /// Limit on the number of attempted (accepted and rejected) steps, those before too; > 0.
     pub max_steps: usize,
     /// No step is longer; > 0, infinite without a limit.
     pub max_step: f64,
@@ -119,6 +120,8 @@ pub struct Options {
     pub dense: Dense,
     /// The flag that ends the run, with its cause ([`Interrupt::cause`]); looked at before each attempt.
     pub interrupt: Option<Interrupt>,
+    /// What was done before, by the run that this one goes on from ([`crate::Solution::done`]).
+    pub before: Option<Before>,
 }
 
 impl Options {
@@ -163,6 +166,7 @@ impl Options {
             breakpoints: Vec::new(),
             dense: Dense::Everywhere,
             interrupt: None,
+            before: None,
         }
     }
 }

@@ -1,7 +1,5 @@
 //! Whether a run gets anywhere.
 
-use crate::status::{StopCause, Work};
-
 /// A run creeps where so many steps move the time by less than this part of what it has come: the rest of it
 /// would take more than a thousand million.
 const FEW: f64 = 1e-6;
@@ -18,20 +16,26 @@ const STRETCHES: usize = 4;
 const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
+/// And where the rest would take as long as that at the pace of so many attempts, which is under this part of
+/// that of the whole run so far: once it went far faster.
+const LONG: usize = 8_000;
+const SLOWER: f64 = 1e-2;
+
 /// Time and number of steps, or of attempts, at some point of a run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Mark {
     t: f64,
     count: usize,
 }
 
 /// How fast a run moves the time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Pace {
     start: f64,
     end: f64,
     many: Mark,
     stretch: Mark,
+    long: Mark,
     /// Where the stretches began that get nowhere, how many there are, what the first and the last moved.
     slow: Mark,
     stretches: usize,
@@ -43,26 +47,41 @@ impl Pace {
     pub(crate) fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
         let (stretches, first, last) = (0, 0.0, 0.0);
-        Pace { start, end, many: mark, stretch: mark, slow: mark, stretches, first, last }
+        Pace { start, end, many: mark, stretch: mark, long: mark, slow: mark, stretches, first, last }
     }
 
-    /// Whether a run creeps that has come to `t` by this work, and may attempt `limit` steps.
-    pub(crate) fn look(&mut self, t: f64, work: &Work, limit: usize) -> Option<StopCause> {
-        let (steps, attempts) = (work.steps, work.steps + work.rejected);
+    /// Of a run that goes on to `end`.
+    pub(crate) fn on_to(self, end: f64) -> Self {
+        Pace { end, ..self }
+    }
+
+    /// Whether a run creeps that has come to `t` by so many steps of so many attempts, of which it may make
+    /// `limit`: the number of the last steps, and by how much they moved the time.
+    pub(crate) fn look(&mut self, t: f64, steps: usize, attempts: usize, limit: usize) -> Option<(usize, f64)> {
         let since = |mark: Mark, count: usize| (count - mark.count, (t - mark.t).abs());
         let (many, moved) = since(self.many, steps);
         if many >= MANY_STEPS {
             if moved < FEW * (t - self.start).abs() {
-                return Some(StopCause::Creeping { steps: many, moved });
+                return Some((many, moved));
             }
             self.many = Mark { t, count: steps };
+        }
+        let endless = |count: usize, moved: f64| {
+            (self.end - t).abs() / moved * count as f64 >= TO_GO.max(TIMES_ALLOWED * limit as f64)
+        };
+        let (long, moved) = since(self.long, attempts);
+        if long >= LONG {
+            let pace = (t - self.start).abs() / attempts as f64;
+            if endless(long, moved) && moved < SLOWER * pace * long as f64 {
+                return Some((long, moved));
+            }
+            self.long = Mark { t, count: attempts };
         }
         let (count, moved) = since(self.stretch, attempts);
         if count < STRETCH {
             return None;
         }
-        let to_go = (self.end - t).abs() / moved * count as f64;
-        if to_go < TO_GO.max(TIMES_ALLOWED * limit as f64) {
+        if !endless(count, moved) {
             self.stretches = 0;
         } else if self.stretches > 0 && moved > 0.5 * self.last && moved < 2.0 * self.last {
             self.stretches += 1;
@@ -73,8 +92,7 @@ impl Pace {
         if self.stretches < STRETCHES || moved > MOST * self.first {
             return None;
         }
-        let (steps, moved) = since(self.slow, attempts);
-        Some(StopCause::Creeping { steps, moved })
+        Some(since(self.slow, attempts))
     }
 }
 
@@ -88,8 +106,7 @@ mod tests {
         (1..1_000_000).find(|&n| {
             t += step(n as f64, t);
             // one attempt in four is rejected
-            let work = Work { steps: n - n / 4, rejected: n / 4, ..Work::default() };
-            t.abs() < end.abs() && pace.look(t, &work, 1_000_000).is_some()
+            t.abs() < end.abs() && pace.look(t, n - n / 4, n, 1_000_000).is_some()
         })
     }
 
@@ -99,6 +116,9 @@ mod tests {
             // the falling bicycle: 3e-8 after 2,000 steps, then as 1/n
             let found = creeps(direction * 20.0, |n, _| direction * if n < 1700.0 { 2.4e-3 } else { 6e-5 / n });
             assert!(found.is_some_and(|n| n > 3_000 && n < 6_000), "{found:?}");
+            // fast, then at a steady pace that would take 3e8 steps
+            let found = creeps(direction * 20.0, |n, _| direction * if n < 700.0 { 2e-3 } else { 6e-8 });
+            assert!(found.is_some_and(|n| n > 8_000 && n <= 16_000), "{found:?}");
             // all at once
             let found = creeps(direction * 20.0, |n, _| direction * if n < 100.0 { 0.1 } else { 1e-12 });
             assert!(found.is_some_and(|n| n > 2_000 && n <= 8_000), "{found:?}");

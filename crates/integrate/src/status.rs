@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::dense::DenseOutput;
+use crate::pace::Pace;
 use crate::problem::Start;
 
 /// What an integration returns.
@@ -12,32 +13,37 @@ pub struct Solution {
     pub status: Status,
     /// The solution as a function of time.
     pub dense: DenseOutput,
-    /// What it cost.
+    /// What it cost, with what was done before.
     pub work: Work,
-    /// How far the projections moved the states.
+    /// How far the projections moved the states, with those before.
     pub projection: ProjectionReport,
+    pub(crate) pace: Pace,
 }
 
 impl Solution {
+    /// For a run that goes on from the end of this one, as a part of it: [`crate::Options::before`].
+    pub fn done(&self) -> Before {
+        Before { work: self.work, projection: self.projection, pace: self.pace.clone() }
+    }
+
     /// Where it ended.
     pub(crate) fn last(&self) -> Start {
         Start { t: self.dense.end(), y: self.dense.end_state().to_vec() }
     }
 
-    /// Goes on with what begins where this ended.
+    /// Goes on with what begins where this ended, after what was [`Solution::done`].
     pub(crate) fn append(&mut self, next: Solution) {
-        self.status = next.status;
         self.dense.append(next.dense);
-        let (work, more) = (&mut self.work, next.work);
-        work.steps += more.steps;
-        work.rejected += more.rejected;
-        work.evaluations += more.evaluations;
-        work.jacobians += more.jacobians;
-        work.orders += more.orders;
-        self.projection.projections += next.projection.projections;
-        self.projection.largest = self.projection.largest.max(next.projection.largest);
-        self.projection.total += next.projection.total;
+        (self.status, self.work, self.projection, self.pace) = (next.status, next.work, next.projection, next.pace);
     }
+}
+
+/// What was done before a run that goes on from another: it shares the limits, and the steps are counted on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Before {
+    pub(crate) work: Work,
+    pub(crate) projection: ProjectionReport,
+    pub(crate) pace: Pace,
 }
 
 /// How an integration ended.

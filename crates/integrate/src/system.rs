@@ -76,14 +76,15 @@ struct Inner<'p> {
 }
 
 impl<'p> System<'p> {
-    pub(crate) fn new(problem: &'p mut dyn Problem, longest: f64) -> Self {
+    /// With steps of this length at most, after so much work.
+    pub(crate) fn new(problem: &'p mut dyn Problem, longest: f64, work: Work) -> Self {
         Self {
             longest,
             dimension: problem.dimension(),
             events: problem.events(),
             inner: RefCell::new(Inner {
                 problem,
-                work: Work::default(),
+                work,
                 #[cfg(feature = "diffsol")]
                 failure: None,
                 #[cfg(feature = "diffsol")]

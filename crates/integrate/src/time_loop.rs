@@ -39,15 +39,16 @@ pub(crate) fn run(
     let mut record = Record {
         system,
         dense: DenseOutput::new(start.t, &start.y, basis, degree),
-        projection: ProjectionReport::default(),
+        projection: options.before.as_ref().map_or(ProjectionReport::default(), |before| before.projection),
+        pace: options.before.clone().map_or(Pace::new(start.t, end), |before| before.pace.on_to(end)),
         options,
     };
     let status = match stepper.and_then(|stepper| record.walk(stepper, start, end)) {
         Ok(()) => Status::Completed,
         Err(cause) => Status::Stopped { t: record.dense.end(), cause },
     };
-    let Record { dense, projection, .. } = record;
-    Solution { status, dense, work: system.work(), projection }
+    let Record { dense, projection, pace, .. } = record;
+    Solution { status, dense, work: system.work(), projection, pace }
 }
 
 /// What has been integrated so far.
@@ -55,6 +56,7 @@ struct Record<'a, 'p> {
     system: &'a System<'p>,
     dense: DenseOutput,
     projection: ProjectionReport,
+    pace: Pace,
     options: &'a Options,
 }
 
@@ -66,18 +68,18 @@ impl Record<'_, '_> {
         // The last failure since the last accepted step, and the number of them.
         let mut failure: Option<Failure> = None;
         let mut failures = 0;
-        let mut pace = Pace::new(start.t, end);
         while stepper.time() != end {
             let work = system.work();
             let (t, interrupt) = (stepper.time(), self.options.interrupt.as_ref());
             if let Some(cause) = interrupt.and_then(|interrupt| interrupt.pass(t, work.steps)) {
                 return Err(cause);
             }
-            if work.steps + work.rejected >= self.options.max_steps {
-                return Err(StopCause::TooManySteps { limit: self.options.max_steps });
+            let (attempts, limit) = (work.steps + work.rejected, self.options.max_steps);
+            if attempts >= limit {
+                return Err(StopCause::TooManySteps { limit });
             }
-            if let Some(cause) = pace.look(t, &work, self.options.max_steps) {
-                return Err(cause);
+            if let Some((steps, moved)) = self.pace.look(t, work.steps, attempts, limit) {
+                return Err(StopCause::Creeping { steps, moved });
             }
             let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {

@@ -152,6 +152,14 @@ fn steps_are_limited() {
         assert_eq!(solution.status, Status::Stopped { t: solution.dense.end(), cause }, "{method:?}");
         assert!(solution.work.steps > 0 && solution.work.steps + solution.work.rejected >= 10);
         assert!(solution.dense.end() > 0.0 && solution.dense.end() < 100.0);
+        // those before count
+        let first = attempt(&mut oscillator(), 0.0, &[1.0, 0.0], 0.1, &Options { max_steps: 1000, ..options.clone() });
+        let limit = first.work.steps + first.work.rejected + 10;
+        let rest = Options { before: Some(first.done()), max_steps: limit, ..options };
+        let solution = attempt(&mut oscillator(), 0.1, first.dense.end_state(), 100.0, &rest);
+        assert!(solution.work.steps > first.work.steps && solution.work.steps <= limit, "{method:?}");
+        let cause = StopCause::TooManySteps { limit };
+        assert_eq!(solution.status, Status::Stopped { t: solution.dense.end(), cause }, "{method:?}");
     }
 }
 

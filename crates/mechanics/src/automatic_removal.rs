@@ -8,6 +8,8 @@
 
 use std::collections::BTreeMap;
 
+use symbolic::{Expr, Graph};
+
 use crate::solved_constraints::SolvedConstraints;
 use crate::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, RemovalError, State, System};
 
@@ -45,6 +47,7 @@ impl Removal {
             coordinates: system.graph.variables(&system.positions()),
             start: BTreeMap::new(),
             constants: ConstantsRule::Zero,
+            chart: split.quotients,
         })
     }
 
@@ -74,12 +77,12 @@ impl Removal {
         let mut parameters = Vec::new();
         let mut memory = Vec::new();
         let mut start = BTreeMap::new();
-        let mut rates = Vec::new();
+        let mut columns = Vec::new();
         for (column, &i) in split.independent.iter().enumerate() {
             let entries = split.solution.column(column);
             if entries.iter().all(|&e| g.is_zero(e)) {
                 parameters.push(coordinate_parameter(system, i));
-                rates.push(g.variable(system.coordinates[i].velocity));
+                columns.push((g.one(), g.variable(system.coordinates[i].velocity)));
                 continue;
             }
             let name = parameter_name(system, i);
@@ -90,15 +93,17 @@ impl Removal {
                 coordinate: None,
             };
             let denominator = g.product(&g.denominators(&entries));
-            let rate = g.mul(denominator, g.variable(u.rate));
+            columns.push((denominator, g.variable(u.rate)));
+            let rate = g.mul(cleared(g, denominator), g.variable(u.rate));
             start.insert(u.symbol, g.zero());
             start.insert(u.rate, g.div(g.variable(system.coordinates[i].velocity), denominator));
             memory.push(MemoryVariable { symbol: system.coordinates[i].position, rate, coordinate: Some(i) });
             parameters.push(u);
-            rates.push(rate);
         }
         for (row, &i) in split.dependent.iter().enumerate() {
-            let rate = split.rate(system, row, &rates);
+            let entries = split.solution.row(row).iter().zip(&columns);
+            let terms = entries.map(|(&e, &(denominator, u))| g.mul(cleared(g, g.mul(e, denominator)), u));
+            let rate = g.sum(&terms.chain([split.offset[row]]).collect::<Vec<Expr>>());
             memory.push(MemoryVariable { symbol: system.coordinates[i].position, rate, coordinate: Some(i) });
         }
         memory.sort_by_key(|w| w.coordinate);
@@ -109,8 +114,15 @@ impl Removal {
             coordinates: g.variables(&system.positions()),
             start,
             constants: ConstantsRule::Zero,
+            chart: Vec::new(),
         })
     }
+}
+
+/// `e` multiplied out where fewer denominators are left so: the others are none, and would end a motion.
+fn cleared(g: &Graph, e: Expr) -> Expr {
+    let expanded = g.expand(e);
+    if g.denominators(&[expanded]).len() < g.denominators(&[e]).len() { expanded } else { e }
 }
 
 /// `u_x` for the coordinate `x`, with underscores until it is a new name. Removals may share symbols.

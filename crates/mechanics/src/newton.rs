@@ -25,13 +25,29 @@ impl Evaluation {
     ///
     /// The last term is there because an unknown that vanishes comes out as round-off of the others.
     pub fn relative_residual(&self, x: &DVector<f64>) -> f64 {
-        const SLACK: f64 = 1e-4;
-        let reach = SLACK * x.norm();
         let ratio = |i: usize| match self.residual[i].abs() {
             0.0 => 0.0,
-            r => r / (r + self.magnitude[i].abs() + reach * self.jacobian.row(i).norm()),
+            r => r / (r + self.term_size(i, x)),
         };
         (0..self.residual.len()).map(ratio).fold(0.0, f64::max)
+    }
+
+    fn term_size(&self, i: usize, x: &DVector<f64>) -> f64 {
+        const SLACK: f64 = 1e-4;
+        self.magnitude[i].abs() + SLACK * x.norm() * self.jacobian.row(i).norm()
+    }
+
+    /// What the terms of the equations add up to in each unknown: `Σⱼ |J⁺|ᵢⱼ (magnitudeⱼ + 10⁻⁴ ‖Jⱼ‖ ‖x‖)`.
+    ///
+    /// # Errors
+    /// [`NewtonError::NotFinite`].
+    pub(crate) fn sizes(&self, x: &DVector<f64>) -> Result<Vec<f64>, NewtonError> {
+        let Decomposition { weights, svd, leading } = Decomposition::new(self, NewtonOptions::default().rank_limit)?;
+        let inverse = |i: usize, j: usize| {
+            leading.iter().map(|&k| svd.right[(k, i)] * svd.left[(j, k)] / svd.values[k]).sum::<f64>()
+        };
+        let term = |i: usize, j: usize| inverse(i, j).abs() * weights[j] * self.term_size(j, x);
+        Ok((0..x.len()).map(|i| (0..self.residual.len()).map(|j| term(i, j)).sum()).collect())
     }
 
     fn is_finite(&self) -> bool {

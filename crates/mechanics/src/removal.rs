@@ -63,6 +63,9 @@ pub struct Removal {
     pub start: BTreeMap<Symbol, Expr>,
     /// The constants that a run uses unless told otherwise.
     pub constants: ConstantsRule,
+    /// What grows where other coordinates should serve as `u`, in `(q, t)`: what [`Removal::by_coordinates`]
+    /// divided by its pivots. Empty where the parametrization is part of what was asked for.
+    pub chart: Vec<Expr>,
 }
 
 impl Removal {

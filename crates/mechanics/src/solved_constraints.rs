@@ -15,6 +15,8 @@ pub(crate) struct SolvedConstraints {
     pub(crate) solution: Matrix,
     /// c, h.
     pub(crate) offset: Vec<Expr>,
+    /// What was divided by the pivots, in `(q, t)`: it grows where one of them becomes small.
+    pub(crate) quotients: Vec<Expr>,
 }
 
 impl SolvedConstraints {
@@ -31,10 +33,12 @@ impl SolvedConstraints {
         }
         let mut matrix = SparseMatrix::new(rows);
         let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut quotients = Vec::new();
         for _ in 0..h {
             let (p, c) = choose_pivot(candidates(g, &matrix, &pivots, n, &values))?;
             let Some(Pivot { entry: pivot, row, column }) = matrix.take(p, c) else { break };
             let row: BTreeMap<usize, Expr> = row.into_iter().map(|(j, e)| (j, g.div(e, pivot))).collect();
+            quotients.extend(row.range(..n).map(|(_, &e)| e));
             for (i, factor) in column {
                 for (&j, &e) in &row {
                     let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
@@ -52,7 +56,7 @@ impl SolvedConstraints {
         let entry = |row: &BTreeMap<usize, Expr>, j: usize| row.get(&j).map_or(g.zero(), |&e| g.neg(e));
         let solution = Matrix::from_fn(h, independent.len(), |i, j| entry(rows[i], independent[j]));
         let offset = rows.iter().map(|row| entry(row, n)).collect();
-        Ok(SolvedConstraints { dependent, independent, solution, offset })
+        Ok(SolvedConstraints { dependent, independent, solution, offset, quotients })
     }
 
     /// Fields that span the admissible directions in the space of `q`, or of `(q, t)`.

@@ -1,6 +1,10 @@
 //! Removals: every fault is refused with its figures, automatic ones satisfy the constraints.
 
-use mechanics::{ConstantsRule, Removal, RemovalError, complete_removal_start, project_velocity};
+use mechanics::{
+    ConstantsRule, Removal, RemovalError, StartData, StartError, complete_removal_start, complete_start,
+    project_velocity,
+};
+use symbolic::SplitMix;
 
 use crate::systems;
 
@@ -150,4 +154,36 @@ fn what_cancels_without_simplifying_is_zero() {
     }
     let verdict = mechanics::integrability(&system, &state).unwrap();
     assert!(matches!(verdict, mechanics::Integrability::Integrable { .. }), "{verdict}");
+}
+
+/// A supplied velocity that vanishes is the round-off of what cancels in its constraint, and no
+/// contradiction.
+#[test]
+fn velocities_that_vanish_are_represented() {
+    let mut random = SplitMix::new(16);
+    let mut number = |from: f64, to: f64| (100.0 * (from + (to - from) * random.unit())).round() / 100.0;
+    let (mut round_off, mut represented) = (0, 0);
+    for case in 0..200 {
+        let rolls = format!("x' - {}*a'*cos(b) + {}*y'", number(0.1, 3.0), number(-2.0, 2.0));
+        let turns = format!("{}*y'*cos(x) + sin(b)*a'", number(0.5, 2.0));
+        let mixed = format!("{turns} + {}*({rolls})", if case == 0 { 0.1 } else { number(0.1, 2.0) });
+        let (system, mut state) = systems::kinetic(&["x", "y", "a", "b"], &[], &[&rolls, &mixed]);
+        state.q.fill(0.0);
+        let given = [(2, number(0.1, 2.0)), (3, number(-1.0, 1.0))];
+        let given = given.map(|(i, v)| (system.coordinates[i].velocity, v)).into();
+        let data = StartData { positions: state.q, given, ..StartData::default() };
+        let (state, _) = complete_start(&system, &data).unwrap();
+        assert!(state.v[1].abs() < 1e-14, "y' = {} of a chassis that runs along x", state.v[1]);
+        round_off += usize::from(state.v[1] != 0.0);
+        for automatic in [Removal::by_coordinates, Removal::by_quasi_velocities] {
+            let removal = automatic(&system, &state).unwrap();
+            represented += usize::from(complete_removal_start(&system, &removal, &state).is_ok());
+            // a slip that is none of round-off is one
+            let slips = mechanics::State { v: vec![state.v[0], 1e-6, state.v[2], state.v[3]], ..state.clone() };
+            let error = complete_removal_start(&system, &removal, &slips).unwrap_err();
+            assert!(matches!(error, StartError::RemovalStart { .. }), "{error}");
+        }
+    }
+    assert!(round_off > 50, "only {round_off} velocities are round-off");
+    assert_eq!(represented, 400);
 }

@@ -167,6 +167,10 @@ pub(crate) struct Motion {
     /// Last time at which the motion can be read off.
     #[pyo3(get)]
     end: f64,
+    /// Times from which the motion went on by other pivots, because those before became small; each with the
+    /// names of the velocities, or coordinates, of which the others are combinations from then on.
+    #[pyo3(get)]
+    charts: Vec<(f64, Vec<String>)>,
     /// Values of the free constants, by name.
     #[pyo3(get)]
     constants: Py<PyDict>,
@@ -229,6 +233,7 @@ impl Motion {
             doubt: motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
             start: motion.start(),
             end: motion.end(),
+            charts: motion.charts.iter().map(|chart| (chart.t, chart.independent.clone())).collect(),
             constants: constants.into_py_dict(py)?.unbind(),
             work: work(py, &motion.work)?,
             projection: projection.unbind(),

@@ -88,6 +88,15 @@ def test_energy_is_an_invariant_with_small_drift(system):
         assert np.ptp(values) < 1e-8
 
 
+def test_charts_along_a_motion(system):
+    motion = system.solve("removed-constraint", removal="coordinates", constants="zero")
+    assert motion.status == "completed" and len(motion.charts) > 0
+    # x and phi, then y and phi where the blade nearly points along y
+    (t, names), *_ = motion.charts
+    assert names == ["y", "phi"] and abs(np.cos(motion.at(t).coordinates[2])) < 0.2
+    assert system.solve().charts == []
+
+
 def test_a_motion_that_stops(sledge):
     # this chart ends where the blade points across the slope, phi = pi/2
     along_x = {"along-x": {"parameters": ["x", "phi"], "rates": {"y": "x'*tan(phi)"}}}

@@ -324,6 +324,7 @@ impl<'a> Builder<'a> {
             coordinates: g.variables(&self.system.positions()),
             start,
             constants: ConstantsRule::Zero,
+            chart: Vec::new(),
         }
     }
 

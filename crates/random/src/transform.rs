@@ -67,6 +67,7 @@ impl Scaling {
             let length = w.coordinate.map_or(1.0, |i| self.lengths[i]);
             w.rate = g.mul(g.number(self.time / length), g.substitute(w.rate, &map));
         }
+        removal.chart = g.substitute_all(&removal.chart, &map);
         for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
             // what the parameter's own rate is at the start has the new unit of time too
             if let Some(start) = removal.start.get_mut(&u.rate) {
@@ -95,7 +96,7 @@ impl Scaling {
         };
         let (coordinates, velocities) =
             (scaled(&equations.coordinates, 1.0), scaled(&equations.velocities, 1.0 / self.time));
-        (equations.coordinates, equations.velocities) = (coordinates, velocities);
+        (equations.coordinates, equations.velocities, equations.chart) = (coordinates, velocities, None);
         equations
     }
 }
@@ -137,6 +138,7 @@ impl Rewritten {
     pub fn outputs(&self, mut equations: Equations) -> Equations {
         equations.coordinates = self.positions.clone();
         equations.velocities = self.velocities.clone();
+        equations.chart = None;
         equations
     }
 }

@@ -110,7 +110,7 @@ fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) 
         regular: "mass matrix regular on the admissible velocities",
     }];
     equations.chosen.extend(frame.map(|frame| frame.words(g)));
-    hand_over(&mut equations, &system, quasi, &momenta);
+    hand_over(&mut equations, &system, &quasi, &momenta);
     equations.definitions = definitions.into_list();
     equations.graph = system.graph;
     Ok(equations)
@@ -207,8 +207,8 @@ fn balance_in_frame(
     Balance { mass, force }
 }
 
-/// States, outputs, invariants and guards.
-fn hand_over(equations: &mut Equations, system: &System, quasi: QuasiVelocities, momenta: &[Expr]) {
+/// States, outputs and invariants.
+fn hand_over(equations: &mut Equations, system: &System, quasi: &QuasiVelocities, momenta: &[Expr]) {
     let g = &system.graph;
     for c in &system.coordinates {
         let (rate, start) = (g.variable(c.velocity), g.variable(c.position));
@@ -233,5 +233,4 @@ fn hand_over(equations: &mut Equations, system: &System, quasi: QuasiVelocities,
             equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: momenta[i] });
         }
     }
-    equations.guards = quasi.guards;
 }

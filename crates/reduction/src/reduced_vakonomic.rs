@@ -224,7 +224,6 @@ impl Problem {
         multipliers(g, quasi, augmented, &adjoints, &mut definitions);
         hand_over(&mut equations, &system, augmented, &self.canonical(g));
         equations.chosen.extend(frame.as_ref().map(|frame| frame.words(g)));
-        equations.guards = quasi.guards.clone();
         equations.definitions = definitions.into_list();
         equations.graph = system.graph;
         equations

@@ -45,6 +45,8 @@
 //!
 //! **Where it breaks.** Where the chart of the removal does. What coordinates, `B` and `G` divide by (for
 //! `tan` the cosine) is in the graph, and is collected as guards; a motion stops where one changes its sign.
+//! Where all `u` are coordinates, and others would do as well, it goes on in those before ([`Chart`]): the
+//! momenta `p_u = G_u̇`, `p_w = −P` belong to the coordinates, whichever of them are called `u`.
 //!
 //! **What is left out.** A memory variable that neither `L` nor a rate with a costate of its own contains is
 //! a quadrature; its costate does not move. Zero at the start or at the free end it is zero throughout, and
@@ -57,8 +59,8 @@ mod costates;
 
 use costates::Costates;
 use equations::{
-    Block, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role, StateVariable, Statement,
-    refuse_forces,
+    Block, Chart, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role, StateVariable,
+    Statement, refuse_forces,
 };
 use mechanics::{DisplacementParameter, Removal, System, fresh_symbol, generic_rank};
 use symbolic::{Expr, Graph, Symbol};
@@ -183,7 +185,12 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     singular.extend(removal.memory.iter().map(|w| w.rate));
     singular.push(generating);
     equations.guards = [g.denominators(&singular), g.kinks(&singular)].concat();
-    equations.guards.retain(|&e| !g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s)));
+    let constant = |e: Expr| g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s));
+    equations.guards.retain(|&e| !constant(e));
+    let divided = removal.chart.iter().filter(|&&e| !g.denominators(&[e]).into_iter().all(constant));
+    let coefficients: Vec<Expr> = divided.copied().collect();
+    let independent = removal.parameters.iter().map(|u| g.name(u.symbol)).collect();
+    equations.chart = (!coefficients.is_empty()).then_some(Chart { independent, coefficients });
     equations.removal = Some(removal.clone());
     drop(parameters);
     equations.graph = system.graph;

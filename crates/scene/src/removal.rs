@@ -52,6 +52,7 @@ fn read(context: &Context, name: &str, section: &Section) -> Result<Removal, Sce
         parameters,
         memory,
         coordinates,
+        chart: Vec::new(),
     };
     removal.verify(system).map_err(|error| {
         let place = match error {

@@ -79,8 +79,8 @@ struct MotionTable {
     coordinates: Vec<Vec<f64>>,
     /// Coordinates of the kept run less those of the looser one.
     differences: Vec<Vec<f64>>,
-    /// Whether it reached the time asked for.
-    complete: bool,
+    /// What happens a little later than these times, if not the time asked for.
+    until: Option<&'static str>,
     /// `μ(t)`, vakonomic only.
     multipliers: Vec<Vec<f64>>,
 }
@@ -101,7 +101,8 @@ pub(super) struct Transcription {
 /// How far random states are from the start: positions, parameters and memory; everything else.
 const SPREAD: (f64, f64) = (0.25, 1.0);
 
-/// Where a motion stops at a singularity, it is compared up to this fraction of the time it lasted.
+/// Where a motion stops at a singularity, or goes on in a chart that the referee does not have, it is
+/// compared up to this fraction of the time until then.
 const BEFORE_A_STOP: f64 = 0.98;
 
 /// States drawn for each one wanted, at most: where our equations cannot be solved another one is drawn.
@@ -321,9 +322,12 @@ fn samples(scene: &Scene, choice: &Choice, equations: &Equations, count: usize) 
 
 fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: usize) -> Result<MotionTable> {
     let system = &scene.system;
-    let complete = motion.is_complete();
-    let fraction = if complete { 1.0 } else { BEFORE_A_STOP };
-    let begin = motion.start();
+    let (begin, length) = (motion.start(), motion.end() - motion.start());
+    let (until, fraction) = match motion.charts.first() {
+        Some(change) => (Some("its chart changes"), BEFORE_A_STOP * (change.t - begin) / length),
+        None if motion.is_complete() => (None, 1.0),
+        None => (Some("it stops"), BEFORE_A_STOP),
+    };
     let times: Vec<f64> = motion.grid(times).into_iter().map(|t| begin + fraction * (t - begin)).collect();
     let differences = times.iter().map(|&t| motion.difference_of_runs(t)).collect::<Result<_, _>>()?;
     let outputs = times.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
@@ -347,7 +351,7 @@ fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: u
         Vec::new()
     };
     let coordinates = outputs.into_iter().map(|o| o.coordinates).collect();
-    Ok(MotionTable { tags, start, times, coordinates, differences, complete, multipliers })
+    Ok(MotionTable { tags, start, times, coordinates, differences, until, multipliers })
 }
 
 /// `None` where the motion does not last that long: the vakonomic motion of the scene, or the

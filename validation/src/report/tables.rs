@@ -1,7 +1,7 @@
 //! The tables of a scene page.
 
 use anyhow::Result;
-use deltaq::{Comparison, Ending, Pair, Verdict};
+use deltaq::{ChartChange, Comparison, Ending, Pair, Verdict};
 
 use crate::report::Table;
 use crate::report::numbers::{enumerate, or_dash, precise, short};
@@ -51,6 +51,8 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
                     Ending::Completed => format!("{} s", short(motion.end())),
                     Ending::Stopped { t, cause } => format!("stopped at {} s: {cause}", precise(*t)),
                 };
+                let chart = |c: &ChartChange| format!("; by {} from {} s on", c.independent.join(", "), precise(c.t));
+                let ended = ended + &motion.charts.iter().map(chart).collect::<String>();
                 let estimate = comparison
                     .pairs
                     .iter()

@@ -218,7 +218,7 @@ impl Task<'_> {
         let member = &self.members[index];
         member.set(compiled);
         let start = Start { t: member.t, y: self.states(index) };
-        let run = SingleRun::new(compiled, &start, member.end, self.options)?;
+        let run = SingleRun::new(compiled, &start, member.end, self.options, None)?;
         let solution = &run.solution;
         let (reached, direction) = (run.end(), member.end - member.t);
         let passed = self.times.iter().take_while(|&&t| (t - reached) * direction <= 0.0);
@@ -231,7 +231,7 @@ impl Task<'_> {
         Ok(MemberRun {
             states: states.collect(),
             unknowns: passed.filter_map(|&t| run.unknowns_near(t).map(<[f64]>::to_vec)).collect(),
-            ending: Ending::of(&words, compiled, solution),
+            ending: Ending::of(&words, compiled, solution, &[]),
             work: solution.work,
             projection: solution.projection,
             alone: Some(why),

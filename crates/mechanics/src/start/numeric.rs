@@ -22,7 +22,7 @@ impl AtState {
     }
 }
 
-fn bounded(point: &[f64]) -> Vec<Bounded> {
+pub(super) fn bounded(point: &[f64]) -> Vec<Bounded> {
     point.iter().map(|&x| Bounded::from_f64(x)).collect()
 }
 
@@ -33,6 +33,8 @@ pub(super) struct Problem<'a> {
     pub(super) equations: Vec<Expr>,
     /// Values of the symbols that are neither unknown nor parameters.
     pub(super) known: HashMap<Symbol, f64>,
+    /// Those of them that are results themselves, with the size of what was added up to them.
+    pub(super) results: Vec<(Symbol, f64)>,
 }
 
 impl<'a> Problem<'a> {
@@ -42,7 +44,8 @@ impl<'a> Problem<'a> {
         let occurring: BTreeSet<Symbol> =
             equations.iter().chain(outputs).flat_map(|&e| system.graph.symbols_of(e)).collect();
         let open = |s: &Symbol| !known.contains_key(s) && !parameters.contains_key(s);
-        Problem { system, unknowns: occurring.into_iter().filter(open).collect(), equations, known }
+        let unknowns = occurring.into_iter().filter(open).collect();
+        Problem { system, unknowns, equations, known, results: Vec::new() }
     }
 
     /// Known values in the order of their symbols, so that every run builds the same graph.
@@ -65,17 +68,23 @@ impl<'a> Problem<'a> {
         let (m, n) = (self.equations.len(), self.unknowns.len());
         let known = self.known_in_order();
         let known_symbols: Vec<Symbol> = known.iter().map(|k| k.0).collect();
+        let (results, sizes): (Vec<Symbol>, Vec<f64>) = self.results.iter().copied().unzip();
         let mut outputs = self.equations.clone();
         outputs.extend(g.jacobian(&self.equations, &self.unknowns).entries());
+        outputs.extend(g.jacobian(&self.equations, &results).entries());
         let inputs = [&self.unknowns[..], &known_symbols].concat();
         let mut measured = self.system.evaluator(&inputs, &outputs)?;
         let mut point: Vec<f64> = vec![0.0; n];
         point.extend(known.iter().map(|k| k.1));
         let evaluate = |x: &DVector<f64>| {
             point[..n].copy_from_slice(x.as_slice());
-            let (residuals, jacobian) = measured.evaluate(&bounded(&point)).split_at(m);
+            let (residuals, derivatives) = measured.evaluate(&bounded(&point)).split_at(m);
+            let (jacobian, by_results) = derivatives.split_at(m * n);
+            let behind = |i: usize| by_results[i * sizes.len()..].iter().zip(&sizes);
+            let sum = |i: usize| behind(i).map(|(d, size)| d.value.abs() * size).sum::<f64>();
+            let size = |i: usize| Some(sum(i)).filter(|size| size.is_finite()).unwrap_or(0.0);
             Evaluation {
-                magnitude: DVector::from_iterator(m, residuals.iter().map(|r| r.magnitude)),
+                magnitude: DVector::from_fn(m, |i, _| residuals[i].magnitude + size(i)),
                 residual: DVector::from_iterator(m, residuals.iter().map(|r| r.value)),
                 jacobian: DMatrix::from_row_iterator(m, n, jacobian.iter().map(|d| d.value)),
             }

@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 
-use symbolic::{Expr, Symbol};
+use nalgebra::{DMatrix, DVector};
+use symbolic::{Bounded, Expr, Symbol};
 
 use super::error::{StartError, check_lengths};
-use super::numeric::{Problem, Solved};
-use crate::newton::NewtonOptions;
+use super::numeric::{Problem, Solved, bounded};
+use crate::newton::{Evaluation, NewtonOptions};
 use crate::{Removal, State, System};
 
 /// Numbers for the variables of a parametrization at the start, with `q(u̇, u, w, t) = q₀` and `q̇ = v₀`.
@@ -59,7 +60,8 @@ pub fn complete_removal_start(system: &System, removal: &Removal, state: &State)
         .flat_map(|u| [u.symbol, u.rate])
         .chain(removal.memory.iter().map(|w| w.symbol))
         .collect();
-    let problem = Problem::new(system, removal.residuals(system), &g.variables(&variables), known);
+    let mut problem = Problem::new(system, removal.residuals(system), &g.variables(&variables), known);
+    problem.results = system.velocities().into_iter().zip(velocity_sizes(system, state)?).collect();
     let mut smallest = f64::INFINITY;
     for default in [0.0, 1.0, -1.0, 0.1, -0.1] {
         match problem.solve(&HashMap::new(), default)? {
@@ -81,6 +83,24 @@ pub fn complete_removal_start(system: &System, removal: &Removal, state: &State)
         }
     }
     Err(fault(smallest))
+}
+
+/// What was added up to each velocity, for constraints give it by way of their terms: `Σ |A⁺| |terms of f|`.
+///
+/// So a velocity that vanishes is known to the round-off of what cancelled in it, and not to that of itself.
+fn velocity_sizes(system: &System, state: &State) -> Result<Vec<f64>, StartError> {
+    let (n, h) = (system.dimension(), system.constraints.len());
+    let inputs = [system.positions(), system.velocities(), vec![system.time]].concat();
+    let point = [&state.q[..], &state.v, &[state.t]].concat();
+    let jacobian = system.graph.jacobian(&system.constraints, &system.velocities());
+    let mut measured = system.evaluator(&inputs, &[&system.constraints[..], jacobian.entries()].concat())?;
+    let (constraints, entries) = measured.evaluate(&bounded(&point)).split_at(h);
+    let jacobian = DMatrix::from_row_iterator(h, n, entries.iter().map(|e| e.value));
+    let residual = DVector::from_iterator(h, constraints.iter().map(|f| f.value));
+    let finite = |f: &Bounded| Some(f.magnitude).filter(|size| size.is_finite()).unwrap_or(0.0);
+    let magnitude = DVector::from_iterator(h, constraints.iter().map(finite));
+    let evaluation = Evaluation { residual, jacobian, magnitude };
+    Ok(evaluation.sizes(&DVector::from_column_slice(&state.v))?)
 }
 
 /// [`Removal::start`] as numbers.

@@ -9,8 +9,10 @@ use super::regularity::check_constraints;
 use crate::newton::Root;
 use crate::{State, System};
 
-/// Two velocities closer than this part of the larger are one solution.
+/// Two velocities closer than this part of the larger are one solution, and so is what in one that vanishes
+/// is round-off of the others.
 const SAME: f64 = 1e-6;
+const ROUND_OFF: f64 = 1e-10;
 
 /// Solves `problem` and evaluates the velocities `outputs`; of contradictory equations by least squares.
 pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &StartData) -> Result<Vec<f64>, StartError> {
@@ -21,7 +23,7 @@ pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &Start
         match problem.solve(&data.guess, guess)? {
             Solved::Root(root) => {
                 let (v, _) = problem.outputs(outputs, &root)?;
-                if !roots.iter().any(|(other, _)| v.iter().zip(other).all(|(&a, &b)| same(a, b))) {
+                if !roots.iter().any(|(other, _)| differing(&v, other).is_empty()) {
                     roots.push((v, root));
                 }
             }
@@ -39,7 +41,7 @@ pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &Start
     };
     let v = check_determined(problem, outputs, root, data)?;
     if let [(first, _), (second, _), ..] = &roots[..] {
-        let differ: Vec<usize> = (0..v.len()).filter(|&i| !same(first[i], second[i])).collect();
+        let differ = differing(first, second);
         return Err(StartError::Ambiguous {
             velocities: differ.iter().map(|&i| velocity_name(problem.system, i)).collect(),
             first: differ.iter().map(|&i| first[i]).collect(),
@@ -59,8 +61,11 @@ fn guesses(problem: &Problem, data: &StartData) -> Vec<f64> {
     vec![0.0, speed, -speed]
 }
 
-fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME * a.abs().max(b.abs())
+/// The places of velocities that differ.
+fn differing(a: &[f64], b: &[f64]) -> Vec<usize> {
+    let round_off = ROUND_OFF * a.iter().chain(b).fold(0.0_f64, |size, x| size.max(x.abs()));
+    let same = |i: usize| (a[i] - b[i]).abs() <= (SAME * a[i].abs().max(b[i].abs())).max(round_off);
+    (0..a.len()).filter(|&i| !same(i)).collect()
 }
 
 fn velocity_name(system: &System, i: usize) -> String {

@@ -189,6 +189,7 @@ class Motion:
     doubt: Final[str | None]
     start: Final[float]
     end: Final[float]
+    charts: Final[list[tuple[float, list[str]]]]
     constants: Final[dict[str, float]]
     work: Final[dict[str, int]]
     projection: Final[dict[str, float]]

@@ -57,9 +57,10 @@ impl QuasiVelocities {
         let dependent: Vec<DependentVelocity> = steps.into_iter().rev().flatten().collect();
         let coefficients = std::mem::take(&mut elimination.coefficients);
         let guards = std::mem::take(&mut elimination.guards);
+        let quotients = std::mem::take(&mut elimination.quotients);
         let eliminated = std::mem::take(&mut elimination.eliminated);
         let free = elimination.free(&dependent.iter().map(|d| d.symbol).collect::<HashSet<Symbol>>());
-        Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, homogeneous })
+        Ok(QuasiVelocities { free, dependent, eliminated, coefficients, guards, quotients, homogeneous })
     }
 }
 
@@ -78,6 +79,7 @@ struct Elimination<'a> {
     /// What each step defined.
     steps: Vec<Vec<DependentVelocity>>,
     guards: Vec<Expr>,
+    quotients: Vec<Expr>,
     eliminated: Vec<EliminatedConstraint>,
 }
 
@@ -113,6 +115,7 @@ impl<'a> Elimination<'a> {
             coefficients: Definitions::default(),
             steps: Vec::new(),
             guards: Vec::new(),
+            quotients: Vec::new(),
             eliminated: Vec::new(),
         };
         let number = |(j, e): (usize, Expr)| (j, (e, elimination.number(e)));
@@ -147,6 +150,8 @@ impl<'a> Elimination<'a> {
             let (row, column) = self.largest_pivot()?;
             self.guards.push(self.matrix.rows()[row][&column].0);
             self.by_pivot(row, column);
+            let divided = self.steps.last().into_iter().flatten().flat_map(|d| &d.terms);
+            self.quotients.extend(divided.map(|(_, e)| *e));
         }
         Ok(true)
     }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use equations::{Definitions, Equations, Statement};
+use equations::{Chart, Definitions, Equations, Statement};
 use mechanics::System;
 use symbolic::{Expr, Graph, Symbol};
 
@@ -65,6 +65,8 @@ pub struct QuasiVelocities {
     pub coefficients: Definitions,
     /// Pivots that are not constant: where one of them vanishes, this choice of `w` breaks down.
     pub guards: Vec<Expr>,
+    /// What was divided by those pivots, in `(q, t)`.
+    pub quotients: Vec<Expr>,
     /// Whether `b = 0`: the admissible velocities are a linear space.
     pub homogeneous: bool,
 }
@@ -91,7 +93,8 @@ impl QuasiVelocities {
         self.dependent.iter().filter_map(multiple).collect()
     }
 
-    /// Hands over the dependent velocities, and those a frame was made from: defined, and stated for readers.
+    /// Hands over guards, chart and the dependent velocities, and those a frame was made from: defined, and
+    /// stated for readers.
     pub(crate) fn hand_over(
         &self,
         g: &Graph,
@@ -99,6 +102,11 @@ impl QuasiVelocities {
         equations: &mut Equations,
         definitions: &mut Definitions,
     ) {
+        equations.guards = self.guards.clone();
+        equations.chart = (!self.quotients.is_empty()).then(|| Chart {
+            independent: self.free.iter().map(|w| g.name(w.symbol)).collect(),
+            coefficients: self.quotients.clone(),
+        });
         let dependent = self.dependent.iter().map(|d| (d.symbol, d.value(g)));
         for (symbol, velocity) in dependent.chain(frame.iter().flat_map(|f| f.recursion.iter().copied())) {
             definitions.define(symbol, velocity);
