@@ -20,7 +20,7 @@ pub struct Choice {
 }
 
 /// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need
-/// one get a choice without, which [`solve_choice`] refuses with the reason.
+/// one get a choice without, which [`crate::solve_choice`] refuses with the reason.
 pub fn choices(scene: &Scene) -> Vec<Choice> {
     let mut choices = Vec::new();
     let parameters: Vec<String> = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
