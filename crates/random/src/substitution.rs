@@ -13,6 +13,7 @@ use deltaq::{Choice, Run, Settings, setting, solve};
 use equations::{Block, Equations, Role, StateVariable, Statement};
 use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
+use symbolic::Expr;
 
 /// Name of the control in tables and files.
 pub const NAME: &str = "substitution";
@@ -52,6 +53,10 @@ pub fn derive(system: &System, removal: &Removal) -> Equations {
     }];
     equations.coordinates = removal.coordinates.clone();
     equations.velocities = removal.velocities(&system);
+    let memory = removal.memory.iter().map(|w| w.rate);
+    let singular: Vec<Expr> = equations.coordinates.iter().copied().chain(memory).chain([lagrangian]).collect();
+    equations.guards = [g.denominators(&singular), g.kinks(&singular)].concat();
+    equations.guards.retain(|&e| !g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s)));
     equations.removal = Some(removal.clone());
     equations.graph = system.graph;
     equations.leave_out_unneeded()
