@@ -229,7 +229,6 @@ fn equal_steps_that_pass_over_a_switch_are_refused_with_what_would_do() {
         solve_by_steps(&scene, choice, Steps { step, composition: Composition::Second }, &Settings::default())
     };
     let error = solve(1.0).err().expect("refused");
-    println!("{error}");
     let SolveError::PassedOver { t, step, function, enough } = error else { panic!("{error}") };
     assert!((4.0..=5.0).contains(&t) && step == 1.0 && function.contains("tanh of") && function.contains('t'));
     assert!(enough > 1e-3 && enough < 0.1, "{enough}");

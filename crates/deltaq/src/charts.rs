@@ -51,7 +51,6 @@ const GOOD: f64 = 25.0;
 pub(crate) fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result<Runs, SolveError> {
     let (mut legs, mut changes, mut fallbacks): ([Legs; 2], Vec<ChartChange>, usize) = Default::default();
     let (mut charts, mut at, mut own): (Vec<Prepared>, Option<usize>, Option<Box<Later>>) = (Vec::new(), None, None);
-    let first = Names::of(&prepared.equations);
     let (mut options, mut options_looser) = (settings.options(settings.tolerance * TIGHTER), None);
     let failure = loop {
         let here = chart(prepared, &mut charts, at);
@@ -86,7 +85,7 @@ pub(crate) fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings
         }
     };
     let ending = failure.unwrap_or_else(|| {
-        let mut before = Vec::new();
+        let (first, mut before) = (Names::of(&prepared.equations), Vec::new());
         for t in changes.iter().map(|change| change.t).chain((!changes.is_empty()).then_some(setting.start.t)) {
             if let Ok(outputs) = outputs_in(&mut legs[0], &mut prepared.compiled, t) {
                 let here = chart(prepared, &mut charts, at);

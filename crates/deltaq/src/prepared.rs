@@ -136,7 +136,7 @@ impl Prepared {
         self.set_compiled();
         let mut options = options.clone();
         options.breakpoints.extend(&self.breakpoints);
-        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, &options, largest)
+        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, options, largest)
     }
 
     /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last

@@ -27,7 +27,7 @@ impl SingleRun {
         compiled: &mut Compiled,
         start: &Start,
         end: f64,
-        options: &Options,
+        mut options: Options,
         largest: Option<f64>,
     ) -> Result<SingleRun, SolveError> {
         let mut anchors = Vec::new();
@@ -37,7 +37,6 @@ impl SingleRun {
         }
         let mut rates = vec![0.0; start.y.len()];
         compiled.rates(start.t, &start.y, &mut rates).map_err(SolveError::AtStart)?;
-        let mut options = options.clone();
         if options.sizes.is_empty() {
             options.sizes = sizes(&start.y, &rates, end - start.t);
         }
@@ -45,8 +44,11 @@ impl SingleRun {
         let mut runner = Runner { compiled, anchors, largest };
         let solution = integrate::integrate(&mut runner, start, end, &options)?;
         let anchors = runner.anchors;
-        let ended_at = |event| matches!(solution.status, Status::Stopped { cause: StopCause::Event { index }, .. } if index == event);
-        let left_chart = ended_at(compiled.guards());
+        let at_guard = |status: &Status| match status {
+            Status::Stopped { cause: StopCause::Event { index }, .. } => Some(*index),
+            _ => None,
+        };
+        let left_chart = at_guard(&solution.status) == Some(compiled.guards());
         let fallbacks = compiled.fallbacks() - before;
         Ok(SingleRun { solution, anchors, fallbacks, sizes: options.sizes, left_chart })
     }

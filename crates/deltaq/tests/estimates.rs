@@ -33,7 +33,6 @@ fn one_wrong_coordinate_makes_a_motion_untrusted() {
     let settings = Settings { tolerance: 1e-3, ..Settings::default() };
     let times = [2.0, 0.5, 1.3];
     let (so_far, whole, z) = swing(&settings, &times);
-    println!("{whole:?}");
     for ((t, estimate), z) in times.iter().zip(&so_far).zip(&z) {
         let error = (z - (40.0 * t).sin() / 40.0).abs();
         assert!(error <= estimate.coordinates[2], "at {t}: {error:.1e}, {estimate:?}");

@@ -117,10 +117,12 @@ impl Trajectory {
             let node = self.node(k);
             return self.discrete.sample(node);
         }
-        let from = match near(k, SHORT * self.h.abs()) {
-            _ if k == 0 => 1.min(last),
-            true => k - 1,
-            false => k,
+        let from = if k == 0 {
+            1.min(last)
+        } else if near(k, SHORT * self.h.abs()) {
+            k - 1
+        } else {
+            k
         };
         let mut node = self.node(from);
         self.discrete.step.forget();

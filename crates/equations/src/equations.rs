@@ -199,6 +199,19 @@ impl Equations {
         }
     }
 
+    /// Whether an expression of the graph `g`, which is handed over last, has no symbols but parameters.
+    pub fn is_constant(&self, g: &Graph, e: Expr) -> bool {
+        g.symbols_of(e).iter().all(|s| self.parameters.contains_key(s))
+    }
+
+    /// What is not constant and zero where these expressions of `g` are singular: what they divide by, and
+    /// where they have kinks.
+    pub fn singularities(&self, g: &Graph, of: &[Expr]) -> Vec<Expr> {
+        let mut found = [g.denominators(of), g.kinks(of)].concat();
+        found.retain(|&e| !self.is_constant(g, e));
+        found
+    }
+
     /// Adds the states `q` with rate `v` and `v` with rate `a`, started at `(q₀, v₀)`.
     pub fn add_positions_and_velocities(&mut self, system: &System) {
         let g = &system.graph;

@@ -115,22 +115,15 @@ pub fn integrate(problem: &mut dyn Problem, start: &Start, end: f64, options: &O
     if options.method == Method::Taylor && !problem.has_taylor() {
         return Err(CallError::NoTaylor);
     }
-    let mut all: Option<Solution> = None;
-    let mut options = options.clone();
-    for stop in options.stops(start.t, end) {
-        let begin = all.as_ref().map_or(start.clone(), Solution::last);
-        let part = between_breakpoints(problem, &begin, stop, &options)?;
-        options.before = Some(part.done());
-        let is_complete = part.status == Status::Completed;
-        match &mut all {
-            None => all = Some(part),
-            Some(all) => all.append(part),
-        }
-        if !is_complete {
+    let stops = options.stops(start.t, end);
+    let mut all = between_breakpoints(problem, start, stops[0], options)?;
+    for &stop in &stops[1..] {
+        if all.status != Status::Completed {
             break;
         }
+        let options = Options { before: Some(all.done()), ..options.clone() };
+        all.append(between_breakpoints(problem, &all.last(), stop, &options)?);
     }
-    let Some(all) = all else { unreachable!("a run has an end") };
     Ok(all)
 }
 

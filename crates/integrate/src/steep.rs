@@ -117,8 +117,8 @@ pub fn gauge_growth(gauge: Gauge, x: &[f64; GAUGE_NODES]) -> f64 {
     let values: Vec<f64> = (0..=PARTS).map(|i| at(i as f64 * width)).collect();
     let grown = |(low, high): (f64, f64), beyond: f64| gauge(high + beyond) - gauge(low - beyond);
     let bend = values.windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).abs()).fold(0.0, f64::max);
-    let (least, most) =
-        (grown(ends(values.iter().copied()), missed), grown(ends(values.iter().copied()), missed + bend));
+    let around = ends(values.iter().copied());
+    let (least, most) = (grown(around, missed), grown(around, missed + bend));
     if most <= GAUGE_LIMIT || least > GAUGE_LIMIT {
         return least;
     }

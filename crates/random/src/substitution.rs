@@ -55,8 +55,7 @@ pub fn derive(system: &System, removal: &Removal) -> Equations {
     equations.velocities = removal.velocities(&system);
     let memory = removal.memory.iter().map(|w| w.rate);
     let singular: Vec<Expr> = equations.coordinates.iter().copied().chain(memory).chain([lagrangian]).collect();
-    equations.guards = [g.denominators(&singular), g.kinks(&singular)].concat();
-    equations.guards.retain(|&e| !g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s)));
+    equations.guards = equations.singularities(g, &singular);
     equations.removal = Some(removal.clone());
     equations.graph = system.graph;
     equations.leave_out_unneeded()

@@ -184,11 +184,9 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     let mut singular = equations.coordinates.clone();
     singular.extend(removal.memory.iter().map(|w| w.rate));
     singular.push(generating);
-    equations.guards = [g.denominators(&singular), g.kinks(&singular)].concat();
-    let constant = |e: Expr| g.symbols_of(e).iter().all(|s| equations.parameters.contains_key(s));
-    equations.guards.retain(|&e| !constant(e));
-    let divided = removal.chart.iter().filter(|&&e| !g.denominators(&[e]).into_iter().all(constant));
-    let coefficients: Vec<Expr> = divided.copied().collect();
+    equations.guards = equations.singularities(g, &singular);
+    let divides = |e: Expr| !g.denominators(&[e]).into_iter().all(|e| equations.is_constant(g, e));
+    let coefficients: Vec<Expr> = removal.chart.iter().copied().filter(|&e| divides(e)).collect();
     let independent = removal.parameters.iter().map(|u| g.name(u.symbol)).collect();
     equations.chart = (!coefficients.is_empty()).then_some(Chart { independent, coefficients });
     equations.removal = Some(removal.clone());

@@ -218,7 +218,7 @@ impl Task<'_> {
         let member = &self.members[index];
         member.set(compiled);
         let start = Start { t: member.t, y: self.states(index) };
-        let run = SingleRun::new(compiled, &start, member.end, self.options, None)?;
+        let run = SingleRun::new(compiled, &start, member.end, self.options.clone(), None)?;
         let solution = &run.solution;
         let (reached, direction) = (run.end(), member.end - member.t);
         let passed = self.times.iter().take_while(|&&t| (t - reached) * direction <= 0.0);
