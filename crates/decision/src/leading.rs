@@ -14,6 +14,8 @@ use crate::transport::root_of_mass;
 const HIGHEST: usize = 12;
 /// A coefficient under this part of its terms counts as zero, where no exact numbers decide.
 const VANISHES: f64 = 1e-9;
+/// So does one under this part of the curve's own accelerations, where terms are small that cancel in them.
+const ROUND_OFF: f64 = 1e-13;
 /// Of the time in which coefficients get no larger; and slices of that part.
 const FAST: f64 = 0.5;
 const SLICES: usize = 24;
@@ -43,7 +45,11 @@ impl Question<'_> {
     ) -> Option<LeadingDifference> {
         let (curve, series) = self.series(&rounded(system, state), HIGHEST).ok()?;
         let proved = exact.and_then(|exact| self.proved_order(exact, constants));
-        let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants))?;
+        let coordinates = self.family().shape.coordinates;
+        let accelerations = &curve.inputs[curve.inputs.len() - coordinates..];
+        let own = |k: usize| at_order(accelerations, k).into_iter().fold(0.0, |size: f64, a| size.max(a.abs()));
+        let floor = |k: usize| (0..=k).map(own).fold(0.0, f64::max) * ROUND_OFF;
+        let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants, floor(k)))?;
         // decimals that stand for other numbers leave lower terms, of the size of round-off
         let order = proved.flatten().map_or(seen, |order| order.max(seen));
         let term = |k: usize| -> Vec<f64> {
@@ -165,8 +171,8 @@ fn value(row: &[f64], constants: &[f64]) -> (f64, f64) {
     terms.fold((0.0, 0.0), |(sum, size), x| (sum + x, size + x.abs()))
 }
 
-fn stands_out(series: &MismatchSeries<f64>, order: usize, constants: &[f64]) -> bool {
+fn stands_out(series: &MismatchSeries<f64>, order: usize, constants: &[f64], floor: f64) -> bool {
     // terms that cancelled at earlier orders left round-off that is as large as they were
     let size = (0..=order).flat_map(|k| rows(series, k)).map(|row| value(row, constants).1).fold(0.0_f64, f64::max);
-    rows(series, order).any(|row| value(row, constants).0.abs() > VANISHES * size)
+    rows(series, order).any(|row| value(row, constants).0.abs() > (VANISHES * size).max(floor))
 }

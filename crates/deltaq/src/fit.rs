@@ -16,6 +16,8 @@ const INSTANTS: usize = 40;
 const SEARCH_TOLERANCE: f64 = 1e-7;
 const SEARCH_STEPS: usize = 5_000;
 const SEARCH_ITERATIONS: usize = 30;
+/// The coarse search is done where an iteration brings less than this part.
+const SEARCH_GAIN: f64 = 1e-4;
 
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
 const CLOSE: f64 = 1e-4;
@@ -79,9 +81,10 @@ pub fn best_fit(
             several.iter().zip(distances).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(guess, _)| guess)
         }
     };
-    let mut search = |tolerance: f64, limits: &Settings, guess: &[f64]| {
-        let mut options = ShootOptions::with_tolerance(tolerance);
-        options.max_iterations = SEARCH_ITERATIONS;
+    let mut search = |tolerance: f64, least_gain: f64, limits: &Settings, guess: &[f64]| {
+        let full = ShootOptions::with_tolerance(tolerance * way);
+        let least_gain = least_gain.max(full.least_gain);
+        let options = ShootOptions { max_iterations: SEARCH_ITERATIONS, least_gain, ..full };
         fit(
             &mut |constants: &[f64], residual: &mut [f64]| difference(tolerance, limits, constants, residual),
             INSTANTS * n,
@@ -89,10 +92,10 @@ pub fn best_fit(
             &options,
         )
     };
-    let mut best = closest.and_then(|guess| search(SEARCH_TOLERANCE, &coarse, guess).ok());
+    let mut best = closest.and_then(|guess| search(SEARCH_TOLERANCE, SEARCH_GAIN, &coarse, guess).ok());
     if let Some(found) = &best
         && found.residual < CLOSE * way
-        && let Ok(refined) = search(settings.tolerance * TIGHTER, settings, &found.unknowns)
+        && let Ok(refined) = search(settings.tolerance * TIGHTER, 0.0, settings, &found.unknowns)
     {
         best = Some(refined);
     }

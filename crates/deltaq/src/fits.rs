@@ -58,8 +58,11 @@ pub(crate) fn fits(
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
         if pairs.iter().find(pair).is_some_and(|p| p.gap.verdict == Verdict::Different) {
-            let known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
+            let mut known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
             let by_identity = known.is_some();
+            if let (None, Some(&first)) = (&known, vakonomic.first()) {
+                known = by_multipliers(scene, runs, [first, run, target], metric, settings)?;
+            }
             let nearest = decided.iter().find(|d| (d.family, d.curve) == (run, target));
             let nearest = nearest.and_then(|d| Some(d.outcome.as_ref().ok()?.decision.set.point.clone()));
             let start = known.map_or(Start::Search(nearest), Start::Known);
@@ -99,6 +102,28 @@ fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> 
         }
     };
     multipliers.map_or(Ok(None), |multipliers| costates_of(scene, removal, &multipliers))
+}
+
+/// The constants of a removal by coordinates for which it comes closest to `target`: those of the vakonomic
+/// motion that does, which needs no charts. `None` for other removals, or where that finds none.
+fn by_multipliers(
+    scene: &Scene,
+    runs: &mut [Run],
+    [vakonomic, run, target]: [usize; 3],
+    metric: &mut Metric,
+    settings: &Settings,
+) -> Result<Option<Vec<f64>>, SolveError> {
+    let (Some(removal), Ok(family)) = (runs[run].choice.removal.clone(), &runs[vakonomic].outcome) else {
+        return Ok(None);
+    };
+    let zero = vec![0.0; family.constants.len()];
+    if costates_of(scene, &removal, &zero)?.is_none() {
+        return Ok(None);
+    }
+    let (equations, guesses) = (family.equations.clone(), [zero, family.constants.clone()]);
+    let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
+    let found = best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?;
+    found.map_or(Ok(None), |motion| costates_of(scene, &removal, &motion.constants))
 }
 
 /// Where the constants of a fit come from.

@@ -15,6 +15,8 @@ pub struct Growth {
     pub uncertainty: f64,
     /// `Δq / (t − t₀)^k` extrapolated to the start, `k` the rounded exponent; length n.
     pub coefficient: Vec<f64>,
+    /// The part of it that changes when the fit has one term less, Euclidean.
+    pub coefficient_uncertainty: f64,
     /// Its kinetic length.
     pub length: f64,
     /// Fit range in `t − t₀`.
@@ -44,9 +46,12 @@ pub struct LeadingTerm {
 impl Growth {
     /// `|measured − predicted| / |predicted|` of leading coefficients, Euclidean over the coordinates.
     pub fn deviation_from(&self, predicted: &LeadingTerm) -> f64 {
-        let norm = |x: &[f64]| x.iter().map(|a| a * a).sum::<f64>().sqrt();
         norm(&subtract(&self.coefficient, &predicted.coefficient)) / norm(&predicted.coefficient)
     }
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|a| a * a).sum::<f64>().sqrt()
 }
 
 /// The shortest fit range, as a fraction of the common time, and the longest.
@@ -99,14 +104,15 @@ pub fn growth(
     let uncertainty = (least_squares(&differences, &shorter, &logarithms)[1] - exponent).abs();
     let k = exponent.round();
     // Δq / s^k = c + c₁ s + c₂ s² + c₃ s³, coordinate by coordinate
-    let powers = |s: f64| [1.0, s / to, (s / to).powi(2), (s / to).powi(3)];
-    let mut coefficient = vec![0.0; q0.len()];
-    for (i, c) in coefficient.iter_mut().enumerate() {
-        let scaled: Vec<f64> = differences.iter().map(|(s, d, _)| d[i] / s.powf(k)).collect();
-        *c = least_squares(&differences, &powers, &scaled)[0];
-    }
+    let extrapolated = |terms: usize| -> Vec<f64> {
+        let powers = |s: f64| std::array::from_fn(|p| if p < terms { (s / to).powi(p as i32) } else { 0.0 });
+        let scaled = |i: usize| -> Vec<f64> { differences.iter().map(|(s, d, _)| d[i] / s.powf(k)).collect() };
+        (0..q0.len()).map(|i| least_squares(&differences, &powers, &scaled(i))[0]).collect()
+    };
+    let coefficient = extrapolated(4);
+    let coefficient_uncertainty = norm(&subtract(&coefficient, &extrapolated(3))) / norm(&coefficient);
     let length = metric.length(start, &q0, &v0, &coefficient);
-    Ok(Some(Growth { exponent, uncertainty, coefficient, length, from, to }))
+    Ok(Some(Growth { exponent, uncertainty, coefficient, coefficient_uncertainty, length, from, to }))
 }
 
 fn least_squares(at: &[(f64, Vec<f64>, f64)], design: &dyn Fn(f64) -> [f64; 4], values: &[f64]) -> DVector<f64> {

@@ -26,7 +26,8 @@ const SINGULAR: f64 = 1e12;
 /// How to solve for the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShootOptions {
-    /// [`shoot`] is done where the Euclidean norm `|r(c)|` is not above this; > 0. [`fit`] does not use it.
+    /// [`shoot`] is done where the Euclidean norm `|r(c)|` is not above this; > 0. To [`fit`], a difference
+    /// not above this is none: an unknown that changes no more stays where it is.
     pub tolerance: f64,
     /// Limit on the number of evaluated Jacobians; > 0.
     pub max_iterations: usize,
@@ -35,12 +36,16 @@ pub struct ShootOptions {
     pub difference_step: f64,
     /// The magnitude below which an unknown counts as small; > 0.
     pub scale: f64,
+    /// Done where an iteration lessens `|r|²` by no more than this part, and none more was to be expected; in
+    /// (0, 1).
+    pub least_gain: f64,
 }
 
 impl ShootOptions {
-    /// At most 50 iterations, differences over 1e-4 (for integration errors near 1e-12), unknowns of size 1.
+    /// At most 50 iterations, differences over 1e-4 (for integration errors near 1e-12), unknowns of size 1,
+    /// and no end before gains are as small as round-off.
     pub fn with_tolerance(tolerance: f64) -> Self {
-        Self { tolerance, max_iterations: 50, difference_step: 1e-4, scale: 1.0 }
+        Self { tolerance, max_iterations: 50, difference_step: 1e-4, scale: 1.0, least_gain: 1e-14 }
     }
 }
 
@@ -57,7 +62,8 @@ pub struct Shot {
     pub evaluations: usize,
     /// Whether the limit on iterations ended the search.
     pub exhausted: bool,
-    /// Condition number (Euclidean norm) of `∂r/∂c` at c; infinite where the unknowns are not determined.
+    /// Condition number (Euclidean norm) of `∂r/∂c` at c; infinite where the unknowns are not determined, or
+    /// no difference can be taken.
     pub condition: f64,
 }
 
@@ -83,7 +89,7 @@ pub enum BoundaryError {
         /// Its range.
         needed: &'static str,
     },
-    /// The residual cannot be evaluated at the guess, or near the best unknowns found; in the caller's words.
+    /// The residual cannot be evaluated at the guess; in the caller's words.
     #[error("the residual cannot be evaluated: {reason}")]
     Residual {
         /// The caller's own words.
@@ -167,7 +173,7 @@ pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), BoundaryErro
 /// assert!((shot.unknowns[0] - 1.0 / 1f64.sin()).abs() < 1e-11);
 /// ```
 pub fn shoot(residual: &mut Residual, guess: &[f64], options: &ShootOptions) -> Result<Shot, BoundaryError> {
-    let shot = minimise(residual, guess.len(), guess, options, options.tolerance)?;
+    let shot = minimise(residual, guess.len(), guess, options, [options.tolerance, 0.0])?;
     // The negation catches a condition or residual that is NaN.
     if shot.residual <= options.tolerance {
         Ok(shot)
@@ -206,16 +212,16 @@ pub fn fit(
     guess: &[f64],
     options: &ShootOptions,
 ) -> Result<Shot, BoundaryError> {
-    minimise(residual, residuals, guess, options, 0.0)
+    minimise(residual, residuals, guess, options, [0.0, options.tolerance])
 }
 
-/// The best point of a minimisation that ends early where `|r| ≤ enough`.
+/// The best point of a minimisation that ends early where `|r| ≤ enough`; differences up to `noise` are none.
 fn minimise(
     residual: &mut Residual,
     residuals: usize,
     guess: &[f64],
     options: &ShootOptions,
-    enough: f64,
+    [enough, noise]: [f64; 2],
 ) -> Result<Shot, BoundaryError> {
     check(residuals, guess, options)?;
     let mut search = Search {
@@ -223,6 +229,7 @@ fn minimise(
         residuals,
         options,
         enough,
+        noise,
         at: guess.to_vec(),
         best: guess.to_vec(),
         smallest: f64::INFINITY,
@@ -230,11 +237,11 @@ fn minimise(
         evaluations: 0,
     };
     search.values(guess)?;
-    let (problem, _report) =
-        LevenbergMarquardt::new().with_patience(10 * options.max_iterations).minimize(Target(RefCell::new(search)));
+    let minimiser = LevenbergMarquardt::new().with_patience(10 * options.max_iterations).with_ftol(options.least_gain);
+    let (problem, _report) = minimiser.minimize(Target(RefCell::new(search)));
     let mut search = problem.0.into_inner();
     let best = search.best.clone();
-    let condition = condition(search.differences(&best)?);
+    let condition = search.differences(&best).map_or(f64::INFINITY, condition);
     let Search { smallest, iterations, evaluations, .. } = search;
     let exhausted = iterations >= options.max_iterations;
     Ok(Shot { unknowns: best, residual: smallest, iterations, evaluations, exhausted, condition })
@@ -253,9 +260,10 @@ fn check(residuals: usize, guess: &[f64], options: &ShootOptions) -> Result<(), 
             return Err(BoundaryError::Option { name, found, needed: positive });
         }
     }
-    let found = options.difference_step;
-    if !(found > 0.0 && found < 1.0) {
-        return Err(BoundaryError::Option { name: "difference_step", found, needed: "above 0 and below 1" });
+    for (name, found) in [("difference_step", options.difference_step), ("least_gain", options.least_gain)] {
+        if !(found > 0.0 && found < 1.0) {
+            return Err(BoundaryError::Option { name, found, needed: "above 0 and below 1" });
+        }
     }
     match guess.iter().find(|c| !c.is_finite()) {
         Some(&found) => Err(BoundaryError::Option { name: "guess", found, needed: "finite" }),
@@ -275,6 +283,7 @@ struct Search<'a, 'r> {
     residuals: usize,
     options: &'a ShootOptions,
     enough: f64,
+    noise: f64,
     at: Vec<f64>,
     best: Vec<f64>,
     smallest: f64,
@@ -317,8 +326,9 @@ impl Search<'_, '_> {
                 (Err(error), Err(_)) => return Err(error),
             };
             for (i, entry) in column.iter_mut().enumerate() {
-                *entry = (above[i] - below[i]) / width;
+                *entry = above[i] - below[i];
             }
+            column *= if column.norm() > self.noise { width.recip() } else { 0.0 };
         }
         Ok(jacobian)
     }

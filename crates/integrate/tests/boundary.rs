@@ -97,6 +97,7 @@ fn every_error() {
         ShootOptions { max_iterations: 0, ..options.clone() },
         ShootOptions { difference_step: f64::NAN, ..options.clone() },
         ShootOptions { scale: -1.0, ..options.clone() },
+        ShootOptions { least_gain: 1.0, ..options.clone() },
     ] {
         assert!(matches!(shoot(&mut ok, &[1.0], &wrong), Err(BoundaryError::Option { .. })), "{wrong:?}");
     }
@@ -143,4 +144,23 @@ fn every_error() {
         Ok(())
     };
     assert!(matches!(shoot(&mut singular, &[2.0, 1.0], &options), Err(BoundaryError::Singular { .. })));
+}
+
+#[test]
+fn an_unknown_that_only_errors_move_stays() {
+    // as an integration would: exact to 1e-9, with errors that depend on c, up to the edge c₁ = 2
+    let mut fitted = |c: &[f64], r: &mut [f64]| {
+        if c[0] > 2.0 {
+            return Err(BoundaryError::Residual { reason: "no".into() });
+        }
+        let error = 1e-9 * (1e5 * c[1]).sin();
+        (r[0], r[1]) = (c[0] - 3.0 + error, 1.0 - error);
+        Ok(())
+    };
+    let coarse = ShootOptions { max_iterations: 10, ..ShootOptions::with_tolerance(1e-8) };
+    let shot = fit(&mut fitted, 2, &[0.5, 1.0], &coarse).expect("the guess will do");
+    assert!(shot.unknowns[1] == 1.0 && shot.condition.is_infinite() && shot.unknowns[0] > 0.5, "{shot:?}");
+    // with differences too small to matter the unknown runs away
+    let shot = fit(&mut fitted, 2, &[0.5, 1.0], &ShootOptions { tolerance: 1e-12, ..coarse }).expect("the guess");
+    assert!((shot.unknowns[1] - 1.0).abs() > 1.0, "{shot:?}");
 }

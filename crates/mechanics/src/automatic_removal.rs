@@ -8,9 +8,9 @@
 
 use std::collections::BTreeMap;
 
-use symbolic::{Expr, Graph};
+use symbolic::Expr;
 
-use crate::solved_constraints::SolvedConstraints;
+use crate::solved_constraints::{SolvedConstraints, cleared};
 use crate::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal, RemovalError, State, System};
 
 impl Removal {
@@ -53,8 +53,8 @@ impl Removal {
 
     /// *Quasi-velocity removal.* `q̇ = N(q) u̇ + c(q)`, `N` a basis of ker `A`, cleared of denominators.
     ///
-    /// A column with one entry is a coordinate and stays one; every other coordinate is memory. Knife edge:
-    /// `u̇` is the speed along the blade.
+    /// A column with one entry is a coordinate and stays one; so does one that gets far longer by clearing.
+    /// Every other coordinate is memory. Knife edge: `u̇` is the speed along the blade.
     ///
     /// # Errors
     /// As [`Removal::by_coordinates`].
@@ -80,9 +80,11 @@ impl Removal {
         let mut columns = Vec::new();
         for (column, &i) in split.independent.iter().enumerate() {
             let entries = split.solution.column(column);
-            if entries.iter().all(|&e| g.is_zero(e)) {
+            let denominator = g.product(&g.denominators(&entries));
+            let clear: Vec<Expr> = entries.iter().map(|&e| cleared(g, g.mul(e, denominator))).collect();
+            if entries.iter().all(|&e| g.is_zero(e)) || g.size(&clear) > LONGER * g.size(&entries) {
                 parameters.push(coordinate_parameter(system, i));
-                columns.push((g.one(), g.variable(system.coordinates[i].velocity)));
+                columns.push((entries, g.variable(system.coordinates[i].velocity)));
                 continue;
             }
             let name = parameter_name(system, i);
@@ -92,8 +94,7 @@ impl Removal {
                 second_rate: g.symbol(&format!("{name}''")),
                 coordinate: None,
             };
-            let denominator = g.product(&g.denominators(&entries));
-            columns.push((denominator, g.variable(u.rate)));
+            columns.push((clear, g.variable(u.rate)));
             let rate = g.mul(cleared(g, denominator), g.variable(u.rate));
             start.insert(u.symbol, g.zero());
             start.insert(u.rate, g.div(g.variable(system.coordinates[i].velocity), denominator));
@@ -101,8 +102,7 @@ impl Removal {
             parameters.push(u);
         }
         for (row, &i) in split.dependent.iter().enumerate() {
-            let entries = split.solution.row(row).iter().zip(&columns);
-            let terms = entries.map(|(&e, &(denominator, u))| g.mul(cleared(g, g.mul(e, denominator)), u));
+            let terms = columns.iter().map(|(entries, u)| g.mul(entries[row], *u));
             let rate = g.sum(&terms.chain([split.offset[row]]).collect::<Vec<Expr>>());
             memory.push(MemoryVariable { symbol: system.coordinates[i].position, rate, coordinate: Some(i) });
         }
@@ -112,18 +112,15 @@ impl Removal {
             parameters,
             memory,
             coordinates: g.variables(&system.positions()),
+            chart: if start.is_empty() { split.quotients } else { Vec::new() },
             start,
             constants: ConstantsRule::Zero,
-            chart: Vec::new(),
         })
     }
 }
 
-/// `e` multiplied out where fewer denominators are left so: the others are none, and would end a motion.
-fn cleared(g: &Graph, e: Expr) -> Expr {
-    let expanded = g.expand(e);
-    if g.denominators(&[expanded]).len() < g.denominators(&[e]).len() { expanded } else { e }
-}
+/// Entries without denominators may be this much longer than with them.
+const LONGER: usize = 4;
 
 /// `u_x` for the coordinate `x`, with underscores until it is a new name. Removals may share symbols.
 fn parameter_name(system: &System, i: usize) -> String {

@@ -37,12 +37,17 @@ impl SolvedConstraints {
         for _ in 0..h {
             let (p, c) = choose_pivot(candidates(g, &matrix, &pivots, n, &values))?;
             let Some(Pivot { entry: pivot, row, column }) = matrix.take(p, c) else { break };
-            let row: BTreeMap<usize, Expr> = row.into_iter().map(|(j, e)| (j, g.div(e, pivot))).collect();
+            let undivided = row;
+            let row: BTreeMap<usize, Expr> = undivided.iter().map(|(&j, &e)| (j, g.div(e, pivot))).collect();
             quotients.extend(row.range(..n).map(|(_, &e)| e));
             for (i, factor) in column {
                 for (&j, &e) in &row {
                     let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
                     let rest = g.sub(before, g.mul(factor, e));
+                    // sin²/cos + cos is 1/cos
+                    let over_pivot = g.expand(g.sub(g.mul(before, pivot), g.mul(factor, undivided[&j])));
+                    let over_pivot = cleared(g, g.div(over_pivot, pivot));
+                    let rest = if 3 * g.size(&[over_pivot]) <= 4 * g.size(&[rest]) { over_pivot } else { rest };
                     // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
                     matrix.set(i, j, (!g.vanishes(rest, &constants).is_zero()).then_some(rest));
                 }
@@ -112,4 +117,10 @@ fn candidates(
         }
     }
     candidates
+}
+
+/// `e` multiplied out where fewer denominators are left so: the others are none, and would end a motion.
+pub(crate) fn cleared(g: &Graph, e: Expr) -> Expr {
+    let expanded = g.expand(e);
+    if g.denominators(&[expanded]).len() < g.denominators(&[e]).len() { expanded } else { e }
 }

@@ -9,10 +9,10 @@ use crate::case::Which;
 /// Deviation of the measured exponent from the predicted one, beyond its own uncertainty.
 const EXPONENT: f64 = 1e-2;
 
-/// An exponent that is less certain than this is not judged.
+/// An exponent that is less certain than this is not judged, nor is a coefficient with that relative doubt.
 const UNCERTAIN: f64 = 0.1;
 
-/// Relative deviation of the measured leading coefficient from the predicted one.
+/// Relative deviation of the measured leading coefficient from the predicted one, beyond its uncertainty.
 const COEFFICIENT: f64 = 1e-2;
 
 /// A predicted gap that does not reach this over the run says nothing: its growth cannot be measured.
@@ -50,12 +50,13 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         Some(measured) => {
             let exponent = (measured.exponent - f64::from(predicted.exponent)).abs();
             case.found.bound(5, "exponent of the leading divergence", exponent, EXPONENT + measured.uncertainty);
-            case.found.bound(
-                5,
-                "coefficient of the leading divergence",
-                measured.deviation_from(&predicted),
-                COEFFICIENT,
-            );
+            let claim = "coefficient of the leading divergence";
+            match measured.coefficient_uncertainty {
+                doubt if doubt > UNCERTAIN => {
+                    case.found.undecided(5, claim, format!("measured with a doubt of {doubt:.1e}"));
+                }
+                doubt => case.found.bound(5, claim, measured.deviation_from(&predicted), COEFFICIENT + doubt),
+            }
             match (predicted.exponent, without) {
                 (2, _) => case.found.observe(5, "growth exponent, mu0 not zero", measured.exponent),
                 (3, true) => case.found.observe(5, "growth exponent, mu0 = 0", measured.exponent),
