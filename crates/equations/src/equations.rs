@@ -3,7 +3,7 @@
 //! A state `y` moves by `ẏ = F(t, y, z)`, where `z` (accelerations, multipliers or their rates) solves a
 //! small block `R(z; t, y) = 0` at every instant, nearly always linear in `z`. Nothing here steps time.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Range, Scalar, Steep, Symbol, Tape};
 
@@ -212,6 +212,22 @@ impl Equations {
         found
     }
 
+    /// Guards against singular equations of the instant where their matrix `∂R/∂z`, in the graph `g`, depends
+    /// on multipliers or costates: its determinant may change its sign along a motion, and a step that passes
+    /// over that goes on in one of several motions.
+    pub fn guard_determinants(&mut self, g: &Graph) {
+        let own = |y: &&StateVariable| matches!(y.role, Role::Multiplier | Role::MemoryCostate);
+        let costates: HashSet<Symbol> = self.states.iter().filter(own).map(|y| y.symbol).collect();
+        for block in &self.blocks {
+            let matrix = g.jacobian(&block.residuals, &block.unknowns);
+            let rows: Vec<Vec<Expr>> = (0..matrix.rows()).map(|i| matrix.row(i).to_vec()).collect();
+            let symbols: HashSet<Symbol> = rows.iter().flatten().flat_map(|&e| g.symbols_of(e)).collect();
+            if !symbols.is_disjoint(&costates) && block.unknowns.iter().all(|z| !symbols.contains(z)) {
+                self.guards.push(determinant(g, &rows));
+            }
+        }
+    }
+
     /// Adds the states `q` with rate `v` and `v` with rate `a`, started at `(q₀, v₀)`.
     pub fn add_positions_and_velocities(&mut self, system: &System) {
         let g = &system.graph;
@@ -305,4 +321,21 @@ impl Equations {
     pub fn symbols_behind(&self, roots: impl IntoIterator<Item = Expr>) -> HashSet<Symbol> {
         symbols_behind(&self.graph, &self.definitions, roots)
     }
+}
+
+/// By minors of the first rows, without quotients.
+fn determinant(g: &Graph, rows: &[Vec<Expr>]) -> Expr {
+    let mut minors = BTreeMap::from([(0_u64, g.one())]);
+    for row in rows {
+        let mut larger: BTreeMap<u64, Vec<Expr>> = BTreeMap::new();
+        for (&columns, &minor) in &minors {
+            for (j, &e) in row.iter().enumerate().filter(|(j, e)| columns >> j & 1 == 0 && !g.is_zero(**e)) {
+                let term = g.mul(e, minor);
+                let odd = (columns >> j).count_ones() % 2 == 1;
+                larger.entry(columns | 1 << j).or_default().push(if odd { g.neg(term) } else { term });
+            }
+        }
+        minors = larger.into_iter().map(|(columns, terms)| (columns, g.sum(&terms))).collect();
+    }
+    minors.into_values().next().unwrap_or(g.zero())
 }

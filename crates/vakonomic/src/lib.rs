@@ -164,6 +164,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         jacobian: system.constraint_jacobian(),
         metric: system.velocity_hessian(),
     });
+    equations.guard_determinants(g);
     finish(&mut equations, system, augmented);
     Ok(equations)
 }

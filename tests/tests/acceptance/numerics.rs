@@ -1,6 +1,6 @@
 //! Integration methods against a closed form, exact Jacobians against differences, an implicit form's branch.
 
-use deltaq::{Motion, Settings};
+use deltaq::{Ending, Motion, Settings, choices, solve_choice};
 use integrate::Method;
 use scene::Scene;
 use validation::trailer::{self, Coordinates};
@@ -92,4 +92,35 @@ fn costate_form_keeps_to_its_branch_near_a_fold() {
     // read off backwards, far from where it was read last: the start velocities come out again
     let start = at(&mut costate, 0.0);
     must("near a fold: velocities read at the start", largest_difference(&start.velocities, &scene.start.v), 1e-11);
+}
+
+/// `q₂` stays by symmetry, and its equation `(11/8 − 2μ) a₂ = 0` says so until μ = 11/16, whatever steps do.
+#[test]
+fn no_step_passes_over_an_equation_that_loses_its_unknown() {
+    let text = r#"
+title = "One of several motions"
+[coordinates]
+q1 = { unit = "1", start = -1.0 }
+q2 = { unit = "1", start = -0.75 }
+q3 = { unit = "1", start = -0.625 }
+[system]
+lagrangian = "7*q1/4 + 11*q1'^2/16 + 11*q2'^2/16 + 9*q3/16 + 3*q3'^2/4"
+constraints = ["q1'^2 - q2'^2 - q3'^2"]
+[start.velocities]
+"q1'" = 0.625
+"q2'" = 0.0
+"q3'" = -0.625
+[run]
+duration = 1.5
+"#;
+    let scene = Scene::parse("symmetric", text).expect("a scene");
+    // (11/8 + 2μ) s = 55/64 + 7t/4 and (3/2 − 2μ) s = 15/16 − 9t/16 with s = q1' = −q3'
+    let (sum, slope) = (55.0 / 64.0 + 15.0 / 16.0, 7.0 / 4.0 - 9.0 / 16.0);
+    let of_s = 2.75 / (11.0 / 8.0 + 3.0 / 2.0);
+    let t = (of_s * sum - 55.0 / 64.0) / (7.0 / 4.0 - of_s * slope);
+    for method in [Method::Dop853, Method::Taylor] {
+        let motion = solve_choice(&scene, &choices(&scene)[1], &Settings { method, ..tight() }).expect("it starts");
+        let Ending::Stopped { t: end, cause } = &motion.ending else { panic!("{:?}", motion.ending) };
+        assert!((end - t).abs() < 1e-9 && cause.contains("mu_1"), "{end}, {t}: {cause}");
+    }
 }

@@ -4,7 +4,8 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 
 use equations::{Compiled, Equations, Outputs, Plan};
-use mechanics::{Removal, State, complete_removal_start};
+use mechanics::{Removal, SingularValues, State, complete_removal_start};
+use nalgebra::DMatrix;
 use scene::Scene;
 use symbolic::{CompileError, Evaluator, Symbol};
 
@@ -203,7 +204,8 @@ impl<'a> Reader<'a> {
         Ok(rates)
     }
 
-    /// For each guard that changes sign on a line through `y`: do rates lose digits there, or grow unbounded?
+    /// For each guard that changes sign on a line through `y`: do rates lose digits there, or grow unbounded, or
+    /// do the equations lose an unknown?
     fn guarded(&mut self, t: f64, y: &[f64]) -> Result<Vec<bool>, String> {
         let mut guarded = Vec::new();
         for j in 0..self.compiled.guards() {
@@ -230,7 +232,12 @@ impl<'a> Reader<'a> {
                 };
                 let bent: Vec<f64> = (0..a.len()).map(|i| a[i] - 2.0 * b[i] + c[i]).collect();
                 let straight = largest(&bent) < 1e-11 * (1.0 + largest(&b));
-                guarded.push(!straight);
+                let lost = self.compiled.block_matrices(t, &at(low)).into_iter().any(|block| {
+                    let size = block.len().isqrt();
+                    let values = SingularValues::of(&DMatrix::from_row_slice(size, size, &block)).values;
+                    values.min() < 1e-9 * values.max()
+                });
+                guarded.push(!straight || lost);
             }
         }
         Ok(guarded)
