@@ -204,8 +204,8 @@ impl<'a> Reader<'a> {
         Ok(rates)
     }
 
-    /// For each guard that changes sign on a line through `y`: do rates lose digits there, or grow unbounded, or
-    /// do the equations lose an unknown?
+    /// For each guard that changes sign on a line through `y`: do rates lose digits there, or grow unbounded,
+    /// or do the equations lose an unknown?
     fn guarded(&mut self, t: f64, y: &[f64]) -> Result<Vec<bool>, String> {
         let mut guarded = Vec::new();
         for j in 0..self.compiled.guards() {
