@@ -76,6 +76,7 @@ mod leading;
 mod lift;
 mod program;
 mod proof;
+mod random_start;
 mod section;
 mod series;
 mod start;

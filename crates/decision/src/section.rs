@@ -6,7 +6,7 @@ use mechanics::{State, System};
 use symbolic::{Expr, Symbol};
 
 use crate::DecisionError;
-use crate::exact::{Coefficient, Exact, Jet, Modular};
+use crate::exact::{Exact, Jet, Modular};
 use crate::family::{CostateRate, Family, inputs};
 use crate::program::Program;
 use crate::proof::{Echelon, Question};
@@ -14,8 +14,6 @@ use crate::start::ExactStart;
 
 /// Points at which an identity is tried again after it was found.
 const TRIALS: u64 = 4;
-/// Numerators and denominators of coefficients are at most this.
-const LARGEST: i128 = 1_000_000;
 
 /// Constants with which every start on the constraint has the motion in question.
 ///
@@ -106,7 +104,7 @@ impl Ansatz<'_> {
             }
             solution[pivot] = value;
         }
-        let fractions: Vec<Exact> = solution.iter().map(|&x| fraction(x)).collect::<Option<_>>()?;
+        let fractions: Vec<Exact> = solution.iter().map(|&x| x.small_fraction()).collect::<Option<_>>()?;
         for seed in points..points + TRIALS {
             for row in self.rows(start, seed)? {
                 let sum = row.iter().zip(&solution).fold(Modular::ZERO, |sum, (&r, &a)| sum + r * a);
@@ -153,20 +151,4 @@ impl Ansatz<'_> {
         debug_assert!(rows.iter().all(|row| row.len() == k * count + 1));
         Some(rows)
     }
-}
-
-/// The fraction of small numerator and denominator with the image `x`.
-fn fraction(x: Modular) -> Option<Exact> {
-    let prime = i128::from(crate::exact::PRIME);
-    let (mut r, mut s) = ((prime, i128::from(x.value())), (0_i128, 1_i128));
-    while r.1 > LARGEST {
-        let quotient = r.0 / r.1;
-        r = (r.1, r.0 - quotient * r.1);
-        s = (s.1, s.0 - quotient * s.1);
-    }
-    if s.1.abs() > LARGEST {
-        return None;
-    }
-    let found = Exact::ratio(r.1, s.1)?;
-    (Modular::of(found) == Ok(x)).then_some(found)
 }

@@ -6,14 +6,9 @@ use mechanics::{Completion, Removal, State, System};
 use symbolic::{Expr, Symbol};
 
 use crate::DecisionError;
-use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular, inverse, subtract_product};
+use crate::exact::{Exact, Flaw, Jet, Modular, inverse, subtract_product};
 use crate::program::Program;
 use crate::series::SeriesStart;
-
-/// Random positions and velocities are integers up to this one.
-const LARGEST: u64 = 1 << 20;
-/// Draws until the constraints have roots: where they are squares, each has one for every second draw.
-const DRAWS: usize = 256;
 
 /// Why a start has no exact numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -24,6 +19,9 @@ pub enum NoExactStart {
     /// The velocities that the constraints supply are not rational functions of the given ones.
     #[error("the velocities that the constraints supply are no rational functions of the given ones")]
     Nonlinear,
+    /// The constraints hold on several surfaces, and which of them the start is on is not seen in the field.
+    #[error("the constraints are products, and at random starts it is not known which factor is zero")]
+    Product,
     /// The start is given by way of a parametrization whose own start is not written.
     #[error("the start goes by way of the removal `{removal}`, and {what}")]
     Removal {
@@ -37,18 +35,20 @@ pub enum NoExactStart {
 /// A start as it is written: positions and some velocities as expressions in parameters and time.
 #[derive(Clone)]
 pub struct ExactStart {
-    system: System,
+    pub(crate) system: System,
     time: f64,
     /// Positions and velocities from parameters, time and positions; numbers among them, which need no graph.
     values: Program,
     numbers: Vec<Option<f64>>,
     /// Velocities that the constraints supply.
-    supplied: Vec<usize>,
+    pub(crate) supplied: Vec<usize>,
     /// All velocities as they were found.
     rounded: Vec<f64>,
     /// What `v` a constraint would be solved for, if none is supplied and the given miss it by round-off.
-    spare: Vec<usize>,
-    constraints: Program,
+    pub(crate) spare: Vec<usize>,
+    /// `∂f/∂v` at the start, row by row.
+    pub(crate) slopes: Vec<f64>,
+    pub(crate) constraints: Program,
     problem: Option<NoExactStart>,
     /// Whether velocities are projected ones, not those written.
     pub(crate) projected: bool,
@@ -96,10 +96,24 @@ impl ExactStart {
         let mut outputs = system.constraints.clone();
         outputs.extend(g.jacobian(&system.constraints, &v).entries());
         let constraints = Program::new(g, &inputs, &outputs)?;
-        let spare = independent_columns(system, state, &constraints);
+        let slopes = slopes(system, state, &constraints);
+        let spare = independent_columns(&slopes, system.dimension());
         let projected = completion.projected.is_some();
         let (system, time, rounded) = (system.clone(), state.t, state.v.clone());
-        Ok(ExactStart { system, time, values, numbers, supplied, rounded, spare, constraints, problem, projected })
+        let exact = ExactStart {
+            system,
+            time,
+            values,
+            numbers,
+            supplied,
+            rounded,
+            spare,
+            slopes,
+            constraints,
+            problem,
+            projected,
+        };
+        Ok(exact)
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
@@ -154,85 +168,12 @@ impl ExactStart {
         if completed.is_empty() { &self.supplied } else { &self.spare }
     }
 
-    /// Random integers for positions and velocities, the others from the constraints. Square ones: the start
-    /// is where `f = 0` has its roots: both signs, unless the constraint is a product.
-    pub(crate) fn random(&self, seed: u64) -> Result<SeriesStart<Modular>, NoExactStart> {
-        let (parameters, time) = self.given();
-        let mut state = seed;
-        let mut draw = || {
-            // SplitMix64
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut x = state;
-            x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            let n = i128::from((x ^ (x >> 31)) % LARGEST) + 1;
-            let exact = Exact { numerator: n, denominator: 1, quarters: 0 };
-            Modular::of(exact).map(|value| Jet::constant(value, Some(exact)))
-        };
-        let n = self.system.dimension();
-        let choices = [&self.supplied, &self.spare];
-        let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
-        for _ in 0..DRAWS {
-            let q = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
-            let v = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
-            let velocities = match self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare)) {
-                Err(NoExactStart::Nonlinear) => self.with_roots(&parameters, time, &q, &v)?,
-                solved => Some(solved?),
-            };
-            if let Some(velocities) = velocities {
-                return Ok(SeriesStart { parameters, time, positions: q, velocities });
-            }
-        }
-        Err(NoExactStart::Nonlinear)
-    }
-
-    /// `v` on quadratic constraints, each for a velocity that the fewest contain; `None` without a root.
-    fn with_roots(
-        &self,
-        parameters: &[Jet<Modular>],
-        time: Jet<Modular>,
-        q: &[Jet<Modular>],
-        v: &[Jet<Modular>],
-    ) -> Result<Option<Vec<Jet<Modular>>>, NoExactStart> {
-        let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Jet<Modular>>();
-        let inputs = |v: &[Jet<Modular>]| [parameters, &[time], q, v].concat();
-        let values = program.run(&inputs(v)).to_vec();
-        let contains = |i: usize, j: usize| !values[h + i * n + j].coefficient(0).is_zero();
-        let mut v = v.to_vec();
-        let mut open: Vec<usize> = (0..n).collect();
-        for i in 0..h {
-            let others = |j: &usize| (0..h).filter(|&i| contains(i, *j)).count();
-            let Some(j) = open.iter().copied().filter(|&j| contains(i, j)).min_by_key(others) else {
-                return Err(NoExactStart::Nonlinear);
-            };
-            open.retain(|&other| other != j);
-            let before = v[j].coefficient(0);
-            // v_j + s: coefficients are those of the constraint as a polynomial in s
-            let (zero, one) = (Modular::ZERO, Modular::one());
-            v[j] = Jet::series(&[before, one, zero, zero, zero], None);
-            let f = program.run(&inputs(&v))[i];
-            let [c, b, a, third, fourth] = std::array::from_fn(|k| f.coefficient(k));
-            if f.flaw().is_some() || !third.is_zero() || !fourth.is_zero() {
-                return Err(NoExactStart::Nonlinear);
-            }
-            let two = Modular::new(2);
-            let change = match (two * a).inverse() {
-                Some(over) => (b * b - two * two * a * c).square_root().map(|root| (root - b) * over),
-                None => b.inverse().map(|over| -c * over),
-            };
-            let Some(change) = change else { return Ok(None) };
-            v[j] = Jet::constant(before + change, None);
-        }
-        self.solved(parameters, time, q, &v, &[]).map(Some)
-    }
-
-    fn given(&self) -> (Vec<Jet<Modular>>, Jet<Modular>) {
+    pub(crate) fn given(&self) -> (Vec<Jet<Modular>>, Jet<Modular>) {
         (self.system.parameters.iter().map(|p| Jet::of(p.value)).collect(), Jet::of(self.time))
     }
 
     /// `v` with the entries `open` replaced by what solves `f(q, v, t) = 0`, where that is linear in them.
-    fn solved(
+    pub(crate) fn solved(
         &self,
         parameters: &[Jet<Modular>],
         time: Jet<Modular>,
@@ -286,13 +227,17 @@ fn by_removal(system: &System, removal: Option<&Removal>, rates: &[(Symbol, Expr
     }
 }
 
-/// As many velocities as constraints, the best to solve these for at `state`; none if they are dependent.
-fn independent_columns(system: &System, state: &State, constraints: &Program) -> Vec<usize> {
-    let (h, n) = (system.constraints.len(), system.dimension());
+/// `∂f/∂v` at `state`, row by row.
+fn slopes(system: &System, state: &State, constraints: &Program) -> Vec<f64> {
     let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();
     let inputs = [&parameters[..], &[state.t], &state.q, &state.v].concat();
-    let mut rows: Vec<Vec<f64>> =
-        constraints.evaluator::<f64>().run(&inputs)[h..].chunks_exact(n).map(<[f64]>::to_vec).collect();
+    constraints.evaluator::<f64>().run(&inputs)[system.constraints.len()..].to_vec()
+}
+
+/// As many velocities as constraints, the best to solve these for; none if they are dependent.
+fn independent_columns(slopes: &[f64], n: usize) -> Vec<usize> {
+    let mut rows: Vec<Vec<f64>> = slopes.chunks_exact(n).map(<[f64]>::to_vec).collect();
+    let h = rows.len();
     let mut columns = Vec::new();
     for step in 0..h {
         let places = (step..h).flat_map(|i| (0..n).map(move |j| (i, j)));

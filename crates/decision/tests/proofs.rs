@@ -116,6 +116,38 @@ fn a_constraint_of_second_degree() {
     refuted(&proved(&written(NONLINEAR, &[])).0, 1);
 }
 
+const TWO_ROOTS: &str = r#"
+title = "Two wheels driven by one speed"
+[coordinates]
+a = { start = 0 }
+b = { start = 0.375 }
+c = { start = 0.5 }
+d = { start = 0 }
+[system]
+lagrangian = "(a'^2 + b'^2 + c'^2 + d'^2)/2 + (2 + sin(b))*(3*a' + 4*d')^2/8"
+constraints = ["a'^2 - (b'^2 + c'^2)/4", "d'^2 - 9*(b'^2 + c'^2)/64"]
+[start.velocities]
+"a'" = 0.5
+"b'" = 0.6
+"c'" = 0.8
+"d'" = 0.375
+[run]
+duration = 2
+"#;
+
+#[test]
+fn random_starts_are_on_the_surface_of_the_start() {
+    // 3 a' = ±4 d': with the lower sign the motion is straight, with the upper one it is not
+    let (proof, _) = proved(&written(TWO_ROOTS, &[]));
+    assert!(order(&proof.this_start).is_some() && order(&proof.almost_every_start).is_some(), "{proof:?}");
+    let (proof, _) = proved(&written(&TWO_ROOTS.replace("\"d'\" = 0.375", "\"d'\" = -0.375"), &[]));
+    assert!(matches!(proof.almost_every_start, Finding::Contained { .. }), "{proof:?}");
+    // a square in every constraint: which factor is zero does not show in the field
+    let product = NONLINEAR.replace("z' - x'^2/2 - y*x'*y'", "4*x'^2 - y^2*y'^2").replace("= 0.7", "= 0.1\n\"z'\" = 0");
+    let (proof, _) = proved(&written(&product, &[]));
+    assert!(matches!(&proof.almost_every_start, Finding::NotApplicable(why) if why.contains("products")), "{proof:?}");
+}
+
 #[test]
 fn what_cannot_be_proved_says_why() {
     let logarithm = NONLINEAR.replace("(x'^2 + y'^2 + z'^2)/2", "(x'^2 + y'^2 + z'^2)/2 - x*log(2 + x)");

@@ -219,10 +219,11 @@ impl Equations {
         let own = |y: &&StateVariable| matches!(y.role, Role::Multiplier | Role::MemoryCostate);
         let costates: HashSet<Symbol> = self.states.iter().filter(own).map(|y| y.symbol).collect();
         for block in &self.blocks {
-            let matrix = g.jacobian(&block.residuals, &block.unknowns);
-            let rows: Vec<Vec<Expr>> = (0..matrix.rows()).map(|i| matrix.row(i).to_vec()).collect();
-            let symbols: HashSet<Symbol> = rows.iter().flatten().flat_map(|&e| g.symbols_of(e)).collect();
+            let entries = g.sparse_jacobian(&block.residuals, &block.unknowns);
+            let symbols: HashSet<Symbol> = entries.iter().flatten().flat_map(|&(_, e)| g.symbols_of(e)).collect();
             if !symbols.is_disjoint(&costates) && block.unknowns.iter().all(|z| !symbols.contains(z)) {
+                let matrix = g.jacobian(&block.residuals, &block.unknowns);
+                let rows: Vec<Vec<Expr>> = (0..matrix.rows()).map(|i| matrix.row(i).to_vec()).collect();
                 self.guards.push(determinant(g, &rows));
             }
         }

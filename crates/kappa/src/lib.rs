@@ -111,6 +111,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
     }];
+    equations.guards = equations.singularities(g, &system.constraints);
     equations.guard_determinants(g);
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);

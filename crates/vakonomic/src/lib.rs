@@ -164,6 +164,8 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         jacobian: system.constraint_jacobian(),
         metric: system.velocity_hessian(),
     });
+    // where f = h/D, the multiplier goes through zero with D, and its rate is 0/0
+    equations.guards = equations.singularities(g, &system.constraints);
     equations.guard_determinants(g);
     finish(&mut equations, system, augmented);
     Ok(equations)

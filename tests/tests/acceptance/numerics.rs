@@ -1,5 +1,7 @@
 //! Integration methods against a closed form, exact Jacobians against differences, an implicit form's branch.
 
+use std::f64::consts::FRAC_PI_2;
+
 use deltaq::{Ending, Motion, Settings, choices, solve_choice};
 use integrate::Method;
 use scene::Scene;
@@ -122,5 +124,42 @@ duration = 1.5
         let motion = solve_choice(&scene, &choices(&scene)[1], &Settings { method, ..tight() }).expect("it starts");
         let Ending::Stopped { t: end, cause } = &motion.ending else { panic!("{:?}", motion.ending) };
         assert!((end - t).abs() < 1e-9 && cause.contains("mu_1"), "{end}, {t}: {cause}");
+    }
+}
+
+/// `v_y/sin φ − v_x/cos φ` is the sledge's constraint divided by `sin φ cos φ`: μ is that times the sledge's.
+#[test]
+fn no_step_passes_over_a_pole_of_the_constraint() {
+    let text = r#"
+title = "A sledge, divided"
+[coordinates]
+x = { unit = "m", start = 0.0 }
+y = { unit = "m", start = 0.0 }
+phi = { unit = "rad", start = 0.3 }
+[system]
+lagrangian = "(x'^2 + y'^2 + phi'^2)/2 - y"
+constraints = ["y'/sin(phi) - x'/cos(phi)"]
+[start.velocities]
+"x'" = 0.3
+"phi'" = 1.0
+[vakonomic]
+multipliers = [0.3]
+[run]
+duration = 5.0
+"#;
+    let divided = Scene::parse("divided", text).expect("a scene");
+    let product = "y'*cos(phi) - x'*sin(phi)";
+    let whole = Scene::parse("whole", &text.replace("y'/sin(phi) - x'/cos(phi)", product)).expect("a scene");
+    let factor = 0.3_f64.sin() * 0.3_f64.cos();
+    let mut sledge = vakonomic(&whole, &[0.3 / factor]);
+    for method in [Method::Dop853, Method::Taylor] {
+        let mut motion =
+            solve_choice(&divided, &choices(&divided)[1], &Settings { method, ..tight() }).expect("starts");
+        let Ending::Stopped { t: end, cause } = motion.ending.clone() else { panic!("{:?}", motion.ending) };
+        let quarters = at(&mut sledge, end).coordinates[2] / FRAC_PI_2;
+        must("quarter turns from a zero of sin 2φ", (quarters - quarters.round()).abs(), 1e-9);
+        assert!(cause.contains("(phi)"), "{cause}");
+        let (one, two) = (at(&mut motion, 0.9 * end), at(&mut sledge, 0.9 * end));
+        must("divided and whole sledge", largest_difference(&one.coordinates, &two.coordinates), 1e-9);
     }
 }

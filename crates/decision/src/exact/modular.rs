@@ -30,6 +30,8 @@ const NO_SQUARE: u64 = 53;
 const TWOS: u32 = 4;
 /// Prime factors under this are looked for under roots.
 const TRIED: i128 = 4096;
+/// Numerators and denominators of small fractions are at most this.
+const SMALL: i128 = 1_000_000;
 
 /// An element of the field, as `x 2^64` modulo `p` (Montgomery).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +99,18 @@ impl Modular {
             None => Self::integer(x.denominator).inverse()?,
         };
         Some(numerator * over)
+    }
+
+    /// The fraction with this image and a numerator and denominator of at most a million.
+    pub(crate) fn small_fraction(self) -> Option<Exact> {
+        let (mut r, mut s) = ((i128::from(PRIME), i128::from(self.value())), (0_i128, 1_i128));
+        while r.1 > SMALL {
+            let quotient = r.0 / r.1;
+            r = (r.1, r.0 - quotient * r.1);
+            s = (s.1, s.0 - quotient * s.1);
+        }
+        let found = Exact::ratio(r.1, s.1).filter(|_| s.1.abs() <= SMALL)?;
+        (Self::fraction(found) == Some(self)).then_some(found)
     }
 
     pub(crate) fn power(self, mut exponent: u64) -> Self {

@@ -1,0 +1,142 @@
+//! Starts drawn at random on the constraint, for what holds at almost every start.
+
+use crate::exact::{Coefficient, Exact, Jet, Modular};
+use crate::series::SeriesStart;
+use crate::start::{ExactStart, NoExactStart};
+
+/// Random positions and velocities are integers up to this one.
+const LARGEST: u64 = 1 << 20;
+/// Draws until the constraints have roots: where they are squares, each has one for every second draw.
+const DRAWS: usize = 256;
+
+impl ExactStart {
+    /// Random integers for positions and velocities, the others from the constraints, on the surface that the
+    /// start is on: roots in a constant ratio keep the ratio that they have there. Any other square must once
+    /// have no root, as it would where it is the square of a function: then the surface is in one piece.
+    pub(crate) fn random(&self, seed: u64) -> Result<SeriesStart<Modular>, NoExactStart> {
+        let (parameters, time) = self.given();
+        let mut state = seed;
+        let mut draw = || {
+            // SplitMix64
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut x = state;
+            x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            let n = i128::from((x ^ (x >> 31)) % LARGEST) + 1;
+            let exact = Exact { numerator: n, denominator: 1, quarters: 0 };
+            Modular::of(exact).map(|value| Jet::constant(value, Some(exact)))
+        };
+        let n = self.system.dimension();
+        let choices = [&self.supplied, &self.spare];
+        let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
+        let mut rootless = vec![false; self.system.constraints.len()];
+        let mut found = None;
+        for _ in 0..DRAWS {
+            let q = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
+            let v = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
+            let velocities = match self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare)) {
+                Err(NoExactStart::Nonlinear) => self.with_roots(&parameters, time, &q, &v)?,
+                solved => Solved::At { velocities: solved?, free: Vec::new() },
+            };
+            match velocities {
+                Solved::Rootless(constraint) => rootless[constraint] = true,
+                Solved::At { velocities, free } => {
+                    let start = SeriesStart { parameters: parameters.clone(), time, positions: q, velocities };
+                    found.get_or_insert((start, free));
+                }
+            }
+            if found.as_ref().is_some_and(|(_, free)| free.iter().all(|&i| rootless[i])) {
+                break;
+            }
+        }
+        match found {
+            Some((start, free)) if free.iter().all(|&i| rootless[i]) => Ok(start),
+            Some(_) => Err(NoExactStart::Product),
+            None => Err(NoExactStart::Nonlinear),
+        }
+    }
+
+    /// `v` on quadratic constraints, each for a velocity that the fewest contain.
+    fn with_roots(
+        &self,
+        parameters: &[Jet<Modular>],
+        time: Jet<Modular>,
+        q: &[Jet<Modular>],
+        v: &[Jet<Modular>],
+    ) -> Result<Solved, NoExactStart> {
+        let (h, n) = (self.system.constraints.len(), v.len());
+        let mut program = self.constraints.evaluator::<Jet<Modular>>();
+        let inputs = |v: &[Jet<Modular>]| [parameters, &[time], q, v].concat();
+        let values = program.run(&inputs(v)).to_vec();
+        let contains = |i: usize, j: usize| !values[h + i * n + j].coefficient(0).is_zero();
+        let mut v = v.to_vec();
+        let mut open: Vec<usize> = (0..n).collect();
+        let mut roots: Vec<Root> = Vec::new();
+        let mut free = Vec::new();
+        for i in 0..h {
+            let others = |j: &usize| (0..h).filter(|&i| contains(i, *j)).count();
+            let Some(j) = open.iter().copied().filter(|&j| contains(i, j)).min_by_key(others) else {
+                return Err(NoExactStart::Nonlinear);
+            };
+            open.retain(|&other| other != j);
+            let before = v[j].coefficient(0);
+            // v_j + s: coefficients are those of the constraint as a polynomial in s
+            let (zero, one) = (Modular::ZERO, Modular::one());
+            v[j] = Jet::series(&[before, one, zero, zero, zero], None);
+            let f = program.run(&inputs(&v))[i];
+            let [c, b, a, third, fourth] = std::array::from_fn(|k| f.coefficient(k));
+            if f.flaw().is_some() || !third.is_zero() || !fourth.is_zero() {
+                return Err(NoExactStart::Nonlinear);
+            }
+            let two = Modular::new(2);
+            let change = match (two * a).inverse() {
+                Some(over) => {
+                    let (square, at_start) = (b * b - two * two * a * c, self.slopes[i * n + j]);
+                    let kept = roots.iter().find_map(|root| root.times_constant(square, at_start));
+                    let Some(value) = kept.or_else(|| square.square_root()) else { return Ok(Solved::Rootless(i)) };
+                    if kept.is_none() {
+                        free.push(i);
+                    }
+                    roots.push(Root { value, at_start });
+                    (value - b) * over
+                }
+                None => match b.inverse() {
+                    Some(over) => -c * over,
+                    None => return Err(NoExactStart::Nonlinear),
+                },
+            };
+            v[j] = Jet::constant(before + change, None);
+        }
+        let velocities = self.solved(parameters, time, q, &v, &[])?;
+        Ok(Solved::At { velocities, free })
+    }
+}
+
+/// What became of a draw.
+enum Solved {
+    /// Velocities on the constraints; places of the constraints whose root was free in its sign.
+    At { velocities: Vec<Jet<Modular>>, free: Vec<usize> },
+    /// This constraint has no root there.
+    Rootless(usize),
+}
+
+/// `∂f_i/∂v_j = √(b² − 4 a c)` of the constraint `a v_j² + b v_j + c`.
+struct Root {
+    value: Modular,
+    /// Its value at the start itself.
+    at_start: f64,
+}
+
+/// A ratio that is constant has its value at the start to this part.
+const CONSTANT: f64 = 1e-8;
+
+impl Root {
+    /// The root of `square` that is to this one as at the start; `None` unless the same fraction is so here.
+    fn times_constant(&self, square: Modular, at_start: f64) -> Option<Modular> {
+        let ratio = (square * (self.value * self.value).inverse()?).small_fraction()?;
+        let there = at_start / self.at_start;
+        let constant = (ratio.to_f64() - there * there).abs() <= CONSTANT * ratio.to_f64();
+        let root = Modular::root(ratio).ok().filter(|_| constant)?.0 * self.value;
+        Some(if there < 0.0 { -root } else { root })
+    }
+}
