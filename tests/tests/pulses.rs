@@ -155,7 +155,7 @@ fn every_pulse_is_found_by_every_method_and_in_ensembles() {
         for method in Method::ALL {
             // the last two have order 2 and 3
             let tolerance = if matches!(method, Method::TrBdf2 | Method::Esdirk34) { 1e-6 } else { 1e-8 };
-            let settings = Settings { method, tolerance, ..Settings::default() };
+            let settings = Settings { method: Some(method), tolerance, ..Settings::default() };
             let mut motion = solve_choice(&scene, choice, &settings).unwrap_or_else(|e| panic!("{}: {e}", what("")));
             asked += 1;
             if !motion.is_complete() || motion.doubt.is_some() {
@@ -187,7 +187,7 @@ fn every_pulse_is_found_by_every_method_and_in_ensembles() {
             }
         }
         if index % 10 == 0 {
-            let settings = Settings { method: Method::Taylor, tolerance: 1e-8, ..Settings::default() };
+            let settings = Settings { method: Some(Method::Taylor), tolerance: 1e-8, ..Settings::default() };
             let mut ensemble = Ensemble::new(&scene, choice, &[], &settings).expect("an ensemble");
             let start = EnsembleStart::of(&scene, &[], constants_of(choice, &scene));
             let member = ensemble.member_at(&start).expect("a member");
@@ -245,7 +245,7 @@ fn every_method_and_ensembles_end_a_step_at_breakpoints() {
     assert_eq!(again.system.breakpoints, [5.5, 5.0, 12.0]);
     let choice = &choices(&scene)[0];
     for method in Method::ALL {
-        let settings = Settings { method, tolerance: 1e-6, max_step: 0.5, ..Settings::default() };
+        let settings = Settings { method: Some(method), tolerance: 1e-6, max_step: 0.5, ..Settings::default() };
         let mut motion = solve_choice(&scene, choice, &settings).expect("a motion");
         let times = motion.step_times();
         assert!([5.0, 5.5].iter().all(|t| times.contains(t)), "{method:?}: {times:?}");

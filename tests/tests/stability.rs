@@ -69,7 +69,7 @@ fn a_long_run_that_goes_elsewhere_is_called_wrong() {
     let known = LONG[0].reference;
     for (reference, word) in [(known, "accurate"), (Some(elsewhere as fn(&str) -> Reference), "wrong")] {
         let long = Long { scene: "sledge", formulation: "chetaev", duration: 20.0, constants: None, reference };
-        let run = long.run(Stepping::Adaptive(Method::Dop853)).expect("a scene");
+        let run = long.run(Stepping::Adaptive(Some(Method::Dop853))).expect("a scene");
         assert_eq!(run.verdict.word(), word, "{run:?}");
     }
 }
@@ -82,6 +82,32 @@ fn radau_steps_over_friction_whatever_its_strength() {
         // 900 to 1100 at the tighter tolerance, 1e-9, whatever N
         assert!(motion.work.steps + motion.work.rejected < 1500, "N = {strength:e}: {:?}", motion.work);
     }
+}
+
+#[test]
+fn the_method_suits_the_motion() {
+    for (strength, expected) in [(1.0, Method::Taylor), (1e6, Method::Radau5), (1e10, Method::Radau5)] {
+        let motion = motion(&question("viscous", strength, "Newton, with friction"), None, 1e-9, 8_000);
+        let chosen = motion.method.as_ref().expect("a method");
+        assert!(motion.is_complete() && motion.doubt.is_none(), "N = {strength:e}: {:?}", motion.ending);
+        assert_eq!(chosen.method, expected, "N = {strength:e}: {}", chosen.why);
+    }
+    let text = r#"
+title = "A spring that only pulls back from one side"
+[coordinates]
+x = { start = 0.5 }
+[system]
+lagrangian = "x'^2/2"
+forces = { x = "-x - sqrt(x^2)" }
+[start.velocities]
+"x'" = 0.3
+[run]
+duration = 5
+"#;
+    let scene = scene::Scene::parse("kink", text).expect("a scene");
+    let motion = deltaq::solve_choice(&scene, &deltaq::choices(&scene)[0], &Settings::default()).expect("starts");
+    let chosen = motion.method.as_ref().expect("a method");
+    assert!(chosen.method == Method::Dop853 && chosen.why.contains("where x is zero"), "{chosen:?}");
 }
 
 #[test]
@@ -112,7 +138,7 @@ fn a_motion_that_is_off_and_does_not_know_is_called_wrong() {
         }));
         let cells = asked.cells("sledge-long").expect("a closed form reaches anywhere");
         let dop853 =
-            cells.iter().find(|cell| cell.method == Answering::Method(Method::Dop853)).expect("of every method");
+            cells.iter().find(|cell| cell.method == Answering::Method(Some(Method::Dop853))).expect("of every method");
         assert_eq!(is_wrong(dop853), wrong, "a reference that is off by {off}: {dop853:?}");
     }
 }
@@ -124,7 +150,7 @@ fn runaway_motions_stop_at_the_pole() {
         for cell in &cells {
             let Verdict::Refused { t: Some(t), .. } = cell.verdict else { panic!("{cell:?}") };
             // the others may run out of steps before
-            let limit = if cell.method == Answering::Method(Method::Dop853) { 1e-9 } else { 1e-2 };
+            let limit = if cell.method == Answering::Method(Some(Method::Dop853)) { 1e-9 } else { 1e-2 };
             assert!((t * start - 1.0).abs() < limit, "the pole is at {}: {cell:?}", 1.0 / start);
         }
     }
@@ -136,7 +162,7 @@ fn a_sledge_of_a_picometre_is_resolved() {
     let cells = question("unit-of-length", 1e12, "Chetaev").cells("unit-of-length").expect("a closed form");
     for cell in cells {
         let limit =
-            if matches!(cell.method, Answering::Method(Method::TrBdf2 | Method::Esdirk34)) { 1e-3 } else { 1e-6 };
+            if matches!(cell.method, Answering::Method(Some(Method::TrBdf2 | Method::Esdirk34))) { 1e-3 } else { 1e-6 };
         match cell.verdict {
             Verdict::Accurate { error, .. } => assert!(error < limit, "{cell:?}"),
             _ => panic!("{cell:?}"),
@@ -144,9 +170,9 @@ fn a_sledge_of_a_picometre_is_resolved() {
     }
 }
 
-fn motion(question: &Question, method: Method, tolerance: f64, max_steps: usize) -> Motion {
+fn motion(question: &Question, method: impl Into<Option<Method>>, tolerance: f64, max_steps: usize) -> Motion {
     let subject = (question.subject)().expect("equations");
-    let settings = Settings { tolerance, method, max_steps, ..Settings::default() };
+    let settings = Settings { tolerance, method: method.into(), max_steps, ..Settings::default() };
     let setting = Setting { system: &subject.system, start: &subject.start, end: subject.end };
     solve(setting, subject.equations, &subject.constants, &settings).expect("starts")
 }

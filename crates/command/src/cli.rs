@@ -185,11 +185,12 @@ pub struct ShowArguments {
 pub struct SolveArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// Time-stepping method: Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of
+    /// Time-stepping method: auto, the one that suits equations and motion (taylor, or else dop853 or
+    /// radau5); Taylor series, of the order that the tolerance asks for; explicit Runge–Kutta of
     /// order 8 (dop853) or 5 (tsit45); stiff: implicit Runge–Kutta of order 5 (radau5), 4 (esdirk34) or 2
     /// (tr-bdf2) and backward differentiation formulas (bdf); leapfrog, a discrete variational principle in
     /// equal steps, which keeps constraints, reversibility and (vakonomic, removed) the symplectic form.
-    #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "dop853")]
+    #[arg(long, value_parser = by_name(Stepping::all(), Stepping::name, None), default_value = "auto")]
     pub method: Stepping,
     /// Longest step of `--method leapfrog`, at most the duration, which is cut into two at least. A second
     /// run in half as many steps gives the error estimate.

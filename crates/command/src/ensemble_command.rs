@@ -25,7 +25,7 @@ const CHUNK: usize = 4096;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &EnsembleArguments) -> Result<Answer> {
-    let settings = Settings { method: Method::Taylor, ..settings(&arguments.motion)? };
+    let settings = Settings { method: Some(Method::Taylor), ..settings(&arguments.motion)? };
     let base = arguments.motion.scene.find()?;
     let members = Members::of(arguments, &base)?;
     let choice = choice(&base, &arguments.motion)?;

@@ -247,6 +247,7 @@ fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, times: &[f64]) -
             "steps": motion.work.steps, "rejected": motion.work.rejected, "evaluations": motion.work.evaluations,
             "orders": motion.work.orders,
         },
+        "method": motion.method.as_ref().map(|m| json!({ "name": m.method.name(), "why": m.why })),
         "form": { "why": motion.form.why, "fallbacks": motion.form.fallbacks },
         "charts": motion.charts.iter().map(|c| json!({ "from": c.t, "independent": c.independent })).collect::<Vec<_>>(),
         "seconds": {

@@ -146,7 +146,9 @@ fn options_of_the_integration_are_heard() {
         assert!(error < 10.0 * estimate + 1e-11, "{method}: error {error:e}, estimate {estimate:e}");
     }
     let steps = |tolerance: &str| {
-        json(&["sledge", "-f", "chetaev", "--tolerance", tolerance])["work"]["steps"].as_u64().expect("a number")
+        json(&["sledge", "-f", "chetaev", "--method", "dop853", "--tolerance", tolerance])["work"]["steps"]
+            .as_u64()
+            .expect("a number")
     };
     assert!(steps("1e-12") > steps("1e-5"));
     let set = ["--set", "g=1.62", "--set", "x=2", "--set", "duration=20"];
@@ -227,7 +229,7 @@ fn limits_end_a_run_with_what_was_reached() {
         assert!(stderr.contains(&cause), "{stderr}");
         (value, cause)
     };
-    let (value, cause) = solve(&["--max-steps", "10"]);
+    let (value, cause) = solve(&["--method", "dop853", "--max-steps", "10"]);
     assert!(cause.contains("more than 10 steps"), "{cause}");
     let end = value["end"].as_f64().expect("a number");
     let reached = column(&value, "coordinates", "phi");

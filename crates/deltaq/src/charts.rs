@@ -18,6 +18,7 @@ use crate::choice::derive_at;
 use crate::later_chart::{Later, Names, Point, momentum};
 use crate::single_run::chart_size;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
+use crate::trial::{NotSuited, not_suited};
 use crate::{Choice, Ending, Prepared, Setting, Settings, SingleRun, SolveError, TIGHTER};
 
 /// That a motion went on by other pivots.
@@ -41,6 +42,12 @@ pub(crate) struct Runs {
     pub(crate) fallbacks: usize,
 }
 
+/// What became of a motion by a method on trial.
+pub(crate) enum Course {
+    Run(Box<Runs>),
+    Unsuited(NotSuited),
+}
+
 /// Another chart is taken where the squares of its coefficients are smaller by this factor.
 const BETTER: f64 = 4.0;
 /// One that is known already is good enough, and no still better one is looked for, from this factor on.
@@ -48,13 +55,32 @@ const GOOD: f64 = 25.0;
 
 /// Both runs of `prepared`, which starts at `setting.start`. The limits of a run are those of all its charts
 /// together. Where none is better, it goes on in the one that it has; it may come back to each of them.
-pub(crate) fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result<Runs, SolveError> {
+pub(crate) fn run(
+    setting: Setting,
+    prepared: &mut Prepared,
+    settings: &Settings,
+    patience: f64,
+) -> Result<Course, SolveError> {
+    let origin = prepared.origin();
+    let course = run_on(setting, prepared, settings, patience);
+    prepared.return_to(origin);
+    course
+}
+
+fn run_on(setting: Setting, prepared: &mut Prepared, settings: &Settings, patience: f64) -> Result<Course, SolveError> {
     let (mut legs, mut changes, mut fallbacks): ([Legs; 2], Vec<ChartChange>, usize) = Default::default();
     let (mut charts, mut at, mut own): (Vec<Prepared>, Option<usize>, Option<Box<Later>>) = (Vec::new(), None, None);
     let (mut options, mut options_looser) = (settings.options(settings.tolerance * TIGHTER), None);
+    options.patience = patience;
     let failure = loop {
         let here = chart(prepared, &mut charts, at);
-        let runs = here.run_in_chart(setting.end, &options).and_then(|kept| {
+        let kept = here.run_in_chart(setting.end, &options);
+        if patience.is_finite()
+            && let Some(reason) = kept.as_ref().ok().and_then(|kept| not_suited(here, kept, setting.end, &options))
+        {
+            return Ok(Course::Unsuited(reason));
+        }
+        let runs = kept.and_then(|kept| {
             let options = options_looser.get_or_insert_with(|| settings.options(settings.tolerance));
             let looser = here.second_run(&kept, setting.end, options)?;
             options.before = Some(looser.solution.done());
@@ -104,7 +130,8 @@ pub(crate) fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings
         1 => Trajectory::TimeLoop(Box::new(legs.remove(0).0)),
         _ => Trajectory::Charts(legs),
     };
-    Ok(Runs { trajectories: legs.map(trajectory), changes, ending, work, projection, fallbacks })
+    let runs = Runs { trajectories: legs.map(trajectory), changes, ending, work, projection, fallbacks };
+    Ok(Course::Run(Box::new(runs)))
 }
 
 /// The chart of this number, or the first.

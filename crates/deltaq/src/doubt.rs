@@ -1,7 +1,5 @@
 //! Whether the difference of two runs says how wrong they are.
 
-use integrate::Method;
-
 use crate::TIGHTER;
 
 /// That the difference of the two runs is no error estimate from some time on.
@@ -29,17 +27,18 @@ const TOO_MANY: f64 = 10.0;
 const TOGETHER: usize = 20;
 
 impl Doubt {
-    /// From the ends of the steps of the kept and of the looser run, up to the `end` of the motion.
+    /// From the ends of the steps of the kept and of the looser run, up to the `end` of the motion, by a
+    /// method of this order, if it has one ([`integrate::Method::order_in_steps`]).
     ///
     /// Two runs with the same steps have the same error, which their difference hides; a run whose steps
     /// follow its round-off is no better than the looser one. Doubt begins where this first shows.
-    pub(crate) fn of([kept, looser]: &[Vec<f64>; 2], end: f64, complete: bool, method: Method) -> Option<Doubt> {
+    pub(crate) fn of([kept, looser]: &[Vec<f64>; 2], end: f64, complete: bool, order: Option<f64>) -> Option<Doubt> {
         let start = kept[0];
         let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };
         let sign = (end - start).signum();
         let until = |times: &[f64], end: f64| times.partition_point(|&t| (end - t) * sign >= 0.0);
         let (tight, loose) = (until(kept, end), until(looser, end));
-        let expected = method.order_in_steps().map(|order| TIGHTER.recip().powf(1.0 / order));
+        let expected = order.map(|order| TIGHTER.recip().powf(1.0 / order));
         let too_few = |loose: usize, tight: usize| {
             expected.is_some_and(|expected| (tight as f64) < loose as f64 * expected.powf(MORE_STEPS))
         };
@@ -78,7 +77,7 @@ mod tests {
 
     fn doubt(kept: Vec<f64>, looser: Vec<f64>, direction: f64) -> Option<Doubt> {
         let times = [kept, looser].map(|times| times.into_iter().map(|t| direction * t).collect());
-        Doubt::of(&times, direction * 2.0, true, Method::Dop853)
+        Doubt::of(&times, direction * 2.0, true, Some(8.0))
     }
 
     #[test]

@@ -127,7 +127,7 @@ impl Ensemble {
             constants.push(system.parameters[place].value);
             varied.push(place);
         }
-        let settings = Settings { method: Method::Taylor, ..settings.clone() };
+        let settings = Settings { method: Some(Method::Taylor), ..settings.clone() };
         let prepared = Prepared::around(setting(scene), equations, constants, &settings)?;
         let start = Start { t: scene.start.t, y: prepared.start.clone() };
         integrate::check_start(&start, setting(scene).end, &settings.options(settings.tolerance))?;

@@ -75,6 +75,7 @@ mod growth;
 mod integrability;
 mod later_chart;
 mod membership;
+mod method;
 mod metric;
 mod motion;
 mod prepared;
@@ -85,6 +86,7 @@ mod start_values;
 mod steps;
 mod table;
 mod trajectory;
+mod trial;
 
 pub use decision::{Finding, Section};
 
@@ -110,6 +112,7 @@ pub use gap::{
 pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
+pub use method::Chosen;
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve, solve_choice};
 pub use prepared::Prepared;

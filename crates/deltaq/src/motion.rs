@@ -3,15 +3,17 @@
 use std::time::Instant;
 
 use equations::{Compiled, Equations, Outputs};
-use integrate::{ProjectionReport, Work};
+use integrate::{Method, ProjectionReport, Work};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::charts::{self, ChartChange, Runs};
+use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::{derive_at, removals};
 use crate::constants::resolve;
+use crate::method::{Chosen, suited};
 use crate::metric::subtract;
 use crate::trajectory::Trajectory;
+use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::{Choice, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
 
 /// Wall-clock seconds spent.
@@ -45,6 +47,8 @@ pub struct Motion {
     pub ending: Ending,
     /// Where the tolerance did not decide the steps: the runs' difference is no error estimate then.
     pub doubt: Option<Doubt>,
+    /// The method, and why; of a motion in equal steps none.
+    pub method: Option<Chosen>,
     /// Work of the kept run.
     pub work: Work,
     /// What projection did in the kept run.
@@ -166,15 +170,51 @@ pub fn solve(
     let compile = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     resolve(&mut prepared, constants, settings)?;
-    let Runs { trajectories, changes, ending, work, projection, fallbacks } =
-        charts::run(setting, &mut prepared, settings)?;
+    let (runs, chosen) = run(setting, &mut prepared, settings)?;
+    let Runs { trajectories, changes, ending, work, projection, fallbacks } = runs;
     let seconds = Seconds { derive: 0.0, compile, integrate: clock.elapsed().as_secs_f64() };
     let motion = Motion::of(prepared, ending, trajectories, seconds);
-    let mut motion = Motion { work, projection, charts: changes, ..motion };
+    let mut motion = Motion { work, projection, charts: changes, method: Some(chosen), ..motion };
     motion.form.fallbacks = fallbacks;
     let steps = [motion.kept.step_times(), motion.looser.step_times()];
-    motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), settings.method);
+    let by = motion.method.as_ref().and_then(|chosen| chosen.method.order_in_steps());
+    motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), by);
     Ok(motion)
+}
+
+/// More steps ahead than this, and other methods are tried.
+const PATIENCE: f64 = 20_000.0;
+/// Both runs of `prepared`, made with the same settings, by the method asked for, or a suitable one:
+///
+/// - by the one that suits the equations;
+/// - where their solution is not smooth, by [`Method::Dop853`];
+/// - where more than 20 000 steps are ahead, 500 are tried by [`Method::Radau5`] from there on; if it comes
+///   ten times farther by them, the equations are stiff, and both runs are by it.
+fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result<(Runs, Chosen), SolveError> {
+    let chosen = |method: Method, why: String| Chosen { method, why };
+    let (mut method, mut why, mut patience) = match settings.method {
+        Some(method) => (method, "asked for".into(), f64::INFINITY),
+        None => {
+            let (method, why) = suited(&prepared.equations);
+            (method, why, PATIENCE.min(settings.max_steps as f64))
+        }
+    };
+    loop {
+        let settings = Settings { method: Some(method), ..settings.clone() };
+        match charts::run(setting, prepared, &settings, patience)? {
+            Course::Run(runs) => return Ok((*runs, chosen(method, why))),
+            Course::Unsuited(NotSuited::NotSmooth) => {
+                (method, why) = (Method::Dop853, "the motion leaves its Taylor series: it is not smooth".into());
+            }
+            Course::Unsuited(NotSuited::Slow { stiff }) => {
+                patience = f64::INFINITY;
+                if stiff {
+                    method = Method::Radau5;
+                    why = format!("the equations are stiff: by {TRIAL} steps it comes {FARTHER} times farther");
+                }
+            }
+        }
+    }
 }
 
 /// Derives and integrates a choice from the start of the scene.
@@ -221,6 +261,7 @@ impl Motion {
             end: readable_end(&mut prepared.compiled, &mut kept, &mut looser),
             ending,
             constants: prepared.constants,
+            method: None,
             work: Work::default(),
             projection: ProjectionReport::default(),
             seconds,

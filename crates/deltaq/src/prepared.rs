@@ -3,6 +3,7 @@
 use equations::{Compiled, Equations, Plan, Role};
 use integrate::{Method, Options, Start};
 
+use crate::method::suited;
 use crate::single_run::{SingleRun, UNITS, chart_size, move_digits};
 use crate::start_values::StartValues;
 use crate::{Setting, Settings, SolveError};
@@ -32,6 +33,9 @@ pub struct Prepared {
     /// The size of the chart at which another one is looked for, where there may be others.
     largest: Option<f64>,
 }
+
+/// `t`, `y`, the unknowns of the instant and the size of the chart at a start.
+pub(crate) type Origin = (f64, Vec<f64>, Vec<f64>, Option<f64>);
 
 /// Another chart is looked for where the squares of the coefficients have come to this many times those that
 /// it was chosen with.
@@ -76,7 +80,7 @@ impl Prepared {
         if prepared.compiled.has_chart() {
             prepared.largest = Some(GROWTH * chart_size(&mut prepared.compiled, t, &prepared.start).max(1.0));
         }
-        prepared.complete(settings.method)?;
+        prepared.complete(settings.method.unwrap_or_else(|| suited(&prepared.equations).0))?;
         Ok(prepared)
     }
 
@@ -156,6 +160,16 @@ impl Prepared {
             return self.run_from(y, end, options, None);
         }
         self.run_from(y, kept.end(), &Options { sizes: kept.sizes.clone(), ..options.clone() }, None)
+    }
+
+    /// Where and how the first run starts, for [`Prepared::return_to`].
+    pub(crate) fn origin(&self) -> Origin {
+        (self.t, self.start.clone(), self.guess.clone(), self.largest)
+    }
+
+    /// What runs next starts there.
+    pub(crate) fn return_to(&mut self, (t, start, guess, largest): Origin) {
+        (self.t, self.start, self.guess, self.largest, self.other_start) = (t, start, guess, largest, None);
     }
 
     /// What runs next starts where these two have come, and goes on until the chart has become worse again.

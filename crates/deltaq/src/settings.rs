@@ -1,8 +1,11 @@
 //! What a motion starts from, and how it is integrated.
 
+use equations::Equations;
 use integrate::{Interrupt, Method, Options, Projection};
 use mechanics::{State, System};
 use scene::Scene;
+
+use crate::method::suited;
 
 /// The tolerance of the second run over that of the first.
 pub const TIGHTER: f64 = 1e-2;
@@ -28,8 +31,9 @@ pub fn setting(scene: &Scene) -> Setting<'_> {
 pub struct Settings {
     /// Tolerance of the first run; the second, whose trajectory is kept, has [`TIGHTER`] times this.
     pub tolerance: f64,
-    /// Method.
-    pub method: Method,
+    /// Method; `None`: the one that suits the equations and, where many steps are ahead, the motion:
+    /// [`Method::Taylor`], or else [`Method::Dop853`] or [`Method::Radau5`].
+    pub method: Option<Method>,
     /// Projection onto the constraint after every step.
     pub projection: Projection,
     /// Limit on the steps of one run.
@@ -49,13 +53,18 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        let (method, projection) = (Method::Dop853, Projection::EveryStep);
+        let (method, projection) = (None, Projection::EveryStep);
         let (max_steps, max_step, time_limit, interrupt) = (1_000_000, f64::INFINITY, None, None);
         Settings { tolerance: 1e-11, method, projection, max_steps, max_step, time_limit, plain: false, interrupt }
     }
 }
 
 impl Settings {
+    /// With a method that suits the equations, where none is asked for.
+    pub fn suiting(&self, equations: &Equations) -> Self {
+        Settings { method: Some(self.method.unwrap_or_else(|| suited(equations).0)), ..self.clone() }
+    }
+
     /// Of one run at `tolerance` that begins now.
     pub(crate) fn options(&self, tolerance: f64) -> Options {
         let interrupt = match self.time_limit {
@@ -63,7 +72,7 @@ impl Settings {
             None => self.interrupt.clone(),
         };
         Options {
-            method: self.method,
+            method: self.method.unwrap_or(Method::Taylor),
             projection: self.projection,
             max_steps: self.max_steps,
             max_step: if tolerance < self.tolerance { 0.5 * self.max_step } else { self.max_step },

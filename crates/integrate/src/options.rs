@@ -112,6 +112,8 @@ pub struct Options {
     pub projection: Projection,
     /// Limit on the number of attempted (accepted and rejected) steps, those before too; > 0.
     pub max_steps: usize,
+    /// The run is given up where more attempts than this are ahead of it, at the pace of its last 500.
+    pub patience: f64,
     /// No step is longer; > 0, infinite without a limit.
     pub max_step: f64,
     /// Times at which a step ends, in any order, where the method begins anew: those within the run.
@@ -162,6 +164,7 @@ impl Options {
             sizes: Vec::new(),
             projection: Projection::EveryStep,
             max_steps: 100_000,
+            patience: f64::INFINITY,
             max_step: f64::INFINITY,
             breakpoints: Vec::new(),
             dense: Dense::Everywhere,

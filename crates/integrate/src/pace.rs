@@ -13,7 +13,7 @@ const MANY_STEPS: usize = 3_000;
 const TIMES_ALLOWED: f64 = 10.0;
 const TO_GO: f64 = 1e7;
 const STRETCHES: usize = 4;
-const STRETCH: usize = 500;
+pub(crate) const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
 /// And where the rest would take as long as that at the pace of so many attempts, which is under this part of
@@ -41,18 +41,25 @@ pub(crate) struct Pace {
     stretches: usize,
     first: f64,
     last: f64,
+    /// Attempts that are ahead at the pace of the last stretch; none are before the first.
+    ahead: f64,
 }
 
 impl Pace {
     pub(crate) fn new(start: f64, end: f64) -> Self {
         let mark = Mark { t: start, count: 0 };
         let (stretches, first, last) = (0, 0.0, 0.0);
-        Pace { start, end, many: mark, stretch: mark, long: mark, slow: mark, stretches, first, last }
+        Pace { start, end, many: mark, stretch: mark, long: mark, slow: mark, stretches, first, last, ahead: 0.0 }
     }
 
     /// Of a run that goes on to `end`.
     pub(crate) fn on_to(self, end: f64) -> Self {
         Pace { end, ..self }
+    }
+
+    /// Whether more attempts are ahead than this, and the time that the last stretch of them moved.
+    pub(crate) fn is_over(&self, patience: f64) -> Option<(f64, f64)> {
+        (self.ahead > patience).then_some((self.ahead, self.last))
     }
 
     /// Whether a run creeps that has come to `t` by so many steps of so many attempts, of which it may make
@@ -81,6 +88,7 @@ impl Pace {
         if count < STRETCH {
             return None;
         }
+        self.ahead = (self.end - t).abs() / moved * count as f64;
         if !endless(count, moved) {
             self.stretches = 0;
         } else if self.stretches > 0 && moved > 0.5 * self.last && moved < 2.0 * self.last {

@@ -112,6 +112,14 @@ pub enum StopCause {
         /// Time they took together.
         moved: f64,
     },
+    /// More attempts are ahead than [`crate::Options::patience`] allows.
+    #[error("{ahead:.0e} steps are ahead, where the last ones moved time by {moved:.1e}")]
+    Slow {
+        /// How many, at the pace of the last ones.
+        ahead: f64,
+        /// Time that the last stretch of attempts took.
+        moved: f64,
+    },
     /// [`crate::Options::interrupt`] was raised.
     #[error("interrupted")]
     Interrupted,

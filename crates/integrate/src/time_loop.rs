@@ -81,6 +81,9 @@ impl Record<'_, '_> {
             if let Some((steps, moved)) = self.pace.look(t, work.steps, attempts, limit) {
                 return Err(StopCause::Creeping { steps, moved });
             }
+            if let Some((ahead, moved)) = self.pace.is_over(self.options.patience) {
+                return Err(StopCause::Slow { ahead, moved });
+            }
             let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {
                     system.count_rejected(rejected);

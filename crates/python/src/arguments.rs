@@ -27,8 +27,10 @@ pub(crate) fn settings(
     if max_step.is_nan() || max_step <= 0.0 {
         return Err(PyValueError::new_err(format!("max_step is {max_step}; it must be above 0")));
     }
-    let Some(method) = Method::ALL.into_iter().find(|m| m.name() == method) else {
-        return Err(unknown("method", method, Method::ALL.into_iter().map(Method::name)));
+    let method = match (Method::ALL.into_iter().find(|m| m.name() == method), method) {
+        (None, "auto") => None,
+        (None, other) => return Err(unknown("method", other, Method::ALL.into_iter().map(Method::name))),
+        (method, _) => method,
     };
     let interrupt = Interrupt::default();
     let settings = Settings {

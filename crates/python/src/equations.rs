@@ -190,7 +190,7 @@ impl Equations {
         let start = match rule {
             None => start,
             Some(rule) => {
-                let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None, None)?;
+                let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
                 let scene = self.scene();
                 let work = move || prepare(setting(&scene), equations, &rule, &settings);
                 background::run(py, &interrupt, work)?.map_err(errors::solve)?.start
@@ -272,7 +272,7 @@ impl Equations {
     ///
     /// Other threads go on; Ctrl-C ends it. SolveError without a run; `status` says if it stops early.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (times, *, method="dop853", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
+    #[pyo3(signature = (times, *, method="auto", tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None))]
     fn integrate(
         &self,
         py: Python<'_>,
@@ -289,7 +289,7 @@ impl Equations {
         let mut ready = self.ready();
         let is_end = |&t: &f64| t == ready.t || t == end;
         let options = Options {
-            method: settings.method,
+            method: settings.suiting(&ready.equations).method.unwrap_or(Method::Taylor),
             projection: settings.projection,
             max_steps,
             max_step: settings.max_step,

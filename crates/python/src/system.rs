@@ -251,7 +251,7 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Equations> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("dop853", 1e-11, true, 1_000_000, None, None)?;
+        let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
         let scene = self.scene().clone();
         let is_given = given.is_some();
         let mut choice = arguments::choice(&scene, formulation, removal, given)?;
@@ -275,14 +275,15 @@ impl System {
     /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
     /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
     /// removal or of the system.
-    /// method: one of METHODS. tolerance: of the looser run; the one that is kept has a hundredth of it.
+    /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
+    /// kept has a hundredth of it.
     /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
     /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
     ///
     /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
-        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, method="dop853", tolerance=1e-11,
+        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, method="auto", tolerance=1e-11,
         project=true, max_steps=1_000_000, max_step=None, time_limit=None
     ))]
     fn solve(
@@ -376,7 +377,7 @@ impl System {
         time_limit: Option<f64>,
     ) -> PyResult<Comparison> {
         check_tolerance(tolerance)?;
-        let (settings, interrupt) = arguments::settings("dop853", tolerance, true, max_steps, max_step, time_limit)?;
+        let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
         let scene = self.scene().clone();
         let compared = background::run(py, &interrupt, move || compare(scene, &settings))?;
         Comparison::new(py, compared.map_err(errors::solve)?)

@@ -125,7 +125,7 @@ fn run(setting: Setting, method: Method, coordinates: usize) -> Result<Motion, S
     equations.coordinates.truncate(coordinates);
     equations.velocities.truncate(coordinates);
     let at = |tolerance: f64| {
-        let settings = Settings { tolerance, method, max_steps: MAX_STEPS, ..Settings::default() };
+        let settings = Settings { tolerance, method: Some(method), max_steps: MAX_STEPS, ..Settings::default() };
         solve(setting, equations.clone(), &ConstantsRule::Zero, &settings)
     };
     let sharp = at(TOLERANCES[0])?;

@@ -45,7 +45,7 @@ fn members(name: &str, base: &Scene, parameter: Option<&str>) -> Vec<Scene> {
 }
 
 fn compare(name: &str, base: &Scene, choice: &Choice, count: &mut Count) {
-    let settings = Settings { method: Method::Taylor, tolerance: 1e-9, ..Settings::default() };
+    let settings = Settings { method: Some(Method::Taylor), tolerance: 1e-9, ..Settings::default() };
     let natural = matches!(choice.constants, ConstantsRule::Natural { .. });
     let parameter = base.system.parameters.first().map(|p| base.system.graph.name(p.symbol)).filter(|_| !natural);
     let what = format!("{name}, {}", choice.label);

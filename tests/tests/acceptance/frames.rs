@@ -108,7 +108,7 @@ fn motions_near_the_ends_of_the_frame_are_those_of_the_multiplier_form() {
             let whole = equations(&scene.system, form, None);
             let mut multiplier = motion_of(&scene, whole, &mu, &tight());
             for method in [Method::Dop853, Method::Taylor] {
-                let settings = deltaq::Settings { method, ..tight() };
+                let settings = deltaq::Settings { method: Some(method), ..tight() };
                 let reduced = equations(&scene.system, &format!("{form}-reduced"), None);
                 let mut framed = motion_of(&scene, reduced, &mu, &settings);
                 let (gap, end) = known_gap(&mut multiplier, &mut framed);

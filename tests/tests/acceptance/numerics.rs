@@ -29,7 +29,7 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
         (Method::Esdirk34, 1e-6, 100.0),
         (Method::Radau5, 1e-6, 100.0),
     ] {
-        let settings = Settings { method, tolerance, ..Settings::default() };
+        let settings = Settings { method: Some(method), tolerance, ..Settings::default() };
         let mut motion = motion_of(&scene, equations(&scene.system, "chetaev", None), &[], &settings);
         assert!(motion.is_complete(), "{method:?}: {:?}", motion.ending);
         let now = at(&mut motion, 10.0).coordinates;
@@ -68,7 +68,7 @@ fn jacobians_of_reduced_forms_are_exact() {
 fn implicit_methods_use_those_jacobians() {
     let scene = scene("ball-in-cone", &[("duration", 1.0)]);
     let run = |method| {
-        let settings = Settings { method, tolerance: 1e-7, ..Settings::default() };
+        let settings = Settings { method: Some(method), tolerance: 1e-7, ..Settings::default() };
         motion_of(&scene, equations(&scene.system, "chetaev", None), &[], &settings)
     };
     let mut reference: Motion = run(Method::Dop853);
@@ -121,7 +121,8 @@ duration = 1.5
     let of_s = 2.75 / (11.0 / 8.0 + 3.0 / 2.0);
     let t = (of_s * sum - 55.0 / 64.0) / (7.0 / 4.0 - of_s * slope);
     for method in [Method::Dop853, Method::Taylor] {
-        let motion = solve_choice(&scene, &choices(&scene)[1], &Settings { method, ..tight() }).expect("it starts");
+        let motion = solve_choice(&scene, &choices(&scene)[1], &Settings { method: Some(method), ..tight() })
+            .expect("it starts");
         let Ending::Stopped { t: end, cause } = &motion.ending else { panic!("{:?}", motion.ending) };
         assert!((end - t).abs() < 1e-9 && cause.contains("mu_1"), "{end}, {t}: {cause}");
     }
@@ -153,8 +154,8 @@ duration = 5.0
     let factor = 0.3_f64.sin() * 0.3_f64.cos();
     let mut sledge = vakonomic(&whole, &[0.3 / factor]);
     for method in [Method::Dop853, Method::Taylor] {
-        let mut motion =
-            solve_choice(&divided, &choices(&divided)[1], &Settings { method, ..tight() }).expect("starts");
+        let mut motion = solve_choice(&divided, &choices(&divided)[1], &Settings { method: Some(method), ..tight() })
+            .expect("starts");
         let Ending::Stopped { t: end, cause } = motion.ending.clone() else { panic!("{:?}", motion.ending) };
         let quarters = at(&mut sledge, end).coordinates[2] / FRAC_PI_2;
         must("quarter turns from a zero of sin 2φ", (quarters - quarters.round()).abs(), 1e-9);

@@ -131,7 +131,7 @@ fn multipliers_and_series_follow_along_the_motion() {
     for scene in [scene("sledge", &[]), scene("disc", &[]), trailer::scene(2, Coordinates::Maximal).expect("parses")] {
         let mu: Vec<f64> = some_multipliers(&scene).iter().map(|mu| 0.3 * mu).collect();
         let mut reference = vakonomic(&scene, &mu);
-        let settings = Settings { method: Method::Taylor, tolerance: TIGHT, ..tight() };
+        let settings = Settings { method: Some(Method::Taylor), tolerance: TIGHT, ..tight() };
         let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &mu, &settings);
         let (distance, end) = known_gap(&mut reference, &mut motion);
         must(&format!("{}: by Taylor series, to {end:.2} s", scene.name), distance, 1e-9);
@@ -152,7 +152,7 @@ fn a_lagrangian_that_is_not_quadratic_is_solved_by_newton() {
     must("quartic: velocities and multipliers", velocities.max(multipliers), 1e-12);
     let mut reference = vakonomic(&scene, &[0.4]);
     for method in [Method::Dop853, Method::Taylor] {
-        let settings = Settings { method, ..tight() };
+        let settings = Settings { method: Some(method), ..tight() };
         let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &[0.4], &settings);
         must(&format!("quartic: {method:?}"), known_gap(&mut reference, &mut motion).0, 1e-10);
     }

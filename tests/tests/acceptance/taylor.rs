@@ -13,7 +13,7 @@ const ORDER: usize = 24;
 /// The series at the start to order 24, and how far its slope is from the rates at `h = 0.1 ‖y‖/‖y'‖` (less
 /// where it converges less fast), over the size of the rates: what is left out there is smaller than 1e-10.
 fn defect(scene: &Scene, equations: Equations, constants: &[f64]) -> f64 {
-    let settings = Settings { method: Method::Taylor, ..Settings::default() };
+    let settings = Settings { method: Some(Method::Taylor), ..Settings::default() };
     let rule = ConstantsRule::Given(constants.to_vec());
     let name = equations.formulation;
     let ready = deltaq::prepare(deltaq::setting(scene), equations, &rule, &settings);
@@ -60,7 +60,8 @@ fn motions_are_those_of_dop853() {
         for (name, constants) in [("chetaev", &[][..]), ("vakonomic", &mu0)] {
             for projection in [Projection::EveryStep, Projection::Off] {
                 let run = |method| {
-                    let settings = Settings { method, projection, tolerance: 1e-10, ..Settings::default() };
+                    let settings =
+                        Settings { method: Some(method), projection, tolerance: 1e-10, ..Settings::default() };
                     motion_of(&scene, equations(&scene.system, name, None), constants, &settings)
                 };
                 let (mut taylor, mut reference) = (run(Method::Taylor), run(Method::Dop853));

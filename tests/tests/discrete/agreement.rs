@@ -2,6 +2,7 @@
 
 use deltaq::{Choice, Motion, Settings, SolveError, Steps, choices, solve_by_steps, solve_choice};
 use discrete::{Composition, DiscreteError};
+use integrate::Method;
 use mechanics::ConstantsRule;
 use random::{Case, Kind, draw_recipe};
 use scene::Scene;
@@ -72,7 +73,7 @@ fn discrete_motions_come_to_those_of_every_scene() {
         });
         for choice in choices {
             let what = format!("{name}, {}, {:?}", choice.label, choice.constants);
-            let settings = Settings { tolerance: 1e-12, ..Settings::default() };
+            let settings = Settings { tolerance: 1e-12, method: Some(Method::Dop853), ..Settings::default() };
             // by-heading of appell-hamel and the paper's of the cylinders have no regular equations
             let Ok(mut motion) = solve_choice(&scene, &choice, &settings) else { continue };
             let choice = given(&choice, &motion.constants.clone());

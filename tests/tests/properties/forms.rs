@@ -124,7 +124,8 @@ fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
         let scene = validation::catalogue::find(name, &[]).expect("a scene");
         let choices = deltaq::choices(&scene);
         let choice = choices.iter().find(|c| c.formulation == formulation).expect("a choice");
-        let mut motion = deltaq::solve_choice(&scene, choice, &deltaq::Settings::default()).expect("a motion");
+        let many_steps = deltaq::Settings { method: Some(integrate::Method::Dop853), ..deltaq::Settings::default() };
+        let mut motion = deltaq::solve_choice(&scene, choice, &many_steps).expect("a motion");
         let (evaluations, fallbacks) = (motion.work.evaluations, motion.form.fallbacks);
         assert!(fallbacks > 0 && 20 * fallbacks < evaluations, "{name}: {fallbacks} of {evaluations}");
         let plain = deltaq::Settings { tolerance: 1e-11, plain: true, ..deltaq::Settings::default() };

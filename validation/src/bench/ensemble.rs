@@ -142,7 +142,7 @@ pub fn ensemble_throughput(count: usize, tolerance: f64, repeats: usize) -> Resu
 }
 
 fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, repeats: usize) -> Result<Throughput> {
-    let settings = Settings { method: Method::Taylor, tolerance, ..Settings::default() };
+    let settings = Settings { method: Some(Method::Taylor), tolerance, ..Settings::default() };
     let end = setting(scene).end;
     // Natural constants belong to horizon and parameters, not to the start: the scene's serve for all.
     let equations = deltaq::derive_at(&scene.system, &scene.start, &choice)?;

@@ -203,7 +203,7 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
     let clock = Instant::now();
     let equations = derive_at(&scene.system, &scene.start, choice)?;
     let derive = clock.elapsed().as_secs_f64();
-    let settings = Settings { method: Method::Taylor, ..Settings::default() };
+    let settings = Settings { method: Some(Method::Taylor), ..Settings::default() };
     let clock = Instant::now();
     let mut ready = deltaq::prepare(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();

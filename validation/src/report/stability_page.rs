@@ -120,7 +120,7 @@ impl StabilityReport {
 
     fn page(&self) -> String {
         let tolerances: Vec<String> =
-            Method::ALL.iter().map(|&method| format!("{} {:.0e}", method.name(), tolerance(method))).collect();
+            Method::ALL.iter().map(|&method| format!("{} {:.0e}", method.name(), tolerance(Some(method)))).collect();
         let cases = CASES.iter().filter(|case| self.has(case.name)).map(|case| self.section(case));
         fill(
             include_str!("pages/stability.md"),
@@ -167,8 +167,11 @@ impl StabilityReport {
         if DRAWN.iter().any(|(name, _)| *name == case.name) {
             let _ = writeln!(page, "![Error over {variable}]({})\n", picture_name(case.name));
         }
-        let count =
-            if matches!(cells[0].method, Answering::Method(_)) { Method::ALL.len() } else { Composition::ALL.len() };
+        let count = if matches!(cells[0].method, Answering::Method(_)) {
+            Method::ALL.len() + 1
+        } else {
+            Composition::ALL.len()
+        };
         let methods = cells[..count].iter().map(|cell| format!(">{}", cell.method.name()));
         let mut table = Table::new([format!(">{variable}"), "formulation".into()].into_iter().chain(methods));
         for line in cells.chunks(count) {
@@ -191,10 +194,9 @@ impl StabilityReport {
 
     fn picture(&self, name: &str, formulation: &str) -> Result<String> {
         let curve = |(i, method): (usize, &Method)| {
-            let cells = self
-                .cells
-                .iter()
-                .filter(|c| c.case == name && c.formulation == formulation && c.method == Answering::Method(*method));
+            let cells = self.cells.iter().filter(|c| {
+                c.case == name && c.formulation == formulation && c.method == Answering::Method(Some(*method))
+            });
             let points = cells.map(|cell| match cell.verdict {
                 Verdict::Accurate { error, .. } | Verdict::Admitted { error, .. } | Verdict::Wrong { error, .. } => {
                     (cell.point, error)

@@ -33,25 +33,26 @@ const PARTS: usize = 10;
 pub enum Stepping {
     /// Equal steps that keep the structure of the motion: in the long runs a million of them, of order 2.
     Leapfrog,
-    /// As many as the tolerance asks for, with projection.
-    Adaptive(Method),
+    /// As many as the tolerance asks for, with projection; `None`: by the method that suits the motion.
+    Adaptive(Option<Method>),
 }
 
 impl Stepping {
     /// Every way that there is.
     pub fn all() -> impl Iterator<Item = Stepping> {
-        Method::ALL.into_iter().map(Stepping::Adaptive).chain([Stepping::Leapfrog])
+        let methods = Method::ALL.into_iter().map(Some);
+        [None].into_iter().chain(methods).map(Stepping::Adaptive).chain([Stepping::Leapfrog])
     }
 
     /// Those that are compared.
     pub const COMPARED: [Stepping; 3] =
-        [Stepping::Leapfrog, Stepping::Adaptive(Method::Taylor), Stepping::Adaptive(Method::Dop853)];
+        [Stepping::Leapfrog, Stepping::Adaptive(Some(Method::Taylor)), Stepping::Adaptive(Some(Method::Dop853))];
 
     /// Its name, as on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Stepping::Leapfrog => "leapfrog",
-            Stepping::Adaptive(method) => method.name(),
+            Stepping::Adaptive(method) => method.map_or("auto", Method::name),
         }
     }
 }

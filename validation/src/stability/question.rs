@@ -16,11 +16,11 @@ use random::parallel;
 pub const MAX_STEPS: usize = 8_000;
 
 /// Tolerance of the looser run, as the order of the method allows within [`MAX_STEPS`].
-pub fn tolerance(method: Method) -> f64 {
+pub fn tolerance(method: Option<Method>) -> f64 {
     match method {
-        Method::Tsit45 | Method::Bdf => 1e-8,
-        Method::Esdirk34 | Method::Radau5 => 1e-7,
-        Method::TrBdf2 => 1e-5,
+        Some(Method::Tsit45 | Method::Bdf) => 1e-8,
+        Some(Method::Esdirk34 | Method::Radau5) => 1e-7,
+        Some(Method::TrBdf2) => 1e-5,
         _ => 1e-10,
     }
 }
@@ -28,17 +28,22 @@ pub fn tolerance(method: Method) -> f64 {
 /// Who answers a question.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answering {
-    /// A method that chooses its steps.
-    Method(Method),
+    /// A method that chooses its steps, or `None`: the one that suits the motion.
+    Method(Option<Method>),
     /// Structure-preserving steps of equal length.
     Steps(Composition),
 }
 
 impl Answering {
+    /// The method that is chosen, and every other one.
+    pub fn methods() -> impl Iterator<Item = Answering> {
+        [None].into_iter().chain(Method::ALL.into_iter().map(Some)).map(Answering::Method)
+    }
+
     /// Its name, on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
-            Answering::Method(method) => method.name(),
+            Answering::Method(method) => method.map_or("auto", Method::name),
             Answering::Steps(Composition::Second) => "leapfrog, order 2",
             Answering::Steps(Composition::Fourth) => "order 4",
             Answering::Steps(Composition::Sixth) => "order 6",
@@ -174,7 +179,7 @@ impl Question {
     pub fn cells(&self, case: &'static str) -> Result<Vec<Cell>> {
         let subject = (self.subject)();
         let mut motions: Vec<(Answering, Result<Motion, String>)> = match &self.stepped {
-            None => Method::ALL.into_iter().map(|m| (Answering::Method(m), motion(&subject, m))).collect(),
+            None => Answering::methods().map(|by| (by, motion(&subject, by))).collect(),
             Some(step) => Composition::ALL.into_iter().map(|c| (Answering::Steps(c), step(c))).collect(),
         };
         let reached = motions.iter().filter_map(|(_, motion)| motion.as_ref().ok());
@@ -211,7 +216,8 @@ impl Question {
     }
 }
 
-fn motion(subject: &Result<Subject, String>, method: Method) -> Result<Motion, String> {
+fn motion(subject: &Result<Subject, String>, by: Answering) -> Result<Motion, String> {
+    let Answering::Method(method) = by else { return Err("equal steps are not asked for by a method".into()) };
     let Subject { system, start, end, equations, constants, .. } = subject.as_ref().map_err(Clone::clone)?;
     let settings = Settings { tolerance: tolerance(method), method, max_steps: MAX_STEPS, ..Settings::default() };
     let setting = Setting { system, start, end: *end };

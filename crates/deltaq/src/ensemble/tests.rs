@@ -29,7 +29,7 @@ duration = 1.5
 "#;
 
 fn settings() -> Settings {
-    Settings { method: Method::Taylor, tolerance: 1e-10, ..Settings::default() }
+    Settings { method: Some(Method::Taylor), tolerance: 1e-10, ..Settings::default() }
 }
 
 fn scene(text: &str, overrides: &[(&str, f64)]) -> Scene {

@@ -6,13 +6,17 @@ use super::CheckError;
 use crate::Case;
 use crate::case::Which;
 
-/// Deviation of the measured exponent from the predicted one, beyond its own uncertainty.
+/// Deviation of the measured exponent from the predicted one, beyond its doubt.
 const EXPONENT: f64 = 1e-2;
+
+/// The doubt in a figure, in its changes where the fit has one term less: a change tells the size of what is
+/// left out, and is no bound. Exponents are whole numbers: one that is wrong is off by more.
+const CHANGES: f64 = 3.0;
 
 /// An exponent that is less certain than this is not judged, nor is a coefficient with that relative doubt.
 const UNCERTAIN: f64 = 0.1;
 
-/// Relative deviation of the measured leading coefficient from the predicted one, beyond its uncertainty.
+/// Relative deviation of the measured leading coefficient from the predicted one, beyond its doubt.
 const COEFFICIENT: f64 = 1e-2;
 
 /// A predicted gap that does not reach this over the run says nothing: its growth cannot be measured.
@@ -49,13 +53,18 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         }
         Some(measured) => {
             let exponent = (measured.exponent - f64::from(predicted.exponent)).abs();
-            case.found.bound(5, "exponent of the leading divergence", exponent, EXPONENT + measured.uncertainty);
+            case.found.bound(
+                5,
+                "exponent of the leading divergence",
+                exponent,
+                EXPONENT + CHANGES * measured.uncertainty,
+            );
             let claim = "coefficient of the leading divergence";
             match measured.coefficient_uncertainty {
                 doubt if doubt > UNCERTAIN => {
                     case.found.undecided(5, claim, format!("measured with a doubt of {doubt:.1e}"));
                 }
-                doubt => case.found.bound(5, claim, measured.deviation_from(&predicted), COEFFICIENT + doubt),
+                doubt => case.found.bound(5, claim, measured.deviation_from(&predicted), COEFFICIENT + CHANGES * doubt),
             }
             match (predicted.exponent, without) {
                 (2, _) => case.found.observe(5, "growth exponent, mu0 not zero", measured.exponent),

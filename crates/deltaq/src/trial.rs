@@ -1,0 +1,35 @@
+//! Whether a run shows that its method does not suit the motion.
+
+use integrate::{Method, Options, Status, StopCause};
+
+use crate::{Prepared, SingleRun};
+
+/// Attempts of the trial: as many as a pace is measured by.
+pub(crate) const TRIAL: usize = 500;
+/// A step of [`Method::Radau5`] costs as much as so many others at most.
+pub(crate) const FARTHER: f64 = 10.0;
+
+/// Why a method does not suit a motion.
+pub(crate) enum NotSuited {
+    /// It is not smooth.
+    NotSmooth,
+    /// Too many steps are ahead; whether an implicit method has far less of them.
+    Slow { stiff: bool },
+}
+
+/// Whether the method of `kept` does not suit the motion, as the [`Options::patience`] of the run has it.
+pub(crate) fn not_suited(here: &Prepared, kept: &SingleRun, end: f64, options: &Options) -> Option<NotSuited> {
+    let Status::Stopped { t, cause } = &kept.solution.status else { return None };
+    match cause {
+        StopCause::NotSmooth { .. } if options.method == Method::Taylor => Some(NotSuited::NotSmooth),
+        StopCause::Slow { moved, .. } => {
+            let max_steps = options.max_steps.min(TRIAL);
+            let options = Options { method: Method::Radau5, max_steps, patience: f64::INFINITY, ..options.clone() };
+            let mut there = here.clone();
+            there.go_on([kept, kept]);
+            let trial = there.integrate(end, &Options { before: None, ..options });
+            Some(NotSuited::Slow { stiff: trial.is_ok_and(|trial| (trial.end() - t).abs() >= FARTHER * moved) })
+        }
+        _ => None,
+    }
+}
