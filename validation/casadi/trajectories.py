@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 TOLERANCES = {"CVODES": 1e-14, "IDAS": 1e-11}
-# IDAS is of order 5 at most and refuses much less; how good it is, a second run at ten times the tolerance says
+# how good a referee is, a second run at ten times the tolerance says; IDAS is of order 5 at most and refuses much less
 LOOSER = 10.0
 ABSOLUTE = {"CVODES": 1e-14, "IDAS": 1e-11}
 COMMON = {"max_num_steps": 100_000}
@@ -69,8 +69,8 @@ class Found:
         self.ours, self.looser, self.theirs, self.drift = ours, looser, theirs, drift
         self.our_multipliers, self.their_multipliers = our_multipliers, their_multipliers
         self.has_multipliers = our_multipliers.size > 0
-        # how far two runs of the referee itself are apart, where that was measured
-        self.estimate = 0.0
+        # the referee's own looser run, where there was one
+        self.their_looser = theirs
 
     def apart(self, count):
         """Distance of the first `count` points."""
@@ -80,6 +80,10 @@ class Found:
         """Distance of our own two runs."""
         return distance(self.ours[:count], self.looser[:count])
 
+    def referees(self, count):
+        """Distance of the referee's own two runs, 0 where it made one only."""
+        return distance(self.theirs[:count], self.their_looser[:count])
+
     def multipliers(self, count):
         """Largest difference of the multipliers, relative to the largest of them, or to 1."""
         scale = max(1.0, np.abs(self.our_multipliers[:count]).max())
@@ -87,16 +91,17 @@ class Found:
 
 
 def compare(instant, motion, solver):
-    """Our motion and theirs from the same start."""
+    """Our motion and theirs from the same start, and the coordinates of a second run of theirs, to be made where they are asked for."""
     times = np.array(motion["times"], dtype=float)
-    states = integrate(instant, start(instant, motion), times, solver)
-    theirs = np.array(instant.coordinate_function.map(len(times))(times.reshape(1, -1), states.T)).T
+
+    def run(factor):
+        states = integrate(instant, start(instant, motion), times, solver, factor)
+        return states, np.array(instant.coordinate_function.map(len(times))(times.reshape(1, -1), states.T)).T
+
+    states, theirs = run(1.0)
     ours = np.array(motion["coordinates"], dtype=float)
     mu = [i for i, tag in enumerate(instant.tags) if tag[0] == "mu"]
     table = np.array(motion["multipliers"], dtype=float) if mu and motion["multipliers"] else np.zeros((len(times), 0))
     drift = largest_constraint(instant, times, states)
     found = Found(ours, ours - np.array(motion["differences"], dtype=float), theirs, table, states[:, mu], drift)
-    if solver == "IDAS":
-        looser = integrate(instant, start(instant, motion), times, solver, LOOSER)
-        found.estimate = distance(theirs, np.array(instant.coordinate_function.map(len(times))(times.reshape(1, -1), looser.T)).T)
-    return found
+    return found, lambda: run(LOOSER)[1]

@@ -26,7 +26,7 @@ pub(crate) fn verdict_words(gap: &deltaq::Gap) -> String {
 
 /// One line a run: how it was started and how it ended.
 pub(crate) fn runs(comparison: &Comparison) -> Table {
-    let mut table = Table::new(["motion", "free constants", "ended", "error estimate", "steps", "evaluations"]);
+    let mut table = Table::new(["motion", "free constants", "ended", "error estimate", "method", "steps"]);
     for (i, run) in comparison.runs.iter().enumerate() {
         match &run.outcome {
             Err(error) => table.row(&[&run.choice.label, &"", &format!("refused: {error}"), &"", &"", &""]),
@@ -61,8 +61,9 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
                     .fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| a.max(b))));
                 let constants = if constants.is_empty() { "none".into() } else { constants.join(", ") };
                 let (estimate, work) = (or_dash(estimate), &motion.work);
+                let method = motion.method.as_ref().map_or("equal steps", |chosen| chosen.method.name());
                 let constants = constants + &rule;
-                table.row(&[&run.choice.label, &constants, &ended, &estimate, &work.steps, &work.evaluations]);
+                table.row(&[&run.choice.label, &constants, &ended, &estimate, &method, &work.steps]);
             }
         }
     }

@@ -43,7 +43,9 @@ fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) 
         let start = *first.get_or_insert(now);
         change = change.max((now - start).abs());
         error = error.max((now - other).abs());
-        size = size.max(now.abs()).max(kept.velocities.iter().map(|v| v * v).sum());
+        // terms μ_i A_ij may cancel: of nearly dependent constraints they are large
+        let multiplier = kept.multipliers.iter().fold(0.0_f64, |largest, mu| largest.max(mu.abs()));
+        size = size.max(now.abs()).max(kept.velocities.iter().map(|v| v * v).sum()).max(multiplier);
     }
     Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) })
 }
