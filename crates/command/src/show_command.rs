@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use deltaq::{
-    Choice, EquationStyle, Settings, choices, derive_at, equations_text, forms, integrability, prepare, setting,
+    Choice, Chosen, EquationStyle, Settings, choices, derive_at, equations_text, forms, integrability, prepare,
+    setting, suited,
 };
 use equations::{Cost, Equations};
 use mechanics::ConstantsRule;
@@ -88,6 +89,8 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
     for words in ready.equations.chosen.iter().chain(&ready.form.why) {
         let _ = writeln!(text, "- {words}");
     }
+    let Chosen { method, why } = suited(&ready.equations);
+    let _ = writeln!(text, "- steps by {}, unless the motion asks for another method: {why}", method.name());
     let [plain, chosen] = ready.compiled.cost();
     let Cost { instructions, factorization } = chosen;
     let _ = write!(text, "- rates in {instructions} instructions");

@@ -53,7 +53,7 @@ pub enum Verdict {
 /// Constants `point + span(directions)`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AffineSet {
-    /// The element of least norm.
+    /// The element of least norm; one far along a direction where only that leaves no mismatch.
     pub point: Vec<f64>,
     /// Orthonormal directions; none for a single point, all for every choice.
     pub directions: Vec<Vec<f64>>,
@@ -262,11 +262,23 @@ fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Ve
     let (matrix, goal) = (padded.columns(0, last).into_owned(), -padded.column(last));
     let svd = SingularValues::of(&matrix);
     let limit = CERTAIN * sizes.noise;
-    let point = svd.solve(&goal, limit);
+    let solved = |limit: f64| {
+        let point = svd.solve(&goal, limit);
+        let reach = (1.0 + point.norm_squared()).sqrt();
+        let least = (&matrix * &point - &goal).norm();
+        (point, reach, least)
+    };
+    let (mut point, mut reach, mut least) = solved(limit);
+    if least > CERTAIN * sizes.noise * reach {
+        // a free direction may be what is missing: far along it, it moves more than the noise
+        let largest = svd.values.iter().copied().fold(0.0, f64::max);
+        let (all, far, left) = solved(ROUND_OFF * largest);
+        if left <= CERTAIN * sizes.noise * reach {
+            (point, reach, least) = (all, far, left);
+        }
+    }
     let free = (0..last).filter(|&k| svd.values[k] <= limit);
     let directions = free.map(|k| svd.right.row(k).iter().copied().collect()).collect();
-    let least = (&matrix * &point - &goal).norm();
-    let reach = (1.0 + point.norm_squared()).sqrt();
     let noise = sizes.noise * reach;
     let motion = sizes.acceleration.hypot(sizes.speed);
     // where nothing moves, what balances is the scale

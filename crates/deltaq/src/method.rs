@@ -13,15 +13,16 @@ pub struct Chosen {
 }
 
 /// What the equations alone tell: whether they have Taylor series wherever a motion may come.
-pub(crate) fn suited(equations: &Equations) -> (Method, String) {
+pub fn suited(equations: &Equations) -> Chosen {
     let g = &equations.graph;
     let definitions = equations.definitions.iter().map(|(_, e)| *e);
     let residuals = equations.blocks.iter().flat_map(|block| block.residuals.iter().copied());
     let all: Vec<_> = equations.states.iter().map(|y| y.rate).chain(definitions).chain(residuals).collect();
     let mut kinks = g.kinks(&all);
     kinks.retain(|&e| !equations.is_constant(g, e));
-    match kinks.first() {
-        None => (Method::Taylor, "the equations have Taylor series everywhere".into()),
+    let (method, why) = match kinks.first() {
+        None => (Method::Taylor, "the equations have Taylor series".into()),
         Some(&kink) => (Method::Dop853, format!("the equations have a kink where {} is zero", g.plain(kink))),
-    }
+    };
+    Chosen { method, why }
 }

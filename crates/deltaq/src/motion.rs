@@ -195,7 +195,7 @@ fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result
     let (mut method, mut why, mut patience) = match settings.method {
         Some(method) => (method, "asked for".into(), f64::INFINITY),
         None => {
-            let (method, why) = suited(&prepared.equations);
+            let Chosen { method, why } = suited(&prepared.equations);
             (method, why, PATIENCE.min(settings.max_steps as f64))
         }
     };

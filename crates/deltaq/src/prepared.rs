@@ -80,7 +80,7 @@ impl Prepared {
         if prepared.compiled.has_chart() {
             prepared.largest = Some(GROWTH * chart_size(&mut prepared.compiled, t, &prepared.start).max(1.0));
         }
-        prepared.complete(settings.method.unwrap_or_else(|| suited(&prepared.equations).0))?;
+        prepared.complete(settings.method.unwrap_or_else(|| suited(&prepared.equations).method))?;
         Ok(prepared)
     }
 

@@ -62,7 +62,7 @@ impl Default for Settings {
 impl Settings {
     /// With a method that suits the equations, where none is asked for.
     pub fn suiting(&self, equations: &Equations) -> Self {
-        Settings { method: Some(self.method.unwrap_or_else(|| suited(equations).0)), ..self.clone() }
+        Settings { method: Some(self.method.unwrap_or_else(|| suited(equations).method)), ..self.clone() }
     }
 
     /// Of one run at `tolerance` that begins now.

@@ -167,6 +167,9 @@ pub(crate) struct Motion {
     /// Last time at which the motion can be read off.
     #[pyo3(get)]
     end: f64,
+    /// The time-stepping method and why it was taken.
+    #[pyo3(get)]
+    method: Option<(&'static str, String)>,
     /// Times from which the motion went on by other pivots, because those before became small; each with the
     /// names of the velocities, or coordinates, of which the others are combinations from then on.
     #[pyo3(get)]
@@ -233,6 +236,7 @@ impl Motion {
             doubt: motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
             start: motion.start(),
             end: motion.end(),
+            method: motion.method.as_ref().map(|chosen| (chosen.method.name(), chosen.why.clone())),
             charts: motion.charts.iter().map(|chart| (chart.t, chart.independent.clone())).collect(),
             constants: constants.into_py_dict(py)?.unbind(),
             work: work(py, &motion.work)?,

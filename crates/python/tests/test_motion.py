@@ -97,6 +97,11 @@ def test_charts_along_a_motion(system):
     assert system.solve().charts == []
 
 
+def test_the_method_is_chosen_and_said(sledge):
+    assert sledge.solve().method == ("taylor", "the equations have Taylor series")
+    assert sledge.solve(method="dop853").method == ("dop853", "asked for")
+
+
 def test_a_motion_that_stops(sledge):
     # this chart ends where the blade points across the slope, phi = pi/2
     along_x = {"along-x": {"parameters": ["x", "phi"], "rates": {"y": "x'*tan(phi)"}}}

@@ -189,6 +189,7 @@ class Motion:
     doubt: Final[str | None]
     start: Final[float]
     end: Final[float]
+    method: Final[tuple[str, str] | None]
     charts: Final[list[tuple[float, list[str]]]]
     constants: Final[dict[str, float]]
     work: Final[dict[str, int]]
