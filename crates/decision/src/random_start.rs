@@ -12,7 +12,7 @@ const DRAWS: usize = 256;
 impl ExactStart {
     /// Random integers for positions and velocities, the others from the constraints, on the surface that the
     /// start is on: roots in a constant ratio keep the ratio that they have there. Any other square must once
-    /// have no root, as it would where it is the square of a function: then the surface is in one piece.
+    /// have no root. The square of a function always has one; without such the surface is in one piece.
     pub(crate) fn random(&self, seed: u64) -> Result<SeriesStart<Modular>, NoExactStart> {
         let (parameters, time) = self.given();
         let mut state = seed;

@@ -13,7 +13,7 @@ const MANY_STEPS: usize = 3_000;
 const TIMES_ALLOWED: f64 = 10.0;
 const TO_GO: f64 = 1e7;
 const STRETCHES: usize = 4;
-pub(crate) const STRETCH: usize = 500;
+const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
 /// And where the rest would take as long as that at the pace of so many attempts, which is under this part of

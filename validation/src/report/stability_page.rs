@@ -121,6 +121,7 @@ impl StabilityReport {
     fn page(&self) -> String {
         let tolerances: Vec<String> =
             Method::ALL.iter().map(|&method| format!("{} {:.0e}", method.name(), tolerance(Some(method)))).collect();
+        let tolerances = [vec![format!("auto {:.0e}", tolerance(None))], tolerances].concat();
         let cases = CASES.iter().filter(|case| self.has(case.name)).map(|case| self.section(case));
         fill(
             include_str!("pages/stability.md"),
