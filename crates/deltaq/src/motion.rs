@@ -189,7 +189,8 @@ const PATIENCE: f64 = 20_000.0;
 /// - by the one that suits the equations;
 /// - where their solution is not smooth, by [`Method::Dop853`];
 /// - where more than 20 000 steps are ahead, 500 are tried by [`Method::Radau5`] from there on; if it comes
-///   ten times farther by them, the equations are stiff, and both runs are by it.
+///   ten times farther by them, the equations are stiff, and both runs are by it; if not, and most steps were
+///   rejected, by [`Method::Dop853`].
 fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result<(Runs, Chosen), SolveError> {
     let chosen = |method: Method, why: String| Chosen { method, why };
     let (mut method, mut why, mut patience) = match settings.method {
@@ -206,9 +207,11 @@ fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result
             Course::Unsuited(NotSuited::NotSmooth) => {
                 (method, why) = (Method::Dop853, "the motion leaves its Taylor series: it is not smooth".into());
             }
-            Course::Unsuited(NotSuited::Slow { stiff }) => {
+            Course::Unsuited(NotSuited::Slow { stiff, rough }) => {
                 patience = f64::INFINITY;
-                if stiff {
+                if rough && !stiff {
+                    (method, why) = (Method::Dop853, "more steps of other methods are rejected than taken".into());
+                } else if stiff {
                     method = Method::Radau5;
                     why = format!("the equations are stiff: by {TRIAL} steps it comes {FARTHER} times farther");
                 }
