@@ -163,12 +163,18 @@ fn every_pulse_is_found_by_every_method_and_in_ensembles() {
                 continue;
             }
             let found = motion.at(motion.end()).expect("an end").coordinates;
-            assert!(off(&found, &right) < ALLOWED, "{}: {found:?}, not {right:?}", what(method.map_or("auto", Method::name)));
+            assert!(
+                off(&found, &right) < ALLOWED,
+                "{}: {found:?}, not {right:?}",
+                what(method.map_or("auto", Method::name))
+            );
         }
         let composition = Composition::ALL[index % 4];
         for step in [2.0, 0.2, (5.0 * pulse.finest).max(1e-3)] {
             let by = format!("equal steps of {step}, {composition:?}");
             match solve_by_steps(&scene, choice, Steps { step, composition }, &Settings::default()) {
+                // it says so, and where
+                Ok(motion) if !motion.is_complete() => {}
                 Ok(mut motion) => {
                     let estimate = error_estimate(&mut motion, setting(&scene)).expect("an estimate");
                     let found = motion.at(motion.end()).expect("an end").coordinates;
