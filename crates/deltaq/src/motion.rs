@@ -189,8 +189,7 @@ const PATIENCE: f64 = 20_000.0;
 /// - by the one that suits the equations;
 /// - where their solution is not smooth, by [`Method::Dop853`];
 /// - where more than 20 000 steps are ahead, 500 are tried by [`Method::Radau5`] from there on; if it comes
-///   ten times farther by them, the equations are stiff, and both runs are by it; if not, and most steps were
-///   rejected, by [`Method::Dop853`].
+///   ten times farther by them, the equations are stiff, and both runs are by it.
 fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result<(Runs, Chosen), SolveError> {
     let chosen = |method: Method, why: String| Chosen { method, why };
     let (mut method, mut why, mut patience) = match settings.method {
@@ -207,11 +206,9 @@ fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result
             Course::Unsuited(NotSuited::NotSmooth) => {
                 (method, why) = (Method::Dop853, "the motion leaves its Taylor series: it is not smooth".into());
             }
-            Course::Unsuited(NotSuited::Slow { stiff, rough }) => {
+            Course::Unsuited(NotSuited::Slow { stiff }) => {
                 patience = f64::INFINITY;
-                if rough && !stiff {
-                    (method, why) = (Method::Dop853, "more steps of other methods are rejected than taken".into());
-                } else if stiff {
+                if stiff {
                     method = Method::Radau5;
                     why = format!("the equations are stiff: by {TRIAL} steps it comes {FARTHER} times farther");
                 }

@@ -13,9 +13,8 @@ pub(crate) const FARTHER: f64 = 10.0;
 pub(crate) enum NotSuited {
     /// It is not smooth.
     NotSmooth,
-    /// Too many steps are ahead; whether an implicit method has far less of them, and whether more attempts
-    /// were rejected than taken, as Taylor series are where round-off moves the rates.
-    Slow { stiff: bool, rough: bool },
+    /// Too many steps are ahead; whether an implicit method has far less of them.
+    Slow { stiff: bool },
 }
 
 /// Whether the method of `kept` does not suit the motion, as the [`Options::patience`] of the run has it.
@@ -29,8 +28,7 @@ pub(crate) fn not_suited(here: &Prepared, kept: &SingleRun, end: f64, options: &
             let mut there = here.clone();
             there.go_on([kept, kept]);
             let trial = there.integrate(end, &Options { before: None, ..options });
-            let stiff = trial.is_ok_and(|trial| (trial.end() - t).abs() >= FARTHER * moved);
-            Some(NotSuited::Slow { stiff, rough: kept.solution.work.rejected > kept.solution.work.steps })
+            Some(NotSuited::Slow { stiff: trial.is_ok_and(|trial| (trial.end() - t).abs() >= FARTHER * moved) })
         }
         _ => None,
     }
