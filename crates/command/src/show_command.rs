@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use deltaq::{
-    Choice, Chosen, EquationStyle, Settings, choices, derive_at, equations_text, forms, integrability, prepare,
-    setting, suited,
+    Choice, Chosen, EquationStyle, Settings, choices, derive_at, equations_text, forms, integrability, prepare, setting,
 };
 use equations::{Cost, Equations};
 use mechanics::ConstantsRule;
@@ -89,7 +88,7 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
     for words in ready.equations.chosen.iter().chain(&ready.form.why) {
         let _ = writeln!(text, "- {words}");
     }
-    let Chosen { method, why } = suited(&ready.equations);
+    let Chosen { method, why } = &ready.method;
     let _ = writeln!(text, "- steps by {}, unless the motion asks for another method: {why}", method.name());
     let [plain, chosen] = ready.compiled.cost();
     let Cost { instructions, factorization } = chosen;

@@ -100,7 +100,7 @@ impl ExactStart {
         let spare = independent_columns(&slopes, system.dimension());
         let projected = completion.projected.is_some();
         let (system, time, rounded) = (system.clone(), state.t, state.v.clone());
-        let exact = ExactStart {
+        Ok(ExactStart {
             system,
             time,
             values,
@@ -112,8 +112,7 @@ impl ExactStart {
             constraints,
             problem,
             projected,
-        };
-        Ok(exact)
+        })
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.

@@ -120,7 +120,8 @@ fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings)
     let runs = options.max_iterations * (2 * guess.len() + 2);
     let (mut taken, mut limit) = (0, None);
     let mut failure = None;
-    let of_all = settings.suiting(equations).options(tolerance);
+    let method = Some(prepared.method.method);
+    let of_all = Settings { method, ..settings.clone() }.options(tolerance);
     let mut residual = |constants: &[f64], residual: &mut [f64]| -> Result<(), BoundaryError> {
         let mut refuse = |error: SolveError| {
             let reason = error.to_string();

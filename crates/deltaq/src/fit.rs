@@ -55,8 +55,8 @@ pub fn best_fit(
     }
     let origin = DVector::from_vec(target.at(start)?.coordinates);
     let way = goal.iter().map(|(_, q, factor)| (factor * (q - &origin)).norm_squared()).sum::<f64>().sqrt();
-    let settings = &settings.suiting(equations);
     let mut prepared = Prepared::new(setting, equations.clone(), settings)?;
+    let settings = &Settings { method: Some(prepared.method.method), ..settings.clone() };
     let mut difference = |tolerance: f64, limits: &Settings, constants: &[f64], residual: &mut [f64]| {
         let broken = |reason: String| BoundaryError::Residual { reason };
         prepared.set_constants(constants.to_vec());

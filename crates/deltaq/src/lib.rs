@@ -112,7 +112,7 @@ pub use gap::{
 pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
-pub use method::{Chosen, suited};
+pub use method::Chosen;
 pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve, solve_choice};
 pub use prepared::Prepared;

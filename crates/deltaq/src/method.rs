@@ -13,7 +13,7 @@ pub struct Chosen {
 }
 
 /// What the equations alone tell: whether they have Taylor series wherever a motion may come.
-pub fn suited(equations: &Equations) -> Chosen {
+pub(crate) fn suited(equations: &Equations) -> Chosen {
     let g = &equations.graph;
     let definitions = equations.definitions.iter().map(|(_, e)| *e);
     let residuals = equations.blocks.iter().flat_map(|block| block.residuals.iter().copied());

@@ -10,7 +10,7 @@ use scene::Scene;
 use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::{derive_at, removals};
 use crate::constants::resolve;
-use crate::method::{Chosen, suited};
+use crate::method::Chosen;
 use crate::metric::subtract;
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
@@ -191,18 +191,13 @@ const PATIENCE: f64 = 20_000.0;
 /// - where more than 20 000 steps are ahead, 500 are tried by [`Method::Radau5`] from there on; if it comes
 ///   ten times farther by them, the equations are stiff, and both runs are by it.
 fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result<(Runs, Chosen), SolveError> {
-    let chosen = |method: Method, why: String| Chosen { method, why };
-    let (mut method, mut why, mut patience) = match settings.method {
-        Some(method) => (method, "asked for".into(), f64::INFINITY),
-        None => {
-            let Chosen { method, why } = suited(&prepared.equations);
-            (method, why, PATIENCE.min(settings.max_steps as f64))
-        }
-    };
+    let Chosen { mut method, mut why } = prepared.method.clone();
+    let asked = settings.method.is_some();
+    let mut patience = if asked { f64::INFINITY } else { PATIENCE.min(settings.max_steps as f64) };
     loop {
         let settings = Settings { method: Some(method), ..settings.clone() };
         match charts::run(setting, prepared, &settings, patience)? {
-            Course::Run(runs) => return Ok((*runs, chosen(method, why))),
+            Course::Run(runs) => return Ok((*runs, Chosen { method, why })),
             Course::Unsuited(NotSuited::NotSmooth) => {
                 (method, why) = (Method::Dop853, "the motion leaves its Taylor series: it is not smooth".into());
             }

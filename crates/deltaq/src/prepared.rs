@@ -3,7 +3,7 @@
 use equations::{Compiled, Equations, Plan, Role};
 use integrate::{Method, Options, Start};
 
-use crate::method::suited;
+use crate::method::{Chosen, suited};
 use crate::single_run::{SingleRun, UNITS, chart_size, move_digits};
 use crate::start_values::StartValues;
 use crate::{Setting, Settings, SolveError};
@@ -17,6 +17,8 @@ pub struct Prepared {
     pub compiled: Compiled,
     /// The form in which it is evaluated.
     pub form: Plan,
+    /// The method asked for, or one that suits the equations.
+    pub method: Chosen,
     /// Values of the free constants.
     pub constants: Vec<f64>,
     /// `t₀`.
@@ -61,12 +63,15 @@ impl Prepared {
         let point = [&[t], values.evaluate().0, &constants[..]].concat();
         let form = if settings.plain { Plan::plain(&equations) } else { Plan::choose(&equations, Some(&point))? };
         let compiled = Compiled::with_plan(&equations, &form)?;
+        let asked = |method| Chosen { method, why: "asked for".into() };
+        let method = settings.method.map_or_else(|| suited(&equations), asked);
         let (start, guess) = (Vec::new(), Vec::new());
         let (own, other_start, largest, breakpoints) = (Vec::new(), None, None, setting.system.breakpoints.clone());
         let mut prepared = Prepared {
             equations,
             compiled,
             form,
+            method,
             constants: own,
             t,
             start,
@@ -80,7 +85,7 @@ impl Prepared {
         if prepared.compiled.has_chart() {
             prepared.largest = Some(GROWTH * chart_size(&mut prepared.compiled, t, &prepared.start).max(1.0));
         }
-        prepared.complete(settings.method.unwrap_or_else(|| suited(&prepared.equations).method))?;
+        prepared.complete(prepared.method.method)?;
         Ok(prepared)
     }
 

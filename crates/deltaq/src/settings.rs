@@ -1,11 +1,8 @@
 //! What a motion starts from, and how it is integrated.
 
-use equations::Equations;
 use integrate::{Interrupt, Method, Options, Projection};
 use mechanics::{State, System};
 use scene::Scene;
-
-use crate::method::suited;
 
 /// The tolerance of the second run over that of the first.
 pub const TIGHTER: f64 = 1e-2;
@@ -60,11 +57,6 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// With a method that suits the equations, where none is asked for.
-    pub fn suiting(&self, equations: &Equations) -> Self {
-        Settings { method: Some(self.method.unwrap_or_else(|| suited(equations).method)), ..self.clone() }
-    }
-
     /// Of one run at `tolerance` that begins now.
     pub(crate) fn options(&self, tolerance: f64) -> Options {
         let interrupt = match self.time_limit {

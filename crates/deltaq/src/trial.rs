@@ -23,11 +23,11 @@ pub(crate) fn not_suited(here: &Prepared, kept: &SingleRun, end: f64, options: &
     match cause {
         StopCause::NotSmooth { .. } if options.method == Method::Taylor => Some(NotSuited::NotSmooth),
         StopCause::Slow { moved, .. } => {
-            let max_steps = options.max_steps.min(TRIAL);
-            let options = Options { method: Method::Radau5, max_steps, patience: f64::INFINITY, ..options.clone() };
+            let (max_steps, patience) = (options.max_steps.min(TRIAL), f64::INFINITY);
+            let implicit = Options { method: Method::Radau5, max_steps, patience, before: None, ..options.clone() };
             let mut there = here.clone();
             there.go_on([kept, kept]);
-            let trial = there.integrate(end, &Options { before: None, ..options });
+            let trial = there.integrate(end, &implicit);
             Some(NotSuited::Slow { stiff: trial.is_ok_and(|trial| (trial.end() - t).abs() >= FARTHER * moved) })
         }
         _ => None,

@@ -212,10 +212,16 @@ impl Equations {
         found
     }
 
+    /// Guards against what these expressions of `g` are singular by, and singular equations of the instant.
+    pub fn guard(&mut self, g: &Graph, of: &[Expr]) {
+        self.guards = self.singularities(g, of);
+        self.guard_determinants(g);
+    }
+
     /// Guards against singular equations of the instant where their matrix `∂R/∂z`, in the graph `g`, depends
     /// on multipliers or costates: its determinant may change its sign along a motion, and a step that passes
     /// over that goes on in one of several motions.
-    pub fn guard_determinants(&mut self, g: &Graph) {
+    fn guard_determinants(&mut self, g: &Graph) {
         let own = |y: &&StateVariable| matches!(y.role, Role::Multiplier | Role::MemoryCostate);
         let costates: HashSet<Symbol> = self.states.iter().filter(own).map(|y| y.symbol).collect();
         for block in &self.blocks {

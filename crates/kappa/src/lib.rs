@@ -111,8 +111,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, ∂²𝓛/∂v² regular on its kernel",
     }];
-    equations.guards = equations.singularities(g, &system.constraints);
-    equations.guard_determinants(g);
+    equations.guard(g, &system.constraints);
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
     equations.projection = (!system.constraints.is_empty()).then(|| ConstraintProjection {

@@ -184,8 +184,7 @@ pub fn derive(system: &System, derivation: &Derivation) -> Result<Equations, Der
     let mut singular = equations.coordinates.clone();
     singular.extend(removal.memory.iter().map(|w| w.rate));
     singular.push(generating);
-    equations.guards = equations.singularities(g, &singular);
-    equations.guard_determinants(g);
+    equations.guard(g, &singular);
     let divides = |e: Expr| !g.denominators(&[e]).into_iter().all(|e| equations.is_constant(g, e));
     let coefficients: Vec<Expr> = removal.chart.iter().copied().filter(|&e| divides(e)).collect();
     let independent = removal.parameters.iter().map(|u| g.name(u.symbol)).collect();

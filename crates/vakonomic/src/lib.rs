@@ -165,8 +165,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         metric: system.velocity_hessian(),
     });
     // where f = h/D, the multiplier goes through zero with D, and its rate is 0/0
-    equations.guards = equations.singularities(g, &system.constraints);
-    equations.guard_determinants(g);
+    equations.guard(g, &system.constraints);
     finish(&mut equations, system, augmented);
     Ok(equations)
 }

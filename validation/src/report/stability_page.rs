@@ -119,9 +119,11 @@ impl StabilityReport {
     }
 
     fn page(&self) -> String {
-        let tolerances: Vec<String> =
-            Method::ALL.iter().map(|&method| format!("{} {:.0e}", method.name(), tolerance(Some(method)))).collect();
-        let tolerances = [vec![format!("auto {:.0e}", tolerance(None))], tolerances].concat();
+        let asked = Answering::methods().filter_map(|by| match by {
+            Answering::Method(method) => Some(format!("{} {:.0e}", by.name(), tolerance(method))),
+            Answering::Steps(_) => None,
+        });
+        let tolerances: Vec<String> = asked.collect();
         let cases = CASES.iter().filter(|case| self.has(case.name)).map(|case| self.section(case));
         fill(
             include_str!("pages/stability.md"),
@@ -169,7 +171,7 @@ impl StabilityReport {
             let _ = writeln!(page, "![Error over {variable}]({})\n", picture_name(case.name));
         }
         let count = if matches!(cells[0].method, Answering::Method(_)) {
-            Method::ALL.len() + 1
+            Answering::methods().count()
         } else {
             Composition::ALL.len()
         };
