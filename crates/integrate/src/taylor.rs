@@ -18,7 +18,8 @@
 //!
 //! A series does not see past a branch point: that of √(1 + y) along y = (1 − t/2)² − 1 goes on as 1 − t/2
 //! where the root is t/2 − 1. So the slope of the polynomial at the end of the step is compared with the
-//! rates there, which the next expansion needs anyway; if they differ, the step is halved.
+//! rates there, which the next expansion needs anyway; if they differ, the step is halved. Where that came to
+//! pass, it is likely to again: the rates are then computed alone first, for a small part of an expansion.
 //!
 //! Source: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order
 //! Taylor methods*, Experimental Mathematics 14 (2005), section 3.
@@ -54,6 +55,11 @@ pub(crate) struct Taylor<'s, 'p> {
     /// The candidate before it was moved, and the polynomial's slope there times the step.
     reached: Vec<f64>,
     slope: Vec<f64>,
+    /// Whether a candidate was dropped since the last step, and whether since the one before it.
+    dropped: bool,
+    rough: bool,
+    /// The rates at the candidate, where they are looked at first.
+    rates: Vec<f64>,
     /// Length of the step to try next.
     step: f64,
     /// Largest coefficient of each order, in tolerances.
@@ -87,6 +93,9 @@ impl<'s, 'p> Taylor<'s, 'p> {
             candidate: start.y.clone(),
             reached: vec![0.0; n],
             slope: vec![0.0; n],
+            dropped: false,
+            rough: false,
+            rates: vec![0.0; n],
             step: 0.0,
             sizes: vec![0.0; order + 1],
             powers: vec![[0.0; PARTS]; groups],
@@ -238,6 +247,13 @@ impl Stepper for Taylor<'_, '_> {
     // the error, goes into the last coefficient: polynomials stay continuous.
     fn finish(&mut self, moved: bool, segment: Option<&mut [f64]>) -> Result<(), Failure> {
         self.next_unit = self.taken.abs();
+        if self.rough {
+            self.system.rates(self.taken_to, &self.candidate, &mut self.rates)?;
+            for (row, rate) in self.next_coefficients.chunks_exact_mut(self.order + 1).zip(&self.rates) {
+                row[1] = rate * self.next_unit;
+            }
+            self.check_slope()?;
+        }
         self.expand()?;
         self.check_slope()?;
         let Some(segment) = segment else { return Ok(()) };
@@ -253,11 +269,13 @@ impl Stepper for Taylor<'_, '_> {
 
     fn advance(&mut self) -> Result<(), StopCause> {
         self.adopt();
+        self.rough = std::mem::take(&mut self.dropped);
         Ok(())
     }
 
     fn shrink(&mut self) -> Result<(), StopCause> {
         self.step = 0.5 * self.taken.abs();
+        (self.rough, self.dropped) = (true, true);
         Ok(())
     }
 }

@@ -101,10 +101,19 @@ impl Graph {
     /// assert_eq!(g.range(e, &HashMap::new()), Range { low: 1.0, high: 1.5 });
     /// ```
     pub fn range(&self, e: Expr, known: &HashMap<Symbol, Range>) -> Range {
+        self.range_among(e, known, &mut FxHashMap::default())
+    }
+
+    /// [`Graph::range`]; `ranges` are those of parts that were asked for before, and are added to.
+    pub(crate) fn range_among(
+        &self,
+        e: Expr,
+        known: &HashMap<Symbol, Range>,
+        ranges: &mut FxHashMap<Expr, Range>,
+    ) -> Range {
         let arena = self.arena.borrow();
-        let mut ranges: FxHashMap<Expr, Range> = FxHashMap::default();
-        for n in arena.reachable(&[e], |_| true) {
-            let range = arena.range(n, &ranges, known);
+        for n in arena.reachable(&[e], |n| !ranges.contains_key(&n)) {
+            let range = arena.range(n, ranges, known);
             ranges.insert(n, range);
         }
         ranges[&e]

@@ -3,6 +3,7 @@
 use crate::arena::Node;
 use crate::number::Rational;
 use crate::{Expr, Function, Graph, Range, Symbol};
+use rustc_hash::FxHashMap;
 use std::collections::{BTreeSet, HashMap};
 
 /// A call `F(x)` that is nearly constant but for a part of its arguments.
@@ -83,6 +84,8 @@ impl Graph {
     /// ```
     pub fn steep(&self, es: &[Expr], known: &HashMap<Symbol, Range>) -> Vec<Steep> {
         let mut found = Found::new();
+        let mut ranges = FxHashMap::default();
+        let mut range = |e: Expr| self.range_among(e, known, &mut ranges);
         let reached = self.arena.borrow().reachable(es, |_| true);
         for e in reached {
             let node = self.arena.borrow().node(e).clone();
@@ -91,10 +94,12 @@ impl Graph {
                 Node::Call(Function::Exp, x) => found.extend([(x, Kind::Exp)]),
                 Node::Call(Function::Atan | Function::Asinh, x) => found.extend([(x, Kind::Arctangent)]),
                 Node::Atan2(y, x) => found.extend([(self.add(self.powi(x, 2), self.powi(y, 2)), Kind::Root)]),
-                Node::Product(factors) => factors.iter().for_each(|(b, r)| self.steep_power(*b, *r, known, &mut found)),
+                Node::Product(factors) => {
+                    factors.iter().for_each(|(b, r)| self.steep_power(*b, *r, &mut range, &mut found))
+                }
                 Node::Power(base, exponent) => {
-                    self.steep_power(base, Rational::integer(-1), known, &mut found);
-                    if self.range(base, known).low > 0.0 {
+                    self.steep_power(base, Rational::integer(-1), &mut range, &mut found);
+                    if range(base).low > 0.0 {
                         found.insert((self.mul(exponent, self.call(Function::Log, base)), Kind::Exp));
                     }
                 }
@@ -115,9 +120,13 @@ impl Graph {
             .collect()
     }
 
-    fn steep_power(&self, base: Expr, exponent: Rational, known: &HashMap<Symbol, Range>, found: &mut Found) {
-        let Range { low, high } = self.range(base, known);
-        let (power, largest) = (exponent.to_f64(), high.max(-low));
+    fn steep_power(&self, base: Expr, exponent: Rational, range: &mut impl FnMut(Expr) -> Range, found: &mut Found) {
+        let power = exponent.to_f64();
+        if power > 0.0 && power < HIGH && exponent.as_integer().is_some() {
+            return;
+        }
+        let Range { low, high } = range(base);
+        let largest = high.max(-low);
         if power >= HIGH && largest > 0.0 && largest.is_finite() {
             // (b/B)^n is less than exp(n (b/B − 1))
             for sign in [1.0, -1.0].into_iter().filter(|sign| *sign > 0.0 || low < 0.0) {
