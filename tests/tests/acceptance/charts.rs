@@ -4,7 +4,9 @@ use deltaq::{Choice, Ending, Motion, Settings, costates_of, multipliers_of, solv
 use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 
-use super::support::{at, chetaev, complete, gap, largest_difference, must, tight, vakonomic};
+use super::support::{
+    at, chetaev, complete, equations, gap, known_gap, largest_difference, motion_of, must, tight, vakonomic,
+};
 
 fn parsed(coordinates: &str, lagrangian: &str, constraints: &str, velocities: &str, duration: f64) -> Scene {
     let coordinates: Vec<String> = coordinates
@@ -82,6 +84,45 @@ fn a_removal_by_coordinates_goes_on_where_its_pivot_vanishes() {
             must(&format!("{name}, P = {costates:?}: removed against vakonomic over {end} s"), apart, 1e-9);
         }
     }
+}
+
+/// A car with two trailers, each hitched behind the axle before it.
+fn trailers() -> Scene {
+    let constraints = "\"y'*cos(phi) - x'*sin(phi)\", \
+                       \"y'*cos(a) - x'*sin(a) - 0.3*phi'*cos(phi - a) - 0.8*a'\", \
+                       \"y'*cos(b) - x'*sin(b) - 0.3*phi'*cos(phi - b) - 1.1*a'*cos(a - b) - 0.8*b'\"";
+    let lagrangian = "(x'^2 + y'^2 + 0.4*phi'^2 + 0.3*a'^2 + 0.2*b'^2)/2 + 0.1*x - 0.05*y";
+    parsed("x y phi a=0.4 b=0.7", lagrangian, constraints, "\"x'\" = 0.8, \"phi'\" = 0.9", 20.0)
+}
+
+/// Systems of the literature: as far as both motions are known, they are one, over all changes of charts.
+#[test]
+fn classic_systems_go_on_by_other_charts_as_with_multipliers() {
+    let mut passed = 0;
+    for scene in [
+        trailers(),
+        classic("roller-racer", include_str!("../../../validation/equivalence/roller-racer.toml"), 20.0),
+        classic("rattleback", include_str!("../../../validation/equivalence/rattleback.toml"), 20.0),
+        classic("snakeboard", include_str!("../../../validation/equivalence/snakeboard.toml"), 20.0),
+        // it falls, and its front wheel is nearly flat on the ground at 0.9713
+        classic("bicycle", include_str!("../scenes/bicycle.toml"), 0.97),
+    ] {
+        let costates = vec![0.0; scene.system.constraints.len()];
+        let (removal, mut motion) = removed(&scene, ConstantsRule::Given(costates.clone()));
+        let mu0 = multipliers_of(&scene, &removal, &costates).unwrap().expect("coordinates");
+        let equations = equations(&scene.system, "vakonomic", None);
+        let mut vakonomic = motion_of(&scene, equations, &mu0, &tight());
+        let (apart, end) = known_gap(&mut motion, &mut vakonomic);
+        changes(&scene.name, &motion);
+        assert!(motion.is_complete() && vakonomic.is_complete(), "{:?}, {:?}", motion.ending, vakonomic.ending);
+        must(&format!("{}: removed against vakonomic over {end} s", scene.name), apart, 1e-9);
+        passed += motion.charts.iter().filter(|change| change.t < end).count();
+    }
+    assert!(passed > 50, "{passed} changes");
+}
+
+fn classic(name: &str, text: &str, duration: f64) -> Scene {
+    Scene::parse_with(name, text, &[("duration".into(), duration)]).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]

@@ -52,6 +52,5 @@ fn removals_of_a_bicycle_are_short() {
         let rates: Vec<Expr> = removal.memory.iter().map(|w| w.rate).collect();
         let size = bicycle.system.graph.size(&rates);
         assert!(size < 1000, "{}: {size}", removal.name);
-        println!("{}: {size}", removal.name);
     }
 }
