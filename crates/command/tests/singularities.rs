@@ -30,13 +30,16 @@ fn has_names(cause: &str) {
 #[test]
 fn a_bicycle_that_falls_flat_stops_soon_and_in_its_own_names() {
     let falling = ["solve", BICYCLE, "--times", "0", "-f"];
+    let steered = ["--constants", "zero", "--set", "lean=0.05", "--set", "steer=0.1", "--removal"];
     let by = |removal: &'static str| vec!["removed-constraint", "--removal", removal];
+    let steered = |removal: &'static str| [&["removed-constraint"], &steered[..], &[removal]].concat();
     for formulation in [
         vec!["chetaev"],
-        vec!["chetaev", "--method", "taylor"],
+        vec!["chetaev", "--method", "dop853"],
         vec!["chetaev-reduced"],
         by("coordinates"),
         by("quasi-velocities"),
+        steered("coordinates"),
     ] {
         let value = json(&[&falling[..], &formulation].concat(), 3);
         let cause = value["cause"].as_str().expect("a cause");
