@@ -7,6 +7,10 @@ use crate::system::{Failure, System};
 /// Each step is looked at in so many parts of equal length.
 pub(crate) const PARTS: usize = 8;
 
+/// A function with a pole where another is zero may change its sign before it and back behind it: it is looked
+/// at so close before the zero, in parts of the way to it.
+const BEFORE_ZERO: f64 = 1e-6;
+
 /// The event functions' signs up to the time reached.
 pub(crate) struct EventWatch {
     /// Values at the time reached; a function that has been zero since the start has the value 0.
@@ -61,31 +65,43 @@ impl EventWatch {
         let mut theta = 0.0;
         for part in 1..=PARTS {
             let next = part as f64 / PARTS as f64;
-            evaluate_segment(segment.basis, segment.coefficients, next, &mut self.state);
-            system.event_values(segment.time(next), &self.state, &mut self.current)?;
-            let mut first: Option<Found> = None;
-            for index in 0..self.current.len() {
-                let (before, after) = (self.previous[index], self.current[index]);
-                if before == 0.0 || before * after.signum() > 0.0 && after != 0.0 {
-                    continue;
-                }
-                let root = self.locate(system, segment, index, (theta, before), (next, after))?;
-                // A zero within round-off of the start is the zero the integration started from.
-                let resolution = 64.0 * f64::EPSILON * segment.begin.abs().max(segment.width.abs());
-                if self.at_start && root * segment.width.abs() <= resolution {
-                    continue;
-                }
-                if first.as_ref().is_none_or(|found| root < found.theta) {
-                    first = Some(Found { index, theta: root });
-                }
-            }
-            if first.is_some() {
-                return Ok(first);
+            if let Some(found) = self.first_between(system, segment, theta, next)? {
+                let close = found.theta - BEFORE_ZERO * (found.theta - theta);
+                return Ok(Some(self.first_between(system, segment, theta, close)?.unwrap_or(found)));
             }
             std::mem::swap(&mut self.previous, &mut self.current);
             theta = next;
         }
         Ok(None)
+    }
+
+    /// The first event between `theta`, where the values are the previous ones, and `next`.
+    fn first_between(
+        &mut self,
+        system: &System,
+        segment: &Segment,
+        theta: f64,
+        next: f64,
+    ) -> Result<Option<Found>, Failure> {
+        evaluate_segment(segment.basis, segment.coefficients, next, &mut self.state);
+        system.event_values(segment.time(next), &self.state, &mut self.current)?;
+        let mut first: Option<Found> = None;
+        for index in 0..self.current.len() {
+            let (before, after) = (self.previous[index], self.current[index]);
+            if before == 0.0 || before * after.signum() > 0.0 && after != 0.0 {
+                continue;
+            }
+            let root = self.locate(system, segment, index, (theta, before), (next, after))?;
+            // A zero within round-off of the start is the zero the integration started from.
+            let resolution = 64.0 * f64::EPSILON * segment.begin.abs().max(segment.width.abs());
+            if self.at_start && root * segment.width.abs() <= resolution {
+                continue;
+            }
+            if first.as_ref().is_none_or(|found| root < found.theta) {
+                first = Some(Found { index, theta: root });
+            }
+        }
+        Ok(first)
     }
 
     /// The step has been taken.
