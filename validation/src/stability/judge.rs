@@ -99,8 +99,8 @@ pub struct Allowance {
     pub asked: f64,
     /// So many coordinates, the first ones, are compared.
     pub compared: usize,
-    /// Each coordinate and multiplier is judged by its own estimate, and the worst of them is the verdict; else
-    /// all coordinates at once in the kinetic metric.
+    /// Each coordinate and multiplier is judged by its own estimate, and the worst of them is the verdict;
+    /// else all coordinates at once in the kinetic metric.
     pub each: bool,
 }
 

@@ -50,8 +50,8 @@ struct Body {
 }
 
 impl Body {
-    /// With the vertical `n`, `ṅ = n × ω`, the height `z = (n·D²n)^½` and the contact at `r = −D²n/z` from the
-    /// centre:
+    /// With the vertical `n`, `ṅ = n × ω`, the height `z = (n·D²n)^½` and the contact at `r = −D²n/z` from
+    /// the centre:
     ///
     /// ```text
     /// v = r × ω,    v̇ + ω × v = F − g n,    I ω̇ + ω × Iω = r × F

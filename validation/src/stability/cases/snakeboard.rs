@@ -33,8 +33,8 @@ struct Board {
     rotor: f64,
 }
 
-/// The board has the velocity `u cos φ` along itself, none across, and `θ̇ = u sin φ/r`. With `P` and `S`, the
-/// momentum along and across, `p_θ` and `k = (p_θ − p_ψ)/r`:
+/// The board has the velocity `u cos φ` along itself, none across, and `θ̇ = u sin φ/r`. With `P` and `S`,
+/// the momentum along and across, `p_θ` and `k = (p_θ − p_ψ)/r`:
 ///
 /// ```text
 /// H = N²/2D + p_ψ²/2J_r + p_φ²/4J_w,    N = P cos φ + k sin φ,    D = 1 − J_r sin²φ/r²,    u = N/D
