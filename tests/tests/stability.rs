@@ -136,10 +136,32 @@ fn a_motion_that_is_off_and_does_not_know_is_called_wrong() {
             q[0] += off * t;
             q
         }));
-        let cells = asked.cells("sledge-long").expect("a closed form reaches anywhere");
-        let dop853 =
-            cells.iter().find(|cell| cell.method == Answering::Method(Some(Method::Dop853))).expect("of every method");
-        assert_eq!(is_wrong(dop853), wrong, "a reference that is off by {off}: {dop853:?}");
+        let cell = of_dop853(&asked);
+        assert_eq!(is_wrong(&cell), wrong, "a reference that is off by {off}: {cell:?}");
+    }
+}
+
+fn of_dop853(asked: &Question) -> Cell {
+    let cells = asked.cells("off").expect("the reference reaches as far");
+    cells.into_iter().find(|cell| cell.method == Answering::Method(Some(Method::Dop853))).expect("of every method")
+}
+
+#[test]
+fn a_single_coordinate_or_multiplier_that_is_off_is_called_wrong() {
+    // the height, which moves by millimetres, and the reaction along it: the kinetic metric sees neither
+    for (i, off) in [(2, 1e-8), (8, 1e-4)] {
+        for each in [false, true] {
+            let mut asked = question("rattleback", 1.0, "Chetaev");
+            let Reference::Ode { y, rates, read } = asked.reference else { panic!("equations by hand") };
+            let read = Box::new(move |t: f64, y: &[f64]| {
+                let mut values = read(t, y);
+                values[i] += off * t;
+                values
+            });
+            (asked.reference, asked.each) = (Reference::Ode { y, rates, read }, each);
+            let cell = of_dop853(&asked);
+            assert_eq!(is_wrong(&cell), each, "value {i} off by {off}, each by itself: {each}: {cell:?}");
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The word for a motion, given what it should have been.
 
 use deltaq::{Ending, Metric, Motion, SolveError, TRUSTED};
+use equations::Outputs;
 use serde::Serialize;
 
 use super::Known;
@@ -63,12 +64,22 @@ impl Verdict {
             Verdict::Wrong { .. } => "wrong",
         }
     }
+
+    /// Which is worse; of two that are as bad, the one with the larger error.
+    fn badness(&self) -> (u8, f64) {
+        match *self {
+            Verdict::Accurate { error, .. } => (0, error),
+            Verdict::Refused { .. } => (0, 0.0),
+            Verdict::Admitted { error, .. } => (1, error),
+            Verdict::Wrong { error, .. } => (2, error),
+        }
+    }
 }
 
 /// Part of the run for the first errors: a step of length 10⁻⁶ has no distance of its own worth the name.
 const FIRST_PART: f64 = 0.1;
 
-/// What is known of a motion at one time; lengths in the kinetic metric.
+/// What is known of a motion at one time; lengths in the kinetic metric, or of one coordinate or multiplier.
 struct Sample {
     t: f64,
     error: f64,
@@ -88,6 +99,9 @@ pub struct Allowance {
     pub asked: f64,
     /// So many coordinates, the first ones, are compared.
     pub compared: usize,
+    /// Each coordinate and multiplier is judged by its own estimate, and the worst of them is the verdict;
+    /// else all coordinates at once in the kinetic metric.
+    pub each: bool,
 }
 
 /// Judges a motion by what is known, which has to reach as far.
@@ -100,27 +114,38 @@ pub fn judge(
     known: &mut Known,
     allowance: Allowance,
 ) -> Result<Verdict, SolveError> {
-    let start = motion.at(motion.start())?.coordinates;
-    let mut samples = Vec::with_capacity(SAMPLES + 1);
+    let values = |outputs: &Outputs| [&outputs.coordinates[..], &outputs.multipliers].concat();
+    let start = values(&motion.at(motion.start())?);
+    let mut samples = vec![Vec::with_capacity(SAMPLES + 1)];
     for t in motion.grid(SAMPLES) {
         let (kept, looser) = motion.at_in_both_runs(t)?;
         let Some((truth, second)) = known(t) else { continue };
-        let q = &kept.coordinates;
-        let mut length = |a: &[f64], b: &[f64]| {
-            let mut difference: Vec<f64> = a.iter().zip(b).take(allowance.compared).map(|(a, b)| a - b).collect();
-            difference.resize(q.len(), 0.0);
-            metric.length(t, q, &kept.velocities, &difference)
-        };
-        samples.push(Sample {
-            t,
-            error: length(q, &truth),
-            uncertainty: length(&truth, &second) + LAST_DIGITS * length(&truth, &vec![0.0; truth.len()]),
-            difference: length(q, &looser.coordinates),
-            doubted: motion.is_doubted(t),
-            distance: length(q, &start),
-        });
+        let (q, now, other) = (&kept.coordinates, values(&kept), values(&looser));
+        samples.resize_with(if allowance.each { truth.len() } else { 1 }, Vec::new);
+        for (i, samples) in samples.iter_mut().enumerate() {
+            let mut length = |a: &[f64], b: &[f64]| {
+                if allowance.each {
+                    return (a[i] - b[i]).abs();
+                }
+                let compared = allowance.compared.min(q.len());
+                let mut difference: Vec<f64> = a.iter().zip(b).take(compared).map(|(a, b)| a - b).collect();
+                difference.resize(q.len(), 0.0);
+                metric.length(t, q, &kept.velocities, &difference)
+            };
+            samples.push(Sample {
+                t,
+                error: length(&now, &truth),
+                uncertainty: length(&truth, &second) + LAST_DIGITS * length(&truth, &vec![0.0; truth.len()]),
+                difference: length(&now, &other),
+                doubted: motion.is_doubted(t),
+                distance: length(&now, &start),
+            });
+        }
     }
-    Ok(verdict(&samples, &motion.ending, motion.doubt.as_ref().map(|doubt| &doubt.because[..]), allowance))
+    let doubt = motion.doubt.as_ref().map(|doubt| &doubt.because[..]);
+    let word = |samples: &Vec<Sample>| verdict(samples, &motion.ending, doubt, allowance);
+    let worse = |a: Verdict, b: Verdict| if b.badness() > a.badness() { b } else { a };
+    Ok(samples[1..].iter().map(word).fold(word(&samples[0]), worse))
 }
 
 fn verdict(samples: &[Sample], ending: &Ending, doubt: Option<&str>, allowance: Allowance) -> Verdict {

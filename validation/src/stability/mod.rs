@@ -14,8 +14,9 @@
 //! `e(t)` is the largest difference of the motion's two runs up to `t`; `s(t)` the largest distance from the
 //! start up to `t`, the first tenth of the run at least; `u(t)` what the reference itself may be off by; `b`
 //! the larger of 10⁻⁷ and ten times the tolerance of the kept run, `a` the tolerance asked for. Lengths are
-//! in the kinetic metric. Where 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked
-//! of it.
+//! in the kinetic metric, or, where a question asks for it ([`Question::each`]), of each coordinate and
+//! multiplier by itself: the worst of them is the verdict. Where 10 e(t) ≥ s(t) the motion does not claim a
+//! single digit, and nothing is asked of it.
 //!
 //! [`long_runs`] are judged likewise; beyond all references, by energy and constraint, not coordinates.
 

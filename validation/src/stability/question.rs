@@ -52,13 +52,13 @@ impl Answering {
     }
 
     /// Errors that are passed over whatever the estimate says.
-    fn allowance(self, compared: usize) -> Allowance {
+    fn allowance(self, compared: usize, each: bool) -> Allowance {
         match self {
             Answering::Method(method) => {
                 let asked = tolerance(method);
-                Allowance { floor: FLOOR.max(BETTER_THAN_IT_KNOWS * asked * TIGHTER), asked, compared }
+                Allowance { floor: FLOOR.max(BETTER_THAN_IT_KNOWS * asked * TIGHTER), asked, compared, each }
             }
-            Answering::Steps(_) => Allowance { floor: FLOOR, asked: 0.0, compared },
+            Answering::Steps(_) => Allowance { floor: FLOOR, asked: 0.0, compared, each },
         }
     }
 }
@@ -112,6 +112,8 @@ pub struct Question {
     pub reference: Reference,
     /// So many coordinates, the first ones, are compared.
     pub compared: usize,
+    /// [`Allowance::each`]; the reference has multipliers then, after all coordinates.
+    pub each: bool,
     /// Its motion in equal steps, of these compositions; without this the methods answer.
     pub stepped: Option<Stepped>,
 }
@@ -168,6 +170,7 @@ impl Question {
             subject: Box::new(subject),
             reference,
             compared: usize::MAX,
+            each: false,
             stepped: None,
         }
     }
@@ -210,7 +213,7 @@ impl Question {
     }
 
     fn judged(&self, motion: &mut Motion, measured: &System, known: &mut Known, by: Answering) -> Result<Verdict> {
-        let allowance = by.allowance(self.compared);
+        let allowance = by.allowance(self.compared, self.each);
         let refused = |error: deltaq::SolveError| Verdict::Refused { t: None, cause: error.to_string() };
         Ok(judge(motion, &mut Metric::new(measured)?, known, allowance).unwrap_or_else(refused))
     }

@@ -8,7 +8,9 @@ mod disc;
 mod integral;
 mod mass;
 mod pulse;
+mod rattleback;
 mod sledge;
+mod snakeboard;
 mod units;
 mod viscous;
 mod wall;
@@ -38,7 +40,7 @@ pub static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
 type Asked = (&'static str, fn() -> Vec<Question>);
 
 /// Names and questions.
-const QUESTIONS: [Asked; 31] = [
+const QUESTIONS: [Asked; 33] = [
     ("viscous", || powers(0, 10, 1).flat_map(viscous::questions).collect()),
     ("added-mass", || powers(0, 12, 1).flat_map(mass::added).collect()),
     ("mass-ratio", || powers(-8, 8, 4).flat_map(mass::ratio).collect()),
@@ -49,6 +51,8 @@ const QUESTIONS: [Asked; 31] = [
     ("cylinders-turn", || powers(-8, 0, 2).flat_map(|rate| cylinders::questions(rate, "theta'", rate)).collect()),
     ("cylinders-heading", || powers(-2, 0, 1).flat_map(|at| cylinders::questions(at, "theta", at)).collect()),
     ("cylinders-angle", || powers(-8, 0, 2).flat_map(|gap| cylinders::questions(gap, "theta", 0.9 + gap)).collect()),
+    ("rattleback", || [1.0, 2.0, 5.0, 10.0, 20.0].into_iter().flat_map(rattleback::questions).collect()),
+    ("snakeboard", || [0.5, 1.0, 1.25, 1.4, 2.0].into_iter().flat_map(snakeboard::questions).collect()),
     // 10⁻² … 10⁻¹⁴, nearly
     ("dependent", || [-7, -13, -20, -23, -26, -30, -33, -40, -46].into_iter().flat_map(dependent::questions).collect()),
     ("unit-of-length", || powers(-12, 12, 4).flat_map(|unit| units::questions(unit, [1, 0, -2, -1])).collect()),
