@@ -7,8 +7,8 @@ use crate::system::{Failure, System};
 /// Each step is looked at in so many parts of equal length.
 pub(crate) const PARTS: usize = 8;
 
-/// A function with a pole where another is zero may change its sign before it and back behind it: it is looked
-/// at so close before the zero, in parts of the way to it.
+/// A function with a pole where another is zero may change its sign before that and back behind it: it is
+/// looked at so close before the zero, in parts of the way to it.
 const BEFORE_ZERO: f64 = 1e-6;
 
 /// The event functions' signs up to the time reached.

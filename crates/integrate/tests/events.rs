@@ -73,6 +73,18 @@ fn every_method_finds_the_first_of_several_events_in_both_directions() {
     }
 }
 
+/// As a chart's coefficients are where its pivot vanishes: large on both sides of it only.
+#[test]
+fn an_event_at_the_pole_of_another_does_not_hide_it() {
+    let mut case = Case::new(1, |_, y| vec![y[0].number(1.0)]).with_events(2, |t, _, g| {
+        g[0] = 1.0 - (t - 53.0).powi(-2); // negative between 52 and 54
+        g[1] = t - 53.0;
+        Ok(())
+    });
+    let solution = attempt(&mut case, 0.0, &[0.0], 400.0, &Options::with_tolerance(1e-9));
+    assert!((stopped_at(&solution, 0) - 52.0).abs() < 1e-9);
+}
+
 #[test]
 fn a_double_crossing_within_a_step_is_seen() {
     // The wait is linear, steps grow without bound; the event is positive on (40, 60) only.
