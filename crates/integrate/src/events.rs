@@ -1,4 +1,4 @@
-//! Sign changes of the event functions.
+//! Where the event functions change their signs, or touch zero.
 
 use crate::dense::{Basis, evaluate_segment};
 use crate::root::find_root_between;
@@ -15,6 +15,12 @@ const BEFORE_ZERO: f64 = 1e-6;
 pub(crate) struct EventWatch {
     /// Values at the time reached; a function that has been zero since the start has the value 0.
     reached: Vec<f64>,
+    /// The largest value of each at the end of a step so far.
+    largest: Vec<f64>,
+    /// Parts of that under which a function that grows again has touched zero.
+    touch: f64,
+    /// Values at the last three points looked at.
+    older: Vec<f64>,
     previous: Vec<f64>,
     current: Vec<f64>,
     state: Vec<f64>,
@@ -44,15 +50,19 @@ impl Segment<'_> {
 }
 
 impl EventWatch {
-    pub(crate) fn new(system: &System, t: f64, y: &[f64]) -> Result<Self, Failure> {
+    /// From `(t, y)` on, in a run of this relative tolerance, which does not tell zero from what is under it.
+    pub(crate) fn new(system: &System, t: f64, y: &[f64], tolerance: f64) -> Result<Self, Failure> {
         let events = system.events();
         let mut reached = vec![0.0; events];
         if events > 0 {
             system.event_values(t, y, &mut reached)?;
         }
         Ok(Self {
+            older: reached.clone(),
             previous: reached.clone(),
             current: reached.clone(),
+            largest: reached.iter().map(|value| value.abs()).collect(),
+            touch: tolerance,
             reached,
             state: vec![0.0; y.len()],
             at_start: true,
@@ -69,6 +79,10 @@ impl EventWatch {
                 let close = found.theta - BEFORE_ZERO * (found.theta - theta);
                 return Ok(Some(self.first_between(system, segment, theta, close)?.unwrap_or(found)));
             }
+            if let Some(found) = self.first_touch(system, segment, part)? {
+                return Ok(Some(found));
+            }
+            std::mem::swap(&mut self.older, &mut self.previous);
             std::mem::swap(&mut self.previous, &mut self.current);
             theta = next;
         }
@@ -104,9 +118,57 @@ impl EventWatch {
         Ok(first)
     }
 
+    /// The first function that touches zero near the end of the last but one of these parts: it is least there,
+    /// and nearly zero at its minimum.
+    fn first_touch(&self, system: &System, segment: &Segment, part: usize) -> Result<Option<Found>, Failure> {
+        /// Parts of what it was to both sides, at most, where it is least: 0.58 for the root of a distance.
+        const DIPS: f64 = 0.6;
+        for index in 0..self.current.len() {
+            let [older, before, after] = [&self.older, &self.previous, &self.current].map(|values| values[index].abs());
+            if before <= older && before < after && before < DIPS * older.max(after) {
+                let range = [part.saturating_sub(2), part].map(|part| part as f64 / PARTS as f64);
+                let (theta, least) = self.least(system, segment, index, range)?;
+                if least < self.touch * self.largest[index] {
+                    return Ok(Some(Found { index, theta }));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Where a function is least in size within this range, and its size, by golden sections.
+    fn least(&self, system: &System, segment: &Segment, index: usize, range: [f64; 2]) -> Result<(f64, f64), Failure> {
+        /// Two points are so far from the ends.
+        const SHARE: f64 = 0.381_966_011_250_105;
+        /// The range becomes shorter by eight digits.
+        const SECTIONS: usize = 38;
+        let mut values = vec![0.0; self.current.len()];
+        let mut state = self.state.clone();
+        let mut size = |theta: f64| {
+            evaluate_segment(segment.basis, segment.coefficients, theta, &mut state);
+            system.event_values(segment.time(theta), &state, &mut values).map(|()| values[index].abs())
+        };
+        let [mut a, mut d] = range;
+        let (mut b, mut c) = (a + SHARE * (d - a), d - SHARE * (d - a));
+        let (mut at_b, mut at_c) = (size(b)?, size(c)?);
+        for _ in 0..SECTIONS {
+            if at_b <= at_c {
+                (d, c, at_c) = (c, b, at_b);
+                b = a + SHARE * (d - a);
+                at_b = size(b)?;
+            } else {
+                (a, b, at_b) = (b, c, at_c);
+                c = d - SHARE * (d - a);
+                at_c = size(c)?;
+            }
+        }
+        Ok(if at_b <= at_c { (b, at_b) } else { (c, at_c) })
+    }
+
     /// The step has been taken.
     pub(crate) fn advance(&mut self) {
         self.reached.copy_from_slice(&self.previous);
+        self.largest.iter_mut().zip(&self.reached).for_each(|(largest, value)| *largest = largest.max(value.abs()));
         self.at_start = false;
     }
 

@@ -5,7 +5,8 @@
 //! what comes out for a motion is the same to the last bit, whichever motions run beside it.
 //!
 //! [`crate::integrate`] takes over, as every lane would wait, where the problem does not trust the rates, a
-//! coefficient is not finite, an event function changes sign, or steps get too short or too many: all rare.
+//! coefficient is not finite, an event function changes sign or is nearly zero, or steps get too short or too
+//! many: all rare.
 
 mod problem;
 
@@ -66,6 +67,8 @@ struct Lanes<'a, P> {
     /// Event functions at the time reached.
     events: Vec<Lane>,
     events_next: Vec<Lane>,
+    /// Under this an event function is nearly zero.
+    events_least: Vec<Lane>,
     inner: Vec<Lane>,
 }
 
@@ -140,6 +143,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             eventless: [true; LANES],
             events: zeros(events),
             events_next: zeros(events),
+            events_least: zeros(events),
             inner: zeros(n),
         }
     }
@@ -149,6 +153,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         (self.t[lane], self.taken_to[lane]) = (start.t, start.t);
         (self.taken[lane], self.moved[lane]) = (0.0, 0.0);
         self.next_unit[lane] = (start.end - start.t).abs();
+        self.events_least.iter_mut().for_each(|least| least[lane] = 0.0);
         for (i, y) in start.y.iter().enumerate() {
             self.candidate[i][lane] = *y;
             self.reached[i][lane] = *y;
@@ -196,9 +201,10 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
                 },
             );
             self.problem.event_values(&t, inner, &mut self.events_next);
-            for (before, after) in self.events.iter().zip(&self.events_next) {
+            for ((before, after), least) in self.events.iter().zip(&self.events_next).zip(&self.events_least) {
                 for l in 0..LANES {
-                    self.eventless[l] &= before[l] * after[l].signum() > 0.0 && after[l] != 0.0 && after[l].is_finite();
+                    self.eventless[l] &=
+                        before[l] * after[l].signum() > 0.0 && after[l].abs() > least[l] && after[l].is_finite();
                 }
             }
         }
@@ -309,8 +315,10 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         }
         if !self.events.is_empty() {
             self.problem.event_values(&self.taken_to, &self.candidate, &mut self.events_next);
-            for (event, next) in self.events.iter_mut().zip(&self.events_next) {
+            let events = self.events.iter_mut().zip(&mut self.events_least);
+            for ((event, least), next) in events.zip(&self.events_next) {
                 *event = from_fn(|l| if lanes[l] { next[l] } else { event[l] });
+                *least = from_fn(|l| least[l].max(relative * event[l].abs()));
             }
         }
     }

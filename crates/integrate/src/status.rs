@@ -64,7 +64,7 @@ pub enum Status {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum StopCause {
-    /// An event function changed sign (or reached zero).
+    /// An event function changed sign, or reached or touched zero.
     #[error("event {index}")]
     Event {
         /// Which one, counted from 0.

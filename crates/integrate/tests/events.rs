@@ -85,6 +85,24 @@ fn an_event_at_the_pole_of_another_does_not_hide_it() {
     assert!((stopped_at(&solution, 0) - 52.0).abs() < 1e-9);
 }
 
+/// As the square of a velocity is where a motion comes to rest and goes on: a kink makes the steps short there.
+#[test]
+fn an_event_that_touches_zero_at_a_kink_is_seen() {
+    for method in Method::ALL {
+        for direction in [1.0, -1.0] {
+            let mut case =
+                Case::new(2, |_, y| vec![y[0].number(1.0), (&y[0] * &y[0]).powf(0.5)]).with_events(1, |_, y, g| {
+                    g[0] = y[0] * y[0];
+                    Ok(())
+                });
+            let options = Options { method, ..Options::with_tolerance(1e-11) };
+            let solution = attempt(&mut case, 0.0, &[-direction, 0.0], 3.0 * direction, &options);
+            let t = stopped_at(&solution, 0);
+            assert!((t - direction).abs() < 1e-5, "{method:?}: {t}");
+        }
+    }
+}
+
 #[test]
 fn a_double_crossing_within_a_step_is_seen() {
     // The wait is linear, steps grow without bound; the event is positive on (40, 60) only.

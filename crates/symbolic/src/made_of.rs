@@ -57,14 +57,14 @@ impl Graph {
         bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
     }
 
-    /// Every distinct base of an even power under a root in `es`, not a number: `√(a²) = |a|` has a kink
-    /// where `a` is zero, and its radicand does not change its sign there.
+    /// What is zero where a root in `es` has a kink, not numbers: every distinct base of an even power under a
+    /// root, as `√(a²) = |a|`, and every other radicand, as `√(a² + b²)`, whether it changes its sign or not.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
     /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
     /// let both = g.sum(&[g.powi(x, 2), g.powi(y, 2)]);
-    /// assert_eq!(g.kinks(&[g.sqrt(g.powi(x, 2)), g.sqrt(both), g.sqrt(y)]), [x]);
+    /// assert_eq!(g.kinks(&[g.sqrt(g.powi(x, 2)), g.sqrt(both)]), [x, both]);
     /// ```
     pub fn kinks(&self, es: &[Expr]) -> Vec<Expr> {
         let arena = self.arena.borrow();
@@ -74,7 +74,11 @@ impl Graph {
         };
         let roots = arena.reachable(es, |_| true).into_iter().flat_map(|e| under(e, |r| r.as_integer().is_none()));
         let even = |r: &Rational| r.as_integer().is_some_and(|n| n % 2 == 0);
-        roots.flat_map(|root| under(root, even)).collect::<BTreeSet<Expr>>().into_iter().collect()
+        let bases = roots.flat_map(|root| match under(root, even) {
+            bases if bases.is_empty() => vec![root],
+            bases => bases,
+        });
+        bases.filter(|b| arena.as_number(*b).is_none()).collect::<BTreeSet<Expr>>().into_iter().collect()
     }
 
     /// Arguments of every call of `function` in `es`.

@@ -51,7 +51,7 @@ pub enum Left {
     /// A coefficient, a state or an event function is NaN or infinite.
     #[error("not finite on the way")]
     NotFinite,
-    /// An event function changes its sign or vanishes.
+    /// An event function changes its sign or is nearly zero.
     #[error("an event on the way")]
     Event,
     /// Steps are too short to move the time, creep or are halved too often.
