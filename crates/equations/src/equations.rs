@@ -205,9 +205,9 @@ impl Equations {
     }
 
     /// What is not constant and zero where these expressions of `g` are singular: what they divide by, and
-    /// where they have kinks.
+    /// what they have kinks by.
     pub fn singularities(&self, g: &Graph, of: &[Expr]) -> Vec<Expr> {
-        let mut found = [g.denominators(of), g.kinks(of)].concat();
+        let mut found = [g.denominators(of), g.kinks(of), g.radicands(of)].concat();
         found.retain(|&e| !self.is_constant(g, e));
         found
     }

@@ -118,8 +118,8 @@ impl EventWatch {
         Ok(first)
     }
 
-    /// The first function that touches zero near the end of the last but one of these parts: it is least there,
-    /// and nearly zero at its minimum.
+    /// The first function that touches zero near the beginning of this part: it is least there, and nearly
+    /// zero at its minimum.
     fn first_touch(&self, system: &System, segment: &Segment, part: usize) -> Result<Option<Found>, Failure> {
         /// Parts of what it was to both sides, at most, where it is least: 0.58 for the root of a distance.
         const DIPS: f64 = 0.6;

@@ -89,7 +89,7 @@ pub trait Problem {
         Ok(())
     }
 
-    /// The number of event functions; a sign change of one is located and ends the integration, as does a touch.
+    /// The number of event functions; where one changes its sign or touches zero, the integration ends.
     fn events(&self) -> usize {
         0
     }

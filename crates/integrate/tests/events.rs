@@ -85,7 +85,7 @@ fn an_event_at_the_pole_of_another_does_not_hide_it() {
     assert!((stopped_at(&solution, 0) - 52.0).abs() < 1e-9);
 }
 
-/// As the square of a velocity is where a motion comes to rest and goes on: a kink makes the steps short there.
+/// As the square of a velocity where a motion comes to rest and goes on: a kink makes the steps short there.
 #[test]
 fn an_event_that_touches_zero_at_a_kink_is_seen() {
     for method in Method::ALL {

@@ -57,28 +57,47 @@ impl Graph {
         bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
     }
 
-    /// What is zero where a root in `es` has a kink, not numbers: every distinct base of an even power under a
-    /// root, as `√(a²) = |a|`, and every other radicand, as `√(a² + b²)`, whether it changes its sign or not.
+    /// Every distinct base of an even power under a root in `es`, not a number: `√(a²) = |a|` has a kink
+    /// where `a` is zero, and its radicand does not change its sign there.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
     /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
     /// let both = g.sum(&[g.powi(x, 2), g.powi(y, 2)]);
-    /// assert_eq!(g.kinks(&[g.sqrt(g.powi(x, 2)), g.sqrt(both)]), [x, both]);
+    /// assert_eq!(g.kinks(&[g.sqrt(g.powi(x, 2)), g.sqrt(both), g.sqrt(y)]), [x]);
+    /// assert_eq!(g.radicands(&[g.sqrt(g.powi(x, 2)), g.sqrt(both), g.sqrt(y)]), [y, both]);
     /// ```
     pub fn kinks(&self, es: &[Expr]) -> Vec<Expr> {
-        let arena = self.arena.borrow();
-        let under = |e: Expr, wanted: fn(&Rational) -> bool| -> Vec<Expr> {
-            let Node::Product(factors) = arena.node(e) else { return Vec::new() };
-            factors.iter().filter(|(_, r)| wanted(r)).map(|(b, _)| *b).collect()
-        };
-        let roots = arena.reachable(es, |_| true).into_iter().flat_map(|e| under(e, |r| r.as_integer().is_none()));
-        let even = |r: &Rational| r.as_integer().is_some_and(|n| n % 2 == 0);
-        let bases = roots.flat_map(|root| match under(root, even) {
-            bases if bases.is_empty() => vec![root],
-            bases => bases,
-        });
-        bases.filter(|b| arena.as_number(*b).is_none()).collect::<BTreeSet<Expr>>().into_iter().collect()
+        self.under_roots(es)
+            .into_iter()
+            .flat_map(|root| self.even_bases(root))
+            .collect::<BTreeSet<_>>()
+            .into_iter()
+            .collect()
+    }
+
+    /// Every other distinct radicand in `es`, not a number: as `√(a² + b²)`, it has a kink where it is zero.
+    pub fn radicands(&self, es: &[Expr]) -> Vec<Expr> {
+        let mut roots = self.under_roots(es);
+        roots.retain(|&root| self.even_bases(root).is_empty() && self.arena.borrow().as_number(root).is_none());
+        roots.into_iter().collect()
+    }
+
+    fn under_roots(&self, es: &[Expr]) -> BTreeSet<Expr> {
+        let reachable = self.arena.borrow().reachable(es, |_| true);
+        reachable.into_iter().flat_map(|e| self.bases(e, |r| r.as_integer().is_none())).collect()
+    }
+
+    fn even_bases(&self, radicand: Expr) -> Vec<Expr> {
+        self.bases(radicand, |r| r.as_integer().is_some_and(|n| n % 2 == 0))
+    }
+
+    /// The factors of a product that have such an exponent in it.
+    fn bases(&self, e: Expr, wanted: impl Fn(&Rational) -> bool) -> Vec<Expr> {
+        match self.arena.borrow().node(e) {
+            Node::Product(factors) => factors.iter().filter(|(_, r)| wanted(r)).map(|(b, _)| *b).collect(),
+            _ => Vec::new(),
+        }
     }
 
     /// Arguments of every call of `function` in `es`.
