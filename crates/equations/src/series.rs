@@ -7,10 +7,10 @@ use crate::equations::Equations;
 use crate::plan::Plan;
 
 /// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan and the blocks left in it.
-#[derive(Clone)]
 pub(crate) struct Series {
     tape: SeriesTape,
-    workspace: SeriesWorkspace<f64>,
+    /// From the first expansion on; a copy has its own.
+    workspace: Option<SeriesWorkspace<f64>>,
     /// Blocks that are solved numerically.
     left: Vec<usize>,
     /// Places in `(t, y, constants, z)` of what the tape takes.
@@ -18,12 +18,20 @@ pub(crate) struct Series {
     inputs: Vec<f64>,
 }
 
+impl Clone for Series {
+    fn clone(&self) -> Self {
+        let Series { tape, left, places, inputs, .. } = self;
+        let (tape, left, places, inputs) = (tape.clone(), left.clone(), places.clone(), inputs.clone());
+        Series { tape, workspace: None, left, places, inputs }
+    }
+}
+
 impl Series {
     pub(crate) fn new(equations: &Equations, plan: &Plan) -> Result<Self, CompileError> {
         let places = plan.places(equations);
         let tape = Series::tape(equations, plan)?;
-        let (workspace, inputs) = (tape.workspace(1), vec![0.0; places.len()]);
-        Ok(Series { tape, workspace, left: plan.left.clone(), places, inputs })
+        let inputs = vec![0.0; places.len()];
+        Ok(Series { tape, workspace: None, left: plan.left.clone(), places, inputs })
     }
 
     /// Takes `t, y`, constants and the unknowns of blocks that are left.
@@ -45,8 +53,9 @@ impl Series {
 
     /// Expands to `order`, from `(t, y, constants, z)`; `z` solves the blocks left, with factors at hand.
     pub(crate) fn expand(&mut self, values: &[f64], unit: f64, order: usize, blocks: &mut [CompiledBlock]) {
-        if self.workspace.order() != order {
-            self.workspace = self.tape.workspace(order);
+        let workspace = self.workspace.get_or_insert_with(|| self.tape.workspace(order));
+        if workspace.order() != order {
+            self.tape.reorder(workspace, order);
         }
         for (x, &place) in self.inputs.iter_mut().zip(&self.places) {
             *x = values[place];
@@ -54,7 +63,7 @@ impl Series {
         let left = &self.left;
         // The factors of a Newton iteration are those of the point before the last.
         let sweeps = if left.iter().any(|&k| !blocks[k].linear) { 2 } else { 1 };
-        self.tape.expand(&self.inputs, unit, &mut self.workspace, sweeps, &mut |block, residual| {
+        self.tape.expand(&self.inputs, unit, workspace, sweeps, &mut |block, residual| {
             for x in residual.iter_mut() {
                 *x = -*x;
             }
@@ -66,7 +75,7 @@ impl Series {
     pub(crate) fn write(&self, y: &[f64], coefficients: &mut [f64]) {
         let orders = coefficients.len() / y.len();
         for ((i, y), row) in y.iter().enumerate().zip(coefficients.chunks_exact_mut(orders)) {
-            match self.tape.input(1 + i, &self.workspace) {
+            match self.workspace.as_ref().and_then(|workspace| self.tape.input(1 + i, workspace)) {
                 Some(series) => row.copy_from_slice(series),
                 None => {
                     row.fill(0.0);

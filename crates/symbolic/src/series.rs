@@ -198,7 +198,18 @@ impl SeriesTape {
 
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
-        let order = order.max(1);
+        self.workspace_in(Vec::new(), order.max(1))
+    }
+
+    /// The same room for another order.
+    pub fn reorder<T: SeriesScalar>(&self, workspace: &mut SeriesWorkspace<T>, order: usize) {
+        let mut rows = std::mem::take(&mut workspace.rows);
+        rows[..workspace.used].fill(T::from_f64(0.0));
+        *workspace = self.workspace_in(rows, order.max(1));
+    }
+
+    /// In `rows`, which are zero.
+    fn workspace_in<T: SeriesScalar>(&self, mut rows: Vec<T>, order: usize) -> SeriesWorkspace<T> {
         let stride = (order + 1 + T::GROUP).next_multiple_of(T::GROUP);
         let zero = T::from_f64(0.0);
         let stride_of_places = Place::try_from(stride).expect("an order below 2^32");
@@ -233,7 +244,12 @@ impl SeriesTape {
             orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
         };
-        SeriesWorkspace { rows: vec![zero; T::room(self.rows, stride)], used: self.rows * stride, plan }
+        let room = T::room(self.rows, stride);
+        match rows.is_empty() {
+            true => rows = vec![zero; room],
+            false => rows.resize(room.max(rows.len()), zero),
+        }
+        SeriesWorkspace { rows, used: self.rows * stride, plan }
     }
 
     /// Computes all orders from the inputs at order 0, where unknowns must solve their equations.
