@@ -5,17 +5,19 @@
 //! `w`, these are
 //!
 //! ```text
-//! p_u = G_u̇ ,      p_w = −P      (P = −∂(L + μ·f)/∂ẇ) ,      so   P = −p_w   for whatever w the next chart
-//! has.
+//! p_u = G_u̇ ,      p_w = −P      (P = −∂(L + μ·f)/∂ẇ) ,
 //! ```
+//!
+//! the momenta `p = ∂(L + μ·f)/∂v` of the vakonomic motion that it is. It goes on as that motion, by
+//! Hamilton's equations for `(q, p)`, which have no pivots.
 //!
 //! Both runs of a motion change at the time of the kept one, each from its own state.
 
 use integrate::{ProjectionReport, Solution, Work};
-use mechanics::{ConstantsRule, Removal};
+use mechanics::ConstantsRule;
 
 use crate::choice::derive_at;
-use crate::later_chart::{Later, Names, Point, momentum};
+use crate::later_chart::{Later, Names, Point};
 use crate::single_run::chart_size;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
 use crate::trial::{NotSuited, not_suited};
@@ -26,8 +28,16 @@ use crate::{Choice, Ending, Prepared, Setting, Settings, SingleRun, SolveError, 
 pub struct ChartChange {
     /// From this time on.
     pub t: f64,
-    /// The velocities, or coordinates with the velocities, of which the others are combinations from then on.
+    /// The velocities, or coordinates with the velocities, of which the others are combinations from then on;
+    /// none where it goes on by canonical momenta.
     pub independent: Vec<String>,
+}
+
+impl ChartChange {
+    /// By what it went on, in words.
+    pub fn by(&self) -> String {
+        if self.independent.is_empty() { "canonical momenta".into() } else { self.independent.join(", ") }
+    }
 }
 
 /// Both runs of a motion, from chart to chart.
@@ -178,15 +188,13 @@ fn next_chart(
 
 /// The equations by the best pivots at a point, where they tell all that the first chart does.
 fn new_chart(setting: Setting, first: &Prepared, (start, momenta): &Point, settings: &Settings) -> Option<Prepared> {
-    let system = setting.system;
-    let removal = first.equations.removal.as_ref().map(|_| Removal::by_coordinates(system, start)).transpose().ok()?;
-    let costates = removal.iter().flat_map(|removal| &removal.memory).map(|w| {
-        let name = momentum(&system.graph.name(w.symbol));
-        -momenta.get(&name).copied().unwrap_or(0.0)
-    });
-    let constants = ConstantsRule::Given(costates.collect());
-    let choice = Choice { label: String::new(), formulation: first.equations.formulation, removal, constants };
-    let equations = derive_at(system, start, &choice).ok()?;
+    let equations = if first.equations.removal.is_some() {
+        vakonomic::derive_from_momenta(setting.system).ok()?.leave_out_unneeded()
+    } else {
+        let (label, formulation) = (String::new(), first.equations.formulation);
+        let choice = Choice { label, formulation, removal: None, constants: ConstantsRule::Zero };
+        derive_at(setting.system, start, &choice).ok()?
+    };
     let names = Names::of(&equations);
     if !names.give(&Names::of(&first.equations)) {
         return None;

@@ -224,6 +224,29 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     Ok(equations)
 }
 
+/// [`derive_costate_form`] from momenta: the free constants are `p₀ ∈ Rⁿ`, given on `p − L_v ∈ im Aᵀ`, and the
+/// momenta stand for the multipliers, each under the name of the invariant that it is where it is constant.
+///
+/// # Errors
+/// As [`derive_costate_form`].
+pub fn derive_from_momenta(system: &System) -> Result<Equations, DerivationError> {
+    let mut equations = derive_costate_form(system, &Derivation::default())?;
+    let g = &equations.graph;
+    let zero = equations.free_constants.iter().map(|c| (c.symbol, g.zero())).collect();
+    equations.blocks.iter_mut().flat_map(|b| &mut b.guess).for_each(|guess| *guess = g.substitute(*guess, &zero));
+    equations.free_constants.clear();
+    equations.multipliers.clear();
+    let costates = equations.states.iter_mut().filter(|y| y.role == Role::Costate);
+    for (y, c) in costates.zip(&system.coordinates) {
+        let symbol = fresh_symbol(g, &format!("p0_{}", c.name));
+        y.start = g.variable(symbol);
+        equations.free_constants.push(FreeConstant { symbol, natural: None, memory: None });
+        let (name, expression) = (format!("momentum {}", c.name), g.variable(y.symbol));
+        equations.multipliers.push(Named { name, expression });
+    }
+    Ok(equations)
+}
+
 fn state(g: &Graph, symbol: Symbol, role: Role, rate: Expr, start: Symbol) -> StateVariable {
     StateVariable { symbol, role, rate, start: g.variable(start) }
 }
