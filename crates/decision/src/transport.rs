@@ -196,7 +196,8 @@ impl<'a> Transport<'a> {
         matrix.try_inverse().map_or(right.clone(), |inverse| inverse.abs() * right)
     }
 
-    /// Integrates to the end of the curve, or as far as it comes.
+    /// Integrates to the end of the curve, or as far as it comes; no farther where more than so many steps are
+    /// ahead.
     pub(crate) fn run(&mut self, tolerance: f64, steps: usize) -> Result<Path, DecisionError> {
         let start = self.start()?;
         let (_, end) = self.span();
@@ -208,12 +209,15 @@ impl<'a> Transport<'a> {
             dense: Dense::Everywhere,
             sizes: self.sizes(&start, end)?,
             max_steps: steps,
+            patience: steps as f64,
             ..Options::with_tolerance(tolerance)
         };
         let solution = integrate(self, &start, end, &options)?;
         let stop = match solution.status {
             Status::Completed => None,
-            Status::Stopped { cause: StopCause::TooManySteps { limit }, .. } => Some(DecisionError::Steps { limit }),
+            Status::Stopped { cause: StopCause::TooManySteps { .. } | StopCause::Slow { .. }, .. } => {
+                Some(DecisionError::Steps { limit: steps })
+            }
             Status::Stopped { cause, t } => Some(DecisionError::Curve { reason: format!("{cause} (at t = {t})") }),
         };
         Ok(Path { end: solution.dense.end(), dense: Some(solution.dense), stop })
