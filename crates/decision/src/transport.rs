@@ -196,8 +196,8 @@ impl<'a> Transport<'a> {
         matrix.try_inverse().map_or(right.clone(), |inverse| inverse.abs() * right)
     }
 
-    /// Integrates to the end of the curve, or as far as it comes; no farther where more than so many steps are
-    /// ahead.
+    /// Integrates to the end of the curve, or as far as it comes: no farther where more than so many steps
+    /// are ahead.
     pub(crate) fn run(&mut self, tolerance: f64, steps: usize) -> Result<Path, DecisionError> {
         let start = self.start()?;
         let (_, end) = self.span();

@@ -224,8 +224,8 @@ pub fn derive_costate_form(system: &System, _: &Derivation) -> Result<Equations,
     Ok(equations)
 }
 
-/// [`derive_costate_form`] from momenta: the free constants are `p₀ ∈ Rⁿ`, given on `p − L_v ∈ im Aᵀ`, and the
-/// momenta stand for the multipliers, each under the name of the invariant that it is where it is constant.
+/// [`derive_costate_form`] from momenta: the free constants are `p₀ ∈ Rⁿ`, with `p₀ − L_v` in the image of
+/// `Aᵀ`, and the momenta stand for the multipliers, under the names that they have where they are constant.
 ///
 /// # Errors
 /// As [`derive_costate_form`].
