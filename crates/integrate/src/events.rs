@@ -11,14 +11,16 @@ pub(crate) const PARTS: usize = 8;
 /// looked at so close before the zero, in parts of the way to it.
 const BEFORE_ZERO: f64 = 1e-6;
 
+/// A function that grows again after it came under these parts of the largest value it had has touched zero.
+/// Steps that follow a kink there are as short at any tolerance: sums of squares come under 4e-19.
+pub(crate) const TOUCH: f64 = 1e-17;
+
 /// The event functions' signs up to the time reached.
 pub(crate) struct EventWatch {
     /// Values at the time reached; a function that has been zero since the start has the value 0.
     reached: Vec<f64>,
     /// The largest value of each at the end of a step so far.
     largest: Vec<f64>,
-    /// Parts of that under which a function that grows again has touched zero.
-    touch: f64,
     /// Values at the last three points looked at.
     older: Vec<f64>,
     previous: Vec<f64>,
@@ -50,8 +52,7 @@ impl Segment<'_> {
 }
 
 impl EventWatch {
-    /// From `(t, y)` on, in a run of this relative tolerance, which does not tell zero from what is under it.
-    pub(crate) fn new(system: &System, t: f64, y: &[f64], tolerance: f64) -> Result<Self, Failure> {
+    pub(crate) fn new(system: &System, t: f64, y: &[f64]) -> Result<Self, Failure> {
         let events = system.events();
         let mut reached = vec![0.0; events];
         if events > 0 {
@@ -62,7 +63,6 @@ impl EventWatch {
             previous: reached.clone(),
             current: reached.clone(),
             largest: reached.iter().map(|value| value.abs()).collect(),
-            touch: tolerance,
             reached,
             state: vec![0.0; y.len()],
             at_start: true,
@@ -128,7 +128,7 @@ impl EventWatch {
             if before <= older && before < after && before < DIPS * older.max(after) {
                 let range = [part.saturating_sub(2), part].map(|part| part as f64 / PARTS as f64);
                 let (theta, least) = self.least(system, segment, index, range)?;
-                if least < self.touch * self.largest[index] {
+                if least < TOUCH * self.largest[index] {
                     return Ok(Some(Found { index, theta }));
                 }
             }

@@ -12,7 +12,7 @@ mod problem;
 
 use std::array::from_fn;
 
-use crate::events::PARTS;
+use crate::events::{PARTS, TOUCH};
 use crate::interrupt::Interrupt;
 use crate::options::{Options, Projection};
 use crate::pace::Pace;
@@ -318,7 +318,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             let events = self.events.iter_mut().zip(&mut self.events_least);
             for ((event, least), next) in events.zip(&self.events_next) {
                 *event = from_fn(|l| if lanes[l] { next[l] } else { event[l] });
-                *least = from_fn(|l| least[l].max(relative * event[l].abs()));
+                *least = from_fn(|l| least[l].max(TOUCH * event[l].abs()));
             }
         }
     }

@@ -37,11 +37,11 @@
 //! Each accepted step is looked at in eight parts of equal length: a function whose signs at two neighbouring
 //! points differ has a root between them, found by Brent's method on the dense output to round-off of θ; the
 //! first root of the step ends the run, and the dense output is cut there. So an event is as accurate as the
-//! dense output. A function that grows again, with the same sign, after it came under the relative
-//! tolerance times the largest value it had has touched zero: the tolerance does not tell these apart. What
-//! can be missed is a pair of roots (or a touching one) within an eighth of a step. A function that is
-//! exactly zero at the start is passed over until it has a sign, and so is a root within round-off of the
-//! start: a run that goes on from where an event ended another one does not stop at once.
+//! dense output. A function that grows again, with the same sign, after it came under 1e-17 of the largest
+//! value it had has touched zero. What can be missed is a pair of roots (or a touching one) within an eighth
+//! of a step. A function that is exactly zero at the start is passed over until it has a sign, and so is a
+//! root within round-off of the start: a run that goes on from where an event ended another one does not stop
+//! at once.
 //!
 //! # Projection
 //! With [`Projection::EveryStep`], [`Problem::project`] is applied to each accepted state before it is

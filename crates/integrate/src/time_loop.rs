@@ -63,7 +63,7 @@ struct Record<'a, 'p> {
 impl Record<'_, '_> {
     fn walk(&mut self, stepper: &mut dyn Stepper, start: &Start, end: f64) -> Result<(), StopCause> {
         let system = self.system;
-        let mut watch = EventWatch::new(system, start.t, &start.y, self.options.relative_tolerance)?;
+        let mut watch = EventWatch::new(system, start.t, &start.y)?;
         let mut steep = SteepWatch::new(system, start.t, &start.y)?;
         // The last failure since the last accepted step, and the number of them.
         let mut failure: Option<Failure> = None;
