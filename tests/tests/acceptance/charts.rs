@@ -28,6 +28,13 @@ fn sleigh() -> Scene {
     parsed("x y phi=0.3", lagrangian, "\"y'*cos(phi) - x'*sin(phi)\"", "\"x'\" = 0.6, \"phi'\" = 1.1", 20.0)
 }
 
+/// A sleigh on a plate that moves, in a field that turns its path.
+fn driven() -> Scene {
+    let lagrangian = "(x'^2 + y'^2 + 0.7*phi'^2)/2 + 0.2*(x*y' - y*x') + 0.1*sin(t)*x";
+    let constraint = "\"(y' - 0.2*cos(t) - 0.1*x)*cos(phi) - (x' + 0.1*y)*sin(phi)\"";
+    parsed("x y phi=0.3", lagrangian, constraint, "\"x'\" = 0.6, \"phi'\" = 1.1", 20.0)
+}
+
 /// Two wheels on one axle, at heading 0: both roll, and the axle does not slip sideways.
 fn robot() -> Scene {
     let constraints = "\"y'*cos(phi) - x'*sin(phi)\", \"x'*cos(phi) + y'*sin(phi) + 0.3*phi' - 0.1*right'\", \
@@ -71,7 +78,7 @@ fn changes(what: &str, motion: &Motion) -> usize {
 
 #[test]
 fn a_removal_by_coordinates_goes_on_where_its_pivot_vanishes() {
-    for (name, scene) in [("sleigh", sleigh()), ("robot", robot()), ("car", car())] {
+    for (name, scene) in [("sleigh", sleigh()), ("driven", driven()), ("robot", robot()), ("car", car())] {
         let h = scene.system.constraints.len();
         for costates in [vec![0.0; h], vec![0.02; h]] {
             let (removal, motion) = removed(&scene, ConstantsRule::Given(costates.clone()));
