@@ -19,6 +19,8 @@ pub(crate) const TOUCH: f64 = 1e-17;
 pub(crate) struct EventWatch {
     /// Values at the time reached; a function that has been zero since the start has the value 0.
     reached: Vec<f64>,
+    /// Those an eighth of the last step before.
+    before: Vec<f64>,
     /// The largest value of each at the end of a step so far.
     largest: Vec<f64>,
     /// Values at the last three points looked at.
@@ -59,6 +61,7 @@ impl EventWatch {
             system.event_values(t, y, &mut reached)?;
         }
         Ok(Self {
+            before: reached.clone(),
             older: reached.clone(),
             previous: reached.clone(),
             current: reached.clone(),
@@ -71,6 +74,7 @@ impl EventWatch {
 
     /// The first event of the step, if there is one. The state of the watch changes only by `advance`.
     pub(crate) fn look(&mut self, system: &System, segment: &Segment) -> Result<Option<Found>, Failure> {
+        self.older.copy_from_slice(&self.before);
         self.previous.copy_from_slice(&self.reached);
         let mut theta = 0.0;
         for part in 1..=PARTS {
@@ -121,11 +125,14 @@ impl EventWatch {
     /// The first function that touches zero near the beginning of this part: it is least there, and nearly
     /// zero at its minimum.
     fn first_touch(&self, system: &System, segment: &Segment, part: usize) -> Result<Option<Found>, Failure> {
-        /// Parts of what it was to both sides, at most, where it is least: 0.58 for the root of a distance.
+        /// Parts of what it is to one side, at most, where it is least: 0.58 for the root of a distance.
         const DIPS: f64 = 0.6;
+        /// Or so small that steps are shorter than the dip is wide.
+        const SMALL: f64 = 1e-12;
         for index in 0..self.current.len() {
             let [older, before, after] = [&self.older, &self.previous, &self.current].map(|values| values[index].abs());
-            if before <= older && before < after && before < DIPS * older.max(after) {
+            let dips = before < DIPS * older.max(after) || before < SMALL * self.largest[index];
+            if before <= older && before < after && dips {
                 let range = [part.saturating_sub(2), part].map(|part| part as f64 / PARTS as f64);
                 let (theta, least) = self.least(system, segment, index, range)?;
                 if least < TOUCH * self.largest[index] {
@@ -167,6 +174,7 @@ impl EventWatch {
 
     /// The step has been taken.
     pub(crate) fn advance(&mut self) {
+        self.before.copy_from_slice(&self.older);
         self.reached.copy_from_slice(&self.previous);
         self.largest.iter_mut().zip(&self.reached).for_each(|(largest, value)| *largest = largest.max(value.abs()));
         self.at_start = false;

@@ -2,8 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use deltaq::{Ending, Motion, Settings, choices, solve_choice};
+use deltaq::{Choice, Ending, Motion, Settings, choices, solve_choice};
 use integrate::Method;
+use mechanics::ConstantsRule;
 use scene::Scene;
 use validation::trailer::{self, Coordinates};
 
@@ -162,5 +163,38 @@ duration = 5.0
         assert!(cause.contains("(phi)"), "{cause}");
         let (one, two) = (at(&mut motion, 0.9 * end), at(&mut sledge, 0.9 * end));
         must("divided and whole sledge", largest_difference(&one.coordinates, &two.coordinates), 1e-9);
+    }
+}
+
+/// Down the force, `(1 + k²) s' = −|F|`: the speed is zero at t = 1 + k², at the tip of the cone `z' = k s`,
+/// where `p = (1 + k²) s + k P` asks for less than `k P` from then on, which no velocity gives.
+#[test]
+fn a_motion_ends_at_the_tip_of_its_cone() {
+    let text = r#"
+title = "Cone of velocities"
+[coordinates]
+x = { unit = "m", start = 0 }
+y = { unit = "m", start = 0 }
+z = { unit = "m", start = 0 }
+[system]
+lagrangian = "(x'^2 + y'^2 + z'^2)/2 - x - 0.3*y"
+constraints = ["z' - 0.5*sqrt(x'^2 + y'^2)"]
+[start.velocities]
+"x'" = 1
+"y'" = 0.3
+[removal.plane]
+parameters = ["x", "y"]
+rates = { z = "0.5*sqrt(x'^2 + y'^2)" }
+[run]
+duration = 3
+"#;
+    let scene = Scene::parse("cone", text).expect("a scene");
+    let removed = choices(&scene).into_iter().find(|c| c.removal.is_some()).expect("a removal");
+    let choice = Choice { constants: ConstantsRule::Given(vec![0.4]), ..removed };
+    for method in [None].into_iter().chain(Method::ALL.map(Some)) {
+        let settings = Settings { method, tolerance: 1e-8, ..tight() };
+        let motion = solve_choice(&scene, &choice, &settings).expect("it starts");
+        let Ending::Stopped { t, cause } = &motion.ending else { panic!("{method:?}: {:?}", motion.ending) };
+        assert!((t - 1.25).abs() < 1e-5, "{method:?}: {t}: {cause}");
     }
 }
