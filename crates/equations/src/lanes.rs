@@ -91,9 +91,7 @@ impl LaneEquations {
     ) -> [bool; LANES] {
         self.load(t, y);
         let orders = coefficients.len() / y.len();
-        if self.workspace.order() != orders - 1 {
-            self.series.reorder(&mut self.workspace, orders - 1);
-        }
+        self.series.reorder(&mut self.workspace, orders - 1);
         self.series.expand(&self.inputs, Lanes(*unit), &mut self.workspace, 1, &mut |_, _| {});
         for ((i, y), row) in y.iter().enumerate().zip(coefficients.chunks_exact_mut(orders)) {
             match self.series.input(1 + i, &self.workspace) {

@@ -7,23 +7,16 @@ use crate::equations::Equations;
 use crate::plan::Plan;
 
 /// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan and the blocks left in it.
+#[derive(Clone)]
 pub(crate) struct Series {
     tape: SeriesTape,
-    /// From the first expansion on; a copy has its own.
+    /// From the first expansion on.
     workspace: Option<SeriesWorkspace<f64>>,
     /// Blocks that are solved numerically.
     left: Vec<usize>,
     /// Places in `(t, y, constants, z)` of what the tape takes.
     places: Vec<usize>,
     inputs: Vec<f64>,
-}
-
-impl Clone for Series {
-    fn clone(&self) -> Self {
-        let Series { tape, left, places, inputs, .. } = self;
-        let (tape, left, places, inputs) = (tape.clone(), left.clone(), places.clone(), inputs.clone());
-        Series { tape, workspace: None, left, places, inputs }
-    }
 }
 
 impl Series {
@@ -54,9 +47,7 @@ impl Series {
     /// Expands to `order`, from `(t, y, constants, z)`; `z` solves the blocks left, with factors at hand.
     pub(crate) fn expand(&mut self, values: &[f64], unit: f64, order: usize, blocks: &mut [CompiledBlock]) {
         let workspace = self.workspace.get_or_insert_with(|| self.tape.workspace(order));
-        if workspace.order() != order {
-            self.tape.reorder(workspace, order);
-        }
+        self.tape.reorder(workspace, order);
         for (x, &place) in self.inputs.iter_mut().zip(&self.places) {
             *x = values[place];
         }

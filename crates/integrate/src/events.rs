@@ -51,6 +51,12 @@ impl Segment<'_> {
     pub(crate) fn time(&self, theta: f64) -> f64 {
         if theta >= 1.0 { self.end } else { self.begin + theta * self.width }
     }
+
+    /// The event functions at `theta`, by way of the state there.
+    fn events(&self, system: &System, theta: f64, state: &mut [f64], values: &mut [f64]) -> Result<(), Failure> {
+        evaluate_segment(self.basis, self.coefficients, theta, state);
+        system.event_values(self.time(theta), state, values)
+    }
 }
 
 impl EventWatch {
@@ -101,8 +107,7 @@ impl EventWatch {
         theta: f64,
         next: f64,
     ) -> Result<Option<Found>, Failure> {
-        evaluate_segment(segment.basis, segment.coefficients, next, &mut self.state);
-        system.event_values(segment.time(next), &self.state, &mut self.current)?;
+        segment.events(system, next, &mut self.state, &mut self.current)?;
         let mut first: Option<Found> = None;
         for index in 0..self.current.len() {
             let (before, after) = (self.previous[index], self.current[index]);
@@ -151,10 +156,8 @@ impl EventWatch {
         const SECTIONS: usize = 38;
         let mut values = vec![0.0; self.current.len()];
         let mut state = self.state.clone();
-        let mut size = |theta: f64| {
-            evaluate_segment(segment.basis, segment.coefficients, theta, &mut state);
-            system.event_values(segment.time(theta), &state, &mut values).map(|()| values[index].abs())
-        };
+        let mut size =
+            |theta: f64| segment.events(system, theta, &mut state, &mut values).map(|()| values[index].abs());
         let [mut a, mut d] = range;
         let (mut b, mut c) = (a + SHARE * (d - a), d - SHARE * (d - a));
         let (mut at_b, mut at_c) = (size(b)?, size(c)?);
@@ -191,14 +194,11 @@ impl EventWatch {
         let mut values = vec![0.0; self.current.len()];
         let mut failure = None;
         let state = &mut self.state;
-        let mut event = |theta: f64| {
-            evaluate_segment(segment.basis, segment.coefficients, theta, state);
-            match system.event_values(segment.time(theta), state, &mut values) {
-                Ok(()) => values[index],
-                Err(error) => {
-                    failure = Some(error);
-                    f64::NAN
-                }
+        let mut event = |theta: f64| match segment.events(system, theta, state, &mut values) {
+            Ok(()) => values[index],
+            Err(error) => {
+                failure = Some(error);
+                f64::NAN
             }
         };
         let root = find_root_between(&mut event, a, b, 0.0);

@@ -68,12 +68,8 @@ impl Graph {
     /// assert_eq!(g.radicands(&[g.sqrt(g.powi(x, 2)), g.sqrt(both), g.sqrt(y)]), [y, both]);
     /// ```
     pub fn kinks(&self, es: &[Expr]) -> Vec<Expr> {
-        self.under_roots(es)
-            .into_iter()
-            .flat_map(|root| self.even_bases(root))
-            .collect::<BTreeSet<_>>()
-            .into_iter()
-            .collect()
+        let bases: BTreeSet<Expr> = self.under_roots(es).into_iter().flat_map(|root| self.even_bases(root)).collect();
+        bases.into_iter().collect()
     }
 
     /// Every other distinct radicand in `es`, not a number: as `√(a² + b²)`, it has a kink where it is zero.

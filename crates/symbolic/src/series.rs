@@ -200,18 +200,25 @@ impl SeriesTape {
 
     /// Room for states up to `order ≥ 1` (other values: one less).
     pub fn workspace<T: SeriesScalar>(&self, order: usize) -> SeriesWorkspace<T> {
-        self.workspace_in(Vec::new(), order.max(1))
+        let plan = self.plan(order);
+        let rows = vec![T::from_f64(0.0); T::room(self.rows, plan.stride)];
+        SeriesWorkspace { rows, used: self.rows * plan.stride, plan }
     }
 
-    /// The same room for another order.
+    /// The same room for this order, if it is for another one.
     pub fn reorder<T: SeriesScalar>(&self, workspace: &mut SeriesWorkspace<T>, order: usize) {
-        let mut rows = std::mem::take(&mut workspace.rows);
-        rows[..workspace.used].fill(T::from_f64(0.0));
-        *workspace = self.workspace_in(rows, order.max(1));
+        if workspace.order() == order {
+            return;
+        }
+        let (plan, zero) = (self.plan(order), T::from_f64(0.0));
+        workspace.rows[..workspace.used].fill(zero);
+        let room = T::room(self.rows, plan.stride).max(workspace.rows.len());
+        workspace.rows.resize(room, zero);
+        (workspace.used, workspace.plan) = (self.rows * plan.stride, plan);
     }
 
-    /// In `rows`, which are zero.
-    fn workspace_in<T: SeriesScalar>(&self, mut rows: Vec<T>, order: usize) -> SeriesWorkspace<T> {
+    fn plan<T: SeriesScalar>(&self, order: usize) -> Plan<T> {
+        let order = order.max(1);
         let stride = (order + 1 + T::GROUP).next_multiple_of(T::GROUP);
         let zero = T::from_f64(0.0);
         let stride_of_places = Place::try_from(stride).expect("an order below 2^32");
@@ -233,7 +240,7 @@ impl SeriesTape {
             Source::Row(rate) => Some((at(state.row), at(rate), zero)),
             Source::Steady(_) => None,
         });
-        let plan = Plan {
+        Plan {
             order,
             stride,
             registers: self.first.workspace(),
@@ -245,13 +252,7 @@ impl SeriesTape {
             halves,
             orders: (0..=order).map(|k| T::from_f64(k as f64)).map(|k| (k, T::from_f64(1.0) / k)).collect(),
             residual: vec![zero; self.blocks.iter().map(|b| b.residuals.len()).max().unwrap_or(0)],
-        };
-        let room = T::room(self.rows, stride);
-        match rows.is_empty() {
-            true => rows = vec![zero; room],
-            false => rows.resize(room.max(rows.len()), zero),
         }
-        SeriesWorkspace { rows, used: self.rows * stride, plan }
     }
 
     /// Computes all orders from the inputs at order 0, where unknowns must solve their equations.

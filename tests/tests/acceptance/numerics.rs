@@ -10,8 +10,8 @@ use validation::trailer::{self, Coordinates};
 
 use super::closed_forms::sledge;
 use super::support::{
-    all_equations, at, complete, equations, gap, jacobian_error, largest_difference, linear_scenes, motion_of, must,
-    scene, scenes, some_multipliers, tight, vakonomic,
+    TIGHT, all_equations, at, complete, equations, gap, jacobian_error, largest_difference, linear_scenes, motion_of,
+    must, scene, scenes, some_multipliers, tight, vakonomic,
 };
 
 #[test]
@@ -97,6 +97,14 @@ fn costate_form_keeps_to_its_branch_near_a_fold() {
     must("near a fold: velocities read at the start", largest_difference(&start.velocities, &scene.start.v), 1e-11);
 }
 
+/// The motion of a choice that stops, with the time and the cause.
+fn stopped(scene: &Scene, choice: &Choice, method: Option<Method>, tolerance: f64) -> (Motion, f64, String) {
+    let settings = Settings { method, tolerance, ..tight() };
+    let motion = solve_choice(scene, choice, &settings).unwrap_or_else(|e| panic!("{method:?}: {e}"));
+    let Ending::Stopped { t, cause } = motion.ending.clone() else { panic!("{method:?}: {:?}", motion.ending) };
+    (motion, t, cause)
+}
+
 /// `q₂` stays by symmetry, and its equation `(11/8 − 2μ) a₂ = 0` says so until μ = 11/16, whatever steps do.
 #[test]
 fn no_step_passes_over_an_equation_that_loses_its_unknown() {
@@ -122,9 +130,7 @@ duration = 1.5
     let of_s = 2.75 / (11.0 / 8.0 + 3.0 / 2.0);
     let t = (of_s * sum - 55.0 / 64.0) / (7.0 / 4.0 - of_s * slope);
     for method in [Method::Dop853, Method::Taylor] {
-        let motion = solve_choice(&scene, &choices(&scene)[1], &Settings { method: Some(method), ..tight() })
-            .expect("it starts");
-        let Ending::Stopped { t: end, cause } = &motion.ending else { panic!("{:?}", motion.ending) };
+        let (_, end, cause) = stopped(&scene, &choices(&scene)[1], Some(method), TIGHT);
         assert!((end - t).abs() < 1e-9 && cause.contains("mu_1"), "{end}, {t}: {cause}");
     }
 }
@@ -155,9 +161,7 @@ duration = 5.0
     let factor = 0.3_f64.sin() * 0.3_f64.cos();
     let mut sledge = vakonomic(&whole, &[0.3 / factor]);
     for method in [Method::Dop853, Method::Taylor] {
-        let mut motion = solve_choice(&divided, &choices(&divided)[1], &Settings { method: Some(method), ..tight() })
-            .expect("starts");
-        let Ending::Stopped { t: end, cause } = motion.ending.clone() else { panic!("{:?}", motion.ending) };
+        let (mut motion, end, cause) = stopped(&divided, &choices(&divided)[1], Some(method), TIGHT);
         let quarters = at(&mut sledge, end).coordinates[2] / FRAC_PI_2;
         must("quarter turns from a zero of sin 2φ", (quarters - quarters.round()).abs(), 1e-9);
         assert!(cause.contains("(phi)"), "{cause}");
@@ -192,9 +196,7 @@ duration = 3
     let removed = choices(&scene).into_iter().find(|c| c.removal.is_some()).expect("a removal");
     let choice = Choice { constants: ConstantsRule::Given(vec![0.4]), ..removed };
     for method in [None].into_iter().chain(Method::ALL.map(Some)) {
-        let settings = Settings { method, tolerance: 1e-8, ..tight() };
-        let motion = solve_choice(&scene, &choice, &settings).expect("it starts");
-        let Ending::Stopped { t, cause } = &motion.ending else { panic!("{method:?}: {:?}", motion.ending) };
+        let (_, t, cause) = stopped(&scene, &choice, method, 1e-8);
         assert!((t - 1.25).abs() < 1e-5, "{method:?}: {t}: {cause}");
     }
 }
