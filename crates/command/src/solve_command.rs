@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, FORMS, FORMULATIONS, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
-    formulation, removal, removal_names, removals, setting, solve_by_steps, solve_choice,
+    Choice, FORMS, FORMULATIONS, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants,
+    error_estimates, formulation, formulation_in, removal, removal_names, removals, setting, solve_by_steps,
+    solve_choice,
 };
 use discrete::Composition;
 use integrate::{Interrupt, Projection};
@@ -129,7 +130,8 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
 pub(crate) fn settings(arguments: &MotionArguments) -> Result<Settings> {
     check_tolerance(arguments.tolerance)?;
     let projection = if arguments.no_projection { Projection::Off } else { Projection::EveryStep };
-    limited(Settings { tolerance: arguments.tolerance, projection, ..Settings::default() }, &arguments.limits)
+    let form = if arguments.form == "auto" { Form::Suited } else { Form::Named };
+    limited(Settings { tolerance: arguments.tolerance, projection, form, ..Settings::default() }, &arguments.limits)
 }
 
 /// Settings with these limits.
@@ -155,10 +157,12 @@ pub(crate) fn check_tolerance(tolerance: f64) -> Result<()> {
 
 /// The formulation with the removal and the constants that were asked for.
 pub(crate) fn choice(scene: &Scene, arguments: &MotionArguments) -> Result<Choice> {
-    let Some(entry) = formulation(&arguments.formulation) else {
+    let (name, word) = (&arguments.formulation, &arguments.form);
+    if formulation(name).is_none() {
         let names: Vec<&str> = FORMULATIONS.iter().chain(FORMS).map(|f| f.name).collect();
-        bail!("unknown formulation `{}`; known: {}", arguments.formulation, names.join(", "));
-    };
+        bail!("unknown formulation `{name}`; known: {}", names.join(", "));
+    }
+    let (entry, _) = formulation_in(word, name).with_context(|| format!("--form {word}: {name} has no such form"))?;
     let removal = if entry.needs_removal { Some(pick_removal(scene, arguments.removal.as_deref())?) } else { None };
     if removal.is_none() && (arguments.removal.is_some() || arguments.constants.is_some()) {
         bail!("--removal and --constants belong to the removed-constraint formulation, not to {}", entry.name);
@@ -248,8 +252,11 @@ fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, times: &[f64]) -
             "orders": motion.work.orders,
         },
         "method": motion.method.as_ref().map(|m| json!({ "name": m.method.name(), "why": m.why })),
-        "form": { "why": motion.form.why, "fallbacks": motion.form.fallbacks },
-        "charts": motion.charts.iter().map(|c| json!({ "from": c.t, "independent": c.independent })).collect::<Vec<_>>(),
+        "form": {
+            "name": motion.form.chosen.name, "because": motion.form.chosen.why, "why": motion.form.why,
+            "fallbacks": motion.form.fallbacks,
+        },
+        "charts": motion.charts.iter().map(|c| json!({ "from": c.t, "by": c.by })).collect::<Vec<_>>(),
         "seconds": {
             "derive": motion.seconds.derive, "compile": motion.seconds.compile, "integrate": motion.seconds.integrate
         },

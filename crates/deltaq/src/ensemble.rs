@@ -15,7 +15,7 @@ use mechanics::{ConstantsRule, State, System, complete_removal_start};
 use scene::Scene;
 
 use crate::constants::free_constants;
-use crate::{Choice, Metric, Prepared, Settings, SolveError, constants_of, derive_at, setting};
+use crate::{Choice, Metric, Prepared, Settings, SolveError, constants_of, derive_in_form, setting};
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};
@@ -108,7 +108,7 @@ impl Ensemble {
     /// As [`crate::solve_choice`]; [`SolveError::Member`] where a name is no parameter, or where parameters
     /// are to vary and the constants are natural at a horizon.
     pub fn new(scene: &Scene, choice: &Choice, parameters: &[&str], settings: &Settings) -> Result<Self, SolveError> {
-        let mut equations = derive_at(&scene.system, &scene.start, choice)?;
+        let (mut equations, _) = derive_in_form(&scene.system, &scene.start, choice, settings.form)?;
         let system = scene.system.clone();
         if !parameters.is_empty() && matches!(choice.constants, ConstantsRule::Natural { .. }) {
             let reason = "its constants are natural at a horizon, for which parameters have to be the same";

@@ -70,6 +70,7 @@ mod error;
 mod error_estimate;
 mod fit;
 mod fits;
+mod form;
 mod gap;
 mod growth;
 mod integrability;
@@ -106,6 +107,7 @@ pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use fit::best_fit;
 pub use fits::{Fit, FittedMotion};
+pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
 };

@@ -10,11 +10,12 @@ use scene::Scene;
 use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::{derive_at, removals};
 use crate::constants::resolve;
+use crate::form::derive_in_form;
 use crate::method::Chosen;
 use crate::metric::subtract;
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
-use crate::{Choice, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
+use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
 
 /// Wall-clock seconds spent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,7 +31,9 @@ pub struct Seconds {
 /// In which form the equations of a motion were evaluated, and how well that went.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FormReport {
-    /// What was chosen and why ([`equations::Plan::why`]).
+    /// The form of the formulation.
+    pub chosen: ChosenForm,
+    /// How its equations of an instant are solved, what was chosen and why ([`equations::Plan::why`]).
     pub why: Vec<String>,
     /// Evaluations of the kept run in the plain form, because a pivot of the chosen form was small.
     pub fallbacks: usize,
@@ -212,7 +215,7 @@ fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result
     }
 }
 
-/// Derives and integrates a choice from the start of the scene.
+/// Derives and integrates a choice from the start of the scene, in the form that [`Settings::form`] says.
 ///
 /// # Errors
 /// [`SolveError`] where there is no motion.
@@ -232,10 +235,19 @@ pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Resu
         removals(scene)?;
     }
     let clock = Instant::now();
-    let equations = derive_at(&scene.system, &scene.start, choice)?;
-    let derive = clock.elapsed().as_secs_f64();
-    let mut motion = solve(setting(scene), equations, &choice.constants, settings)?;
-    motion.seconds.derive = derive;
+    let (equations, mut chosen) = derive_in_form(&scene.system, &scene.start, choice, settings.form)?;
+    let mut derive = clock.elapsed().as_secs_f64();
+    let mut motion = solve(setting(scene), equations, &choice.constants, settings);
+    if let (Err(SolveError::AtStart(failure)), true) = (&motion, chosen.name != choice.formulation) {
+        chosen.why = format!("{} has no start: {failure}", chosen.name);
+        chosen.name = choice.formulation;
+        let clock = Instant::now();
+        let equations = derive_at(&scene.system, &scene.start, choice)?;
+        derive += clock.elapsed().as_secs_f64();
+        motion = solve(setting(scene), equations, &choice.constants, settings);
+    }
+    let mut motion = motion?;
+    (motion.seconds.derive, motion.form.chosen) = (derive, chosen);
     Ok(motion)
 }
 
@@ -260,7 +272,11 @@ impl Motion {
             work: Work::default(),
             projection: ProjectionReport::default(),
             seconds,
-            form: FormReport { why: prepared.form.why, fallbacks: 0 },
+            form: FormReport {
+                chosen: ChosenForm { name: prepared.equations.formulation, why: "asked for".into() },
+                why: prepared.form.why,
+                fallbacks: 0,
+            },
             charts: Vec::new(),
             doubt: None,
             kept,

@@ -4,6 +4,8 @@ use integrate::{Interrupt, Method, Options, Projection};
 use mechanics::{State, System};
 use scene::Scene;
 
+use crate::Form;
+
 /// The tolerance of the second run over that of the first.
 pub const TIGHTER: f64 = 1e-2;
 
@@ -41,6 +43,8 @@ pub struct Settings {
     /// Limit on the seconds of one run, wall clock; for a search of constants and for the members of an
     /// ensemble on all runs together. None by default: results then do not depend on the machine.
     pub time_limit: Option<f64>,
+    /// In which form [`crate::solve_choice`] and ensembles take the equations.
+    pub form: Form,
     /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that
     /// [`equations::Plan::choose`] finds cheapest. The motion is the same to round-off.
     pub plain: bool,
@@ -52,7 +56,8 @@ impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (None, Projection::EveryStep);
         let (max_steps, max_step, time_limit, interrupt) = (1_000_000, f64::INFINITY, None, None);
-        Settings { tolerance: 1e-11, method, projection, max_steps, max_step, time_limit, plain: false, interrupt }
+        let (form, plain) = (Form::Suited, false);
+        Settings { tolerance: 1e-11, method, projection, max_steps, max_step, time_limit, form, plain, interrupt }
     }
 }
 

@@ -11,10 +11,22 @@ pub const FORMULATIONS: &[Formulation] = &[
     kappa::FORMULATION,
 ];
 
-/// Other forms of the same equations: solved by name, and compared in no report.
+/// Other forms of the same equations, named `FORMULATION-reduced`: compared in no report.
 pub const FORMS: &[Formulation] = &[reduction::REDUCED_CHETAEV, reduction::REDUCED_VAKONOMIC];
 
 /// The formulation or form of that name.
 pub fn formulation(name: &str) -> Option<&'static Formulation> {
     FORMULATIONS.iter().chain(FORMS).find(|f| f.name == name)
 }
+
+/// The form of that formulation in quasi-velocities.
+pub(crate) fn reduced(name: &str) -> Option<&'static Formulation> {
+    FORMS.iter().find(|form| form.name.strip_suffix(REDUCED) == Some(name))
+}
+
+/// The formulation of which `name` is a form in quasi-velocities, or that of the name.
+pub(crate) fn as_derived(name: &str) -> Option<&'static Formulation> {
+    formulation(name.strip_suffix(REDUCED).unwrap_or(name))
+}
+
+const REDUCED: &str = "-reduced";

@@ -1,6 +1,9 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
-use deltaq::{Choice, FORMULATIONS, Settings, default_constants, formulation, removal_names, removals};
+use deltaq::{
+    Choice, FORM_WORDS, FORMULATIONS, Form, Settings, default_constants, formulation, formulation_in, removal_names,
+    removals,
+};
 use integrate::{Interrupt, Method, Projection};
 use mechanics::{ConstantsRule, Removal};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -40,14 +43,29 @@ pub(crate) fn settings(
         max_steps,
         max_step,
         time_limit,
-        plain: false,
         interrupt: Some(interrupt.clone()),
+        ..Settings::default()
     };
     Ok((settings, interrupt))
 }
 
 fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
     PyValueError::new_err(format!("unknown {what} `{name}`; known: {}", known.collect::<Vec<_>>().join(", ")))
+}
+
+/// The name of the formulation in that form.
+pub(crate) fn in_form<'a>(word: &str, formulation: &'a str) -> PyResult<(&'a str, Form)> {
+    if !FORM_WORDS.contains(&word) {
+        return Err(unknown("form", word, FORM_WORDS.into_iter()));
+    }
+    match formulation_in(word, formulation) {
+        Some((entry, form)) => Ok((entry.name, form)),
+        None if deltaq::formulation(formulation).is_some() => {
+            Err(PyValueError::new_err(format!("{formulation} has no form `{word}`")))
+        }
+        // its name is refused where it is looked up
+        None => Ok((formulation, Form::Suited)),
+    }
 }
 
 /// The choice of a formulation, a removal and constants for a scene.

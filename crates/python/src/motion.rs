@@ -170,10 +170,13 @@ pub(crate) struct Motion {
     /// The time-stepping method and why it was taken.
     #[pyo3(get)]
     method: Option<(&'static str, String)>,
-    /// Times from which the motion went on by other pivots, because those before became small; each with the
-    /// names of the velocities, or coordinates, of which the others are combinations from then on.
+    /// Name of the form of the equations that was integrated, and why.
     #[pyo3(get)]
-    charts: Vec<(f64, Vec<String>)>,
+    form: (&'static str, String),
+    /// Times from which the motion went on by "multipliers" or by "canonical momenta", because pivots became
+    /// small.
+    #[pyo3(get)]
+    charts: Vec<(f64, &'static str)>,
     /// Values of the free constants, by name.
     #[pyo3(get)]
     constants: Py<PyDict>,
@@ -237,7 +240,8 @@ impl Motion {
             start: motion.start(),
             end: motion.end(),
             method: motion.method.as_ref().map(|chosen| (chosen.method.name(), chosen.why.clone())),
-            charts: motion.charts.iter().map(|chart| (chart.t, chart.independent.clone())).collect(),
+            form: (motion.form.chosen.name, motion.form.chosen.why.clone()),
+            charts: motion.charts.iter().map(|chart| (chart.t, chart.by)).collect(),
             constants: constants.into_py_dict(py)?.unbind(),
             work: work(py, &motion.work)?,
             projection: projection.unbind(),

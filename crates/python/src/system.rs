@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{derive_at, integrability, prepare, removals, setting, solve_choice};
+use deltaq::{Settings, derive_at, integrability, prepare, removals, setting, solve_choice};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -275,6 +275,7 @@ impl System {
     /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
     /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
     /// removal or of the system.
+    /// form: of the equations, "multipliers", "costates" or "quasi-velocities", or auto, which suits the system.
     /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
     /// kept has a hundredth of it.
     /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
@@ -283,8 +284,8 @@ impl System {
     /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
-        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, method="auto", tolerance=1e-11,
-        project=true, max_steps=1_000_000, max_step=None, time_limit=None
+        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, form="auto", method="auto",
+        tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None
     ))]
     fn solve(
         &self,
@@ -294,6 +295,7 @@ impl System {
         removal: Option<&str>,
         mu0: Option<FloatList<'_>>,
         constants: Option<Bound<'_, PyAny>>,
+        form: &str,
         method: &str,
         tolerance: f64,
         project: bool,
@@ -304,6 +306,8 @@ impl System {
         let given = arguments::constants(constants.as_ref(), mu0)?;
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let mut scene = self.scene().clone();
+        let (formulation, form) = arguments::in_form(form, formulation)?;
+        let settings = Settings { form, ..settings };
         let choice = arguments::choice(&scene, formulation, removal, given)?;
         let times = times.map(|times| finite("times", times.as_array().iter().copied().collect())).transpose()?;
         if let Some(times) = &times {

@@ -91,10 +91,23 @@ def test_energy_is_an_invariant_with_small_drift(system):
 def test_charts_along_a_motion(system):
     motion = system.solve("removed-constraint", removal="coordinates", constants="zero")
     assert motion.status == "completed" and len(motion.charts) > 0
-    # by x' and phi', then by canonical momenta, which have no names, where the blade nearly points along y
-    [(t, names)] = motion.charts
-    assert names == [] and abs(np.cos(motion.at(t).coordinates[2])) < 0.2
+    # by x' and phi', then by canonical momenta where the blade nearly points along y
+    [(t, by)] = motion.charts
+    assert by == "canonical momenta" and abs(np.cos(motion.at(t).coordinates[2])) < 0.2
     assert system.solve().charts == []
+
+
+def test_the_form_is_chosen_and_said(system):
+    motion = system.solve()
+    assert motion.form == ("chetaev-reduced", "the constraints are linear in the velocities")
+    other = system.solve(form="multipliers")
+    assert other.form == ("chetaev", "asked for")
+    np.testing.assert_allclose(motion.coordinates, other.coordinates, atol=1e-9)
+    assert motion.multipliers.keys() == other.multipliers.keys()
+    for name, values in motion.multipliers.items():
+        np.testing.assert_allclose(values, other.multipliers[name], atol=1e-8)
+    with pytest.raises(ValueError, match="chetaev has no form `costates`"):
+        system.solve(form="costates")
 
 
 def test_the_method_is_chosen_and_said(system):

@@ -19,6 +19,7 @@
 //!
 //! What it does not know: nonlinear constraints, the removed-constraint equations, how time advances.
 
+mod backwards;
 mod cost;
 mod expressions;
 mod frame;

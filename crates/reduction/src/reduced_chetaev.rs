@@ -14,6 +14,9 @@
 //!
 //! The constraint holds in every state `(q, w)`: there is nothing to drift from and nothing to project.
 //!
+//! What is left of the balance before it is reduced is `Aᵀ λ`; going through the recursion of the velocities
+//! backwards gives `λ` ([`crate::EliminatedConstraint`]), an output that no rate needs.
+//!
 //! `S` is not written out in `q`: it is a recursion ([`QuasiVelocities`]), as are its columns, `γ` and both
 //! sides of the equation, each quantity short in those before. A chain of n bodies: O(n), not O(n²) or more.
 //!
@@ -24,12 +27,13 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::expressions::{SHORT, Sparse, sparse_rows};
+use crate::backwards::{adjoints, multipliers};
+use crate::expressions::{SHORT, Sparse, products, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
     Block, Definitions, Derivation, DerivationError, Equations, Formulation, Named, Role, StateVariable, Statement,
 };
-use mechanics::System;
+use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Symbol};
 
 /// The same motion in quasi-velocities; for constraints linear in the velocities.
@@ -43,8 +47,7 @@ pub const REDUCED_CHETAEV: Formulation = Formulation {
     derive: derive_chetaev,
 };
 
-/// Derives the Chetaev equations with states `(q, w)` and unknowns `ẇ`. Multipliers are not computed: at a
-/// state of the motion they are an output of the equations with multipliers.
+/// Derives the Chetaev equations with states `(q, w)` and unknowns `ẇ`. Multipliers are an output.
 ///
 /// # Errors
 /// [`DerivationError::Reduction`] where constraints are not linear in the velocities, or are dependent.
@@ -109,6 +112,7 @@ fn in_velocities(system: System, frame: Option<Frame>, derivation: &Derivation) 
         guess: Vec::new(),
         regular: "mass matrix regular on the admissible velocities",
     }];
+    reactions(&system, &quasi, &Balance { mass, force }, &mut equations, &mut definitions);
     equations.chosen.extend(frame.map(|frame| frame.words(g)));
     hand_over(&mut equations, &system, &quasi, &momenta);
     equations.definitions = definitions.into_list();
@@ -205,6 +209,34 @@ fn balance_in_frame(
     let force = force.collect();
     let mass = frame.inertia.iter().enumerate().map(|(k, &e)| Sparse::from([(k, e)])).collect();
     Balance { mass, force }
+}
+
+/// Defines `λ`, of which `Aᵀ λ = M S ẇ + force`.
+fn reactions(
+    system: &System,
+    quasi: &QuasiVelocities,
+    Balance { mass, force }: &Balance,
+    equations: &mut Equations,
+    definitions: &mut Definitions,
+) {
+    let g = &system.graph;
+    let mut rates: HashMap<Symbol, Expr> = HashMap::new();
+    let mut moved = Sparse::new();
+    for w in &quasi.free {
+        rates.insert(w.symbol, g.variable(w.rate));
+        moved.extend(w.coordinate.map(|i| (i, g.variable(w.rate))));
+    }
+    for d in &quasi.dependent {
+        let terms: Vec<Expr> = d.terms.iter().map(|(s, coefficient)| g.mul(*coefficient, rates[s])).collect();
+        let rate = definitions.short(g, "a", SHORT, g.sum(&terms));
+        rates.insert(d.symbol, rate);
+        moved.extend(d.coordinate.map(|i| (i, rate)));
+    }
+    let whole = mass.iter().zip(force).map(|(row, &force)| g.add(g.sum(&products(g, row, &moved)), force));
+    let adjoints = adjoints(g, quasi, &whole.collect::<Vec<Expr>>(), definitions);
+    let lambda: Vec<Symbol> = (1..=system.constraints.len()).map(|i| fresh_symbol(g, &format!("lambda_{i}"))).collect();
+    multipliers(g, quasi, &lambda, &adjoints, definitions);
+    equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();
 }
 
 /// States, outputs and invariants.

@@ -32,6 +32,7 @@
 
 use std::collections::HashMap;
 
+use crate::backwards::{adjoints, by_positions, multipliers};
 use crate::expressions::{SHORT, Sparse, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
@@ -41,10 +42,6 @@ use equations::{
 use mechanics::{System, fresh_symbol};
 use symbolic::{Expr, Graph, Symbol};
 use vakonomic::Augmented;
-
-mod backwards;
-
-use backwards::{adjoints, by_positions, multipliers};
 
 /// The same motion in quasi-velocities; for constraints linear in the velocities.
 pub const REDUCED_VAKONOMIC: Formulation = Formulation {
@@ -59,9 +56,8 @@ pub const REDUCED_VAKONOMIC: Formulation = Formulation {
 
 /// Nodes of an expression that is not multiplied out.
 const LONG: usize = 100;
-/// Coordinates up to which shorter velocities are put in; nodes of `L` and `v` up to which it is tried.
-const SMALL: usize = 8;
-const WHOLE: usize = 200;
+/// Nodes of all velocities up to which they are put in: where they are longer, terms no more cancel.
+const WHOLE: usize = 16;
 
 /// Derives the vakonomic equations: states `(q, p)`, or `(q, e_k · p)` in a frame, unknowns `w`, free
 /// constants `μ₀`; `p₀ = L_v + Aᵀ μ₀`. Multipliers are an output.
@@ -87,18 +83,15 @@ pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equa
     refuse_forces(system, REDUCED_VAKONOMIC.name)?;
     let (system, framed) = (system.clone(), system.clone());
     let problem = Problem::new(&system, None, derivation)?;
-    let mut candidates = vec![problem.equations(system.clone(), None, None)];
+    let mut candidates = vec![problem.equations(system.clone(), None)];
     if let Some(frame) = Frame::new(&framed, derivation.start) {
-        let in_frame = Problem::new(&framed, Some(frame), derivation)?.equations(framed, None, None);
+        let in_frame = Problem::new(&framed, Some(frame), derivation)?.equations(framed, None);
         if matrix_moves(&candidates[0]) && !matrix_moves(&in_frame) {
             return Ok(in_frame);
         }
         candidates.push(in_frame);
     }
-    if let Some(Whole { balance, rates }) = problem.put_in(&system) {
-        let with = |balance, rates| problem.equations(system.clone(), balance, rates);
-        candidates.extend([with(Some(&balance), None), with(None, Some(&rates)), with(Some(&balance), Some(&rates))]);
-    }
+    candidates.extend(problem.put_in(&system).map(|whole| problem.equations(system.clone(), Some(&whole))));
     if candidates.len() == 1 { Ok(candidates.remove(0)) } else { Ok(cheapest(candidates)) }
 }
 
@@ -173,7 +166,7 @@ impl Problem {
     }
 
     /// The equations by recursion, or by what is given for `∂K/∂w = 0` and `ṗ`.
-    fn equations(&self, system: System, balance: Option<&[Expr]>, rates: Option<&[Expr]>) -> Equations {
+    fn equations(&self, system: System, whole: Option<&Whole>) -> Equations {
         let Problem { frame, quasi, augmented, costates, costate_rates, p } = self;
         let g = &system.graph;
         let mut equations = Equations::new(REDUCED_VAKONOMIC.name, &system);
@@ -181,8 +174,8 @@ impl Problem {
         let (own, momenta) = self.momenta(&system);
 
         let mut definitions = quasi.coefficients.clone();
-        let residuals = match balance {
-            Some(given) => given.to_vec(),
+        let residuals = match whole {
+            Some(whole) => whole.balance.clone(),
             None => stationarity(g, quasi, (&own, p), &momenta, &mut definitions),
         };
         quasi.hand_over(g, frame.as_ref(), &mut equations, &mut definitions);
@@ -192,8 +185,8 @@ impl Problem {
         }
         let seeds: Vec<Expr> = p.iter().zip(&momenta).map(|(&p, &l_v)| g.sub(p, l_v)).collect();
         let adjoints = adjoints(g, quasi, &seeds, &mut definitions);
-        let rates = match rates {
-            Some(given) => given.to_vec(),
+        let rates = match whole {
+            Some(whole) => whole.rates.clone(),
             None => {
                 let along = by_positions(&system, quasi, &adjoints, &mut definitions);
                 self.rates(&system, &momenta, &along)
@@ -221,7 +214,7 @@ impl Problem {
             guess: quasi.free.iter().map(|w| w.start).collect(),
             regular: "∂²L/∂v² regular on the admissible velocities",
         }];
-        multipliers(g, quasi, augmented, &adjoints, &mut definitions);
+        multipliers(g, quasi, &augmented.multipliers, &adjoints, &mut definitions);
         hand_over(&mut equations, &system, augmented, &self.canonical(g));
         equations.chosen.extend(frame.as_ref().map(|frame| frame.words(g)));
         equations.definitions = definitions.into_list();
@@ -241,9 +234,6 @@ impl Problem {
 
     /// The derivatives of `K` with the velocities put in; none where that is long.
     fn put_in(&self, system: &System) -> Option<Whole> {
-        if system.dimension() > SMALL {
-            return None;
-        }
         let g = &system.graph;
         let mut at: HashMap<Symbol, Expr> = HashMap::new();
         for &(symbol, e) in self.quasi.coefficients.list() {
@@ -253,15 +243,14 @@ impl Problem {
             at.insert(d.symbol, g.substitute(d.value(g), &at));
         }
         let v = g.substitute_all(&g.variables(&system.velocities()), &at);
-        let lagrangian = g.substitute(system.lagrangian, &at);
-        if g.size(&[lagrangian]) > WHOLE || g.size(&v) > WHOLE {
+        if g.size(&v) > WHOLE {
             return None;
         }
-        let function = g.sub(g.dot(&self.p, &v), g.expand_if_shorter(lagrangian, usize::MAX));
+        let lagrangian = g.substitute(system.lagrangian, &at);
+        let function = g.sub(g.dot(&self.p, &v), g.expand_if_shorter(lagrangian, LONG));
         let w: Vec<Symbol> = self.quasi.free.iter().map(|w| w.symbol).collect();
-        let minus = |by: &[Symbol]| {
-            g.gradient(function, by).into_iter().map(|e| g.expand_if_shorter(g.neg(e), usize::MAX)).collect()
-        };
+        let minus =
+            |by: &[Symbol]| g.gradient(function, by).into_iter().map(|e| g.expand_if_shorter(g.neg(e), LONG)).collect();
         Some(Whole { balance: minus(&w), rates: minus(&system.positions()) })
     }
 }

@@ -23,13 +23,14 @@ impl Graph {
         self.arena.borrow_mut().expand(e, TERM_LIMIT)
     }
 
-    /// [`Graph::expand`], if that makes `e` shorter and `e` has at most `limit` nodes.
+    /// [`Graph::expand`], if that makes `e` shorter and `e` has at most `limit` nodes; a product that would
+    /// have more terms than `e` has nodes stays as it is.
     pub fn expand_if_shorter(&self, e: Expr, limit: usize) -> Expr {
         let size = self.size(&[e]);
         if size > limit {
             return e;
         }
-        let expanded = self.expand(e);
+        let expanded = self.arena.borrow_mut().expand(e, size);
         if self.size(&[expanded]) < size { expanded } else { e }
     }
 }

@@ -71,7 +71,7 @@ fn reduced(scene: &Scene, formulation: &'static str, mu0: &[f64]) -> Motion {
 
 fn changes(what: &str, motion: &Motion) -> usize {
     for change in &motion.charts {
-        println!("{what}: from t = {:.4} on by {}", change.t, change.by());
+        println!("{what}: from t = {:.4} on by {}", change.t, change.by);
     }
     motion.charts.len()
 }
@@ -163,11 +163,11 @@ fn what_is_read_off_after_a_change_is_what_the_first_chart_means() {
 fn quasi_velocities_go_on_where_their_pivot_vanishes() {
     let scene = car();
     let mut own = reduced(&scene, "chetaev-reduced", &[]);
-    assert!(changes("Chetaev", &own) > 1);
+    assert_eq!(changes("Chetaev", &own), 1);
     must("car, Chetaev in quasi-velocities over 20 s", gap(&mut own, &mut chetaev(&scene)).0, 1e-9);
     let mu0 = [0.02, -0.01];
     let (mut own, mut whole) = (reduced(&scene, "vakonomic-reduced", &mu0), vakonomic(&scene, &mu0));
-    assert!(changes("vakonomic", &own) > 1);
+    assert_eq!(changes("vakonomic", &own), 1);
     must("car, vakonomic in quasi-velocities over 20 s", gap(&mut own, &mut whole).0, 1e-9);
     for t in [1.0, 2.5, 11.0, 20.0] {
         let apart = largest_difference(&at(&mut own, t).multipliers, &at(&mut whole, t).multipliers);

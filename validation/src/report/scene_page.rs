@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Comparison, EquationStyle, Pair, Verdict, equations_text};
+use deltaq::{Comparison, EquationStyle, Pair, Verdict, derive_at, equations_text};
 
 use crate::report::numbers::{enumerate, precise, short};
 use crate::report::{Table, membership, tables};
@@ -171,14 +171,23 @@ fn system(comparison: &Comparison) -> String {
 }
 
 fn equations(comparison: &Comparison) -> String {
-    let mut text = String::from("\n## Equations\n\nPrinted from the expressions that are integrated.\n");
+    let mut text = String::from("\n## Equations\n\nPrinted from the expressions that are derived.\n");
     for run in &comparison.runs {
         let Ok(motion) = &run.outcome else { continue };
         if run.choice.formulation == substitution::NAME {
             continue;
         }
-        let body = equations_text(&motion.equations, EquationStyle::Latex);
-        let _ = writeln!(text, "\n<details><summary>{}</summary>\n\n{body}\n</details>", run.choice.label);
+        let scene = &comparison.scene;
+        let form = motion.form.chosen.name;
+        let (derived, integrated) = if form == run.choice.formulation {
+            (None, String::new())
+        } else {
+            let as_derived = derive_at(&scene.system, &scene.start, &run.choice);
+            (as_derived.ok(), format!(", integrated as {form}: {}", motion.form.chosen.why))
+        };
+        let body = equations_text(derived.as_ref().unwrap_or(&motion.equations), EquationStyle::Latex);
+        let label = &run.choice.label;
+        let _ = writeln!(text, "\n<details><summary>{label}{integrated}</summary>\n\n{body}\n</details>");
     }
     text
 }

@@ -51,7 +51,7 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
                     Ending::Completed => format!("{} s", short(motion.end())),
                     Ending::Stopped { t, cause } => format!("stopped at {} s: {cause}", precise(*t)),
                 };
-                let chart = |c: &ChartChange| format!("; by {} from {} s on", c.by(), precise(c.t));
+                let chart = |c: &ChartChange| format!("; by {} from {} s on", c.by, precise(c.t));
                 let ended = ended + &motion.charts.iter().map(chart).collect::<String>();
                 let estimate = comparison
                     .pairs

@@ -14,9 +14,14 @@ pub const MOST_MEMBERS: usize = 1_000_000;
 pub struct MotionArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// chetaev, chetaev-reduced, vakonomic, vakonomic-costate, vakonomic-reduced, removed-constraint, kappa.
+    /// chetaev, vakonomic, removed-constraint, kappa; or one of their forms, `show` lists them.
     #[arg(long, short)]
     pub formulation: String,
+    /// Form of the equations of chetaev and vakonomic: the one that suits the system, or with multipliers,
+    /// with costates (vakonomic), or in quasi-velocities (constraints linear in the velocities). The motion is
+    /// the same.
+    #[arg(long, default_value = "auto", value_parser = clap::builder::PossibleValuesParser::new(deltaq::FORM_WORDS))]
+    pub form: String,
     /// Vakonomic multipliers at the start, one a constraint.
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub mu0: Option<Vec<f64>>,

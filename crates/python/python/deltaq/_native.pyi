@@ -97,6 +97,7 @@ class System:
         removal: str | None = None,
         mu0: _Floats | None = None,
         constants: _Constants | None = None,
+        form: str = "auto",
         method: str = "auto",
         tolerance: float = 1e-11,
         project: bool = True,
@@ -190,7 +191,8 @@ class Motion:
     start: Final[float]
     end: Final[float]
     method: Final[tuple[str, str] | None]
-    charts: Final[list[tuple[float, list[str]]]]
+    form: Final[tuple[str, str]]
+    charts: Final[list[tuple[float, str]]]
     constants: Final[dict[str, float]]
     work: Final[dict[str, int]]
     projection: Final[dict[str, float]]

@@ -7,10 +7,9 @@ use crate::expressions::SHORT;
 use equations::Definitions;
 use mechanics::System;
 use symbolic::{Expr, Graph, Symbol};
-use vakonomic::Augmented;
 
-/// `v̄_k` of the dependent velocities, from `seeds = p − L_v` by coordinate.
-pub(super) fn adjoints(
+/// `v̄_k` of the dependent velocities, from `seeds` by coordinate: `p − L_v`, or the unreduced balance.
+pub(crate) fn adjoints(
     g: &Graph,
     quasi: &QuasiVelocities,
     seeds: &[Expr],
@@ -32,7 +31,7 @@ pub(super) fn adjoints(
 }
 
 /// `(∂v/∂q)ᵀ (p − L_v)` at fixed `w`, through the recursion of the velocities and that of their coefficients.
-pub(super) fn by_positions(
+pub(crate) fn by_positions(
     system: &System,
     quasi: &QuasiVelocities,
     adjoints: &HashMap<Symbol, Expr>,
@@ -60,18 +59,18 @@ pub(super) fn by_positions(
     positions.iter().map(|q| terms.get(q).map_or(g.zero(), |terms| g.sum(terms))).collect()
 }
 
-/// Defines `μ`, the constraint eliminated last first.
-pub(super) fn multipliers(
+/// Defines the multipliers `μ` with `seeds = Aᵀ μ`, the constraint eliminated last first.
+pub(crate) fn multipliers(
     g: &Graph,
     quasi: &QuasiVelocities,
-    augmented: &Augmented,
+    symbols: &[Symbol],
     adjoints: &HashMap<Symbol, Expr>,
     definitions: &mut Definitions,
 ) {
     for eliminated in quasi.eliminated.iter().rev() {
         let own = eliminated.slopes.iter().map(|(v, slope)| g.mul(*slope, adjoints[v]));
-        let later = eliminated.added.iter().map(|&(i, e)| g.mul(e, g.variable(augmented.multipliers[i])));
+        let later = eliminated.added.iter().map(|&(i, e)| g.mul(e, g.variable(symbols[i])));
         let terms: Vec<Expr> = own.chain(later).collect();
-        definitions.define(augmented.multipliers[eliminated.constraint], g.sum(&terms));
+        definitions.define(symbols[eliminated.constraint], g.sum(&terms));
     }
 }
