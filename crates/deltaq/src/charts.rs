@@ -1,8 +1,8 @@
 //! Motions that go on where pivots have become small: by equations that have no pivots.
 //!
 //! What is handed over belongs to the coordinates, not to the chart: `(q, v)`, and multipliers `μ` or
-//! canonical momenta. A form in quasi-velocities goes on with multipliers, as its formulation is derived. Of a
-//! removal by coordinates, of which some are parameters `u` and the others memory `w`, these are
+//! canonical momenta. A form in quasi-velocities goes on with multipliers, as its formulation is
+//! derived. Of a removal by coordinates, with parameters `u` and memory `w`, these are
 //!
 //! ```text
 //! p_u = G_u̇ ,      p_w = −P      (P = −∂(L + μ·f)/∂ẇ) ,
@@ -13,7 +13,7 @@
 //!
 //! Both runs of a motion change at the time of the kept one, each from its own state.
 
-use integrate::{ProjectionReport, Solution, Work};
+use integrate::{ProjectionReport, Solution, Status, StopCause, Work};
 use mechanics::ConstantsRule;
 
 use crate::choice::derive_at;
@@ -38,6 +38,8 @@ pub(crate) struct Runs {
     pub(crate) trajectories: [Trajectory; 2],
     pub(crate) changes: Vec<ChartChange>,
     pub(crate) ending: Ending,
+    /// Whether the kept run ended where something vanishes by which the equations divide.
+    pub(crate) at_guard: bool,
     /// Of the kept run.
     pub(crate) work: Work,
     pub(crate) projection: ProjectionReport,
@@ -121,17 +123,18 @@ fn run_on(setting: Setting, prepared: &mut Prepared, settings: &Settings, patien
         });
         Ending::joint(end, other, [setting.start.t, setting.end])
     });
-    let Solution { work, projection, .. } = legs[0][legs[0].len() - 1].0.solution;
+    let Solution { work, projection, ref status, .. } = legs[0][legs[0].len() - 1].0.solution;
+    let at_guard = matches!(status, Status::Stopped { cause: StopCause::Event { .. }, .. });
     let trajectory = |mut legs: Legs| match legs.len() {
         1 => Trajectory::TimeLoop(Box::new(legs.remove(0).0)),
         _ => Trajectory::Charts(legs),
     };
-    let runs = Runs { trajectories: legs.map(trajectory), changes, ending, work, projection, fallbacks };
+    let runs = Runs { trajectories: legs.map(trajectory), changes, ending, at_guard, work, projection, fallbacks };
     Ok(Course::Run(Box::new(runs)))
 }
 
-/// Where both runs have left their chart: equations without pivots, started there, and by what they go on. They
-/// have to tell all that the chart does.
+/// Where both runs have left their chart: equations without pivots, started there, and by what they go on.
+/// They have to tell all that the chart does.
 fn going_on(
     setting: Setting,
     here: &mut Prepared,

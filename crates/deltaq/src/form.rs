@@ -44,9 +44,9 @@ pub struct ChosenForm {
 /// The equations of `choice` in the form in which its motion is integrated; they bear the name of the
 /// formulation.
 ///
-/// Quasi-velocities have fewer unknowns, nothing to project and cheaper rates. They need constraints linear in
-/// the velocities; in the vakonomic formulation also `L` quadratic in them, for the equations of the instant
-/// are not linear otherwise.
+/// Quasi-velocities have fewer unknowns, nothing to project and cheaper rates. They need constraints linear
+/// in the velocities; in the vakonomic formulation also `L` quadratic in them, for the equations of the
+/// instant are not linear otherwise.
 ///
 /// # Errors
 /// As [`derive_at`].

@@ -116,7 +116,7 @@ pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
 pub use method::Chosen;
 pub use metric::Metric;
-pub use motion::{FormReport, Motion, Seconds, solve, solve_choice};
+pub use motion::{FormReport, Motion, Seconds, solve, solve_choice, solve_from};
 pub use prepared::Prepared;
 pub use runs::{Decided, Pair, Run};
 pub use settings::{Setting, Settings, TIGHTER, setting};

@@ -275,7 +275,7 @@ impl System {
     /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
     /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
     /// removal or of the system.
-    /// form: of the equations, "multipliers", "costates" or "quasi-velocities", or auto, which suits the system.
+    /// form: of the equations, "multipliers", "costates", "quasi-velocities" or auto, which suits the system.
     /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
     /// kept has a hundredth of it.
     /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the

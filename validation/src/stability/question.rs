@@ -1,7 +1,7 @@
 //! Questions, and the answers of every method.
 
 use anyhow::{Context, Result};
-use deltaq::{Metric, Motion, Setting, Settings, TIGHTER, solve};
+use deltaq::{Choice, Metric, Motion, Setting, Settings, TIGHTER, solve, solve_from};
 use discrete::Composition;
 use equations::Equations;
 use integrate::Method;
@@ -96,6 +96,9 @@ pub struct Subject {
     pub equations: Equations,
     /// Free constants.
     pub constants: ConstantsRule,
+    /// Of which formulation they are, where they are just that: who leaves the method open leaves their form
+    /// open too.
+    pub choice: Option<Choice>,
     /// The system in whose kinetic metric errors are measured.
     pub measured: System,
 }
@@ -221,8 +224,12 @@ impl Question {
 
 fn motion(subject: &Result<Subject, String>, by: Answering) -> Result<Motion, String> {
     let Answering::Method(method) = by else { return Err("equal steps are not asked for by a method".into()) };
-    let Subject { system, start, end, equations, constants, .. } = subject.as_ref().map_err(Clone::clone)?;
+    let Subject { system, start, end, equations, constants, choice, .. } = subject.as_ref().map_err(Clone::clone)?;
     let settings = Settings { tolerance: tolerance(method), method, max_steps: MAX_STEPS, ..Settings::default() };
     let setting = Setting { system, start, end: *end };
-    solve(setting, equations.clone(), constants, &settings).map_err(|error| error.to_string())
+    let motion = match (choice, method) {
+        (Some(choice), None) => solve_from(setting, choice, &settings),
+        _ => solve(setting, equations.clone(), constants, &settings),
+    };
+    motion.map_err(|error| error.to_string())
 }

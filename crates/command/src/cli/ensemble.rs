@@ -18,8 +18,7 @@ pub struct MotionArguments {
     #[arg(long, short)]
     pub formulation: String,
     /// Form of the equations of chetaev and vakonomic: the one that suits the system, or with multipliers,
-    /// with costates (vakonomic), or in quasi-velocities (constraints linear in the velocities). The motion is
-    /// the same.
+    /// costates (vakonomic), or quasi-velocities (constraints linear in the velocities).
     #[arg(long, default_value = "auto", value_parser = clap::builder::PossibleValuesParser::new(deltaq::FORM_WORDS))]
     pub form: String,
     /// Vakonomic multipliers at the start, one a constraint.

@@ -40,6 +40,7 @@ fn massive(strength: f64) -> Result<Subject, String> {
         end: scene.duration,
         equations,
         constants: ConstantsRule::Zero,
+        choice: None,
         measured: scene.system,
     })
 }

@@ -104,6 +104,7 @@ fn subject(scene: &Scene, choice: &Choice) -> Result<Subject, String> {
         end: scene.start.t + scene.duration,
         equations,
         constants: choice.constants.clone(),
+        choice: Some(choice.clone()),
         measured: scene.system.clone(),
     })
 }

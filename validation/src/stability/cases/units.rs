@@ -32,6 +32,7 @@ fn subject(scaling: &Scaling, name: &str) -> Result<Subject, String> {
         end: scene.duration / scaling.time,
         equations: scaling.outputs(equations),
         constants: ConstantsRule::Zero,
+        choice: None,
         measured: scene.system,
         system,
     })

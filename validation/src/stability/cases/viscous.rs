@@ -22,6 +22,7 @@ pub(super) fn questions(strength: f64) -> Vec<Question> {
             end: DURATION,
             equations,
             constants: mechanics::ConstantsRule::Zero,
+            choice: None,
             measured: scene.system,
         })
     };
