@@ -136,6 +136,9 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
+    /// `L`, `f` and `Q` as they were given: a derivation may write them so that a function that is steep, for
+    /// instance `1/(1 + u²)`, is no more seen to be one.
+    pub given: Vec<Expr>,
     /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards
     /// need only those without `z`.
     pub definitions: Vec<(Symbol, Expr)>,
@@ -180,6 +183,7 @@ impl Equations {
             graph: Graph::new(),
             time: system.time,
             parameters: system.parameter_values(),
+            given: [&[system.lagrangian], &system.constraints[..], &system.forces].concat(),
             definitions: Vec::new(),
             states: Vec::new(),
             blocks: Vec::new(),
@@ -317,10 +321,16 @@ impl Equations {
         let values = self.parameters.iter().map(|(&s, &value)| (s, Range::point(value))).collect();
         let definitions = self.definitions.iter().map(|(_, e)| *e);
         let residuals = self.blocks.iter().flat_map(|block| block.residuals.iter().copied());
-        let all: Vec<Expr> = definitions.chain(residuals).chain(self.states.iter().map(|y| y.rate)).collect();
-        let unknowns = self.unknowns();
+        let rates = self.states.iter().map(|y| y.rate);
+        let all: Vec<Expr> = definitions.chain(residuals).chain(rates).chain(self.given.iter().copied()).collect();
         let mut steep = self.graph.steep(&all, &values);
-        steep.retain(|steep| self.symbols_behind([steep.argument]).iter().all(|s| !unknowns.contains(s)));
+        if steep.is_empty() {
+            return steep;
+        }
+        let defined = self.definitions.iter().map(|(symbol, _)| *symbol);
+        let mut known: HashSet<Symbol> = defined.chain(self.known_symbols()).collect();
+        known.extend(self.parameters.keys());
+        steep.retain(|steep| self.symbols_behind([steep.argument]).is_subset(&known));
         steep
     }
 
