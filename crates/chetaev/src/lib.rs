@@ -42,7 +42,7 @@
 
 use equations::{Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement};
 use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Symbol, Vanishing};
+use symbolic::{Expr, Symbol};
 
 /// Entry of the table of formulations.
 pub const FORMULATION: Formulation = Formulation {
@@ -150,7 +150,7 @@ fn energy_is_constant(system: &System, jacobian: &symbolic::Matrix) -> bool {
     let homogeneous = system.constraints.iter().zip(work).all(|(&f, av)| {
         (1..=4).any(|degree| {
             let rest = g.sub(av, g.mul(g.integer(degree), f));
-            matches!(g.vanishes(rest, &system.parameter_values()), Vanishing::Exactly | Vanishing::Numerically { .. })
+            g.vanishes_at_points(rest, &system.parameter_values()).is_zero()
         })
     });
     homogeneous && system.is_autonomous() && !system.has_forces()

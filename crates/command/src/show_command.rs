@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use deltaq::{
-    Choice, Chosen, EquationStyle, Settings, choices, derive_at, equations_text, forms, integrability, prepare, setting,
+    Choice, Chosen, ChosenForm, EquationStyle, Form, Settings, choices, derive_at, derive_in_form, equations_text,
+    forms, integrability, prepare, setting,
 };
 use equations::{Cost, Equations};
 use mechanics::ConstantsRule;
@@ -42,15 +43,17 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
             Ok(equations) => Ok(equations_text(&equations, style) + &form(&scene, equations, &choice)?),
             Err(error) => Err(error.to_string()),
         };
-        equations.push((choice, derived));
+        let integrated = derive_in_form(&scene.system, &scene.start, &choice, Form::Suited);
+        equations.push((choice, derived, integrated.ok().map(|(_, chosen)| chosen)));
     }
     if arguments.format == TextOrJson::Json {
-        let entry = |(choice, derived): &(Choice, Result<String, String>)| {
+        let entry = |(choice, derived, integrated): &(Choice, Result<String, String>, Option<ChosenForm>)| {
             let removal = choice.removal.as_ref().map(|removal| &removal.name);
             let (equations, refused) = (derived.as_ref().ok(), derived.as_ref().err());
             json!({
                 "label": choice.label, "formulation": choice.formulation, "removal": removal,
                 "equations": equations, "refused": refused,
+                "form": integrated.as_ref().map(|form| json!({ "name": form.name, "because": form.why })),
             })
         };
         return Ok(pretty(
@@ -66,8 +69,11 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let mut text = format!("{}\n{source}\nL = {lagrangian}\n", scene.title);
     text.extend(constraints.iter().map(|constraint| format!("0 = {constraint}\n")));
     let _ = writeln!(text, "\nConstraint: {integrability}");
-    for (choice, derived) in equations {
-        let derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
+    for (choice, derived, integrated) in equations {
+        let mut derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
+        if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation) {
+            let _ = write!(derived, "- integrated as {name}, unless another form is asked for: {why}\n");
+        }
         let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }
     Ok(text)
@@ -103,5 +109,6 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
             "; the plain form takes {instructions} and LU factorizations of {factorization} multiplications"
         );
     }
-    Ok(text + "\n")
+    text.push('\n');
+    Ok(text)
 }

@@ -49,7 +49,7 @@ impl SolvedConstraints {
                     let over_pivot = cleared(g, g.div(over_pivot, pivot));
                     let rest = if 3 * g.size(&[over_pivot]) <= 4 * g.size(&[rest]) { over_pivot } else { rest };
                     // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
-                    matrix.set(i, j, (!g.vanishes(rest, &constants).is_zero()).then_some(rest));
+                    matrix.set(i, j, (!g.vanishes_at_points(rest, &constants).is_zero()).then_some(rest));
                 }
             }
             matrix.put_row(p, row);

@@ -62,14 +62,25 @@ impl Graph {
     /// ```
     #[track_caller]
     pub fn vanishes(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        match self.vanishes_in_truth(e, constants) {
+        self.answer(e, constants, true)
+    }
+
+    /// [`Graph::vanishes`] without the expansion, which takes most of the time, where points decide.
+    #[track_caller]
+    pub fn vanishes_at_points(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
+        self.answer(e, constants, false)
+    }
+
+    #[track_caller]
+    fn answer(&self, e: Expr, constants: &HashMap<Symbol, f64>, exactly: bool) -> Vanishing {
+        match self.vanishes_in_truth(e, constants, exactly) {
             answer if !faults::goes_wrong("answer turned") => answer,
             answer if answer.is_zero() => Vanishing::No { value: 1.0, bound: 0.0 },
             _ => Vanishing::Exactly,
         }
     }
 
-    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
+    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>, exactly: bool) -> Vanishing {
         let e = self.substituted(&[open], &self.as_numbers(constants))[0];
         if e == Arena::ZERO {
             return Vanishing::Exactly;
@@ -82,7 +93,7 @@ impl Graph {
                 sampled = again;
             }
         }
-        if matches!(sampled, Vanishing::No { .. }) {
+        if matches!(sampled, Vanishing::No { .. }) || !exactly && sampled.is_zero() {
             return sampled;
         }
         let normal = self.arena.borrow_mut().normal_numerator(e, TERM_LIMIT);

@@ -251,7 +251,9 @@ impl<'a> Elimination<'a> {
         let size = old.map_or(0.0, |old| old.1.abs());
         self.rows[row].scale = self.rows[row].scale.max(value.abs()).max(size);
         let cancels = g.is_zero(sum)
-            || (old.is_some() && value.abs() <= CANCELLED * size && g.vanishes(sum, &self.parameters).is_zero());
+            || (old.is_some()
+                && value.abs() <= CANCELLED * size
+                && g.vanishes_at_points(sum, &self.parameters).is_zero());
         let entry = if cancels { None } else { Some((self.named(sum), value)) };
         self.matrix.set(row, column, entry);
     }
