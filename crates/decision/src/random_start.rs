@@ -135,8 +135,10 @@ impl Root {
     fn times_constant(&self, square: Modular, at_start: f64) -> Option<Modular> {
         let ratio = (square * (self.value * self.value).inverse()?).small_fraction()?;
         let there = at_start / self.at_start;
-        let constant = (ratio.to_f64() - there * there).abs() <= CONSTANT * ratio.to_f64();
-        let root = Modular::root(ratio).ok().filter(|_| constant)?.0 * self.value;
+        if (ratio.to_f64() - there * there).abs() > CONSTANT * ratio.to_f64() {
+            return None;
+        }
+        let root = Modular::root(ratio).ok()?.0 * self.value;
         Some(if there < 0.0 { -root } else { root })
     }
 }

@@ -22,7 +22,7 @@ const TOLERANCES: [f64; 3] = [1e-11, 1e-9, 1e-7];
 const MAX_STEPS: usize = 3_000;
 
 /// Instants at which two motions are compared.
-const INSTANTS: usize = 80;
+const INSTANTS: usize = 40;
 
 /// Where a motion stops, all are looked at up to this fraction of the time it lasted.
 const BEFORE_A_STOP: f64 = 0.8;

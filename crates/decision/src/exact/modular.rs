@@ -216,6 +216,9 @@ impl Modular {
         let of_prime = |prime: i128| Self::integer(prime).square_root().ok_or(Flaw::Root);
         // what is no prime does not divide what is left
         for prime in 2..TRIED {
+            if prime * prime > square_free {
+                break;
+            }
             while square_free % (prime * prime) == 0 {
                 square_free /= prime * prime;
                 outside = Exact::ratio(prime, 1).and_then(|p| outside.mul(p)).ok_or(Flaw::Root)?;
