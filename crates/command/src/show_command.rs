@@ -72,7 +72,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     for (choice, derived, integrated) in equations {
         let mut derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
         if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation) {
-            let _ = write!(derived, "- integrated as {name}, unless another form is asked for: {why}\n");
+            let _ = writeln!(derived, "- integrated as {name}, unless another form is asked for: {why}");
         }
         let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }

@@ -145,7 +145,7 @@ fn throughput(scene: &Scene, choice: Choice, starts: &[State], tolerance: f64, r
     let settings = Settings { method: Some(Method::Taylor), tolerance, ..Settings::default() };
     let end = setting(scene).end;
     // Natural constants belong to horizon and parameters, not to the start: the scene's serve for all.
-    let equations = deltaq::derive_at(&scene.system, &scene.start, &choice)?;
+    let (equations, _) = deltaq::derive_in_form(&scene.system, &scene.start, &choice, settings.form)?;
     let mut ready = prepare(setting(scene), equations, &choice.constants, &settings)?;
     let choice = Choice { constants: ConstantsRule::Given(ready.constants.clone()), ..choice };
     let mut ensemble = Ensemble::new(scene, &choice, &[], &settings)?;
