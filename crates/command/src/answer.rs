@@ -30,7 +30,7 @@ impl Answer {
     }
 }
 
-/// Prints a text, all of it; `false` for a reader that has seen enough and closed the pipe, which is no error.
+/// Prints a text, all of it; `false` for a reader that has seen enough and closed the pipe: no error.
 pub(crate) fn print(text: &str) -> Result<bool> {
     let mut out = stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

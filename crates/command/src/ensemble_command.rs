@@ -60,9 +60,9 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
         motions.into_iter().map(Outcome::of).collect::<Vec<_>>()
     };
     let mut sink = Sink::open(arguments.out.as_deref(), |file, told| match arguments.motion.format {
-        Format::Csv => {
-            resume(&mut answers, file, told, |answers| outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect())
-        }
+        Format::Csv => resume(&mut answers, file, told, |answers| {
+            outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect()
+        }),
         Format::Json => Ok(0),
     })?;
     let bar = parallel::progress(members.count(), quiet);

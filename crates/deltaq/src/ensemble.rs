@@ -106,8 +106,8 @@ impl Ensemble {
     ///
     /// # Errors
     /// As [`crate::solve_choice`]; [`SolveError::Scene`] where the scene has no such name;
-    /// [`SolveError::Member`] where a name comes twice, where multipliers are to vary and the formulation does
-    /// not start from them, or parameters and the constants are natural at a horizon.
+    /// [`SolveError::Member`] where a name comes twice, where multipliers are to vary that the formulation
+    /// does not start from, or parameters while the constants are natural at a horizon.
     pub fn new(scene: &Scene, choice: &Choice, names: &[&str], settings: &Settings) -> Result<Self, SolveError> {
         let starts = scene.starts(names).map_err(|error| SolveError::Scene(Box::new(error)))?;
         let refused = |reason: String| Err(SolveError::Member { reason });
@@ -179,12 +179,12 @@ impl Ensemble {
             let reason = format!("{varied} finite values are needed for the parameters that vary");
             return Err(SolveError::Member { reason });
         }
-        let mut values = self.system.values_at(state);
-        if let Some(removal) = &mut self.removal {
-            values.extend(removal.start(state, parameters)?.values());
-        }
+        let removal = self.removal.as_mut().map(|removal| removal.start(state, parameters)).transpose()?;
         let prepared = &mut self.prepared;
-        prepared.values.set(&values);
+        prepared.values.set_state(state);
+        if let Some(removal) = removal {
+            prepared.values.set(&removal.values());
+        }
         prepared.t = state.t;
         let free = &mut prepared.equations.free_constants;
         let of_parameters = free.split_off(free.len() - parameters.len());

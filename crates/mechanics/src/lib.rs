@@ -69,7 +69,6 @@ pub use removal_error::RemovalError;
 pub use singular_values::SingularValues;
 pub use start::{
     Completion, Quantity, Recombination, RemovalProgram, RemovalStart, StartData, StartError, StartNumbers,
-    StartProgram, StartShape, check_regularity, complete_removal_start,
-    complete_start, project_velocity,
+    StartProgram, StartShape, check_regularity, complete_removal_start, complete_start, project_velocity,
 };
 pub use system::{Coordinate, Parameter, State, System, fresh_symbol};

@@ -99,12 +99,7 @@ struct ScaledMatrices {
 }
 
 impl ScaledMatrices {
-    fn new(
-        entries: &mut AtState,
-        (h, n): (usize, usize),
-        state: &State,
-        varied: &[f64],
-    ) -> Result<Self, StartError> {
+    fn new(entries: &mut AtState, (h, n): (usize, usize), state: &State, varied: &[f64]) -> Result<Self, StartError> {
         let here = entries.at(state, varied)?.to_vec();
         if let Some(place) = here.iter().position(|x| !x.is_finite()) {
             let quantity = if place < h * n { Quantity::ConstraintJacobian } else { Quantity::MassMatrix };
@@ -137,7 +132,10 @@ impl ScaledMatrices {
         if self.constraint_jacobian.nrows() == 0 {
             return Ok(1.0);
         }
-        let values = decompose(&self.constraint_jacobian)?.values;
+        let values = match self.constraint_jacobian.nrows() {
+            1 => DVector::from_element(1, self.constraint_jacobian.norm()),
+            _ => decompose(&self.constraint_jacobian)?.values,
+        };
         let (ratio, singular_values) = ratio(&values);
         if ratio > SINGULAR_LIMIT {
             return Ok(ratio);
@@ -145,7 +143,20 @@ impl ScaledMatrices {
         Err(StartError::DependentConstraints { singular_values, ratio, limit: SINGULAR_LIMIT })
     }
 
+    /// Whether the circles of Gershgorin tell that `M`, and with it `NᵀMN`, is far from singular.
+    fn is_dominant(&self) -> bool {
+        let circles = self.mass.row_iter().enumerate().map(|(i, row)| {
+            let sizes: f64 = row.iter().map(|x| x.abs()).sum();
+            (row[i] + row[i].abs() - sizes, sizes)
+        });
+        let (least, largest) = circles.fold((f64::INFINITY, 1.0_f64), |(a, b), (c, d)| (a.min(c), b.max(d)));
+        least > SINGULAR_LIMIT * largest
+    }
+
     fn check_mass(&self) -> Result<(), StartError> {
+        if self.is_dominant() {
+            return Ok(());
+        }
         let (h, n) = self.constraint_jacobian.shape();
         let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
         let svd = decompose(&padded)?;

@@ -126,9 +126,10 @@ impl RemovalProgram {
         RemovalStart { parameters, rates, second_rates, memory, free, residual: root.residual }
     }
 
-    /// What was added up to each velocity, for constraints give it by way of their terms: `Σ |A⁺| |terms of f|`.
+    /// What was added up to each velocity, for constraints give it by way of their terms:
+    /// `Σ |A⁺| |terms of f|`.
     ///
-    /// So a velocity that vanishes is known to the round-off of what cancelled in it, and not to that of itself.
+    /// So a velocity that vanishes is known to the round-off of what cancelled in it, not to that of itself.
     fn velocity_sizes(&mut self, state: &State, varied: &[f64]) -> Result<Vec<f64>, StartError> {
         let (h, n) = self.shape;
         let point = [&state.q[..], &state.v, &[state.t], varied].concat();

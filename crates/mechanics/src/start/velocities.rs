@@ -42,11 +42,7 @@ impl VelocityProgram {
 
     /// The state with these velocities; of contradictory equations by least squares. None may be open:
     /// dependent constraints are the deeper fault and come first.
-    pub(super) fn solve(
-        &mut self,
-        numbers: &StartNumbers,
-        regularity: &mut Regularity,
-    ) -> Result<State, StartError> {
+    pub(super) fn solve(&mut self, numbers: &StartNumbers, regularity: &mut Regularity) -> Result<State, StartError> {
         let StartNumbers { time, positions, given, guess, varied } = numbers;
         let expected = self.names.len();
         if positions.len() != expected {
