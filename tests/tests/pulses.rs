@@ -2,8 +2,8 @@
 //! in ensembles. The referee takes small steps where something is switched.
 
 use deltaq::{
-    Choice, Ensemble, EnsembleOptions, EnsembleStart, Prepared, Settings, SolveError, Steps, choices, constants_of,
-    error_estimate, setting, solve_by_steps, solve_choice,
+    Choice, Ensemble, EnsembleOptions, Prepared, Settings, SolveError, Steps, choices, error_estimate, setting,
+    solve_by_steps, solve_choice,
 };
 use discrete::Composition;
 use integrate::Method;
@@ -195,8 +195,7 @@ fn every_pulse_is_found_by_every_method_and_in_ensembles() {
         if index % 10 == 0 {
             let settings = Settings { method: Some(Method::Taylor), tolerance: 1e-8, ..Settings::default() };
             let mut ensemble = Ensemble::new(&scene, choice, &[], &settings).expect("an ensemble");
-            let start = EnsembleStart::of(&scene, &[], constants_of(choice, &scene));
-            let member = ensemble.member_at(&start).expect("a member");
+            let member = ensemble.member(&[]).expect("a member");
             let motion = ensemble.motions(&[member], &[DURATION], &EnsembleOptions::default()).remove(0);
             let found = &motion.expect("a motion").outputs[0].coordinates;
             assert!(off(found, &right) < ALLOWED, "{}: {found:?}, not {right:?}", what("an ensemble"));
@@ -260,7 +259,7 @@ fn every_method_and_ensembles_end_a_step_at_breakpoints() {
     }
     let mut ensemble = Ensemble::new(&scene, choice, &[], &Settings::default()).expect("an ensemble");
     assert!(ensemble.refusal().is_some());
-    let member = ensemble.member(&scene).expect("a member");
+    let member = ensemble.member(&[]).expect("a member");
     let run = ensemble.run(&[member], &[10.0], &EnsembleOptions::default()).remove(0).expect("a run");
     assert!((run.states[0][2] - 1.25).abs() < 1e-9, "{:?}", run.states);
     let steps = Steps { step: 0.3, composition: Composition::Second };

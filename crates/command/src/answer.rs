@@ -1,5 +1,6 @@
 //! What a command answers, and how the answer comes to the reader.
 
+use std::fmt::{self, Display, Formatter};
 use std::io::{ErrorKind, Write, stdout};
 
 use anyhow::{Context, Result};
@@ -23,13 +24,28 @@ impl From<String> for Answer {
 }
 
 impl Answer {
-    /// Prints the text, all of it. A reader that has seen enough and closes the pipe is no error.
+    /// Prints the text.
     pub(crate) fn print(&self) -> Result<()> {
-        let mut out = stdout().lock();
-        match out.write_all(self.text.as_bytes()).and_then(|()| out.flush()) {
-            Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write the answer"),
-            _ => Ok(()),
-        }
+        print(&self.text).map(|_| ())
+    }
+}
+
+/// Prints a text, all of it; `false` for a reader that has seen enough and closed the pipe: no error.
+pub(crate) fn print(text: &str) -> Result<bool> {
+    let mut out = stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        written => written.context(Unwritten).map(|()| true),
+    }
+}
+
+/// Standard output takes no more: exit code 1.
+#[derive(Debug)]
+pub(crate) struct Unwritten;
+
+impl Display for Unwritten {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str("cannot write the answer")
     }
 }
 

@@ -65,5 +65,10 @@ pub fn row(t: f64, now: &Outputs) -> String {
 
 /// Numbers with all their digits, between commas.
 pub fn print(numbers: &[f64]) -> String {
-    numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",")
+    let mut text = String::with_capacity(20 * numbers.len());
+    for (i, x) in numbers.iter().enumerate() {
+        text += if i == 0 { "" } else { "," };
+        text += &format!("{x:?}");
+    }
+    text
 }

@@ -3,28 +3,27 @@
 mod members;
 mod output;
 
-use std::path::Path;
+mod part;
+
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail};
-use deltaq::{Choice, Ensemble, EnsembleOptions, EnsembleStart, Settings, constants_of, formulation, setting};
+use anyhow::{Result, bail};
+use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, formulation, setting};
 use integrate::Method;
-use scene::{Scene, SceneErrorKind};
 
 use crate::answer::Answer;
-use crate::cli::EnsembleArguments;
+use crate::cli::{EnsembleArguments, Format};
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
+use part::{Sink, resume};
 use random::parallel;
-use validation::catalogue::{self, NotFound};
-use validation::report::{File, write_all};
 
 /// Members integrated before they are written down.
 const CHUNK: usize = 4096;
 
 /// Runs the command.
-pub(crate) fn run(arguments: &EnsembleArguments) -> Result<Answer> {
+pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> {
     let settings = Settings { method: Some(Method::Taylor), ..settings(&arguments.motion)? };
     let base = arguments.motion.scene.find()?;
     let members = Members::of(arguments, &base)?;
@@ -38,49 +37,47 @@ pub(crate) fn run(arguments: &EnsembleArguments) -> Result<Answer> {
     }
 
     let clock = Instant::now();
-    let parameters: Vec<&str> = members.names.iter().map(String::as_str).filter(|n| is_parameter(&base, n)).collect();
-    let starts = starts(arguments, &members, &parameters, &choice)?;
-    let start = clock.elapsed().as_secs_f64();
-    if starts.iter().all(Result::is_err) {
-        let cause = starts.iter().find_map(|start| start.as_ref().err()).map_or("", String::as_str);
-        bail!("none of {} members can be started; the first: {cause}", starts.len());
+    let names: Vec<&str> = members.names.iter().map(String::as_str).collect();
+    let mut ensemble = Ensemble::new(&base, &choice, &names, &settings)?;
+    let mut seconds = Seconds { derive: clock.elapsed().as_secs_f64(), ..Seconds::default() };
+    let mut causes = (0..members.count()).map(|i| ensemble.member(&members.row(i)).err());
+    if let Some(Some(cause)) = causes.next()
+        && causes.all(|cause| cause.is_some())
+    {
+        bail!("none of {} members can be started; the first: {cause}", members.count());
     }
-    let clock = Instant::now();
-    let ensemble = Ensemble::new(&base, &choice, &parameters, &settings)?;
-    let derive = clock.elapsed().as_secs_f64();
 
-    let clock = Instant::now();
     let options = EnsembleOptions { threads: parallel::threads(), estimate: true };
     let mut answers = Answers::new(arguments.motion.format, &base, &choice, ensemble.equations(), &members, &times);
-    for chunk in starts.chunks(CHUNK) {
-        for motion in ensemble.answers(chunk, &times, &options) {
-            answers.add(Outcome::of(motion));
-        }
-    }
-    let seconds = Seconds { derive, start, integrate: clock.elapsed().as_secs_f64() };
-    let complaint = answers.complaint();
-    let text = answers.finish(seconds);
-    let text = match &arguments.out {
-        None => text,
-        Some(path) => write(path, text, members.rows.len())?,
+    let mut outcomes = |range: std::ops::Range<usize>| {
+        let rows: Vec<Vec<f64>> = range.map(|i| members.row(i)).collect();
+        let clock = Instant::now();
+        let started = ensemble.members(&rows, options.threads);
+        seconds.start += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        let motions = ensemble.answers(started, &times, &options);
+        seconds.integrate += clock.elapsed().as_secs_f64();
+        motions.into_iter().map(Outcome::of).collect::<Vec<_>>()
     };
+    let mut sink = Sink::open(arguments.out.as_deref(), |file, told| match arguments.motion.format {
+        Format::Csv => resume(&mut answers, file, told, |answers| {
+            outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect()
+        }),
+        Format::Json => Ok(0),
+    })?;
+    let bar = parallel::progress(members.count(), quiet);
+    let mut reads_on = answers.done > 0 || sink.write(&answers.head())?;
+    while reads_on && answers.done < members.count() {
+        bar.set_position(answers.done as u64);
+        let next = (answers.done + CHUNK).min(members.count());
+        let text: String = outcomes(answers.done..next).iter().map(|outcome| answers.add(outcome)).collect();
+        reads_on = sink.write(&text)?;
+    }
+    bar.finish_and_clear();
+    let complaint = answers.complaint();
+    reads_on = reads_on && sink.write(&answers.end(&seconds))?;
+    let text = if reads_on { sink.close(members.count())? } else { String::new() };
     Ok(Answer { text, complaint })
-}
-
-fn is_parameter(scene: &Scene, name: &str) -> bool {
-    scene.system.parameters.iter().any(|p| scene.system.graph.name(p.symbol) == name)
-}
-
-fn overrides(arguments: &EnsembleArguments, members: &Members, row: &[f64]) -> Vec<(String, f64)> {
-    arguments
-        .motion
-        .scene
-        .set
-        .overrides
-        .iter()
-        .cloned()
-        .chain(members.names.iter().cloned().zip(row.iter().copied()))
-        .collect()
 }
 
 /// Multipliers vary only where a motion starts from those of the scene.
@@ -95,36 +92,4 @@ fn check_multipliers(members: &Members, choice: &Choice, arguments: &EnsembleArg
         bail!("{place}: `{name}` varies, and --mu0 fixes it");
     }
     Ok(())
-}
-
-/// What each member starts from, or why it cannot be started.
-fn starts(
-    arguments: &EnsembleArguments,
-    members: &Members,
-    parameters: &[&str],
-    choice: &Choice,
-) -> Result<Vec<Result<EnsembleStart, String>>> {
-    let given = arguments.motion.mu0.is_some();
-    let start =
-        |row: &Vec<f64>| match catalogue::find(&arguments.motion.scene.scene, &overrides(arguments, members, row)) {
-            Ok(scene) => {
-                let constants = if given { choice.constants.clone() } else { constants_of(choice, &scene) };
-                Ok(Ok(EnsembleStart::of(&scene, parameters, constants)))
-            }
-            Err(NotFound::Fault(fault)) => match &*fault.kind {
-                SceneErrorKind::UnknownName { name, .. } if fault.line == 0 => {
-                    bail!("{}: {}", members.place(name), fault.kind)
-                }
-                kind => Ok(Err(kind.to_string())),
-            },
-            Err(error) => Err(error.into()),
-        };
-    parallel::map(&members.rows, start).into_iter().collect()
-}
-
-fn write(path: &Path, text: String, members: usize) -> Result<String> {
-    let name = path.file_name().with_context(|| format!("--out {} names no file", path.display()))?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    write_all(folder, &[File { path: name.into(), text }])?;
-    Ok(format!("{members} members in {}\n", path.display()))
 }

@@ -21,7 +21,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Error, Result};
 use clap::{CommandFactory, Parser};
 
-use answer::Answer;
+use answer::{Answer, Unwritten};
 use cli::{Cli, Command};
 use random::parallel;
 
@@ -42,7 +42,7 @@ fn main() -> ExitCode {
     };
     match run(cli) {
         Ok(answer) => printed(&answer),
-        Err(error) => failed(&error, 2),
+        Err(error) => failed(&error, if error.is::<Unwritten>() { 1 } else { 2 }),
     }
 }
 
@@ -93,7 +93,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Prove(arguments)) => return prove_command::run(&arguments),
         Some(Command::Random(arguments)) => return random_command::run(&arguments, quiet),
         Some(Command::Stability(arguments)) => return stability_command::run(&arguments, quiet),
-        Some(Command::Ensemble(arguments)) => return ensemble_command::run(&arguments),
+        Some(Command::Ensemble(arguments)) => return ensemble_command::run(&arguments, quiet),
         Some(Command::Solve(arguments)) => return solve_command::run(&arguments, quiet),
     };
     Ok(text.into())

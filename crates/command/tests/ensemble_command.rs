@@ -108,6 +108,38 @@ fn the_answer_does_not_depend_on_threads_and_is_written_whole() {
 }
 
 #[test]
+fn what_was_cut_off_goes_on_and_nothing_is_lost_or_doubled() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("m.csv");
+    let (part, file) = (folder.path().join("m.csv.part"), out.to_str().expect("UTF-8"));
+    // the second of three blades cannot be started where y' contradicts x'
+    let options = ["-f", "chetaev", "--vary", "phi=0..0.6:3", "--vary", "phi'=0.5..1:2", "--times", "0,1"];
+    let arguments =
+        [&["ball-in-cone", "-f", "chetaev", "--vary", "theta=-0.4..0.4:3", "--times", "0,1"], &["sledge"][..0]];
+    let sledge = [&["sledge"][..], &options].concat();
+    for (arguments, code) in [(sledge, 0), (arguments.concat(), 3)] {
+        let (whole, complaint) = answer(&arguments, code);
+        let to_file = [&arguments[..], &["--out", file]].concat();
+        for cut in [0, 1, whole.len() / 3, whole.len() / 2, whole.len() - 1, whole.len()] {
+            std::fs::write(&part, &whole.as_bytes()[..cut]).expect("written");
+            let (_, told) = answer(&to_file, code);
+            assert_eq!(
+                (std::fs::read_to_string(&out).expect("the file"), told),
+                (whole.clone(), complaint.clone()),
+                "{cut}"
+            );
+            assert!(!part.exists());
+        }
+        // of other times, of other members, of another tolerance
+        for (from, to) in [("t,", "s,"), ("\n2,", "\n3,"), (".0,", ".5,")] {
+            std::fs::write(&part, whole.replacen(from, to, 3)).expect("written");
+            refused(&[&["ensemble"], &to_file[..]].concat(), &["m.csv.part", "another ensemble"]);
+            assert!(part.exists());
+        }
+    }
+}
+
+#[test]
 fn faults_have_their_place() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |text: &str, words: &[&str]| {

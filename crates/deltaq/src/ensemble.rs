@@ -10,12 +10,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use equations::{Compiled, Equations, FreeConstant, LaneEquations};
-use integrate::{Method, Start};
-use mechanics::{ConstantsRule, State, System, complete_removal_start};
-use scene::Scene;
+use integrate::{Interrupt, Method};
+use mechanics::{ConstantsRule, RemovalProgram, State, System};
+use scene::{Scene, Start, Starts};
+use symbolic::Symbol;
 
 use crate::constants::free_constants;
-use crate::{Choice, Metric, Prepared, Settings, SolveError, constants_of, derive_in_form, setting};
+use crate::{Choice, Form, Metric, Prepared, Settings, SolveError, derive_in_form, formulation, setting};
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};
@@ -30,16 +31,14 @@ pub use threads::{number_of_threads, over_threads};
 /// ```
 /// # let text = include_str!("../../../validation/scenes/sledge.toml");
 /// use deltaq::{Ensemble, EnsembleOptions, Settings, choices};
-/// let scene = |g, phi| scene::Scene::parse_with("sledge", text, &[("g".into(), g), ("phi".into(), phi)]);
-/// let base = scene(9.81, 0.3)?;
-/// let mut ensemble = Ensemble::new(&base, &choices(&base)[0], &["g"], &Settings::default())?;
-/// let mut members = Vec::new();
-/// for i in 0..20 {
-///     members.push(ensemble.member(&scene(9.0 + 0.1 * i as f64, 0.05 * i as f64)?)?);
-/// }
-/// // the sledge turns at a constant rate, y = (x, y, phi, …)
-/// for (i, run) in ensemble.run(&members, &[1.0], &EnsembleOptions::default()).into_iter().enumerate() {
-///     assert!((run?.states[0][2] - (1.1 + 0.05 * i as f64)).abs() < 1e-12);
+/// let scene = scene::Scene::parse("sledge", text)?;
+/// let ensemble = Ensemble::new(&scene, &choices(&scene)[0], &["g", "phi"], &Settings::default())?;
+/// let rows: Vec<[f64; 2]> = (0..20).map(|i| [9.0 + 0.1 * i as f64, 0.05 * i as f64]).collect();
+/// let options = EnsembleOptions::default();
+/// let motions = ensemble.answers(ensemble.members(&rows, options.threads), &[1.0], &options);
+/// // the sledge turns at a constant rate
+/// for ([_, phi], motion) in rows.iter().zip(motions) {
+///     assert!((motion?.outputs[0].coordinates[2] - (1.1 + phi)).abs() < 1e-12);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -48,10 +47,11 @@ pub struct Ensemble {
     prepared: Prepared,
     lanes: Result<LaneEquations, String>,
     choice: Choice,
-    /// With the parameters of the scene.
     system: System,
-    /// Those parameters of it that vary.
-    varied: Vec<usize>,
+    starts: Starts,
+    /// Of equations in the variables of a removal: their start.
+    removal: Option<RemovalProgram>,
+    end: f64,
     settings: Settings,
     metric: Metric,
     /// The equations once more, in whose words a member says why it stopped: for all threads.
@@ -65,7 +65,7 @@ pub struct EnsembleStart {
     pub state: State,
     /// Time at which it is to end.
     pub end: f64,
-    /// Values of the parameters that vary, in the order in which they were named.
+    /// Values of the parameters that vary, in the order of the scene.
     pub parameters: Vec<f64>,
     /// Free constants.
     pub constants: ConstantsRule,
@@ -75,11 +75,29 @@ impl EnsembleStart {
     /// The start of `scene` with the values that these parameters have there.
     pub fn of(scene: &Scene, parameters: &[&str], constants: ConstantsRule) -> Self {
         let system = &scene.system;
-        let value = |name: &&str| system.parameters.iter().find(|p| system.graph.name(p.symbol) == *name);
-        let parameters = parameters.iter().filter_map(value).map(|p| p.value).collect();
+        let varies = |symbol| parameters.contains(&system.graph.name(symbol).as_str());
+        let parameters = system.parameters.iter().filter(|p| varies(p.symbol)).map(|p| p.value).collect();
         EnsembleStart { state: scene.start.clone(), end: setting(scene).end, parameters, constants }
     }
 }
+
+/// The equations of `choice` for all values of the parameters that vary, in a form that has no pivots of its own:
+/// what suits one member need not suit the next.
+fn derived(scene: &Scene, choice: &Choice, varied: &[Symbol], form: Form) -> Result<Equations, SolveError> {
+    // what vanishes for the values of the scene only has to stay
+    let mut system = scene.system.clone();
+    for (p, part) in system.parameters.iter_mut().filter(|p| varied.contains(&p.symbol)).zip(1..) {
+        p.value += APART * (1.0 + p.value.abs()) * (0.5 + (0.618_033_988_749_894_9 * f64::from(part)).fract());
+    }
+    let (equations, chosen) = derive_in_form(&system, &scene.start, choice, form)?;
+    if equations.chart.is_some() && chosen.name != choice.formulation {
+        return Ok(derive_in_form(&system, &scene.start, choice, Form::Named)?.0);
+    }
+    Ok(equations)
+}
+
+/// So far from the scene's values of parameters an ensemble of them is derived.
+const APART: f64 = 1e-2;
 
 /// A member, ready to run.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,46 +118,58 @@ impl EnsembleMember {
 }
 
 impl Ensemble {
-    /// Derives and compiles in the form chosen at the start of `scene`, which should be one of the members.
+    /// Derives and compiles in the form chosen at the start of `scene`, which should be one of the members;
+    /// they differ from it by the numbers of these names, as of [`Scene::starts`].
     ///
     /// [`Settings::method`] counts for nothing.
     ///
     /// # Errors
-    /// As [`crate::solve_choice`]; [`SolveError::Member`] where a name is no parameter, or where parameters
-    /// are to vary and the constants are natural at a horizon.
-    pub fn new(scene: &Scene, choice: &Choice, parameters: &[&str], settings: &Settings) -> Result<Self, SolveError> {
-        let (mut equations, _) = derive_in_form(&scene.system, &scene.start, choice, settings.form)?;
-        let system = scene.system.clone();
-        if !parameters.is_empty() && matches!(choice.constants, ConstantsRule::Natural { .. }) {
-            let reason = "its constants are natural at a horizon, for which parameters have to be the same";
-            return Err(SolveError::Member { reason: reason.into() });
+    /// As [`crate::solve_choice`]; [`SolveError::Scene`] where the scene has no such name;
+    /// [`SolveError::Member`] where a name comes twice, where multipliers are to vary that the formulation
+    /// does not start from, or parameters while the constants are natural at a horizon.
+    pub fn new(scene: &Scene, choice: &Choice, names: &[&str], settings: &Settings) -> Result<Self, SolveError> {
+        let starts = scene.starts(names).map_err(|error| SolveError::Scene(Box::new(error)))?;
+        let refused = |reason: String| Err(SolveError::Member { reason });
+        if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+            return refused(format!("`{}` is named twice", names[i]));
         }
-        let mut varied = Vec::new();
+        let starts_multipliers = formulation(choice.formulation).is_some_and(|entry| entry.starts_multipliers);
+        if starts.vary_multipliers() && !starts_multipliers {
+            return refused(format!("multipliers vary, and {} does not start from them", choice.formulation));
+        }
+        let varied = starts.parameters();
+        if !varied.is_empty() && matches!(choice.constants, ConstantsRule::Natural { .. }) {
+            let reason = "its constants are natural at a horizon, for which parameters have to be the same";
+            return refused(reason.into());
+        }
+        let mut equations = derived(scene, choice, &varied, settings.form)?;
+        let system = scene.system.clone();
         let mut constants = vec![0.0; equations.free_constants.len()];
-        for name in parameters {
-            let place = system.parameters.iter().position(|p| system.graph.name(p.symbol) == *name);
-            let Some(place) = place.filter(|place| !varied.contains(place)) else {
-                return Err(SolveError::Member { reason: format!("`{name}` is no parameter, or named twice") });
-            };
-            let symbol = system.parameters[place].symbol;
+        constants.extend(system.parameters.iter().filter(|p| varied.contains(&p.symbol)).map(|p| p.value));
+        for &symbol in &varied {
             equations.parameters.remove(&symbol);
             equations.free_constants.push(FreeConstant { symbol, natural: None, memory: None });
-            constants.push(system.parameters[place].value);
-            varied.push(place);
         }
         let settings = Settings { method: Some(Method::Taylor), ..settings.clone() };
         let prepared = Prepared::around(setting(scene), equations, constants, &settings)?;
-        let start = Start { t: scene.start.t, y: prepared.start.clone() };
+        let start = integrate::Start { t: scene.start.t, y: prepared.start.clone() };
         integrate::check_start(&start, setting(scene).end, &settings.options(settings.tolerance))?;
         let point = [&[start.t], &start.y[..], &prepared.constants].concat();
         let lanes = match system.breakpoints.is_empty() {
             true => LaneEquations::new(&prepared.equations, &prepared.form, &point)?,
             false => Err("the system has breakpoints, at which a motion begins anew".into()),
         };
-        let symbols: Vec<_> = varied.iter().map(|&place| system.parameters[place].symbol).collect();
-        let metric = Metric::varying(&system, &symbols)?;
+        let metric = Metric::varying(&system, &varied)?;
         let words = Arc::new(Mutex::new(prepared.equations.clone()));
-        Ok(Ensemble { prepared, lanes, choice: choice.clone(), system, varied, settings, metric, words })
+        let removal = prepared.equations.removal.as_ref();
+        let removal = removal.map(|removal| RemovalProgram::new(&system, removal, &varied));
+        let (choice, end) = (choice.clone(), setting(scene).end);
+        Ok(Ensemble { prepared, lanes, choice, system, starts, removal, end, settings, metric, words })
+    }
+
+    /// Members end at `end`, and not where the scene does.
+    pub fn until(self, end: f64) -> Self {
+        Ensemble { end, ..self }
     }
 
     /// Why no member can be integrated in company, if that is so.
@@ -157,47 +187,23 @@ impl Ensemble {
         &self.prepared.compiled
     }
 
-    /// The member `scene`, with other numbers; its multipliers are free constants if motions start from them.
-    ///
-    /// # Errors
-    /// As [`Ensemble::member_at`]; [`SolveError::Member`] if another parameter than the varying has changed.
-    pub fn member(&mut self, scene: &Scene) -> Result<EnsembleMember, SolveError> {
-        if scene.system.parameters.len() != self.system.parameters.len() {
-            return Err(SolveError::Member { reason: "another scene".into() });
-        }
-        for (i, (now, base)) in scene.system.parameters.iter().zip(&self.system.parameters).enumerate() {
-            if now.value != base.value && !self.varied.contains(&i) {
-                let name = self.system.graph.name(base.symbol);
-                let reason = format!("{name} is {} and not {}, and is not among what varies", now.value, base.value);
-                return Err(SolveError::Member { reason });
-            }
-        }
-        let names: Vec<String> =
-            self.varied.iter().map(|&i| self.system.graph.name(self.system.parameters[i].symbol)).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        self.member_at(&EnsembleStart::of(scene, &names, constants_of(&self.choice, scene)))
-    }
-
     /// The member that starts there.
     ///
     /// # Errors
     /// [`SolveError`] without a start; [`SolveError::Member`] for parameters not finite or wrong in number.
     pub fn member_at(&mut self, start: &EnsembleStart) -> Result<EnsembleMember, SolveError> {
         let EnsembleStart { state, end, parameters, constants } = start;
-        let end = *end;
-        if parameters.len() != self.varied.len() || !parameters.iter().all(|x| x.is_finite()) {
-            let reason = format!("{} finite values are needed for the parameters that vary", self.varied.len());
+        let (end, varied) = (*end, self.metric.parameters());
+        if parameters.len() != varied || !parameters.iter().all(|x| x.is_finite()) {
+            let reason = format!("{varied} finite values are needed for the parameters that vary");
             return Err(SolveError::Member { reason });
         }
-        for (&place, value) in self.varied.iter().zip(parameters) {
-            self.system.parameters[place].value = *value;
-        }
-        let mut values = self.system.values_at(state);
-        if let Some(removal) = &self.prepared.equations.removal {
-            values.extend(complete_removal_start(&self.system, removal, state)?.values());
-        }
+        let removal = self.removal.as_mut().map(|removal| removal.start(state, parameters)).transpose()?;
         let prepared = &mut self.prepared;
-        prepared.values.set(&values);
+        prepared.values.set_state(state);
+        if let Some(removal) = removal {
+            prepared.values.set(&removal.values());
+        }
         prepared.t = state.t;
         let free = &mut prepared.equations.free_constants;
         let of_parameters = free.split_off(free.len() - parameters.len());
@@ -210,16 +216,35 @@ impl Ensemble {
         Ok(EnsembleMember { t: state.t, end, y, constants, guess })
     }
 
-    /// [`Ensemble::member_at`] of all of them, over threads as [`EnsembleOptions::threads`] says: constants
-    /// that are natural at a horizon take longer to find than a motion to integrate.
-    pub fn members(&self, starts: &[EnsembleStart], threads: usize) -> Vec<Result<EnsembleMember, SolveError>> {
-        let threads = number_of_threads(threads).clamp(1, starts.len().max(1));
+    /// The member with these numbers, one a name, or why there is none.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn member(&mut self, row: &[f64]) -> Result<EnsembleMember, String> {
+        let cause = self.settings.interrupt.as_ref().and_then(Interrupt::cause);
+        cause.map_or(Ok(()), |cause| Err(cause.to_string()))?;
+        let Start { state, parameters, multipliers } = self.starts.at(row).map_err(|fault| fault.to_string())?;
+        let constants = match self.starts.vary_multipliers() {
+            true => ConstantsRule::Given(multipliers),
+            false => self.choice.constants.clone(),
+        };
+        let start = EnsembleStart { state, end: self.end, parameters, constants };
+        self.member_at(&start).map_err(|error| error.to_string())
+    }
+
+    /// The members with these numbers, or why there are none, over threads as [`EnsembleOptions::threads`]
+    /// says: constants that are natural at a horizon take longer to find than a motion to integrate.
+    ///
+    /// # Panics
+    /// If a row has not as many numbers as there are names.
+    pub fn members<R: AsRef<[f64]> + Sync>(&self, rows: &[R], threads: usize) -> Vec<Result<EnsembleMember, String>> {
+        let threads = number_of_threads(threads).clamp(1, rows.len().max(1));
         let copies: Vec<Mutex<Ensemble>> = (0..threads).map(|_| Mutex::new(self.clone())).collect();
         let next = AtomicUsize::new(0);
-        let members = threads::shared(threads, starts.len(), 1, |take| {
+        let members = threads::shared(threads, rows.len(), 1, |take| {
             let copy = &copies[next.fetch_add(1, Ordering::Relaxed) % threads];
             let mut copy = copy.lock().unwrap_or_else(PoisonError::into_inner);
-            std::iter::from_fn(take).map(|index| (index, copy.member_at(&starts[index]))).collect()
+            std::iter::from_fn(take).map(|index| (index, copy.member(rows[index].as_ref()))).collect()
         });
         members.into_iter().flatten().collect()
     }

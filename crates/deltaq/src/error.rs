@@ -5,6 +5,7 @@ use discrete::DiscreteError;
 use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError, StopCause};
 use mechanics::{RemovalError, StartError};
+use scene::SceneError;
 use symbolic::CompileError;
 
 /// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].
@@ -143,6 +144,9 @@ pub enum SolveError {
         /// Largest halved step that sees it there.
         enough: f64,
     },
+    /// Something that is to vary is not in the scene.
+    #[error(transparent)]
+    Scene(Box<SceneError>),
     /// A motion cannot be a member of an ensemble.
     #[error("not a member of this ensemble: {reason}")]
     Member {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use equations::Equations;
-use mechanics::complete_removal_start;
+use mechanics::{State, complete_removal_start};
 use symbolic::{Evaluator, Expr, Symbol};
 
 use crate::{Setting, SolveError};
@@ -22,11 +22,17 @@ pub(crate) struct StartValues {
 impl StartValues {
     /// At the start of `setting`, with the free constants zero.
     pub(crate) fn new(setting: Setting, equations: &Equations) -> Result<Self, SolveError> {
-        let mut values = setting.system.values_at(setting.start);
+        let system = setting.system;
+        let mut symbols = [system.positions(), system.velocities(), vec![system.time]].concat();
+        let mut inputs = [&setting.start.q[..], &setting.start.v, &[setting.start.t]].concat();
         if let Some(removal) = &equations.removal {
-            values.extend(complete_removal_start(setting.system, removal, setting.start)?.values());
+            for (symbol, x) in complete_removal_start(system, removal, setting.start)?.values() {
+                if !symbols.contains(&symbol) {
+                    symbols.push(symbol);
+                    inputs.push(x);
+                }
+            }
         }
-        let (mut symbols, mut inputs): (Vec<Symbol>, Vec<f64>) = values.into_iter().unzip();
         symbols.extend(equations.constant_symbols());
         inputs.resize(symbols.len(), 0.0);
         let mut outputs: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
@@ -51,6 +57,12 @@ impl StartValues {
         for (symbol, input) in self.symbols.iter().zip(&mut self.inputs) {
             *input = values.get(symbol).copied().unwrap_or(*input);
         }
+    }
+
+    /// The same, of equations without variables of their own.
+    pub(crate) fn set_state(&mut self, State { t, q, v }: &State) {
+        let state = q.iter().chain(v).chain([t]);
+        self.inputs.iter_mut().zip(state).for_each(|(input, x)| *input = *x);
     }
 
     pub(crate) fn set_constants(&mut self, constants: &[f64]) {

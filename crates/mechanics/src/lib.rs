@@ -68,7 +68,7 @@ pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal}
 pub use removal_error::RemovalError;
 pub use singular_values::SingularValues;
 pub use start::{
-    Completion, Quantity, Recombination, RemovalStart, StartData, StartError, check_regularity, complete_removal_start,
-    complete_start, project_velocity,
+    Completion, Quantity, Recombination, RemovalProgram, RemovalStart, StartData, StartError, StartNumbers,
+    StartProgram, StartShape, check_regularity, complete_removal_start, complete_start, project_velocity,
 };
 pub use system::{Coordinate, Parameter, State, System, fresh_symbol};

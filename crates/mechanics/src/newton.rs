@@ -148,10 +148,11 @@ pub fn solve(
     if !here.is_finite() {
         return Err(NewtonError::NotFinite { iteration: 0 });
     }
+    let mut decomposition = Decomposition::new(&here, options.rank_limit)?;
     let mut iterations = 0;
     while iterations < options.iterations {
         let residual = here.relative_residual(&x);
-        let step = Decomposition::new(&here, options.rank_limit)?.step(&here);
+        let step = decomposition.step(&here);
         let polish = residual <= options.tolerance;
         let next = if polish {
             let next = moved(&mut evaluate, &x, &step, 1.0);
@@ -160,13 +161,16 @@ pub fn solve(
             damped(&mut evaluate, &x, &here, &step)
         };
         let Some(next) = next else { break };
+        // that of linear equations serves for all steps
+        if next.1.jacobian != here.jacobian {
+            decomposition = Decomposition::new(&next.1, options.rank_limit)?;
+        }
         (x, here) = next;
         iterations += 1;
         if polish {
             break;
         }
     }
-    let decomposition = Decomposition::new(&here, options.rank_limit)?;
     let root = Root {
         residual: here.relative_residual(&x),
         iterations,

@@ -13,10 +13,10 @@ mod regularity;
 mod removal_start;
 mod velocities;
 
-pub use complete::complete_start;
-pub use data::{Completion, StartData};
+pub use complete::{StartProgram, complete_start};
+pub use data::{Completion, StartData, StartNumbers, StartShape};
 pub use error::{Quantity, StartError};
 pub use project::project_velocity;
 pub use recombination::Recombination;
 pub use regularity::check_regularity;
-pub use removal_start::{RemovalStart, complete_removal_start};
+pub use removal_start::{RemovalProgram, RemovalStart, complete_removal_start};

@@ -2,19 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{
-    Choice, EnsembleOptions, EnsembleStart, MemberMotion, Settings, SolveError, constants_of, over_threads, setting,
-};
-use equations::Outputs;
-use integrate::Interrupt;
+use deltaq::{Choice, EnsembleOptions, MemberMotion, Settings, SolveError, setting};
+use equations::Named;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use scene::{Scene, SceneError, SceneErrorKind};
+use scene::Scene;
 
 use crate::arrays::{FloatList, array, finite};
-use crate::errors;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.
 pub(crate) struct Varied {
@@ -47,41 +43,79 @@ impl Varied {
         }
     }
 
-    fn row(&self, member: usize) -> impl Iterator<Item = (String, f64)> {
-        self.values.iter().map(move |(name, values)| (name.clone(), values[member]))
+    /// A multiplier that varies.
+    pub(crate) fn multiplier(&self) -> Option<&String> {
+        self.values.keys().find(|name| name.strip_prefix("mu").is_some_and(|i| i.parse::<usize>().is_ok()))
+    }
+
+    fn row(&self, member: usize) -> Vec<f64> {
+        self.values.values().map(|values| values[member]).collect()
     }
 }
 
 /// What is to be integrated.
-pub(crate) struct Task<'a> {
+pub(crate) struct Task {
     pub(crate) varied: Varied,
     pub(crate) scene: Scene,
-    /// The scene with overrides in the place of some of its numbers.
-    pub(crate) with: &'a (dyn Fn(Vec<(String, f64)>) -> Result<Scene, SceneError> + Sync),
     pub(crate) choice: Choice,
-    /// The constants of `choice` are those of all members, whatever their multipliers are.
-    pub(crate) given: bool,
     pub(crate) times: Vec<f64>,
     pub(crate) end: f64,
     pub(crate) settings: Settings,
     pub(crate) threads: usize,
 }
 
-/// Why there is no ensemble.
-pub(crate) enum Refused {
-    Scene(Box<SceneError>),
-    Solve(SolveError),
-}
+/// Members integrated before they are put into arrays.
+const CHUNK: usize = 4096;
 
 /// Everything that is computed without Python's lock.
 pub(crate) struct Integrated {
     varied: Varied,
     times: Vec<f64>,
-    motions: Vec<Result<MemberMotion, String>>,
-    coordinates: usize,
-    multipliers: Vec<String>,
-    invariants: Vec<String>,
     choice: Choice,
+    done: Columns,
+}
+
+/// What became of the members so far.
+struct Columns {
+    coordinates: Cube,
+    velocities: Cube,
+    multipliers: (Vec<String>, Cube),
+    invariants: (Vec<String>, Cube),
+    error_estimate: Vec<f64>,
+    relative_error_estimate: Vec<f64>,
+    status: Vec<&'static str>,
+    cause: Vec<Option<String>>,
+    reached: Vec<usize>,
+    alone: Vec<Option<String>>,
+}
+
+/// Numbers of members, times and columns; NaN where there is none.
+struct Cube {
+    times: usize,
+    width: usize,
+    values: Vec<f64>,
+}
+
+impl Cube {
+    fn new(members: usize, times: usize, width: usize) -> Cube {
+        Cube { times, width, values: Vec::with_capacity(members * times * width) }
+    }
+
+    /// The next member.
+    fn add<'a>(&mut self, rows: impl Iterator<Item = &'a [f64]>) {
+        let end = self.values.len() + self.times * self.width;
+        rows.for_each(|row| self.values.extend(row));
+        self.values.resize(end, f64::NAN);
+    }
+
+    fn columns<'py>(self, py: Python<'py>, names: &[String]) -> PyResult<Bound<'py, PyDict>> {
+        let (dict, members) = (PyDict::new(py), self.values.len() / (self.times * self.width).max(1));
+        for (i, name) in names.iter().enumerate() {
+            let column = self.values.iter().skip(i).step_by(self.width).copied().collect();
+            dict.set_item(name, array(py, column, Some(members), &[self.times])?)?;
+        }
+        Ok(dict)
+    }
 }
 
 /// The times at which a run is read off, ascending, from the start on, by default the end; and the end.
@@ -104,43 +138,54 @@ pub(crate) fn times(given: Option<FloatList<'_>>, scene: &Scene) -> PyResult<(Ve
     }
 }
 
-impl Task<'_> {
-    pub(crate) fn run(self) -> Result<Integrated, Refused> {
-        let Task { varied, scene, with, choice, given, times, end, settings, threads } = self;
-        let graph = &scene.system.graph;
-        let names: Vec<String> = scene.system.parameters.iter().map(|p| graph.name(p.symbol)).collect();
-        let parameters: Vec<&str> =
-            varied.values.keys().map(String::as_str).filter(|n| names.iter().any(|p| p == n)).collect();
-        let interrupted = || settings.interrupt.as_ref().is_some_and(Interrupt::is_raised);
-        let starts = over_threads(threads, varied.count, |i| {
-            if interrupted() {
-                return Ok(Err(integrate::StopCause::Interrupted.to_string()));
-            }
-            match with(varied.row(i).collect()) {
-                Ok(scene) => {
-                    let constants = if given { choice.constants.clone() } else { constants_of(&choice, &scene) };
-                    Ok(Ok(EnsembleStart { end, ..EnsembleStart::of(&scene, &parameters, constants) }))
-                }
-                Err(error) if error.line == 0 && matches!(*error.kind, SceneErrorKind::UnknownName { .. }) => {
-                    Err(Refused::Scene(Box::new(error)))
-                }
-                Err(error) => Ok(Err(error.kind.to_string())),
-            }
-        });
-        let starts = starts.into_iter().collect::<Result<Vec<_>, Refused>>()?;
-        let ensemble = deltaq::Ensemble::new(&scene, &choice, &parameters, &settings).map_err(Refused::Solve)?;
-        let motions = ensemble.answers(&starts, &times, &EnsembleOptions { threads, estimate: true });
-        let equations = ensemble.equations();
-        let named = |list: &[equations::Named]| list.iter().map(|n| n.name.clone()).collect();
-        Ok(Integrated {
-            coordinates: scene.system.dimension(),
+impl Task {
+    pub(crate) fn run(self) -> Result<Integrated, SolveError> {
+        let Task { varied, scene, choice, times, end, settings, threads } = self;
+        let names: Vec<&str> = varied.values.keys().map(String::as_str).collect();
+        let ensemble = deltaq::Ensemble::new(&scene, &choice, &names, &settings)?.until(end);
+        let (equations, n) = (ensemble.equations(), scene.system.dimension());
+        let cube = |width: usize| Cube::new(varied.count, times.len(), width);
+        let named = |list: &[Named]| (list.iter().map(|n| n.name.clone()).collect(), cube(list.len()));
+        let mut done = Columns {
+            coordinates: cube(n),
+            velocities: cube(n),
             multipliers: named(&equations.multipliers),
             invariants: named(&equations.invariants),
-            varied,
-            times,
-            motions,
-            choice,
-        })
+            error_estimate: Vec::new(),
+            relative_error_estimate: Vec::new(),
+            status: Vec::new(),
+            cause: Vec::new(),
+            reached: Vec::new(),
+            alone: Vec::new(),
+        };
+        let options = EnsembleOptions { threads, estimate: true };
+        for first in (0..varied.count).step_by(CHUNK) {
+            let rows: Vec<Vec<f64>> = (first..varied.count.min(first + CHUNK)).map(|i| varied.row(i)).collect();
+            for motion in ensemble.answers(ensemble.members(&rows, threads), &times, &options) {
+                done.add(motion);
+            }
+        }
+        Ok(Integrated { varied, times, choice, done })
+    }
+}
+
+impl Columns {
+    /// The next member.
+    fn add(&mut self, motion: Result<MemberMotion, String>) {
+        let (motion, refused) = motion.map_or_else(|cause| (None, Some(cause)), |motion| (Some(motion), None));
+        let outputs = motion.as_ref().map_or(&[][..], |motion| &motion.outputs);
+        self.coordinates.add(outputs.iter().map(|o| &o.coordinates[..]));
+        self.velocities.add(outputs.iter().map(|o| &o.velocities[..]));
+        self.multipliers.1.add(outputs.iter().map(|o| &o.multipliers[..]));
+        self.invariants.1.add(outputs.iter().map(|o| &o.invariants[..]));
+        self.reached.push(outputs.len());
+        let estimate = motion.as_ref().and_then(|motion| motion.estimate.as_ref());
+        self.error_estimate.push(estimate.map_or(f64::NAN, |estimate| estimate.absolute));
+        self.relative_error_estimate.push(estimate.map_or(f64::NAN, |estimate| estimate.relative));
+        let (status, cause) = motion.as_ref().map_or(("refused", refused), MemberMotion::status);
+        self.status.push(status);
+        self.cause.push(cause);
+        self.alone.push(motion.and_then(|motion| motion.run.alone));
     }
 }
 
@@ -182,56 +227,28 @@ pub(crate) struct Ensemble {
 
 impl Ensemble {
     pub(crate) fn new(py: Python<'_>, integrated: Integrated) -> PyResult<Ensemble> {
-        let Integrated { varied, times, motions, coordinates, multipliers, invariants, choice } = integrated;
-        let (m, k) = (motions.len(), times.len());
-        let cube = |width: usize, pick: fn(&Outputs) -> &[f64]| -> Vec<f64> {
-            let mut values = vec![f64::NAN; m * k * width];
-            for (member, motion) in motions.iter().enumerate() {
-                for (instant, outputs) in motion.iter().flat_map(|motion| &motion.outputs).enumerate() {
-                    let first = (member * k + instant) * width;
-                    values[first..first + width].copy_from_slice(pick(outputs));
-                }
-            }
-            values
-        };
-        let columns = |names: &[String], pick: fn(&Outputs) -> &[f64]| -> PyResult<Py<PyDict>> {
-            let (dict, values) = (PyDict::new(py), cube(names.len(), pick));
-            for (i, name) in names.iter().enumerate() {
-                let column = values.iter().skip(i).step_by(names.len()).copied().collect();
-                dict.set_item(name, array(py, column, Some(m), &[k])?)?;
-            }
-            Ok(dict.unbind())
-        };
-        let estimates = |pick: fn(&deltaq::ErrorEstimate) -> f64| {
-            let of = |motion: &Result<MemberMotion, String>| {
-                motion.as_ref().ok().and_then(|motion| motion.estimate.as_ref().map(pick)).unwrap_or(f64::NAN)
-            };
-            array(py, motions.iter().map(of).collect(), Some(m), &[]).map(Bound::unbind)
-        };
-        let outcome = |motion: &Result<MemberMotion, String>| match motion {
-            Ok(motion) => motion.status(),
-            Err(cause) => ("refused", Some(cause.clone())),
-        };
-        let (status, cause) = motions.iter().map(outcome).unzip();
-        let dict = PyDict::new(py);
-        for (name, values) in varied.values {
-            dict.set_item(name, array(py, values, Some(m), &[])?)?;
+        let Integrated { varied: Varied { values, count: m }, times, choice, done } = integrated;
+        let k = times.len();
+        let cube = |cube: Cube| array(py, cube.values, Some(m), &[k, cube.width]).map(Bound::unbind);
+        let varied = PyDict::new(py);
+        for (name, values) in values {
+            varied.set_item(name, array(py, values, Some(m), &[])?)?;
         }
         Ok(Ensemble {
             formulation: choice.formulation,
-            removal: choice.removal.as_ref().map(|removal| removal.name.clone()),
-            varied: dict.unbind(),
-            coordinates: array(py, cube(coordinates, |o| &o.coordinates), Some(m), &[k, coordinates])?.unbind(),
-            velocities: array(py, cube(coordinates, |o| &o.velocities), Some(m), &[k, coordinates])?.unbind(),
-            multipliers: columns(&multipliers, |o| &o.multipliers)?,
-            invariants: columns(&invariants, |o| &o.invariants)?,
-            error_estimate: estimates(|estimate| estimate.absolute)?,
-            relative_error_estimate: estimates(|estimate| estimate.relative)?,
-            status,
-            cause,
-            reached: motions.iter().map(|motion| motion.as_ref().map_or(0, |m| m.outputs.len())).collect(),
-            alone: motions.iter().map(|motion| motion.as_ref().ok().and_then(|m| m.run.alone.clone())).collect(),
+            removal: choice.removal.map(|removal| removal.name),
             times: array(py, times, Some(k), &[])?.unbind(),
+            varied: varied.unbind(),
+            coordinates: cube(done.coordinates)?,
+            velocities: cube(done.velocities)?,
+            multipliers: done.multipliers.1.columns(py, &done.multipliers.0)?.unbind(),
+            invariants: done.invariants.1.columns(py, &done.invariants.0)?.unbind(),
+            error_estimate: array(py, done.error_estimate, Some(m), &[])?.unbind(),
+            relative_error_estimate: array(py, done.relative_error_estimate, Some(m), &[])?.unbind(),
+            status: done.status,
+            cause: done.cause,
+            reached: done.reached,
+            alone: done.alone,
         })
     }
 }
@@ -245,13 +262,5 @@ impl Ensemble {
     fn __repr__(&self) -> String {
         let completed = self.status.iter().filter(|status| **status == "completed").count();
         format!("<deltaq.Ensemble {}, {completed} of {} members completed>", self.formulation, self.status.len())
-    }
-}
-
-/// An exception for what refuses all members.
-pub(crate) fn refused(py: Python<'_>, refused: Refused) -> PyErr {
-    match refused {
-        Refused::Scene(error) => errors::scene(py, &error),
-        Refused::Solve(error) => errors::solve(error),
     }
 }

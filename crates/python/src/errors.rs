@@ -38,6 +38,7 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
     match error {
         Error::Derivation(_) => DerivationError::new_err(text),
         Error::Removal(_) => RemovalError::new_err(text),
+        Error::Scene(error) => Python::attach(|py| scene(py, &error)),
         Error::Start(_) => StartError::new_err(text),
         Error::Compile(_) => CompileError::new_err(text),
         Error::AtStart(_) | Error::Reading { .. } => EvaluationError::new_err(text),

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
-use scene::{Scene, SceneError};
+use scene::Scene;
 
 use crate::errors;
 use crate::system::{Overrides, System};
@@ -16,12 +16,8 @@ use crate::system::{Overrides, System};
 #[pyo3(signature = (path, overrides=None))]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<String, f64>>) -> PyResult<System> {
     let overrides: Overrides = overrides.into_iter().flatten().collect();
-    let read = py.detach(|| {
-        let text = Scene::read(&path)?;
-        Ok((Scene::parse_file(&path, &text, &overrides)?, text))
-    });
-    let (scene, text) = read.map_err(|error: SceneError| errors::scene(py, &error))?;
-    Ok(System::of(scene, text, overrides))
+    let read = py.detach(|| Scene::load_with(&path, &overrides));
+    Ok(System::of(read.map_err(|error| errors::scene(py, &error))?))
 }
 
 /// A system from the text of a scene file. `name` stands for the file in errors; overrides as in `load`.
@@ -29,9 +25,9 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<Stri
 #[pyo3(signature = (text, overrides=None, *, name="scene"))]
 pub(crate) fn parse(
     py: Python<'_>,
-    text: String,
+    text: &str,
     overrides: Option<HashMap<String, f64>>,
     name: &str,
 ) -> PyResult<System> {
-    System::parse(py, name, text, overrides.into_iter().flatten().collect())
+    System::parse(py, name, text, &overrides.into_iter().flatten().collect())
 }

@@ -33,24 +33,21 @@ use crate::{arguments, background, errors};
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
     scene: Mutex<Scene>,
-    /// The text that the scene was read from, and what was put in the place of some of its numbers.
-    text: String,
-    overrides: Overrides,
 }
 
 /// Name to number.
 pub(crate) type Overrides = Vec<(String, f64)>;
 
 impl System {
-    /// The system of a scene that was read from `text`.
-    pub(crate) fn of(scene: Scene, text: String, overrides: Overrides) -> System {
-        System { scene: Mutex::new(scene), text, overrides }
+    /// The system of a scene.
+    pub(crate) fn of(scene: Scene) -> System {
+        System { scene: Mutex::new(scene) }
     }
 
     /// A system from the text of a scene.
-    pub(crate) fn parse(py: Python<'_>, name: &str, text: String, overrides: Overrides) -> PyResult<System> {
-        let scene = py.detach(|| Scene::parse_with(name, &text, &overrides));
-        Ok(System::of(scene.map_err(|error| errors::scene(py, &error))?, text, overrides))
+    pub(crate) fn parse(py: Python<'_>, name: &str, text: &str, overrides: &Overrides) -> PyResult<System> {
+        let scene = py.detach(|| Scene::parse_with(name, text, overrides));
+        Ok(System::of(scene.map_err(|error| errors::scene(py, &error))?))
     }
 
     /// The scene. No lock of Python is waited for while it is held.
@@ -108,7 +105,7 @@ impl System {
             multipliers,
             duration,
         })?;
-        System::parse(py, name, text, Overrides::new())
+        System::parse(py, name, &text, &Overrides::new())
     }
 
     /// Name: that of the file without its ending.
@@ -332,7 +329,7 @@ impl System {
     /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...).
     /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
     /// threads: 0 for one a processor; results do not depend on it. Else as in `solve`, constants for all,
-    /// and time_limit for one run of all members.
+    /// and time_limit for one run of 4096 members.
     ///
     /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
@@ -361,12 +358,13 @@ impl System {
         let (scene, given) = (self.scene().clone(), constants.is_some());
         let choice = arguments::choice(&scene, formulation, removal, constants)?;
         let (times, end) = ensemble::times(times, &scene)?;
-        let name = scene.name.clone();
-        let with = |values: Overrides| Scene::parse_with(&name, &self.text, &[&self.overrides[..], &values].concat());
         let varied = Varied::read(vary)?;
-        let task = ensemble::Task { varied, scene, with: &with, choice, given, times, end, settings, threads };
+        if let (true, Some(name)) = (given, varied.multiplier()) {
+            return Err(PyValueError::new_err(format!("{name} varies, and mu0 or constants fix it")));
+        }
+        let task = ensemble::Task { varied, scene, choice, times, end, settings, threads };
         let integrated = background::run(py, &interrupt, move || task.run())?;
-        Ensemble::new(py, integrated.map_err(|refused| ensemble::refused(py, refused))?)
+        Ensemble::new(py, integrated.map_err(errors::solve)?)
     }
 
     /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit

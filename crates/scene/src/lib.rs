@@ -54,10 +54,12 @@ mod removal;
 mod scene;
 mod section;
 mod start;
+mod starts;
 mod system;
 mod write;
 
 pub use error::{NameFault, SceneError, SceneErrorKind, Unavailable};
 pub use load::SIZE_LIMIT;
 pub use scene::Scene;
+pub use starts::{Start, Starts};
 pub use write::quoted;

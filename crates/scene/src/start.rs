@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use symbolic::Symbol;
+use symbolic::{Expr, Symbol};
 
 use super::context::Context;
 use super::section::Section;
 use crate::{SceneError, SceneErrorKind};
-use mechanics::{Completion, Quantity, Removal, StartData, StartError, State, complete_start};
+use mechanics::{Completion, Quantity, Removal, StartData, StartError, State, System, complete_start};
 
 /// The start state of the scene.
 pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State, Completion), SceneError> {
@@ -15,7 +15,7 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
     let mut project = false;
     let mut given = Vec::new();
     let mut written = context.written.clone();
-    let mut guess = Vec::new();
+    let (mut guess, mut guessed) = (Vec::new(), Vec::new());
     let mut place = context.root.get("system").map_or(0..0, |e| e.key_span);
     if let Some(start) = &start {
         place = start.span.clone();
@@ -24,15 +24,14 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         if let Some(velocities) = start.section("velocities")? {
             place = velocities.span.clone();
             given = rates(context, &velocities, removals.first())?;
-            for (entry, (symbol, _)) in velocities.entries().zip(&given) {
-                written.push((*symbol, context.written(&entry)?));
-            }
+            written.extend(expressions(context, &velocities, &given)?);
         }
         if let Some(section) = start.section("guess")? {
             guess = rates(context, &section, removals.first())?;
+            guessed = expressions(context, &section, &guess)?;
         }
     }
-    for (name, symbol) in rate_names(context, removals.first()) {
+    for (name, symbol) in rate_names(&context.system, removals.first()) {
         if let Some(value) = context.overrides.get(&name) {
             given.retain(|(s, _)| *s != symbol);
             given.push((symbol, value));
@@ -52,18 +51,27 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         let place = blamed(context, &error).unwrap_or(place);
         context.source.error(&place, SceneErrorKind::Start(error))
     });
-    completed.map(|(state, completion)| (state, Completion { written, ..completion }))
+    completed.map(|(state, completion)| (state, Completion { written, guessed, ..completion }))
 }
 
 /// Velocities of the coordinates, and rates of the first removal's own parameters.
-fn rate_names(context: &Context, removal: Option<&Removal>) -> Vec<(String, Symbol)> {
+pub(super) fn rate_names(system: &System, removal: Option<&Removal>) -> Vec<(String, Symbol)> {
     let own = removal.iter().flat_map(|r| &r.parameters).filter(|u| u.coordinate.is_none()).map(|u| u.rate);
-    let symbols = context.system.velocities().into_iter().chain(own);
-    symbols.map(|s| (context.system.graph.name(s), s)).collect()
+    let symbols = system.velocities().into_iter().chain(own);
+    symbols.map(|s| (system.graph.name(s), s)).collect()
+}
+
+/// What stands in a section, as it is written, with the symbols that [`rates`] has found for it.
+fn expressions(
+    context: &Context,
+    section: &Section,
+    rates: &[(Symbol, f64)],
+) -> Result<Vec<(Symbol, Expr)>, SceneError> {
+    section.entries().zip(rates).map(|(entry, (symbol, _))| Ok((*symbol, context.written(&entry)?))).collect()
 }
 
 fn rates(context: &Context, section: &Section, removal: Option<&Removal>) -> Result<Vec<(Symbol, f64)>, SceneError> {
-    let names = rate_names(context, removal);
+    let names = rate_names(&context.system, removal);
     let values = context.values_at_rest();
     let mut rates = Vec::new();
     for entry in section.entries() {

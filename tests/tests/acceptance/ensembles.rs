@@ -1,4 +1,5 @@
-//! Members of ensembles against motions derived and solved one by one, in every formulation of every scene.
+//! Members of ensembles against motions derived and solved one by one, in every formulation of every scene;
+//! their starts against those of the text with other numbers in it.
 
 use deltaq::{
     Choice, Ending, Ensemble, EnsembleOptions, EnsembleStart, Settings, choices, constants_of, error_estimate, forms,
@@ -8,7 +9,7 @@ use equations::Equations;
 use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use validation::catalogue::{SCENES, find};
+use validation::catalogue::{CLASSICS, SCENES, find};
 
 /// Not divisible by the number of lanes.
 const MEMBERS: usize = 11;
@@ -127,4 +128,57 @@ fn members_are_single_motions_in_every_formulation_of_every_scene() {
     for why in ["an event on the way", "not in lanes", "not to be trusted"] {
         assert!(count.alone.iter().any(|words| words.contains(why)), "no member left for `{why}`: {count:?}");
     }
+}
+
+/// Names of what can vary in a scene, with values there and nearby.
+fn variations(base: &Scene) -> Vec<(String, f64)> {
+    let system = &base.system;
+    let parameters = system.parameters.iter().map(|p| (system.graph.name(p.symbol), p.value));
+    let coordinates = system.coordinates.iter().zip(&base.start.q).map(|(c, &q)| (c.name.clone(), q));
+    let velocities = system.coordinates.iter().zip(&base.start.v).map(|(c, &v)| (format!("{}'", c.name), v));
+    let multipliers = base.multipliers.iter().zip(1..).map(|(&mu, i)| (format!("mu{i}"), mu));
+    let all: Vec<_> = parameters.chain(coordinates).chain(velocities).chain(multipliers).collect();
+    let nearby = |(name, x): &(String, f64)| [0.0, 0.07, -0.5].map(|part| (name.clone(), x + part * (1.0 + x.abs())));
+    all.iter().flat_map(nearby).collect()
+}
+
+#[test]
+fn starts_from_compiled_expressions_are_those_of_the_text_in_every_scene() {
+    let (mut agree, mut refused) = (0, 0);
+    for (name, _) in SCENES.iter().chain(CLASSICS) {
+        let base = find(name, &[]).expect("a scene");
+        let last = base.system.coordinates.last().expect("a coordinate").name.clone();
+        for (varied, value) in variations(&base) {
+            // alone, and beside another coordinate
+            for beside in
+                [&[][..], &[(last.clone(), 0.3)]].into_iter().filter(|b| b.first().is_none_or(|b| b.0 != varied))
+            {
+                let row = [&[(varied.clone(), value)], beside].concat();
+                let (names, numbers): (Vec<&str>, Vec<f64>) = row.iter().map(|(name, x)| (name.as_str(), *x)).unzip();
+                let read = find(name, &row);
+                let here = base.starts(&names).map_err(|error| error.to_string());
+                let here = here.and_then(|mut starts| starts.at(&numbers).map_err(|fault| fault.to_string()));
+                match (read, here) {
+                    (Ok(read), Ok(here)) => {
+                        let [q, v] = [(&here.state.q, &read.start.q), (&here.state.v, &read.start.v)];
+                        let size = |x: &[f64]| x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+                        for (a, b) in [q, v] {
+                            let off = a.iter().zip(b).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
+                            assert!(off <= 1e-14 * size(b), "{name}, {row:?}: {a:?} and {b:?}");
+                        }
+                        assert_eq!(
+                            (here.state.t, here.multipliers),
+                            (read.start.t, read.multipliers),
+                            "{name}, {row:?}"
+                        );
+                        agree += 1;
+                    }
+                    (Err(_), Err(_)) => refused += 1,
+                    (read, here) => panic!("{name}, {row:?}: {:?} of the text, {:?} here", read.err(), here.err()),
+                }
+            }
+        }
+    }
+    println!("{agree} starts agree, {refused} are refused");
+    assert!(agree > 1000 && refused > 100, "{agree} agree, {refused} refused");
 }

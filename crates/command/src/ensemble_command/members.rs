@@ -7,15 +7,18 @@ use scene::Scene;
 
 use crate::cli::{EnsembleArguments, MOST_MEMBERS, Range};
 
-/// Values of what varies, one row a member.
-#[derive(Clone, Debug, PartialEq)]
+/// Values of what varies, one row a member. Rows are made where they are needed.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Members {
     /// What varies.
     pub names: Vec<String>,
-    /// One value a name.
-    pub rows: Vec<Vec<f64>>,
     /// Where each name is from, for complaints.
     places: Vec<String>,
+    /// What the file says, row by row.
+    listed: Vec<f64>,
+    /// First value, last value and number of each range.
+    ranges: Vec<(f64, f64, usize)>,
+    count: usize,
 }
 
 impl Members {
@@ -23,7 +26,7 @@ impl Members {
     pub(crate) fn of(arguments: &EnsembleArguments, scene: &Scene) -> Result<Members> {
         let mut members = match &arguments.members {
             Some(path) => Members::read(path)?,
-            None => Members { names: Vec::new(), rows: vec![Vec::new()], places: Vec::new() },
+            None => Members { count: 1, ..Members::default() },
         };
         for range in &arguments.vary {
             members.combine(range)?;
@@ -53,15 +56,33 @@ impl Members {
         if let Some(i) = self.names.iter().position(|name| *name == range.name) {
             bail!("{place}: `{}` varies already: {}", range.name, self.places[i]);
         }
-        let count = self.rows.len().saturating_mul(range.count);
+        let count = self.count.saturating_mul(range.count);
         ensure!(count <= MOST_MEMBERS, "{place}: that makes {count} members; at most {MOST_MEMBERS} are possible");
-        let last = (range.count.max(2) - 1) as f64;
-        let value = |i: usize| range.from + (range.to - range.from) * i as f64 / last;
-        let row = |row: &Vec<f64>| (0..range.count).map(|i| [&row[..], &[value(i)]].concat()).collect::<Vec<_>>();
-        self.rows = self.rows.iter().flat_map(row).collect();
+        self.count = count;
+        self.ranges.push((range.from, range.to, range.count));
         self.names.push(range.name.clone());
         self.places.push(place);
         Ok(())
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// One value a name.
+    pub(crate) fn row(&self, member: usize) -> Vec<f64> {
+        let mut rest = member;
+        let mut values = Vec::with_capacity(self.names.len());
+        for &(from, to, count) in self.ranges.iter().rev() {
+            let last = (count.max(2) - 1) as f64;
+            values.push(from + (to - from) * (rest % count) as f64 / last);
+            rest /= count;
+        }
+        let listed = self.names.len() - self.ranges.len();
+        values.extend(self.listed[rest * listed..][..listed].iter().rev());
+        values.reverse();
+        values
     }
 
     /// Where the name is from, of which a fault of the scene says that it means nothing.
@@ -107,31 +128,28 @@ fn parse(file: &str, text: &str) -> Result<Members> {
         names.push(name.to_string());
         places.push(place);
     }
-    let mut rows = Vec::new();
+    let (mut listed, mut count) = (Vec::new(), 0);
     for (number, line) in lines {
-        let mut row = Vec::with_capacity(names.len());
+        let first = listed.len();
         for (column, cell) in cells(line) {
             let place = format!("{file}:{number}:{column}");
-            ensure!(
-                row.len() < names.len(),
-                "{place}: more numbers than the {} that the first line names",
-                names.len()
-            );
-            let name = &names[row.len()];
+            let Some(name) = names.get(listed.len() - first) else {
+                bail!("{place}: more numbers than the {} that the first line names", names.len());
+            };
             match cell.parse::<f64>() {
-                Ok(value) if value.is_finite() => row.push(value),
+                Ok(value) if value.is_finite() => listed.push(value),
                 Ok(value) => bail!("{place}: `{name}` is {value}; it must be finite"),
                 Err(_) => bail!("{place}: `{cell}` is not a number, for `{name}`"),
             }
         }
         let column = line.chars().count() + 1;
-        let (found, expected) = (row.len(), names.len());
+        let (found, expected) = (listed.len() - first, names.len());
         ensure!(found == expected, "{file}:{number}:{column}: {found} numbers; the first line names {expected}");
-        rows.push(row);
-        ensure!(rows.len() <= MOST_MEMBERS, "{file}:{number}:1: more than {MOST_MEMBERS} members");
+        count += 1;
+        ensure!(count <= MOST_MEMBERS, "{file}:{number}:1: more than {MOST_MEMBERS} members");
     }
-    ensure!(!rows.is_empty(), "{file}:{}:1: no members below the names", number + 1);
-    Ok(Members { names, rows, places })
+    ensure!(count > 0, "{file}:{}:1: no members below the names", number + 1);
+    Ok(Members { names, places, listed, ranges: Vec::new(), count })
 }
 
 #[cfg(test)]
@@ -146,7 +164,7 @@ mod tests {
     fn a_file_is_read_with_its_marks_and_blanks() {
         let members = parse("m.csv", "\u{feff}# slopes\n\n \"x'\" , g\r\n1, 2e0\r\n# no\r\n-3,4\n").unwrap();
         assert_eq!(members.names, ["x'", "g"]);
-        assert_eq!(members.rows, [[1.0, 2.0], [-3.0, 4.0]]);
+        assert_eq!((members.count(), members.row(0), members.row(1)), (2, vec![1.0, 2.0], vec![-3.0, 4.0]));
         assert_eq!(members.places, ["m.csv:3:2", "m.csv:3:9"]);
     }
 
@@ -167,10 +185,9 @@ mod tests {
         let mut members = parse("m.csv", "g\n1\n2\n").unwrap();
         members.combine(&Range { name: "k".into(), from: 0.1, to: 0.7, count: 3 }).unwrap();
         assert_eq!(members.names, ["g", "k"]);
-        assert_eq!(members.rows.len(), 6);
-        assert_eq!((&members.rows[2][..], &members.rows[3][..]), (&[1.0, 0.7][..], &[2.0, 0.1][..]));
+        assert_eq!((members.count(), members.row(2), members.row(3)), (6, vec![1.0, 0.7], vec![2.0, 0.1]));
         members.combine(&Range { name: "one".into(), from: 3.0, to: 5.0, count: 1 }).unwrap();
-        assert!(members.rows.len() == 6 && members.rows.iter().all(|row| row[2] == 3.0));
+        assert!(members.count() == 6 && (0..6).all(|i| members.row(i)[2] == 3.0));
         let error = members.combine(&Range { name: "g".into(), from: 0.0, to: 1.0, count: 2 }).unwrap_err();
         assert_eq!(error.to_string(), "--vary g=0..1:2: `g` varies already: m.csv:1:1");
         let error = members.combine(&Range { name: "x".into(), from: 0.0, to: 1.0, count: 999_999 }).unwrap_err();

@@ -14,6 +14,7 @@ use crate::columns::{Columns, print, row};
 const DESCRIBED: usize = 3;
 
 /// Wall-clock seconds spent.
+#[derive(Default)]
 pub(super) struct Seconds {
     pub(super) derive: f64,
     pub(super) start: f64,
@@ -49,7 +50,7 @@ impl Outcome {
     }
 }
 
-/// The answer of the command, written member by member.
+/// The answer of the command, piece by piece: a head, one piece a member, an end.
 pub(super) struct Answers<'a> {
     format: Format,
     scene: &'a Scene,
@@ -57,9 +58,8 @@ pub(super) struct Answers<'a> {
     columns: Columns,
     members: &'a Members,
     times: &'a [f64],
-    text: String,
-    values: Vec<Value>,
-    done: usize,
+    /// Members so far.
+    pub(super) done: usize,
     statuses: [usize; STATUSES.len()],
     described: Vec<String>,
 }
@@ -76,10 +76,6 @@ impl<'a> Answers<'a> {
         times: &'a [f64],
     ) -> Self {
         let columns = Columns::of(scene, equations);
-        let set = members.names.iter().map(|name| format!("set {name}"));
-        let end = ["error_estimate", "status", "cause"].map(String::from);
-        let names: Vec<String> =
-            std::iter::once("member".into()).chain(set).chain(columns.names()).chain(end).collect();
         Answers {
             format,
             scene,
@@ -87,51 +83,79 @@ impl<'a> Answers<'a> {
             columns,
             members,
             times,
-            text: names.join(",") + "\n",
-            values: Vec::new(),
             done: 0,
             statuses: [0; STATUSES.len()],
             described: Vec::new(),
         }
     }
 
+    /// Names of the columns of a table.
+    pub(super) fn names(&self) -> Vec<String> {
+        let set = self.members.names.iter().map(|name| format!("set {name}"));
+        let end = ["error_estimate", "status", "cause"].map(String::from);
+        std::iter::once("member".into()).chain(set).chain(self.columns.names()).chain(end).collect()
+    }
+
+    /// What stands before the members.
+    pub(super) fn head(&self) -> String {
+        if self.format == Format::Csv {
+            return self.names().join(",") + "\n";
+        }
+        let value = json!({
+            "scene": self.scene.name,
+            "formulation": self.choice.formulation,
+            "removal": self.choice.removal.as_ref().map(|r| &r.name),
+        });
+        pretty("ensemble", &value).trim_end_matches("\n}\n").to_string() + ",\n  \"members\": ["
+    }
+
     /// The next member.
-    pub(super) fn add(&mut self, outcome: Outcome) {
-        match self.format {
-            Format::Csv => self.add_rows(&outcome),
-            Format::Json => self.values.push(self.object(&outcome)),
+    pub(super) fn add(&mut self, outcome: &Outcome) -> String {
+        let text = match self.format {
+            Format::Csv => self.rows(self.done, outcome),
+            Format::Json => {
+                let comma = if self.done == 0 { "" } else { "," };
+                format!("{comma}\n{:#}", self.object(outcome)).replace('\n', "\n    ")
+            }
+        };
+        self.count(outcome.status, outcome.cause.as_deref());
+        text
+    }
+
+    /// Counts the next member.
+    pub(super) fn count(&mut self, status: &str, cause: Option<&str>) {
+        for (count, known) in self.statuses.iter_mut().zip(STATUSES) {
+            *count += usize::from(status == known);
         }
-        for (count, status) in self.statuses.iter_mut().zip(STATUSES) {
-            *count += usize::from(status == outcome.status);
-        }
-        if let Some(cause) = &outcome.cause
-            && self.described.len() < DESCRIBED
-        {
-            let names = self.members.names.iter().zip(&self.members.rows[self.done]);
+        if let Some(cause) = cause.filter(|_| self.described.len() < DESCRIBED) {
+            let row = self.members.row(self.done);
+            let names = self.members.names.iter().zip(row);
             let values: Vec<String> = names.map(|(name, value)| format!("{name} = {value}")).collect();
             self.described.push(format!("member {} ({}): {cause}", self.done + 1, values.join(", ")));
         }
         self.done += 1;
     }
 
+    /// How the rows of a member begin, if there is one of this number.
+    pub(super) fn begin(&self, member: usize) -> Option<String> {
+        (member < self.members.count()).then(|| format!("{},{},", member + 1, print(&self.members.row(member))))
+    }
+
     /// One row a time; one without numbers where nothing was reached.
-    fn add_rows(&mut self, outcome: &Outcome) {
-        let member = format!("{},{}", self.done + 1, print(&self.members.rows[self.done]));
+    pub(super) fn rows(&self, member: usize, outcome: &Outcome) -> String {
+        let begin = self.begin(member).unwrap_or_default();
         let cause = outcome.cause.as_ref().map_or(String::new(), |cause| format!("\"{}\"", cause.replace('"', "\"\"")));
         let estimate = outcome.error_estimate().map_or(String::new(), |e| format!("{e:?}"));
         let end = format!("{estimate},{},{}\n", outcome.status, cause.replace('\n', " "));
-        for (&t, now) in self.times.iter().zip(outcome.outputs()) {
-            self.text += &format!("{member},{},{end}", row(t, now));
-        }
         if outcome.outputs().is_empty() {
-            let empty = ",".repeat(self.columns.names().len() - 1);
-            self.text += &format!("{member},{empty},{end}");
+            return begin + &",".repeat(self.columns.names().len()) + &end;
         }
+        self.times.iter().zip(outcome.outputs()).map(|(&t, now)| format!("{begin}{},{end}", row(t, now))).collect()
     }
 
     fn object(&self, outcome: &Outcome) -> Value {
         let rows = outcome.outputs();
-        let values = self.members.names.iter().cloned().zip(self.members.rows[self.done].iter().map(|&x| json!(x)));
+        let values = self.members.names.iter().cloned().zip(self.members.row(self.done).into_iter().map(|x| json!(x)));
         let run = outcome.motion.as_ref().map(|motion| &motion.run);
         let mut value = json!({
             "set": values.collect::<Map<_, _>>(),
@@ -162,20 +186,18 @@ impl<'a> Answers<'a> {
         Some(text)
     }
 
-    pub(super) fn finish(self, seconds: Seconds) -> String {
+    /// What stands behind the members.
+    pub(super) fn end(&self, seconds: &Seconds) -> String {
         if self.format == Format::Csv {
-            return self.text;
+            return String::new();
         }
         let counts: Map<String, Value> =
             STATUSES.iter().zip(self.statuses).map(|(name, count)| (name.to_string(), json!(count))).collect();
+        let Seconds { start, derive, integrate } = seconds;
         let value = json!({
-            "scene": self.scene.name,
-            "formulation": self.choice.formulation,
-            "removal": self.choice.removal.as_ref().map(|r| &r.name),
             "count": counts,
-            "members": self.values,
-            "seconds": { "start": seconds.start, "derive": seconds.derive, "integrate": seconds.integrate },
+            "seconds": { "start": start, "derive": derive, "integrate": integrate },
         });
-        pretty("ensemble", &value)
+        format!("\n  ],{:#}\n", value).replacen("],{", "],", 1)
     }
 }

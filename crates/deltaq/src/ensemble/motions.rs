@@ -4,7 +4,7 @@ use equations::{Compiled, Outputs};
 
 use super::run::Outcome;
 use super::threads::shared;
-use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberRun};
+use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::error_estimate::Differences;
 use crate::metric::subtract;
 use crate::single_run::outputs;
@@ -63,30 +63,23 @@ impl Ensemble {
 }
 
 impl Ensemble {
-    /// [`Ensemble::members`] and [`Ensemble::motions`] of starts, where an `Err` is a member refused before.
+    /// [`Ensemble::motions`] of those members that there are.
     pub fn answers(
         &self,
-        starts: &[Result<EnsembleStart, String>],
+        members: Vec<Result<EnsembleMember, String>>,
         times: &[f64],
         options: &EnsembleOptions,
     ) -> Vec<Result<MemberMotion, String>> {
-        let members = of_the_rest(starts, |starts| self.members(starts, options.threads));
-        of_the_rest(&members, |members| self.motions(members, times, options))
+        let mut started = Vec::with_capacity(members.len());
+        let refused: Vec<Option<String>> =
+            members.into_iter().map(|member| member.map(|member| started.push(member)).err()).collect();
+        let mut motions = self.motions(&started, times, options).into_iter();
+        let answer = |cause: Option<String>| match cause {
+            Some(cause) => Some(Err(cause)),
+            None => motions.next().map(|motion| motion.map_err(|error| error.to_string())),
+        };
+        refused.into_iter().filter_map(answer).collect()
     }
-}
-
-/// What `work` makes of those that are not refused, which remain so.
-fn of_the_rest<A: Clone, B>(
-    given: &[Result<A, String>],
-    work: impl FnOnce(&[A]) -> Vec<Result<B, SolveError>>,
-) -> Vec<Result<B, String>> {
-    let rest: Vec<A> = given.iter().flatten().cloned().collect();
-    let mut made = work(&rest).into_iter();
-    let answer = |given: &Result<A, String>| match given {
-        Err(cause) => Some(Err(cause.clone())),
-        Ok(_) => made.next().map(|made| made.map_err(|error| error.to_string())),
-    };
-    given.iter().filter_map(answer).collect()
 }
 
 struct Reader<'a> {

@@ -5,7 +5,7 @@ use scene::Scene;
 use symbolic::LANES;
 
 use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart};
-use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, solve_choice};
+use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, constants_of, solve_choice};
 use integrate::Method;
 
 const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
@@ -73,7 +73,8 @@ fn run(ensemble: &Ensemble, members: &[EnsembleMember], times: &[f64], threads: 
 fn ready(scenes: &[Scene], formulation: &str, parameters: &[&str]) -> (Ensemble, Vec<EnsembleMember>) {
     let choice = choice(&scenes[0], formulation);
     let mut ensemble = Ensemble::new(&scenes[0], &choice, parameters, &settings()).unwrap();
-    let members = scenes.iter().map(|scene| ensemble.member(scene).unwrap()).collect();
+    let start = |scene| EnsembleStart::of(scene, parameters, constants_of(&choice, scene));
+    let members = scenes.iter().map(|scene| ensemble.member_at(&start(scene)).unwrap()).collect();
     (ensemble, members)
 }
 
@@ -118,11 +119,13 @@ fn what_is_no_member_is_refused() {
     let chetaev = choice(&base, "chetaev");
     let refused =
         |names: &[&str]| matches!(Ensemble::new(&base, &chetaev, names, &settings()), Err(SolveError::Member { .. }));
-    assert!(refused(&["beta"]) && refused(&["g", "g"]));
-    let mut ensemble = Ensemble::new(&base, &chetaev, &["g"], &settings()).unwrap();
-    assert!(ensemble.member(&scene(SLEDGE, &[("g", 3.0)])).is_ok());
-    let error = ensemble.member(&scene(SLEDGE, &[("alpha", 0.1)])).unwrap_err();
-    assert!(error.to_string().contains("alpha is 0.1 and not 0.4"), "{error}");
+    assert!(refused(&["g", "g"]) && refused(&["mu1"]));
+    let unknown = Ensemble::new(&base, &chetaev, &["g", "beta"], &settings());
+    assert!(matches!(unknown, Err(SolveError::Scene(fault)) if fault.kind.to_string().contains("`beta`")));
+    let mut ensemble = Ensemble::new(&base, &chetaev, &["g", "y'"], &settings()).unwrap();
+    assert!(ensemble.member(&[3.0, 0.5 * 0.3_f64.sin()]).is_ok());
+    assert!(ensemble.member(&[3.0, 3.0]).unwrap_err().contains("contradict"));
+    assert!(ensemble.member(&[f64::NAN, 0.0]).unwrap_err().contains("`g`"));
     for tolerance in [0.0, 1.0, -1e-9, f64::NAN, f64::INFINITY] {
         let settings = Settings { tolerance, ..settings() };
         let refused = Ensemble::new(&base, &chetaev, &[], &settings);
@@ -175,18 +178,17 @@ fn starts_and_natural_constants_do_not_depend_on_threads_and_order() {
     let scenes = sledges(LANES + 1);
     let base = scene(SLEDGE, &[]);
     let removed = choice(&base, "removed-constraint");
-    let mut ensemble = Ensemble::new(&base, &removed, &[], &settings()).unwrap();
-    let starts: Vec<EnsembleStart> =
-        scenes.iter().map(|scene| EnsembleStart::of(scene, &[], removed.constants.clone())).collect();
-    let members: Vec<EnsembleMember> = ensemble.members(&starts, 3).into_iter().map(Result::unwrap).collect();
-    for (start, member) in starts.iter().zip(&members).rev() {
-        assert_eq!(ensemble.member_at(start).unwrap(), *member);
+    let mut ensemble = Ensemble::new(&base, &removed, &["phi", "phi'"], &settings()).unwrap();
+    let rows: Vec<[f64; 2]> = scenes.iter().map(|scene| [scene.start.q[2], scene.start.v[2]]).collect();
+    let members: Vec<EnsembleMember> = ensemble.members(&rows, 3).into_iter().map(Result::unwrap).collect();
+    for (row, member) in rows.iter().zip(&members).rev() {
+        assert_eq!(ensemble.member(row).unwrap(), *member);
     }
     // P_x = g sin α (T − t), of the scene's own slope: parameters are those of the ensemble
     let natural = members.iter().map(|member| member.constants[0] - 9.81 * 0.4_f64.sin() * 10.0);
     assert!(natural.fold(0.0, |a: f64, x| a.max(x.abs())) < 1e-8);
-    let refused =
-        ensemble.answers(&[Ok(starts[0].clone()), Err("no start".into())], &[0.5], &EnsembleOptions::default());
+    let started = vec![Ok(members[0].clone()), Err("no start".into())];
+    let refused = ensemble.answers(started, &[0.5], &EnsembleOptions::default());
     assert!(refused[0].as_ref().is_ok_and(|motion| motion.status() == ("completed", None)));
     assert_eq!(refused[1].as_ref().unwrap_err(), "no start");
 }
@@ -220,7 +222,7 @@ fn an_interrupt_ends_members_on_the_way() {
     let endless = scene(SLEDGE, &[("duration", 1e9)]);
     let settings = Settings { interrupt: Some(interrupt.clone()), max_steps: usize::MAX, ..settings() };
     let mut ensemble = Ensemble::new(&endless, &choice(&endless, "chetaev"), &[], &settings).unwrap();
-    let members = vec![ensemble.member(&endless).unwrap(); 3];
+    let members = vec![ensemble.member(&[]).unwrap(); 3];
     std::thread::scope(|scope| {
         scope.spawn(|| {
             std::thread::sleep(std::time::Duration::from_millis(50));

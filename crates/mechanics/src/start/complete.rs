@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Symbol};
 
-use super::data::{Completion, StartData};
-use super::error::{StartError, check_lengths};
-use super::numeric::Problem;
-use super::project::project_velocity;
-use super::regularity::check_regularity;
-use super::velocities::solve_velocities;
+use super::data::{Completion, StartData, StartNumbers, StartShape};
+use super::error::StartError;
+use super::numeric::Residuals;
+use super::project::Projection;
+use super::regularity::Regularity;
+use super::velocities::VelocityProgram;
 use crate::newton::NewtonOptions;
 use crate::{Removal, State, System};
 
@@ -20,46 +20,84 @@ use crate::{Removal, State, System};
 ///
 /// # Errors
 /// [`StartError`].
+///
+/// [`check_regularity`]: super::check_regularity
 pub fn complete_start(system: &System, data: &StartData) -> Result<(State, Completion), StartError> {
-    let g = &system.graph;
-    let velocities = system.velocities();
-    let at_rest = State { t: data.time, q: data.positions.clone(), v: vec![0.0; data.positions.len()] };
-    check_lengths(system, &at_rest)?;
-    let mut known = system.values_at(&at_rest);
-    known.retain(|s, _| !velocities.contains(s));
-    known.extend(data.given.iter().map(|(&s, &x)| (s, x)));
+    let sorted = |map: &HashMap<Symbol, f64>| {
+        let mut pairs: Vec<(Symbol, f64)> = map.iter().map(|(&s, &x)| (s, x)).collect();
+        pairs.sort_by_key(|(s, _)| *s);
+        pairs.into_iter().unzip::<Symbol, f64, Vec<_>, Vec<_>>()
+    };
+    let ((given, rates), (guessed, guess)) = (sorted(&data.given), sorted(&data.guess));
+    let removal = data.removal;
+    let shape = StartShape { given: &given, guessed: &guessed, project: data.project, removal, varied: &[] };
+    let positions = data.positions.clone();
+    let numbers = StartNumbers { time: data.time, positions, given: rates, guess, varied: Vec::new() };
+    StartProgram::new(system, &shape).complete(&numbers)
+}
 
-    let by_rates = data.removal.filter(|_| data.given.keys().any(|s| !velocities.contains(s)));
-    let (equations, outputs) = match by_rates {
-        Some(removal) => parametrized(system, removal, data),
-        None => (system.constraints.clone(), g.variables(&velocities)),
-    };
-    let problem = Problem::new(system, equations, &outputs, known);
-    let v = solve_velocities(&problem, &outputs, data)?;
-    let mut state = State { v, ..at_rest };
-    let mut completion = Completion {
-        given: names(system, |s| data.given.contains_key(&s)),
-        supplied: names(system, |s| velocities.contains(&s) && !data.given.contains_key(&s)),
-        ..Completion::default()
-    };
-    if let Some(removal) = by_rates {
-        let given = removal.parameters.iter().filter(|u| u.coordinate.is_none() && data.given.contains_key(&u.rate));
-        completion.given.extend(given.map(|u| g.name(u.rate)));
+/// [`complete_start`], compiled for starts that differ by numbers only.
+#[derive(Clone)]
+pub struct StartProgram {
+    velocities: VelocityProgram,
+    regularity: Regularity,
+    projection: Option<Projection>,
+    constraints: Residuals,
+    /// Without figures.
+    completion: Completion,
+}
+
+impl StartProgram {
+    /// For starts of this shape.
+    pub fn new(system: &System, shape: &StartShape) -> Self {
+        let (g, velocities) = (&system.graph, system.velocities());
+        let by_rates = shape.removal.filter(|_| shape.given.iter().any(|s| !velocities.contains(s)));
+        let (equations, outputs) = match by_rates {
+            Some(removal) => parametrized(system, removal, shape),
+            None => (system.constraints.clone(), g.variables(&velocities)),
+        };
+        let mut completion = Completion {
+            given: names(system, |s| shape.given.contains(&s)),
+            supplied: names(system, |s| !shape.given.contains(&s)),
+            ..Completion::default()
+        };
+        if let Some(removal) = by_rates {
+            let own = removal.parameters.iter().filter(|u| u.coordinate.is_none() && shape.given.contains(&u.rate));
+            completion.given.extend(own.map(|u| g.name(u.rate)));
+        }
+        StartProgram {
+            velocities: VelocityProgram::new(system, shape, &equations, &outputs),
+            regularity: Regularity::new(system, shape.varied),
+            projection: shape.project.then(|| Projection::new(system, shape.varied)),
+            constraints: Residuals::new(system, shape.varied),
+            completion,
+        }
     }
-    check_regularity(system, &state)?;
-    if data.project {
-        let (projected, length) = project_velocity(system, &state)?;
-        state = projected;
-        check_regularity(system, &state)?;
-        completion.projected = Some(length);
+
+    /// The start with these numbers.
+    ///
+    /// # Errors
+    /// As [`complete_start`].
+    pub fn complete(&mut self, numbers: &StartNumbers) -> Result<(State, Completion), StartError> {
+        let varied = &numbers.varied;
+        let mut state = self.velocities.solve(numbers, &mut self.regularity)?;
+        let mut completion = self.completion.clone();
+        self.regularity.check(&state, varied)?;
+        if let Some(projection) = &mut self.projection {
+            let (projected, length) = projection.project(&mut self.regularity, &state, varied)?;
+            state = projected;
+            self.regularity.check(&state, varied)?;
+            completion.projected = Some(length);
+        }
+        let residuals = self.constraints.relative(&state, varied)?.into_iter().zip(1..);
+        let (residual, constraint) = residuals.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0));
+        let limit = NewtonOptions::default().limit;
+        if residual > limit {
+            return Err(StartError::Contradictory { constraint, residual, limit });
+        }
+        completion.residual = residual;
+        Ok((state, completion))
     }
-    let (constraint, residual) = worst_constraint(system, &state)?;
-    let limit = NewtonOptions::default().limit;
-    if residual > limit {
-        return Err(StartError::Contradictory { constraint, residual, limit });
-    }
-    completion.residual = residual;
-    Ok((state, completion))
 }
 
 fn names(system: &System, select: impl Fn(Symbol) -> bool) -> Vec<String> {
@@ -67,27 +105,19 @@ fn names(system: &System, select: impl Fn(Symbol) -> bool) -> Vec<String> {
 }
 
 /// Equations for the variables of a removal, and the velocities as expressions in them.
-fn parametrized(system: &System, removal: &Removal, data: &StartData) -> (Vec<Expr>, Vec<Expr>) {
+fn parametrized(system: &System, removal: &Removal, shape: &StartShape) -> (Vec<Expr>, Vec<Expr>) {
     let g = &system.graph;
     let rates = removal.velocities(system);
     let as_rates: HashMap<Symbol, Expr> = system.velocities().into_iter().zip(rates.iter().copied()).collect();
-    let start = removal.start.iter().filter(|(s, _)| !data.given.contains_key(s));
+    let start = removal.start.iter().filter(|(s, _)| !shape.given.contains(s));
     let mut equations: Vec<Expr> = start.map(|(&s, &e)| g.sub(g.variable(s), g.substitute(e, &as_rates))).collect();
     equations.sort();
     for (i, c) in system.coordinates.iter().enumerate() {
         equations.push(g.sub(removal.coordinates[i], g.variable(c.position)));
-        if data.given.contains_key(&c.velocity) {
+        if shape.given.contains(&c.velocity) {
             equations.push(g.sub(rates[i], g.variable(c.velocity)));
         }
     }
     equations.retain(|&e| !g.is_zero(e));
     (equations, rates)
-}
-
-/// Number of the constraint, from 1, with the largest relative residual, and that residual.
-fn worst_constraint(system: &System, state: &State) -> Result<(usize, f64), StartError> {
-    let problem = Problem::new(system, system.constraints.clone(), &[], system.values_at(state));
-    let residuals = problem.relative_residuals()?;
-    let worst = residuals.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-    Ok(worst.map_or((0, 0.0), |(i, residual)| (i + 1, residual)))
 }

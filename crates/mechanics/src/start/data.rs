@@ -23,6 +23,36 @@ pub struct StartData<'a> {
     pub removal: Option<&'a Removal>,
 }
 
+/// What is given of starts that differ by numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StartShape<'a> {
+    /// Symbols of [`StartData::given`].
+    pub given: &'a [Symbol],
+    /// Symbols of [`StartData::guess`].
+    pub guessed: &'a [Symbol],
+    /// [`StartData::project`].
+    pub project: bool,
+    /// [`StartData::removal`].
+    pub removal: Option<&'a Removal>,
+    /// Parameters that vary.
+    pub varied: &'a [Symbol],
+}
+
+/// The numbers of one start, in the order of their symbols.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StartNumbers {
+    /// `t₀`.
+    pub time: f64,
+    /// `q₀`, length n.
+    pub positions: Vec<f64>,
+    /// Of [`StartShape::given`].
+    pub given: Vec<f64>,
+    /// Of [`StartShape::guessed`].
+    pub guess: Vec<f64>,
+    /// Of [`StartShape::varied`].
+    pub varied: Vec<f64>,
+}
+
 /// How the start velocities came about.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Completion {
@@ -37,4 +67,6 @@ pub struct Completion {
     /// Positions and given velocities or rates as they were written, in parameters, time and earlier
     /// positions: exact where the state is rounded. Empty where there are numbers only.
     pub written: Vec<(Symbol, Expr)>,
+    /// Guesses of the others likewise, in parameters, time and positions.
+    pub guessed: Vec<(Symbol, Expr)>,
 }

@@ -2,9 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use symbolic::{Evaluator, Symbol};
+
 use super::error::{StartError, check_lengths};
-use super::numeric::AtState;
-use super::regularity::check_constraints;
+use super::numeric::{AtState, Program, state_symbols};
+use super::regularity::Regularity;
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, solve};
 use crate::{State, System};
 
@@ -18,28 +20,56 @@ use crate::{State, System};
 /// [`StartError::WrongLength`]; those of [`check_regularity`](super::check_regularity).
 pub fn project_velocity(system: &System, state: &State) -> Result<(State, f64), StartError> {
     check_lengths(system, state)?;
-    check_constraints(system, state)?;
-    let (n, h) = (system.dimension(), system.constraints.len());
-    if h == 0 {
-        return Ok((state.clone(), 0.0));
-    }
-    let mass = mass_matrix(system, state)?;
-    let mut equations = Equations::new(system, state, &mass)?;
-    let root = solve(|x| equations.evaluate(x), DVector::zeros(n + h), &NewtonOptions::default())
-        .map_err(StartError::Projection)?;
-    let change = root.x.rows(0, n).into_owned();
-    if !change.iter().all(|x| x.is_finite()) {
-        return Err(StartError::Projection(NewtonError::NotFinite { iteration: root.iterations }));
-    }
-    let length = change.dot(&(&mass * &change)).abs().sqrt();
-    let v = state.v.iter().zip(change.iter()).map(|(v, dv)| v + dv).collect();
-    Ok((State { t: state.t, q: state.q.clone(), v }, length))
+    Projection::new(system, &[]).project(&mut Regularity::new(system, &[]), state, &[])
 }
 
-fn mass_matrix(system: &System, state: &State) -> Result<DMatrix<f64>, StartError> {
-    let n = system.dimension();
-    let mut numeric = AtState::new(system, system.velocity_hessian().entries())?;
-    Ok(DMatrix::from_row_slice(n, n, numeric.at(state)))
+/// [`project_velocity`] compiled for values of some parameters.
+#[derive(Clone)]
+pub(super) struct Projection {
+    mass: AtState,
+    /// `f`, `A` row-major, `∂f/∂q` row-major, then `∂A/∂v`, one n×n block a constraint.
+    constraints: Program<f64>,
+    /// h and n.
+    shape: (usize, usize),
+}
+
+impl Projection {
+    pub(super) fn new(system: &System, varied: &[Symbol]) -> Self {
+        let g = &system.graph;
+        let a = system.constraint_jacobian();
+        let by_positions = g.jacobian(&system.constraints, &system.positions());
+        let bent = g.jacobian(a.entries(), &system.velocities());
+        let outputs = [&system.constraints[..], a.entries(), by_positions.entries(), bent.entries()];
+        Projection {
+            mass: AtState::new(system, varied, system.velocity_hessian().entries()),
+            constraints: Program::new(system, &state_symbols(system, varied), &outputs.concat()),
+            shape: (system.constraints.len(), system.dimension()),
+        }
+    }
+
+    pub(super) fn project(
+        &mut self,
+        regularity: &mut Regularity,
+        state: &State,
+        varied: &[f64],
+    ) -> Result<(State, f64), StartError> {
+        regularity.check_constraints(state, varied)?;
+        let (h, n) = self.shape;
+        if h == 0 {
+            return Ok((state.clone(), 0.0));
+        }
+        let mass = DMatrix::from_row_slice(n, n, self.mass.at(state, varied)?);
+        let mut equations = Equations::new(state, &mass, self.constraints.evaluator()?, h, varied);
+        let root = solve(|x| equations.evaluate(x), DVector::zeros(n + h), &NewtonOptions::default())
+            .map_err(StartError::Projection)?;
+        let change = root.x.rows(0, n).into_owned();
+        if !change.iter().all(|x| x.is_finite()) {
+            return Err(StartError::Projection(NewtonError::NotFinite { iteration: root.iterations }));
+        }
+        let length = change.dot(&(&mass * &change)).abs().sqrt();
+        let v = state.v.iter().zip(change.iter()).map(|(v, dv)| v + dv).collect();
+        Ok((State { t: state.t, q: state.q.clone(), v }, length))
+    }
 }
 
 /// The stationarity conditions in `(δv, κ/σ)`; the factor `σ` makes `M` and `σ Aᵀ` of one size.
@@ -48,31 +78,30 @@ struct Equations<'a> {
     mass: &'a DMatrix<f64>,
     constraints: usize,
     sigma: f64,
-    /// Outputs: `f`, `A` row-major, `∂f/∂q` row-major, then `∂A/∂v`, one n×n block a constraint.
-    numeric: AtState,
+    numeric: &'a mut Evaluator<f64>,
+    varied: &'a [f64],
 }
 
 impl<'a> Equations<'a> {
-    fn new(system: &System, state: &'a State, mass: &'a DMatrix<f64>) -> Result<Self, StartError> {
-        let g = &system.graph;
-        let (n, h) = (system.dimension(), system.constraints.len());
-        let a = system.constraint_jacobian();
-        let mut outputs = system.constraints.clone();
-        outputs.extend(a.entries());
-        outputs.extend(g.jacobian(&system.constraints, &system.positions()).entries());
-        outputs.extend(g.jacobian(a.entries(), &system.velocities()).entries());
-        let mut numeric = AtState::new(system, &outputs)?;
-        let a = DMatrix::from_row_slice(h, n, &numeric.at(state)[h..h + h * n]);
+    fn new(
+        state: &'a State,
+        mass: &'a DMatrix<f64>,
+        numeric: &'a mut Evaluator<f64>,
+        constraints: usize,
+        varied: &'a [f64],
+    ) -> Self {
+        let (n, h) = (mass.nrows(), constraints);
+        let values = numeric.evaluate(&[&state.q[..], &state.v, &[state.t], varied].concat());
+        let a = DMatrix::from_row_slice(h, n, &values[h..h + h * n]);
         let sigma = mass.amax() / a.amax();
         let sigma = if sigma > 0.0 && sigma.is_finite() { sigma } else { 1.0 };
-        Ok(Equations { state, mass, constraints: h, sigma, numeric })
+        Equations { state, mass, constraints, sigma, numeric, varied }
     }
 
     fn evaluate(&mut self, x: &DVector<f64>) -> Evaluation {
         let (n, h) = (self.mass.nrows(), self.constraints);
         let v: Vec<f64> = self.state.v.iter().zip(x.iter()).map(|(v, dv)| v + dv).collect();
-        let state = State { t: self.state.t, q: self.state.q.clone(), v };
-        let values = self.numeric.at(&state);
+        let values = self.numeric.evaluate(&[&self.state.q[..], &v, &[self.state.t], self.varied].concat());
         let a = DMatrix::from_row_slice(h, n, &values[h..h + h * n]);
         let by_position = DMatrix::from_row_slice(h, n, &values[h + h * n..h + 2 * h * n]);
         let hessians = &values[h + 2 * h * n..];
@@ -82,8 +111,8 @@ impl<'a> Equations<'a> {
         residual.rows_mut(n, h).copy_from_slice(&values[..h]);
         let mut magnitude = DVector::zeros(n + h);
         magnitude.rows_mut(0, n).copy_from(&(self.mass.abs() * change.abs() + a.abs().tr_mul(&multiplier.abs())));
-        let speeds = DVector::from_column_slice(&state.v).abs();
-        let places = DVector::from_column_slice(&state.q).abs();
+        let speeds = DVector::from_column_slice(&v).abs();
+        let places = DVector::from_column_slice(&self.state.q).abs();
         magnitude.rows_mut(n, h).copy_from(&(a.abs() * speeds + by_position.abs() * places));
         let mut jacobian = DMatrix::zeros(n + h, n + h);
         for i in 0..n {

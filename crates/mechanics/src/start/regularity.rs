@@ -1,7 +1,7 @@
 //! Whether a system has well-posed equations of motion at a point, whatever its units.
 
 use nalgebra::{DMatrix, DVector};
-use symbolic::Xorshift;
+use symbolic::{Symbol, Xorshift};
 
 use super::error::{Quantity, StartError, check_lengths};
 use super::numeric::AtState;
@@ -25,10 +25,7 @@ const DISTANCE: f64 = 1e-2;
 /// [`StartError::NotFinite`], [`StartError::DependentConstraints`], [`StartError::SingularMassMatrix`].
 pub fn check_regularity(system: &System, state: &State) -> Result<(), StartError> {
     check_lengths(system, state)?;
-    check_finite(system, state)?;
-    let scaled = ScaledMatrices::new(system, state)?;
-    scaled.check_constraints()?;
-    scaled.check_mass()
+    Regularity::new(system, &[]).check(state, &[])
 }
 
 /// `A` in units that make its entries of order 1, the factors of its rows, the ratio of its singular values.
@@ -36,31 +33,61 @@ pub(super) fn scaled_constraint_jacobian(
     system: &System,
     state: &State,
 ) -> Result<(DMatrix<f64>, DVector<f64>, f64), StartError> {
-    let scaled = ScaledMatrices::new(system, state)?;
+    let scaled = Regularity::new(system, &[]).scaled(state, &[])?;
     let ratio = scaled.check_constraints()?;
     Ok((scaled.constraint_jacobian, scaled.rows, ratio))
 }
 
-/// Checks the constraint Jacobian alone.
-pub(super) fn check_constraints(system: &System, state: &State) -> Result<(), StartError> {
-    ScaledMatrices::new(system, state)?.check_constraints().map(|_| ())
+/// What [`check_regularity`] checks, compiled for values of some parameters.
+#[derive(Clone)]
+pub(super) struct Regularity {
+    /// `L`, `f` and `Q`, one by one: faults have a name.
+    finite: Vec<(Quantity, AtState)>,
+    /// `A`, then `M`.
+    entries: AtState,
+    /// h and n.
+    shape: (usize, usize),
 }
 
-fn check_finite(system: &System, state: &State) -> Result<(), StartError> {
-    let quantities = std::iter::once((Quantity::Lagrangian, system.lagrangian))
-        .chain(system.constraints.iter().enumerate().map(|(i, &f)| (Quantity::Constraint(i + 1), f)))
-        .chain(system.forces.iter().zip(&system.coordinates).map(|(&f, c)| (Quantity::Force(c.name.clone()), f)));
-    for (quantity, e) in quantities {
-        let value = match AtState::new(system, &[e]) {
-            Ok(mut numeric) => numeric.at(state)[0],
-            Err(symbolic::CompileError::NotFinite { .. }) => f64::NAN,
-            Err(error) => return Err(error.into()),
-        };
-        if !value.is_finite() {
-            return Err(StartError::NotFinite { quantity, value });
+impl Regularity {
+    pub(super) fn new(system: &System, varied: &[Symbol]) -> Self {
+        let constraints = system.constraints.iter().enumerate();
+        let forces = system.forces.iter().zip(&system.coordinates);
+        let quantities = std::iter::once((Quantity::Lagrangian, system.lagrangian))
+            .chain(constraints.map(|(i, &f)| (Quantity::Constraint(i + 1), f)))
+            .chain(forces.map(|(&f, c)| (Quantity::Force(c.name.clone()), f)));
+        let entries = [system.constraint_jacobian().entries(), system.velocity_hessian().entries()].concat();
+        Regularity {
+            finite: quantities.map(|(quantity, e)| (quantity, AtState::new(system, varied, &[e]))).collect(),
+            entries: AtState::new(system, varied, &entries),
+            shape: (system.constraints.len(), system.dimension()),
         }
     }
-    Ok(())
+
+    pub(super) fn check(&mut self, state: &State, varied: &[f64]) -> Result<(), StartError> {
+        for (quantity, numeric) in &mut self.finite {
+            let value = match numeric.at(state, varied) {
+                Ok(values) => values[0],
+                Err(symbolic::CompileError::NotFinite { .. }) => f64::NAN,
+                Err(error) => return Err(error.into()),
+            };
+            if !value.is_finite() {
+                return Err(StartError::NotFinite { quantity: quantity.clone(), value });
+            }
+        }
+        let scaled = self.scaled(state, varied)?;
+        scaled.check_constraints()?;
+        scaled.check_mass()
+    }
+
+    /// Checks the constraint Jacobian alone.
+    pub(super) fn check_constraints(&mut self, state: &State, varied: &[f64]) -> Result<(), StartError> {
+        self.scaled(state, varied)?.check_constraints().map(|_| ())
+    }
+
+    fn scaled(&mut self, state: &State, varied: &[f64]) -> Result<ScaledMatrices, StartError> {
+        ScaledMatrices::new(&mut self.entries, self.shape, state, varied)
+    }
 }
 
 /// `A` and `M` in units in which their entries are of order 1 near the start.
@@ -72,19 +99,15 @@ struct ScaledMatrices {
 }
 
 impl ScaledMatrices {
-    fn new(system: &System, state: &State) -> Result<Self, StartError> {
-        let (n, h) = (system.dimension(), system.constraints.len());
-        let mut entries = system.constraint_jacobian().entries().to_vec();
-        entries.extend(system.velocity_hessian().entries());
-        let mut numeric = AtState::new(system, &entries)?;
-        let here = numeric.at(state).to_vec();
+    fn new(entries: &mut AtState, (h, n): (usize, usize), state: &State, varied: &[f64]) -> Result<Self, StartError> {
+        let here = entries.at(state, varied)?.to_vec();
         if let Some(place) = here.iter().position(|x| !x.is_finite()) {
             let quantity = if place < h * n { Quantity::ConstraintJacobian } else { Quantity::MassMatrix };
             return Err(StartError::NotFinite { quantity, value: here[place] });
         }
         let mut usual: Vec<f64> = here.iter().map(|x| x.abs()).collect();
         for point in 0..POINTS {
-            for (u, x) in usual.iter_mut().zip(numeric.at(&nearby(state, point))) {
+            for (u, x) in usual.iter_mut().zip(entries.at(&nearby(state, point), varied)?) {
                 if x.is_finite() {
                     *u = u.max(x.abs());
                 }
@@ -109,7 +132,10 @@ impl ScaledMatrices {
         if self.constraint_jacobian.nrows() == 0 {
             return Ok(1.0);
         }
-        let values = decompose(&self.constraint_jacobian)?.values;
+        let values = match self.constraint_jacobian.nrows() {
+            1 => DVector::from_element(1, self.constraint_jacobian.norm()),
+            _ => decompose(&self.constraint_jacobian)?.values,
+        };
         let (ratio, singular_values) = ratio(&values);
         if ratio > SINGULAR_LIMIT {
             return Ok(ratio);
@@ -117,7 +143,20 @@ impl ScaledMatrices {
         Err(StartError::DependentConstraints { singular_values, ratio, limit: SINGULAR_LIMIT })
     }
 
+    /// Whether the circles of Gershgorin tell that `M`, and with it `NᵀMN`, is far from singular.
+    fn is_dominant(&self) -> bool {
+        let circles = self.mass.row_iter().enumerate().map(|(i, row)| {
+            let sizes: f64 = row.iter().map(|x| x.abs()).sum();
+            (row[i] + row[i].abs() - sizes, sizes)
+        });
+        let (least, largest) = circles.fold((f64::INFINITY, 1.0_f64), |(a, b), (c, d)| (a.min(c), b.max(d)));
+        least > SINGULAR_LIMIT * largest
+    }
+
     fn check_mass(&self) -> Result<(), StartError> {
+        if self.is_dominant() {
+            return Ok(());
+        }
         let (h, n) = self.constraint_jacobian.shape();
         let padded = self.constraint_jacobian.clone().resize(n, n, 0.0);
         let svd = decompose(&padded)?;

@@ -6,9 +6,9 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::{Bounded, Expr, Symbol};
 
 use super::error::{StartError, check_lengths};
-use super::numeric::{Problem, Solved, bounded};
-use crate::newton::{Evaluation, NewtonOptions};
-use crate::{Removal, State, System};
+use super::numeric::{AtState, OPEN, Problem, Program, Solved, bounded, state_symbols};
+use crate::newton::{Evaluation, NewtonOptions, Root};
+use crate::{DisplacementParameter, Removal, State, System};
 
 /// Numbers for the variables of a parametrization at the start, with `q(u̇, u, w, t) = q₀` and `q̇ = v₀`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,71 +46,99 @@ impl RemovalStart {
 /// contradicts it; [`StartError::WrongLength`]; [`StartError::Evaluation`].
 pub fn complete_removal_start(system: &System, removal: &Removal, state: &State) -> Result<RemovalStart, StartError> {
     check_lengths(system, state)?;
-    let g = &system.graph;
-    let limit = NewtonOptions::default().limit;
-    let fault = |residual| StartError::RemovalStart { removal: removal.name.clone(), residual, limit };
-    let mut known = system.values_at(state);
-    known.extend(start_values(system, removal, &known)?);
-    if !known.values().all(|x| x.is_finite()) {
-        return Err(fault(f64::INFINITY));
-    }
-    let variables: Vec<Symbol> = removal
-        .parameters
-        .iter()
-        .flat_map(|u| [u.symbol, u.rate])
-        .chain(removal.memory.iter().map(|w| w.symbol))
-        .collect();
-    let mut problem = Problem::new(system, removal.residuals(system), &g.variables(&variables), known);
-    problem.results = system.velocities().into_iter().zip(velocity_sizes(system, state)?).collect();
-    let mut smallest = f64::INFINITY;
-    for default in [0.0, 1.0, -1.0, 0.1, -0.1] {
-        match problem.solve(&HashMap::new(), default)? {
-            Solved::Root(root) => {
-                let values = problem.values(&root);
-                let (_, open) = problem.outputs(&g.variables(&problem.unknowns), &root)?;
-                let pick = |s: Symbol| values.get(&s).map(|&x| (s, x));
-                return Ok(RemovalStart {
-                    parameters: removal.parameters.iter().filter_map(|u| pick(u.symbol)).collect(),
-                    rates: removal.parameters.iter().filter_map(|u| pick(u.rate)).collect(),
-                    second_rates: removal.parameters.iter().filter_map(|u| pick(u.second_rate)).collect(),
-                    memory: removal.memory.iter().filter_map(|w| pick(w.symbol)).collect(),
-                    free: problem.unknowns.iter().zip(open).filter_map(|(&s, open)| open.then_some(s)).collect(),
-                    residual: root.residual,
-                });
-            }
-            Solved::LeastSquares(root) => smallest = root.residual.min(smallest),
-            Solved::Nowhere => {}
+    RemovalProgram::new(system, removal, &[]).start(state, &[])
+}
+
+/// [`complete_removal_start`], compiled for values of some parameters.
+#[derive(Clone)]
+pub struct RemovalProgram {
+    /// Name of the removal.
+    name: String,
+    /// Symbols of `u`, `u̇`, `ü` and `w`.
+    variables: [Vec<Symbol>; 4],
+    /// What [`Removal::start`] names, then `q, v, t` and the parameters that vary.
+    known: Vec<Symbol>,
+    /// Values of the first of these.
+    given: AtState,
+    problem: Problem,
+    /// `f` with the sizes of its terms, and `A`.
+    constraints: Program<Bounded>,
+    /// h and n.
+    shape: (usize, usize),
+}
+
+impl RemovalProgram {
+    /// For values of the parameters `varied`.
+    pub fn new(system: &System, removal: &Removal, varied: &[Symbol]) -> Self {
+        let g = &system.graph;
+        let of = |pick: fn(&DisplacementParameter) -> Symbol| removal.parameters.iter().map(pick).collect();
+        let memory = removal.memory.iter().map(|w| w.symbol).collect();
+        let variables: [Vec<Symbol>; 4] = [of(|u| u.symbol), of(|u| u.rate), of(|u| u.second_rate), memory];
+        let sought = [0, 1, 3].map(|i: usize| g.variables(&variables[i])).concat();
+        let (given, expressions): (Vec<Symbol>, Vec<Expr>) = removal.start.iter().map(|(&s, &e)| (s, e)).unzip();
+        let at_state = state_symbols(system, varied);
+        let known = [given, at_state.clone()].concat();
+        let constraints = [&system.constraints[..], system.constraint_jacobian().entries()].concat();
+        RemovalProgram {
+            name: removal.name.clone(),
+            variables,
+            given: AtState::new(system, varied, &expressions),
+            problem: Problem::new(system, &removal.residuals(system), &sought, &known, &system.velocities()),
+            known,
+            constraints: Program::new(system, &at_state, &constraints),
+            shape: (system.constraints.len(), system.dimension()),
         }
     }
-    Err(fault(smallest))
-}
 
-/// What was added up to each velocity, for constraints give it by way of their terms: `Σ |A⁺| |terms of f|`.
-///
-/// So a velocity that vanishes is known to the round-off of what cancelled in it, and not to that of itself.
-fn velocity_sizes(system: &System, state: &State) -> Result<Vec<f64>, StartError> {
-    let (n, h) = (system.dimension(), system.constraints.len());
-    let inputs = [system.positions(), system.velocities(), vec![system.time]].concat();
-    let point = [&state.q[..], &state.v, &[state.t]].concat();
-    let jacobian = system.graph.jacobian(&system.constraints, &system.velocities());
-    let mut measured = system.evaluator(&inputs, &[&system.constraints[..], jacobian.entries()].concat())?;
-    let (constraints, entries) = measured.evaluate(&bounded(&point)).split_at(h);
-    let jacobian = DMatrix::from_row_iterator(h, n, entries.iter().map(|e| e.value));
-    let residual = DVector::from_iterator(h, constraints.iter().map(|f| f.value));
-    let finite = |f: &Bounded| Some(f.magnitude).filter(|size| size.is_finite()).unwrap_or(0.0);
-    let magnitude = DVector::from_iterator(h, constraints.iter().map(finite));
-    let evaluation = Evaluation { residual, jacobian, magnitude };
-    Ok(evaluation.sizes(&DVector::from_column_slice(&state.v))?)
-}
+    /// Start values at a state, for values of these parameters.
+    ///
+    /// # Errors
+    /// As [`complete_removal_start`].
+    pub fn start(&mut self, state: &State, varied: &[f64]) -> Result<RemovalStart, StartError> {
+        let limit = NewtonOptions::default().limit;
+        let mut known = self.given.at(state, varied)?.to_vec();
+        known.extend(state.q.iter().chain(&state.v).chain([&state.t]).chain(varied));
+        let mut smallest = f64::INFINITY;
+        if known.iter().all(|x| x.is_finite()) {
+            let sizes = self.velocity_sizes(state, varied)?;
+            for default in [0.0, 1.0, -1.0, 0.1, -0.1] {
+                let guess = vec![default; self.problem.unknowns.len()];
+                match self.problem.solve(&known, &sizes, &guess)? {
+                    Solved::Root(root) => return Ok(self.at(&root, &known)),
+                    Solved::LeastSquares(root) => smallest = root.residual.min(smallest),
+                    Solved::Nowhere => {}
+                }
+            }
+        }
+        Err(StartError::RemovalStart { removal: self.name.clone(), residual: smallest, limit })
+    }
 
-/// [`Removal::start`] as numbers.
-fn start_values(
-    system: &System,
-    removal: &Removal,
-    known: &HashMap<Symbol, f64>,
-) -> Result<Vec<(Symbol, f64)>, StartError> {
-    let (symbols, expressions): (Vec<Symbol>, Vec<Expr>) = removal.start.iter().map(|(&s, &e)| (s, e)).unzip();
-    let (inputs, point): (Vec<Symbol>, Vec<f64>) = known.iter().map(|(&s, &x)| (s, x)).unzip();
-    let mut numeric = system.evaluator(&inputs, &expressions)?;
-    Ok(symbols.into_iter().zip(numeric.evaluate(&point).iter().copied()).collect())
+    fn at(&self, root: &Root, known: &[f64]) -> RemovalStart {
+        let unknowns = &self.problem.unknowns;
+        let value = |s: Symbol| {
+            let values = unknowns.iter().zip(root.x.iter()).chain(self.known.iter().zip(known));
+            values.into_iter().find(|(symbol, _)| **symbol == s).map(|(_, &x)| (s, x))
+        };
+        let [parameters, rates, second_rates, memory] =
+            [0, 1, 2, 3].map(|i: usize| self.variables[i].iter().filter_map(|&s| value(s)).collect());
+        let open = |i: &usize| root.null_space.row(*i).norm() > OPEN;
+        let free = (0..unknowns.len()).filter(open).map(|i| unknowns[i]).collect();
+        RemovalStart { parameters, rates, second_rates, memory, free, residual: root.residual }
+    }
+
+    /// What was added up to each velocity, for constraints give it by way of their terms:
+    /// `Σ |A⁺| |terms of f|`.
+    ///
+    /// So a velocity that vanishes is known to the round-off of what cancelled in it, not to that of itself.
+    fn velocity_sizes(&mut self, state: &State, varied: &[f64]) -> Result<Vec<f64>, StartError> {
+        let (h, n) = self.shape;
+        let point = [&state.q[..], &state.v, &[state.t], varied].concat();
+        let (constraints, entries) = self.constraints.evaluator()?.evaluate(&bounded(&point)).split_at(h);
+        let jacobian = DMatrix::from_row_iterator(h, n, entries.iter().map(|e| e.value));
+        let residual = DVector::from_iterator(h, constraints.iter().map(|f| f.value));
+        let finite = |f: &Bounded| Some(f.magnitude).filter(|size| size.is_finite()).unwrap_or(0.0);
+        let magnitude = DVector::from_iterator(h, constraints.iter().map(finite));
+        let evaluation = Evaluation { residual, jacobian, magnitude };
+        Ok(evaluation.sizes(&DVector::from_column_slice(&state.v))?)
+    }
 }

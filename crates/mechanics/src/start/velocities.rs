@@ -1,11 +1,11 @@
 //! The velocities that were not given.
 
-use symbolic::Expr;
+use symbolic::{Expr, Symbol};
 
-use super::data::StartData;
+use super::data::{StartNumbers, StartShape};
 use super::error::StartError;
 use super::numeric::{Problem, Solved};
-use super::regularity::check_constraints;
+use super::regularity::Regularity;
 use crate::newton::Root;
 use crate::{State, System};
 
@@ -14,51 +14,92 @@ use crate::{State, System};
 const SAME: f64 = 1e-6;
 const ROUND_OFF: f64 = 1e-10;
 
-/// Solves `problem` and evaluates the velocities `outputs`; of contradictory equations by least squares.
-pub(super) fn solve_velocities(problem: &Problem, outputs: &[Expr], data: &StartData) -> Result<Vec<f64>, StartError> {
-    let mut roots: Vec<(Vec<f64>, Root)> = Vec::new();
-    let mut nearest: Option<Root> = None;
-    let guesses = guesses(problem, data);
-    for &guess in &guesses {
-        match problem.solve(&data.guess, guess)? {
-            Solved::Root(root) => {
-                let (v, _) = problem.outputs(outputs, &root)?;
-                if !roots.iter().any(|(other, _)| differing(&v, other).is_empty()) {
-                    roots.push((v, root));
-                }
-            }
-            Solved::LeastSquares(root) => {
-                if nearest.as_ref().is_none_or(|other| root.residual < other.residual) {
-                    nearest = Some(root);
-                }
-            }
-            Solved::Nowhere => {}
-        }
-    }
-    let root = match (&roots[..], &nearest) {
-        ([(_, root), ..], _) | ([], Some(root)) => root,
-        ([], None) => return Err(StartError::NotSolved { points: guesses.len() }),
-    };
-    let v = check_determined(problem, outputs, root, data)?;
-    if let [(first, _), (second, _), ..] = &roots[..] {
-        let differ = differing(first, second);
-        return Err(StartError::Ambiguous {
-            velocities: differ.iter().map(|&i| velocity_name(problem.system, i)).collect(),
-            first: differ.iter().map(|&i| first[i]).collect(),
-            second: differ.iter().map(|&i| second[i]).collect(),
-        });
-    }
-    Ok(v)
+/// The equations for the velocities that were not given, compiled.
+#[derive(Clone)]
+pub(super) struct VelocityProgram {
+    problem: Problem,
+    /// Names of the velocities.
+    names: Vec<String>,
+    /// Which number of a guess each unknown has.
+    guessed: Vec<Option<usize>>,
+    /// Whether more than one start of the search is needed.
+    several: bool,
 }
 
-/// Starts of unknowns without a guess: several, to see whether nonlinear equations have more solutions.
-fn guesses(problem: &Problem, data: &StartData) -> Vec<f64> {
-    if problem.is_linear() || !data.guess.is_empty() {
-        return vec![0.0];
+impl VelocityProgram {
+    /// `outputs` are the velocities.
+    pub(super) fn new(system: &System, shape: &StartShape, equations: &[Expr], outputs: &[Expr]) -> Self {
+        let known = [&system.positions()[..], &[system.time], shape.given, shape.varied].concat();
+        let problem = Problem::new(system, equations, outputs, &known, &[]);
+        let place = |unknown: &Symbol| shape.guessed.iter().position(|s| s == unknown);
+        VelocityProgram {
+            names: system.velocities().into_iter().map(|s| system.graph.name(s)).collect(),
+            guessed: problem.unknowns.iter().map(place).collect(),
+            several: !problem.is_linear && shape.guessed.is_empty(),
+            problem,
+        }
     }
-    let speed = data.given.values().fold(0.0_f64, |a, x| a.max(x.abs()));
-    let speed = if speed > 0.0 { speed } else { 1.0 };
-    vec![0.0, speed, -speed]
+
+    /// The state with these velocities; of contradictory equations by least squares. None may be open:
+    /// dependent constraints are the deeper fault and come first.
+    pub(super) fn solve(&mut self, numbers: &StartNumbers, regularity: &mut Regularity) -> Result<State, StartError> {
+        let StartNumbers { time, positions, given, guess, varied } = numbers;
+        let expected = self.names.len();
+        if positions.len() != expected {
+            return Err(StartError::WrongLength { found: positions.len(), expected });
+        }
+        let known = [&positions[..], &[*time], given, varied].concat();
+        let mut roots: Vec<(Vec<f64>, Vec<bool>)> = Vec::new();
+        let mut nearest: Option<Root> = None;
+        let guesses = self.guesses(given);
+        for &default in &guesses {
+            let start: Vec<f64> = self.guessed.iter().map(|place| place.map_or(default, |i| guess[i])).collect();
+            match self.problem.solve(&known, &[], &start)? {
+                Solved::Root(root) => {
+                    let (v, open) = self.problem.outputs(&known, &root)?;
+                    if !roots.iter().any(|(other, _)| differing(&v, other).is_empty()) {
+                        roots.push((v, open));
+                    }
+                }
+                Solved::LeastSquares(root) => {
+                    if nearest.as_ref().is_none_or(|other| root.residual < other.residual) {
+                        nearest = Some(root);
+                    }
+                }
+                Solved::Nowhere => {}
+            }
+        }
+        if let (true, Some(root)) = (roots.is_empty(), &nearest) {
+            roots.push(self.problem.outputs(&known, root)?);
+        }
+        let Some((v, open)) = roots.first() else { return Err(StartError::NotSolved { points: guesses.len() }) };
+        let state = State { t: *time, q: positions.clone(), v: v.clone() };
+        let names = |places: &[usize]| places.iter().map(|&i| self.names[i].clone()).collect();
+        if open.contains(&true) {
+            regularity.check_constraints(&state, varied)?;
+            let open: Vec<usize> = (0..open.len()).filter(|&i| open[i]).collect();
+            return Err(StartError::Undetermined { velocities: names(&open) });
+        }
+        if let Some((second, _)) = roots.get(1) {
+            let differ = differing(v, second);
+            return Err(StartError::Ambiguous {
+                velocities: names(&differ),
+                first: differ.iter().map(|&i| v[i]).collect(),
+                second: differ.iter().map(|&i| second[i]).collect(),
+            });
+        }
+        Ok(state)
+    }
+
+    /// Starts of unknowns without a guess: several, to see whether nonlinear equations have more solutions.
+    fn guesses(&self, given: &[f64]) -> Vec<f64> {
+        if !self.several {
+            return vec![0.0];
+        }
+        let speed = given.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+        let speed = if speed > 0.0 { speed } else { 1.0 };
+        vec![0.0, speed, -speed]
+    }
 }
 
 /// The places of velocities that differ.
@@ -66,25 +107,4 @@ fn differing(a: &[f64], b: &[f64]) -> Vec<usize> {
     let round_off = ROUND_OFF * a.iter().chain(b).fold(0.0_f64, |size, x| size.max(x.abs()));
     let same = |i: usize| (a[i] - b[i]).abs() <= (SAME * a[i].abs().max(b[i].abs())).max(round_off);
     (0..a.len()).filter(|&i| !same(i)).collect()
-}
-
-fn velocity_name(system: &System, i: usize) -> String {
-    system.graph.name(system.coordinates[i].velocity)
-}
-
-/// The velocities at `root`; none may be open. Dependent constraints are the deeper fault and come first.
-fn check_determined(
-    problem: &Problem,
-    outputs: &[Expr],
-    root: &Root,
-    data: &StartData,
-) -> Result<Vec<f64>, StartError> {
-    let (v, open) = problem.outputs(outputs, root)?;
-    if open.contains(&true) {
-        let state = State { t: data.time, q: data.positions.clone(), v };
-        check_constraints(problem.system, &state)?;
-        let names = (0..open.len()).filter(|&i| open[i]).map(|i| velocity_name(problem.system, i));
-        return Err(StartError::Undetermined { velocities: names.collect() });
-    }
-    Ok(v)
 }
