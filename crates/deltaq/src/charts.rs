@@ -13,7 +13,7 @@
 //!
 //! Both runs of a motion change at the time of the kept one, each from its own state.
 
-use integrate::{ProjectionReport, Solution, Status, StopCause, Work};
+use integrate::{ProjectionReport, Solution, Work};
 use mechanics::ConstantsRule;
 
 use crate::choice::derive_at;
@@ -38,8 +38,6 @@ pub(crate) struct Runs {
     pub(crate) trajectories: [Trajectory; 2],
     pub(crate) changes: Vec<ChartChange>,
     pub(crate) ending: Ending,
-    /// Whether the kept run ended where something vanishes by which the equations divide.
-    pub(crate) at_guard: bool,
     /// Of the kept run.
     pub(crate) work: Work,
     pub(crate) projection: ProjectionReport,
@@ -123,13 +121,12 @@ fn run_on(setting: Setting, prepared: &mut Prepared, settings: &Settings, patien
         });
         Ending::joint(end, other, [setting.start.t, setting.end])
     });
-    let Solution { work, projection, ref status, .. } = legs[0][legs[0].len() - 1].0.solution;
-    let at_guard = matches!(status, Status::Stopped { cause: StopCause::Event { .. }, .. });
+    let Solution { work, projection, .. } = legs[0][legs[0].len() - 1].0.solution;
     let trajectory = |mut legs: Legs| match legs.len() {
         1 => Trajectory::TimeLoop(Box::new(legs.remove(0).0)),
         _ => Trajectory::Charts(legs),
     };
-    let runs = Runs { trajectories: legs.map(trajectory), changes, ending, at_guard, work, projection, fallbacks };
+    let runs = Runs { trajectories: legs.map(trajectory), changes, ending, work, projection, fallbacks };
     Ok(Course::Run(Box::new(runs)))
 }
 

@@ -81,19 +81,14 @@ impl EnsembleStart {
     }
 }
 
-/// The equations of `choice` for all values of the parameters that vary, in a form that has no pivots of its own:
-/// what suits one member need not suit the next.
+/// The equations of `choice` for all values of the parameters that vary.
 fn derived(scene: &Scene, choice: &Choice, varied: &[Symbol], form: Form) -> Result<Equations, SolveError> {
     // what vanishes for the values of the scene only has to stay
     let mut system = scene.system.clone();
     for (p, part) in system.parameters.iter_mut().filter(|p| varied.contains(&p.symbol)).zip(1..) {
         p.value += APART * (1.0 + p.value.abs()) * (0.5 + (0.618_033_988_749_894_9 * f64::from(part)).fract());
     }
-    let (equations, chosen) = derive_in_form(&system, &scene.start, choice, form)?;
-    if equations.chart.is_some() && chosen.name != choice.formulation {
-        return Ok(derive_in_form(&system, &scene.start, choice, Form::Named)?.0);
-    }
-    Ok(equations)
+    Ok(derive_in_form(&system, &scene.start, choice, form)?.0)
 }
 
 /// So far from the scene's values of parameters an ensemble of them is derived.

@@ -26,11 +26,14 @@ pub fn formulation_in(word: &str, name: &str) -> Option<(&'static Formulation, F
     match word {
         "auto" => Some((own, Form::Suited)),
         "multipliers" => (own.name == "chetaev" || own.name == "vakonomic").then_some((own, Form::Named)),
-        "costates" => Some((formulation(&format!("{name}-costate"))?, Form::Named)),
+        "costates" => Some((formulation(&format!("{name}{COSTATES}"))?, Form::Named)),
         "quasi-velocities" => Some((reduced(name)?, Form::Named)),
         _ => None,
     }
 }
+
+/// What the name of a form in costates ends with.
+const COSTATES: &str = "-costate";
 
 /// In which form equations are, and why.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -45,8 +48,9 @@ pub struct ChosenForm {
 /// formulation.
 ///
 /// Quasi-velocities have fewer unknowns, nothing to project and cheaper rates. They need constraints linear
-/// in the velocities; in the vakonomic formulation also `L` quadratic in them, for the equations of the
-/// instant are not linear otherwise.
+/// in the velocities, and no pivot that may vanish along the way; in the vakonomic formulation also `L`
+/// quadratic in them, for the equations of the instant are not linear otherwise. Beside a pivot the vakonomic
+/// motion is taken in costates, Chetaev's with multipliers.
 ///
 /// # Errors
 /// As [`derive_at`].
@@ -56,25 +60,34 @@ pub fn derive_in_form(
     choice: &Choice,
     form: Form,
 ) -> Result<(Equations, ChosenForm), SolveError> {
-    let why = match (form, reduced(choice.formulation)) {
-        (Form::Named, _) => "asked for".into(),
-        (Form::Suited, None) => "the only one".into(),
-        (Form::Suited, Some(_)) if system.constraints.is_empty() => "there is no constraint".into(),
-        (Form::Suited, Some(entry)) if entry.starts_multipliers && !is_quadratic(system) => {
-            "L is not quadratic in the velocities".into()
-        }
-        (Form::Suited, Some(entry)) => {
-            match derive_at(system, start, &Choice { formulation: entry.name, ..choice.clone() }) {
-                Ok(mut equations) => {
-                    equations.formulation = formulation(choice.formulation).map_or(entry.name, |own| own.name);
-                    let why = "the constraints are linear in the velocities".into();
-                    return Ok((equations, ChosenForm { name: entry.name, why }));
-                }
-                Err(error) => error.to_string(),
-            }
-        }
+    let derived = |name, why| {
+        let mut equations = derive_at(system, start, &Choice { formulation: name, ..choice.clone() })?;
+        equations.formulation = choice.formulation;
+        Ok((equations, ChosenForm { name, why }))
     };
-    Ok((derive_at(system, start, choice)?, ChosenForm { name: choice.formulation, why }))
+    let own = choice.formulation;
+    let Some(entry) = reduced(own).filter(|_| form == Form::Suited) else {
+        let why = if form == Form::Named { "asked for" } else { "the only one" };
+        return derived(own, why.into());
+    };
+    if system.constraints.is_empty() {
+        return derived(own, "there is no constraint".into());
+    }
+    let in_costates = formulation(&format!("{own}{COSTATES}"));
+    if in_costates.is_some() && !is_quadratic(system) {
+        return derived(own, "L is not quadratic in the velocities".into());
+    }
+    let (equations, chosen) = match derived(entry.name, "the constraints are linear in the velocities".into()) {
+        Ok(reduced) => reduced,
+        Err(error) => return derived(own, error.to_string()),
+    };
+    if equations.chart.is_none() {
+        return Ok((equations, chosen));
+    }
+    // a pole of a constraint is passed in costates as if it were none
+    let regular = equations.singularities(&system.graph, &system.constraints).is_empty();
+    let other = in_costates.filter(|_| regular).map_or(own, |form| form.name);
+    derived(other, "quasi-velocities have pivots that may vanish".into())
 }
 
 /// Whether the second derivatives of `L` by the velocities are free of them.

@@ -15,7 +15,7 @@ use crate::method::Chosen;
 use crate::metric::subtract;
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
-use crate::{Choice, ChosenForm, Doubt, Ending, Form, Prepared, Setting, Settings, SolveError, formulation, setting};
+use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
 
 /// Wall-clock seconds spent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,8 +64,6 @@ pub struct Motion {
     /// chart.
     pub charts: Vec<ChartChange>,
     end: f64,
-    /// Whether the kept run ended where something vanishes by which the equations divide.
-    at_guard: bool,
     compiled: Compiled,
     kept: Trajectory,
     looser: Trajectory,
@@ -176,10 +174,10 @@ pub fn solve(
     let clock = Instant::now();
     resolve(&mut prepared, constants, settings)?;
     let (runs, chosen) = run(setting, &mut prepared, settings)?;
-    let Runs { trajectories, changes, ending, at_guard, work, projection, fallbacks } = runs;
+    let Runs { trajectories, changes, ending, work, projection, fallbacks } = runs;
     let seconds = Seconds { derive: 0.0, compile, integrate: clock.elapsed().as_secs_f64() };
     let motion = Motion::of(prepared, ending, trajectories, seconds);
-    let mut motion = Motion { at_guard, work, projection, charts: changes, method: Some(chosen), ..motion };
+    let mut motion = Motion { work, projection, charts: changes, method: Some(chosen), ..motion };
     motion.form.fallbacks = fallbacks;
     let steps = [motion.kept.step_times(), motion.looser.step_times()];
     let by = motion.method.as_ref().and_then(|chosen| chosen.method.order_in_steps());
@@ -247,30 +245,9 @@ pub fn solve_from(setting: Setting, choice: &Choice, settings: &Settings) -> Res
     let clock = Instant::now();
     let (equations, chosen) = derive_in_form(setting.system, setting.start, choice, settings.form)?;
     let derive = clock.elapsed().as_secs_f64();
-    let motion = solve(setting, equations, &choice.constants, settings);
-    let named = chosen.name == choice.formulation;
-    let in_form = |mut motion: Motion, chosen: ChosenForm| {
-        (motion.seconds.derive, motion.form.chosen) = (derive, chosen);
-        motion
-    };
-    let first = match motion {
-        Ok(motion) if named || !motion.at_guard => return Ok(in_form(motion, chosen)),
-        Err(error) if named || !matches!(error, SolveError::AtStart(_)) => return Err(error),
-        first => first.ok(),
-    };
-    // pivots vanish where multipliers need not
-    let other = solve_from(setting, choice, &Settings { form: Form::Named, ..settings.clone() });
-    match (first, other) {
-        (Some(first), Err(_)) => Ok(in_form(first, chosen)),
-        (Some(first), Ok(other)) if (first.end - other.end) * (setting.end - setting.start.t) > 0.0 => {
-            Ok(in_form(first, chosen))
-        }
-        (_, other) => {
-            let mut other = other?;
-            other.form.chosen.why = format!("a pivot of {} vanishes on the way", chosen.name);
-            Ok(other)
-        }
-    }
+    let mut motion = solve(setting, equations, &choice.constants, settings)?;
+    (motion.seconds.derive, motion.form.chosen) = (derive, chosen);
+    Ok(motion)
 }
 
 impl Motion {
@@ -301,7 +278,6 @@ impl Motion {
             },
             charts: Vec::new(),
             doubt: None,
-            at_guard: false,
             kept,
             looser,
             equations: prepared.equations,

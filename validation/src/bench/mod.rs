@@ -7,16 +7,19 @@
 mod ensemble;
 mod measure;
 mod truth;
+mod usual;
 
 pub use ensemble::{ENSEMBLE_SCENE, FEW_MEMBERS, MEMBERS, Throughput, Time, ensemble_throughput};
 pub use measure::{Measured, Point, Series};
 pub use truth::Truth;
+pub use usual::Usual;
 
 use std::time::Instant;
 
 use anyhow::{Context, Result};
 use deltaq::{Choice, Settings, choices, derive_at, forms, setting};
 use integrate::{Method, Work};
+use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::catalogue;
@@ -74,6 +77,8 @@ pub struct Entry {
     pub label: String,
     /// Name of the formulation.
     pub formulation: &'static str,
+    /// What it has in common with other forms of its formulation.
+    pub motion: String,
     /// The measurements, or why there are none.
     pub outcome: Result<Measurements, String>,
 }
@@ -97,6 +102,17 @@ pub struct Measurements {
     pub reference: String,
     /// One a method.
     pub series: Vec<Series>,
+    /// What is chosen where nothing is asked for but a tolerance, or why there is none.
+    pub usual: Result<Usual, String>,
+}
+
+impl Bench {
+    /// The fastest setting of all forms of a motion whose error is at most `target`.
+    pub fn fastest(&self, motion: &str, target: f64) -> Option<Fastest> {
+        let forms = self.entries.iter().filter(|entry| entry.motion == motion);
+        let each = forms.filter_map(|entry| entry.outcome.as_ref().ok()?.fastest(target, None));
+        each.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
 }
 
 /// A setting that reaches an error.
@@ -194,7 +210,7 @@ pub fn measure(prepared: Prepared, effort: &Effort, tell: impl Fn(&str)) -> Resu
             Some((_, Err(reason))) => Err(reason.clone()),
             Some((_, Ok(truth))) => measurements(&scene, &choice, truth, effort).map_err(|error| format!("{error:#}")),
         };
-        Entry { label: choice.label, formulation: choice.formulation, outcome }
+        Entry { label: choice.label, formulation: choice.formulation, motion, outcome }
     });
     Ok(Bench { entries: entries.collect(), scene: scene.name.clone(), title: scene.title.clone(), parse })
 }
@@ -207,6 +223,8 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
     let clock = Instant::now();
     let mut ready = deltaq::prepare(setting(scene), equations, &choice.constants, &settings)?;
     let compile = clock.elapsed().as_secs_f64();
+    let constants = ConstantsRule::Given(ready.constants.clone());
+    let usual = Usual::new(setting(scene), &Choice { constants, ..choice.clone() }, truth, effort);
     let series = Method::ALL.iter().map(|&method| Series::new(method, &mut ready, truth, effort)).collect();
     Ok(Measurements {
         derive,
@@ -217,5 +235,6 @@ fn measurements(scene: &Scene, choice: &Choice, truth: &mut Truth, effort: &Effo
         reference_error: truth.error,
         reference: truth.origin.clone(),
         series,
+        usual,
     })
 }

@@ -42,7 +42,9 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor; what it takes to get to the \
              equations stands apart. The error is the largest distance from the reference in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine \
              and from run to run; the numbers of evaluations do not. (`solve` and the other reports integrate every motion twice, for the sake of an error estimate.)\n\n\
-             ## The fastest setting\n\n";
+             ";
+    page += &usual_section(benches);
+    page += "\n## The fastest setting\n\n";
     page += &bench_table(benches);
     page += &ensemble_section(ensembles);
     for bench in benches {
@@ -61,6 +63,62 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     }
     files.push(File { path: "error-vs-time.md".into(), text: page });
     Ok(files)
+}
+
+/// Both runs may take so many times the fastest single one.
+const WANTED: f64 = 2.5;
+
+/// What one gets who gives nothing but a tolerance, beside the fastest single run of all forms and settings.
+fn usual_section(benches: &[Bench]) -> String {
+    let mut table = Table::new(
+        [
+            "scene",
+            "formulation",
+            "form, method",
+            ">both runs (ms)",
+            ">error",
+            ">its estimate",
+            ">fastest single run (ms)",
+            ">ratio",
+        ]
+        .map(String::from),
+    );
+    let (mut within, mut all, mut below) = (0, 0, 0);
+    for bench in benches {
+        for entry in
+            bench.entries.iter().filter(|entry| entry.formulation == entry.motion || entry.motion == entry.label)
+        {
+            let Ok(m) = &entry.outcome else { continue };
+            let usual = match &m.usual {
+                Ok(usual) => usual,
+                Err(reason) => {
+                    table.cells([&bench.scene[..], &entry.label, reason, "", "", "", "", ""].map(String::from));
+                    continue;
+                }
+            };
+            // nothing is known below the error of the reference
+            let reached = usual.error.max(m.reference_error).max(f64::EPSILON);
+            let single = bench.fastest(&entry.motion, reached);
+            let ratio = single.map(|single| usual.seconds / single.seconds);
+            all += 1;
+            within += usize::from(ratio.is_none_or(|ratio| ratio <= WANTED));
+            below += usize::from(usual.estimate.max(f64::EPSILON) < usual.error);
+            table.cells([
+                bench.scene.clone(),
+                entry.label.clone(),
+                format!("{}, {}", usual.form, usual.method.map_or("", Method::name)),
+                short(1e3 * usual.seconds),
+                short(usual.error),
+                short(usual.estimate),
+                single.map_or("none so accurate".into(), |single| short(1e3 * single.seconds)),
+                ratio.map_or(String::new(), |ratio| format!("{ratio:.2}")),
+            ]);
+        }
+    }
+    format!(
+        "## Without options\n\nNothing is given but a tolerance, 1e-10: form, method and plan are chosen, and both runs made. On {within} of {all} motions that takes at most {WANTED} times \
+         the fastest single run, of all forms, methods and tolerances below, that has this error. The error is over its estimate on {below}.\n\n{table}"
+    )
 }
 
 /// The fastest setting for every error, scene by scene.
