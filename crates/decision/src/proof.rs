@@ -194,7 +194,7 @@ impl<'a> Question<'a> {
 
     /// Ranks at few orders where these are `enough`, else at all.
     fn ranks(&self, start: &SeriesStart<Modular>, enough: impl Fn(&Ranks) -> bool) -> Result<Ranks, NoSeries> {
-        let few = Ranks::of(&self.series(start, self.family.shape.constants + 3)?.1);
+        let few = Ranks::of(&self.series(start, (self.family.shape.constants + 3).min(ORDERS))?.1);
         if few.refuted().is_some() || enough(&few) {
             return Ok(few);
         }

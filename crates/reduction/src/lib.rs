@@ -13,6 +13,7 @@
 //!
 //! - [`QuasiVelocities`]: `S` and `s` as a recursion, by sparse elimination of the constraints.
 //! - [`Frame`]: `u = U(q) v` with the kinetic energy squares of constant coefficients, and `dω` of its forms.
+//! - Chains in few coordinates, by the velocities of their bodies: what both of these do first (`chain`).
 //! - [`REDUCED_CHETAEV`]: `Sᵀ (d/dt ∂L/∂v − ∂L/∂q − Q) = 0`.
 //! - [`REDUCED_VAKONOMIC`]: `Sᵀ (p − L_v) = 0`, `ṗ = L_q − (∂v/∂q)ᵀ (p − L_v)`.
 //! - [`cheapest`]: which of several ways to write the same motion takes the fewest operations.
@@ -20,6 +21,7 @@
 //! What it does not know: nonlinear constraints, the removed-constraint equations, how time advances.
 
 mod backwards;
+mod chain;
 mod cost;
 mod expressions;
 mod frame;

@@ -28,6 +28,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use crate::backwards::{adjoints, multipliers};
+use crate::chain::Chain;
 use crate::expressions::{SHORT, Sparse, products, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
@@ -68,6 +69,9 @@ pub const REDUCED_CHETAEV: Formulation = Formulation {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive_chetaev(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    if let Some(chain) = Chain::new(system) {
+        return Ok(chain.own(system, derive_chetaev(&chain.system, derivation)?));
+    }
     let framed = system.clone();
     let in_coordinates = in_velocities(system.clone(), None, derivation)?;
     let Some(frame) = Frame::new(&framed, derivation.start) else { return Ok(in_coordinates) };

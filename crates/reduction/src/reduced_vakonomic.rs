@@ -33,6 +33,7 @@
 use std::collections::HashMap;
 
 use crate::backwards::{adjoints, by_positions, multipliers};
+use crate::chain::Chain;
 use crate::expressions::{SHORT, Sparse, sparse_rows};
 use crate::{Frame, QuasiVelocities, cheapest, matrix_moves};
 use equations::{
@@ -81,6 +82,9 @@ const WHOLE: usize = 16;
 /// ```
 pub fn derive_vakonomic(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
     refuse_forces(system, REDUCED_VAKONOMIC.name)?;
+    if let Some(chain) = Chain::new(system) {
+        return Ok(chain.own(system, derive_vakonomic(&chain.system, derivation)?));
+    }
     let (system, framed) = (system.clone(), system.clone());
     let problem = Problem::new(&system, None, derivation)?;
     let mut candidates = vec![problem.equations(system.clone(), None)];

@@ -132,6 +132,19 @@ impl Graph {
         substituted
     }
 
+    /// `e` with every subexpression that `map` knows replaced, the inner ones first.
+    ///
+    /// ```
+    /// use std::collections::HashMap;
+    /// let g = symbolic::Graph::new();
+    /// let [x, y, z] = ["x", "y", "z"].map(|name| g.variable(g.symbol(name)));
+    /// let square = g.powi(g.add(x, y), 2);
+    /// assert_eq!(g.replace(square, &HashMap::from([(g.add(x, y), z)])), g.powi(z, 2));
+    /// ```
+    pub fn replace(&self, e: Expr, map: &HashMap<Expr, Expr>) -> Expr {
+        self.arena.borrow_mut().rewritten(&[e], |_, e| map.get(&e).copied().unwrap_or(e))[0]
+    }
+
     /// [`Graph::substitute_all`], never spoiled.
     pub(crate) fn substituted(&self, es: &[Expr], map: &HashMap<Symbol, Expr>) -> Vec<Expr> {
         let mut arena = self.arena.borrow_mut();

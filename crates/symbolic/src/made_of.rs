@@ -88,6 +88,21 @@ impl Graph {
         self.bases(radicand, |r| r.as_integer().is_some_and(|n| n % 2 == 0))
     }
 
+    /// Every distinct sum that stands squared in `e`.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
+    /// let both = g.add(x, y);
+    /// assert_eq!(g.squared_sums(g.add(g.powi(both, 2), g.powi(x, 2))), [both]);
+    /// ```
+    pub fn squared_sums(&self, e: Expr) -> Vec<Expr> {
+        let reachable = self.arena.borrow().reachable(&[e], |_| true);
+        let squared = reachable.into_iter().flat_map(|e| self.bases(e, |r| r.as_integer() == Some(2)));
+        let squared: BTreeSet<Expr> = squared.collect();
+        squared.into_iter().filter(|&e| self.arena.borrow().term_count(e) > 1).collect()
+    }
+
     /// The factors of a product that have such an exponent in it.
     fn bases(&self, e: Expr, wanted: impl Fn(&Rational) -> bool) -> Vec<Expr> {
         match self.arena.borrow().node(e) {

@@ -65,7 +65,8 @@ pub fn parameter(scene: &Scene, name: &str) -> f64 {
     found.unwrap_or_else(|| panic!("{} has no parameter {name}", scene.name)).value
 }
 
-fn choice(name: &str, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
+/// What a formulation is asked for.
+pub fn choice(name: &str, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
     let entry = formulation(name).unwrap_or_else(|| panic!("no formulation {name}"));
     Choice { label: entry.title.into(), formulation: entry.name, removal: removal.cloned(), constants }
 }

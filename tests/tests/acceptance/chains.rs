@@ -1,0 +1,71 @@
+//! Chains in few coordinates, by the velocities of their bodies, are the same systems.
+
+use deltaq::derive_at;
+use equations::Compiled;
+use mechanics::ConstantsRule;
+use scene::Scene;
+use validation::trailer::{self, Coordinates};
+
+use super::support::{at, chetaev, choice, common_times, must, some_multipliers};
+use super::{reduced_form, reduced_vakonomic};
+
+fn train(trailers: usize, coordinates: Coordinates) -> Scene {
+    trailer::scene(trailers, coordinates).expect("its own text parses")
+}
+
+/// Links that hang one on another from a cart, the last one with a blade at its end.
+fn hanging(links: usize) -> Scene {
+    let (mut x, mut y, mut height) = ("x'".to_string(), "0".to_string(), "0".to_string());
+    let mut text =
+        "title = \"Links\"\n[parameters]\nl = 0.7\nk = 0.3\n[coordinates]\nx = { start = 0.2 }\n".to_string();
+    let mut energies = vec!["x'^2 - 2*x^2".to_string()];
+    let mut blade = format!("x'*cos(th{links})");
+    for i in 1..=links {
+        text += &format!("th{i} = {{ start = {:?} }}\n", 0.3 + 0.17 * (i * i % 7) as f64);
+        x += &format!(" + l*th{i}'*cos(th{i})");
+        y += &format!(" + l*th{i}'*sin(th{i})");
+        height += &format!(" - l*cos(th{i})");
+        blade += &format!(" + l*th{i}'*cos(th{i} - th{links})");
+        energies.push(format!("({x})^2/2 + ({y})^2/2 + k*(th1' - th{i}')^2 - 3*({height})"));
+    }
+    let start: Vec<String> = (1..links).map(|i| format!("\"th{i}'\" = {:?}\n", 0.9 - 0.4 * (i % 3) as f64)).collect();
+    text += &format!("[system]\nlagrangian = \"{}\"\nconstraints = [\"{blade}\"]\n", energies.join(" + "));
+    text += &format!("[start.velocities]\n\"x'\" = 0.4\n{}[run]\nduration = 1.0\n", start.concat());
+    Scene::parse("hanging", &text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn instants_of_chains_are_those_of_the_forms_without_quasi_velocities() {
+    for mut scene in [train(5, Coordinates::Minimal), train(9, Coordinates::Minimal), hanging(8)] {
+        let name = format!("{} in {} coordinates", scene.name, scene.system.dimension());
+        let equations = reduced_form::reduced(&scene);
+        assert_eq!(equations.coordinates.len(), scene.system.dimension());
+        assert!(equations.graph.find_symbol("z_1'").is_some(), "{name}: taken for no chain");
+        let mut motion = chetaev(&scene);
+        for t in common_times(&[&motion]).into_iter().step_by(25) {
+            let point = at(&mut motion, t);
+            scene.start = mechanics::State { t, q: point.coordinates, v: point.velocities };
+            let (rates, velocities) = reduced_form::differences(&scene, &equations, &scene.start);
+            must(&format!("{name}: rates by Maggi, t = {t:.2} s"), rates, 1e-11);
+            must(&format!("{name}: velocities"), velocities, 1e-12);
+            let [rates, velocities, multipliers] = reduced_vakonomic::differences(&scene, &some_multipliers(&scene));
+            must(&format!("{name}: rates of the costate form"), rates, 1e-11);
+            must(&format!("{name}: velocities and multipliers"), velocities.max(multipliers), 1e-11);
+        }
+    }
+}
+
+#[test]
+fn a_train_costs_the_same_in_few_coordinates() {
+    for form in ["chetaev-reduced", "vakonomic-reduced"] {
+        let [many, few] = [Coordinates::Maximal, Coordinates::Minimal].map(|coordinates| {
+            let scene = train(20, coordinates);
+            let choice = choice(form, None, ConstantsRule::Zero);
+            let equations = derive_at(&scene.system, &scene.start, &choice).unwrap_or_else(|e| panic!("{e}"));
+            assert!(equations.guards.is_empty() && equations.unknowns().len() <= 2);
+            Compiled::new(&equations).expect("compiles").cost()[1].operations()
+        });
+        println!("{form}: {many} operations, {few} in few coordinates");
+        assert!(2 * few <= 3 * many, "{form}: {few} operations over {many}");
+    }
+}
