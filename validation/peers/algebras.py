@@ -44,9 +44,10 @@ class Heyoka:
     def substitute(self, es, table):
         return self.heyoka.subs(es, {x: self.number(repr(float(value))) for x, value in table})
 
-    def numbers(self, es, xs, values):
+    def numbers(self, es, xs, values, parameters=()):
         begin = time.perf_counter()
-        found = np.array(self.heyoka.cfunc(es, vars=xs, compact_mode=True)(np.array(values, dtype=float))) if es else np.zeros(0)
+        more = {"pars": np.array(parameters, dtype=float), "time": 0.0}
+        found = np.array(self.heyoka.cfunc(es, vars=xs, compact_mode=True)(np.array(values, dtype=float), **more)) if es else np.zeros(0)
         self.uncounted += time.perf_counter() - begin
         return found
 

@@ -74,7 +74,7 @@ def main():
         "effort": effort,
         "seconds": time.monotonic() - begin,
     }
-    pictures = {f"peers-{race.case.name}.svg": picture(race) for race in races if race.rungs}
+    pictures = {f"peers-{race.case.name}.svg": picture(race) for race in races if race.rungs and not race.case.vary}
     whole = not arguments.quick and not arguments.only
     write(arguments.out or (Path("reports") if whole else arguments.target), {"peers.md": page(races, provenance)} | pictures)
     fields = ("reference", "setups", "checks", "rungs", "failures")

@@ -1,13 +1,19 @@
 """What is solved, and by whom."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+import deltaq
 
 SCENES = Path(__file__).parents[1] / "scenes"
 # times at which errors are taken, the start among them
 TIMES = 21
 TRAILERS = (5, 20, 80)
+# motions at once, ending of their name, and by how much of each start value one is from the next
+MEMBERS = 8
+TOGETHER = "-together"
+APART = {"sledge": {"phi": 0.05, "phi'": -0.05}, "cone": {"r": 0.02, "gamma'": 0.05}}
 # from axle to hitch
 LENGTH = 0.8
 
@@ -23,15 +29,29 @@ class Case:
     duration: float
     removal: str | None = None
     trailers: int | None = None
-    # (tool, form), ours first; a form is `scene`, derived from the text, or for a train also `reduced` or
-    # `multipliers`, both by hand
+    # (tool, form), ours first; a form is `scene`, derived from the text, or `reduced`, by hand, or for a train
+    # also `multipliers`, by hand too
     entrants: list = field(default_factory=list)
+    # of several motions at once what differs, by name: a value for each
+    vary: dict = field(default_factory=dict)
     # what this tool gets
     form: str = "scene"
     purpose: str = "time"
     # what the states of the start are: kind and name; and their values, free constants included
     tags: list = field(default_factory=list)
     start: list = field(default_factory=list)
+    # the same of each of several motions, the first of which is that of the scene
+    starts: list = field(default_factory=list)
+
+    @property
+    def problem(self):
+        """What is solved, once or for several motions at once."""
+        return self.name.removesuffix(TOGETHER)
+
+    @property
+    def members(self):
+        """The values that vary, for each of several motions; of a single one nothing does."""
+        return [dict(zip(self.vary, values)) for values in zip(*self.vary.values())] or [{}]
 
     @property
     def times(self):
@@ -88,7 +108,8 @@ def problems():
     ]
     for case in cases:
         tools = ["deltaq", "heyoka", "scipy", "casadi"] + (["sympy"] if case.formulation == "chetaev" else [])
-        case.entrants = [(tool, "scene") for tool in tools]
+        case.entrants = [(tool, "scene") for tool in tools] + [("heyoka", "reduced")]
+    cases += [together(case) for case in cases]
     by_hand = [("heyoka", "reduced"), ("scipy", "reduced"), ("casadi", "reduced"), ("scipy", "multipliers")]
     ours, sympy = ("deltaq", "scene"), ("sympy", "scene")
     for n in TRAILERS:
@@ -96,6 +117,15 @@ def problems():
         cases.append(car(n, entrants))
     # no motion: how long SymPy needs between the smallest and the largest of those it is asked for
     return cases + [car(10, [ours, sympy])]
+
+
+def together(case):
+    """The same for several motions, by us in lanes and by heyoka in its batch mode."""
+    scene = deltaq.parse(case.toml)
+    place = {name + prime: x for prime, values in (("", scene.start.q), ("'", scene.start.v)) for name, x in zip(scene.coordinates, values)}
+    vary = {name: [place[name] + i * step for i in range(MEMBERS)] for name, step in APART[case.name.partition("-")[0]].items()}
+    entrants = [("deltaq", "together"), ("heyoka", "reduced")]
+    return replace(case, title=f"{case.title}, {MEMBERS} at a time", name=case.name + TOGETHER, entrants=entrants, vary=vary)
 
 
 def car(n, entrants):

@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+import by_hand
 import deltaq
+from reader import Scene
 from with_deltaq import SOLVE
 from worker import Refusal, Worker
 
@@ -75,9 +77,9 @@ def row_of(case, entrant, method=""):
         name = "CasADi, IDAS" if method.startswith("IDAS") else "CasADi, CVODES"
     else:
         name = {"heyoka": "heyoka", "sympy": "SymPy"}[tool]
-    if not case.trailers or tool == "sympy":
-        return name
-    return f"{name}, reduced by hand" if form == "reduced" else f"{name}, multipliers"
+    if form == "reduced":
+        return f"{name}, reduced by hand"
+    return f"{name}, multipliers" if case.trailers and tool != "sympy" else name
 
 
 class Race:
@@ -109,7 +111,8 @@ class Race:
             self.climb(entrant, method, setup)
         for _ in range(self.effort.rounds):
             self.turn()
-        self.totals()
+        if not self.case.vary:
+            self.totals()
 
     def fail(self, row, what, words):
         self.failures.append((row, what, str(words)))
@@ -156,7 +159,11 @@ class Race:
             # a parameter that nothing depends on is no state of ours: it starts at zero
             cyclic = {("u", name): x for (kind, name), x in zip(tags, y) if kind == "du" and ("u", name) not in tags}
             self.expected |= cyclic
-            case.tags, case.start = tags + list(cyclic), [*y, *(0.0 for _ in cyclic)]
+            case.tags, zeros = tags + list(cyclic), [0.0 for _ in cyclic]
+            begins = lambda member: deltaq.parse(case.toml, member).equations(case.formulation, **choice).initial_state()
+            case.starts = [[*begins(member), *zeros] for member in case.members]
+            case.start = case.starts[0]
+            self.expected |= by_hand.rates_of(case, Scene(case.toml).parameters, [*rates, *cyclic.values()])
 
     def set_everybody_up(self):
         """Derivations, right-hand sides checked; entrant, method and seconds of the derivation for what may
@@ -194,11 +201,12 @@ class Race:
         """The reference: heyoka's Taylor method in 113 bits at 1e-28, from expressions that heyoka
         differentiates itself, confirmed by ours.
         """
-        entrant = ("heyoka", "reduced" if self.case.trailers else "scene")
+        entrant = ("heyoka", "reduced" if self.case.trailers or self.case.vary else "scene")
         about = {"method": "Taylor, 113 bits", "tolerance": 1e-28, "task": "trajectory"}
         _, self.truth = self.ask(entrant, "run", "reference", **about)
-        v = np.tile(self.system.start.v, (len(self.truth), 1))
-        self.mass = self.system.mass(self.case.times, self.truth, v)
+        members = len(self.case.members)
+        q, t = self.truth.reshape(-1, self.system.dimension), np.repeat(self.case.times, members)
+        self.mass = self.system.mass(t, q, np.tile(self.system.start.v, (len(q), 1)))
         _, ours = self.ask(self.case.entrants[0], "run", method="Dop853", tolerance=1e-14, task="trajectory")
         apart = self.error(ours)
         if not apart <= AGREEMENT:
@@ -206,10 +214,13 @@ class Race:
         self.reference = apart
 
     def error(self, found):
-        """The largest sqrt(dq' M dq) over the times; of a table with two rows, that at the last time."""
-        places = [0, -1] if len(found) == 2 else slice(None)
-        difference = found - self.truth[places]
-        return np.sqrt(np.abs(np.einsum("ki,kij,kj->k", difference, self.mass[places], difference))).max()
+        """The largest sqrt(dq' M dq) over the times, and over motions; of a table with two rows, that at the
+        last time.
+        """
+        places, n = [0, -1] if len(found) == 2 else slice(None), self.system.dimension
+        difference = (found - self.truth[places]).reshape(-1, n)
+        mass = self.mass.reshape(len(self.truth), -1, n, n)[places].reshape(-1, n, n)
+        return np.sqrt(np.abs(np.einsum("ki,kij,kj->k", difference, mass, difference))).max()
 
     def climb(self, entrant, method, setup):
         """Tighter and tighter until the tightest target is reached, each tolerance once."""
@@ -313,8 +324,6 @@ def tags_of(states, coordinates, removal):
 
 
 def removal_of(case):
-    from reader import Scene
-
     removal = Scene(case.toml).removals[case.removal]
     return removal.parameters, removal.memory
 

@@ -2,6 +2,8 @@
 Python and the start of a thread.
 """
 
+import numpy as np
+
 import deltaq
 
 METHODS = {name.title().replace("-", ""): name for name in deltaq.METHODS}
@@ -10,11 +12,15 @@ EXPLICIT = [name for name in ("Taylor", "Dop853", "Tsit45") if name in METHODS]
 # two runs, the second at a hundredth of the tolerance, and the difference as an error estimate
 SOLVE = "solve: two runs of Dop853"
 BODIES = "quasi-velocities, a place for every body"
+# several motions in lanes, each once
+LANES = "Taylor in lanes"
 FORMS = {"": "", "quasi-velocities": "-reduced", "costate form": "-costate", BODIES: "-reduced"}
 
 
 class Tool:
     def methods(self, case):
+        if case.vary:
+            return [LANES]
         forms = {"chetaev": ["", "quasi-velocities"], "vakonomic": ["", "costate form", "quasi-velocities"]}
         forms = forms.get(case.formulation, [""]) + ([BODIES] if case.trailers else [])
         names = EXPLICIT if case.trailers else METHODS
@@ -25,6 +31,8 @@ class Tool:
         constants = [x for (kind, _), x in zip(case.tags, case.start) if kind == "P"]
         self.choice = {"removal": case.removal, "constants": constants} if case.removal else {}
         self.system = deltaq.parse(case.toml)
+        if case.vary:
+            return 0.0
         self.made["Dop853"] = self.system.equations(case.formulation, **self.choice)
         return 0.0
 
@@ -37,10 +45,12 @@ class Tool:
         return "", lambda: None
 
     def prepare(self, method, tolerance, times):
-        if method != SOLVE and method not in self.made:
+        if method != SOLVE and not self.case.vary and method not in self.made:
             self.made[method] = self.equations(method)
 
     def run(self, method, tolerance, times):
+        if self.case.vary:
+            return self.together(method, tolerance, times)
         self.prepare(method, tolerance, times)
         if method == SOLVE:
             return lambda: self.solve(self.system, tolerance, times), completed
@@ -51,10 +61,31 @@ class Tool:
         coordinates = lambda run: equations.outputs(completed(run, run.times), run.states).coordinates[:, columns]
         return lambda: equations.integrate(times, method=name, tolerance=tolerance), coordinates
 
+    def together(self, method, tolerance, times):
+        """In lanes on one thread; or one by one, which nobody times."""
+        case, beside = self.case, lambda tables: np.concatenate(tables, axis=1)
+        if method != LANES:
+            single = [deltaq.parse(case.toml, member).equations(case.formulation, **self.choice) for member in case.members]
+            name = METHODS[method]
+            runs = lambda: [equations.integrate(times, method=name, tolerance=tolerance) for equations in single]
+            read = lambda runs: beside([e.outputs(completed(run, run.times), run.states).coordinates for e, run in zip(single, runs)])
+            return runs, read
+        about = {"vary": case.vary, "tolerance": tolerance, "threads": 1, "estimate": False} | self.choice
+
+        def coordinates(answer):
+            wrong = [why for why in (*answer.cause, *answer.alone) if why]
+            if wrong:
+                raise ValueError(wrong[0])
+            return beside(answer.coordinates)
+
+        return lambda: self.system.ensemble(case.formulation, times, **about), coordinates
+
     def solve(self, system, tolerance, times):
         return system.solve(self.case.formulation, times, tolerance=tolerance, **self.choice)
 
     def seconds(self, answer):
+        if isinstance(answer, list):
+            return sum(run.seconds for run in answer)
         return answer.seconds["integrate"] if isinstance(answer, deltaq.Motion) else answer.seconds
 
     def total(self, method, tolerance, times):

@@ -16,7 +16,7 @@ LOADING = 120
 
 
 class Work:
-    """A tool with a case. `with_NAME.py` has a class Tool with
+    """A tool with a case; of several motions at once, seconds are those of one. `with_NAME.py` has a class Tool with
 
     setup(case), the derivation, which hands back seconds that do not count; methods(case), their names;
     rates(), (tags, rates) at the start; shared(method), a name and a call, what has to be done once for
@@ -54,10 +54,11 @@ class Work:
         """Least seconds of a run, and the coordinates at the times that the task asks for."""
         call, coordinates = self.tool.run(method, tolerance, self.asked(task))
         seconds, answer = clock.least(call, repeat, getattr(self.tool, "seconds", None))
+        # of several motions at once the coordinates of one stand beside those of the next
         table = np.asarray(coordinates(answer), dtype=float)
         if len(table) != len(self.asked(task)) or not np.isfinite(table).all():
             raise ValueError("the answer is incomplete or not finite")
-        return seconds, table
+        return seconds / len(self.case.members), table
 
     def total(self, method, tolerance):
         """Seconds from the text of the scene to the trajectory, measured as a whole."""

@@ -113,6 +113,9 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
         space.push(system.time);
     }
     let admissible = solved.fields(system, with_time);
+    if g.size(&admissible.concat()) > LONGEST {
+        return Ok(Integrability::Undecided { depth: 0, at_most: h, constraints: h });
+    }
     let constants: HashMap<Symbol, f64> = system.parameter_values();
     let rank_of =
         |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &constants);

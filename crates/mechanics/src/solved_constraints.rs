@@ -1,11 +1,29 @@
 //! Constraints linear in the velocities, solved for as many of them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use symbolic::{Expr, Graph, Matrix, Symbol};
 
 use crate::elimination::{Candidate, LinearForms, Pivot, SparseMatrix, choose_pivot};
 use crate::{RemovalError, State, System};
+
+/// Terms that multiplying out may make in one elimination. Those of a chain double with each body, and little
+/// cancels in them.
+const TERMS: usize = 5_000;
+
+/// Terms of a coefficient that is multiplied out to clear it of denominators.
+const CLEARED: usize = 10_000;
+
+/// A difference under this part of its terms, at the start, is tested for being zero.
+const CANCELLED: f64 = 1e-9;
+
+/// A coefficient, its value at the start (NaN where that is not finite) and the nodes of its expression.
+#[derive(Clone, Copy)]
+struct Entry {
+    e: Expr,
+    number: f64,
+    size: usize,
+}
 
 /// `v_d = K v_i + c`.
 pub(crate) struct SolvedConstraints {
@@ -31,25 +49,35 @@ impl SolvedConstraints {
         for (row, &offset) in rows.iter_mut().zip(&offsets).filter(|(_, b)| !g.is_zero(**b)) {
             row.insert(n, offset);
         }
-        let mut matrix = SparseMatrix::new(rows);
+        let known = |e: Expr| Entry { e, number: g.evaluate(e, &values).unwrap_or(f64::NAN), size: g.size(&[e]) };
+        let all_known = |row: BTreeMap<usize, Expr>| row.into_iter().map(|(j, e)| (j, known(e))).collect();
+        let mut matrix: SparseMatrix<Entry> = SparseMatrix::new(rows.into_iter().map(all_known).collect());
         let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
         let mut quotients = Vec::new();
+        let mut terms_left = TERMS;
         for _ in 0..h {
-            let (p, c) = choose_pivot(candidates(g, &matrix, &pivots, n, &values))?;
-            let Some(Pivot { entry: pivot, row, column }) = matrix.take(p, c) else { break };
-            let undivided = row;
-            let row: BTreeMap<usize, Expr> = undivided.iter().map(|(&j, &e)| (j, g.div(e, pivot))).collect();
-            quotients.extend(row.range(..n).map(|(_, &e)| e));
+            let (p, c) = choose_pivot(candidates(&matrix, &pivots, n))?;
+            let Some(Pivot { entry: pivot, row: undivided, column }) = matrix.take(p, c) else { break };
+            let row: BTreeMap<usize, Entry> =
+                undivided.iter().map(|(&j, undivided)| (j, known(g.div(undivided.e, pivot.e)))).collect();
+            quotients.extend(row.range(..n).map(|(_, entry)| entry.e));
             for (i, factor) in column {
-                for (&j, &e) in &row {
-                    let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
-                    let rest = g.sub(before, g.mul(factor, e));
+                for (&j, entry) in &row {
+                    let before = matrix.rows()[i].get(&j).copied().unwrap_or_else(|| known(g.zero()));
+                    let mut rest = known(g.sub(before.e, g.mul(factor.e, entry.e)));
                     // sin²/cos + cos is 1/cos
-                    let over_pivot = g.expand(g.sub(g.mul(before, pivot), g.mul(factor, undivided[&j])));
-                    let over_pivot = cleared(g, g.div(over_pivot, pivot));
-                    let rest = if 3 * g.size(&[over_pivot]) <= 4 * g.size(&[rest]) { over_pivot } else { rest };
+                    let over_pivot = g.sub(g.mul(before.e, pivot.e), g.mul(factor.e, undivided[&j].e));
+                    let terms = g.expanded_terms(over_pivot);
+                    if terms <= terms_left {
+                        terms_left -= terms;
+                        let over_pivot = known(cleared(g, g.div(g.expand(over_pivot), pivot.e)));
+                        rest = if 3 * over_pivot.size <= 4 * rest.size { over_pivot } else { rest };
+                    }
                     // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
-                    matrix.set(i, j, (!g.vanishes_at_points(rest, &constants).is_zero()).then_some(rest));
+                    let terms = before.number.abs() + (factor.number * entry.number).abs();
+                    let stays =
+                        rest.number.abs() > CANCELLED * terms || !g.vanishes_at_points(rest.e, &constants).is_zero();
+                    matrix.set(i, j, stays.then_some(rest));
                 }
             }
             matrix.put_row(p, row);
@@ -57,8 +85,8 @@ impl SolvedConstraints {
         }
         let dependent: Vec<usize> = pivots.keys().copied().collect();
         let independent: Vec<usize> = (0..n).filter(|j| !pivots.contains_key(j)).collect();
-        let rows: Vec<&BTreeMap<usize, Expr>> = pivots.values().map(|&p| &matrix.rows()[p]).collect();
-        let entry = |row: &BTreeMap<usize, Expr>, j: usize| row.get(&j).map_or(g.zero(), |&e| g.neg(e));
+        let rows: Vec<&BTreeMap<usize, Entry>> = pivots.values().map(|&p| &matrix.rows()[p]).collect();
+        let entry = |row: &BTreeMap<usize, Entry>, j: usize| row.get(&j).map_or(g.zero(), |entry| g.neg(entry.e));
         let solution = Matrix::from_fn(h, independent.len(), |i, j| entry(rows[i], independent[j]));
         let offset = rows.iter().map(|row| entry(row, n)).collect();
         Ok(SolvedConstraints { dependent, independent, solution, offset, quotients })
@@ -97,22 +125,15 @@ impl SolvedConstraints {
 }
 
 /// What is no pivot yet, with its size in its row and the length of its expression.
-fn candidates(
-    g: &Graph,
-    matrix: &SparseMatrix<Expr>,
-    taken: &BTreeMap<usize, usize>,
-    columns: usize,
-    values: &HashMap<Symbol, f64>,
-) -> Vec<Candidate> {
+fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, columns: usize) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for (i, row) in matrix.rows().iter().enumerate().filter(|(i, _)| !taken.values().any(|p| p == i)) {
-        let number = |e: Expr| g.evaluate(e, values).unwrap_or(f64::NAN);
-        let entries: Vec<(usize, Expr, f64)> = row.range(..columns).map(|(&j, &e)| (j, e, number(e))).collect();
-        let scale = entries.iter().fold(0.0_f64, |a, (_, _, x)| a.max(x.abs()));
-        for (j, e, x) in entries {
-            let size = if scale > 0.0 { x.abs() / scale } else { 0.0 };
+        let entries = || row.range(..columns);
+        let scale = entries().fold(0.0_f64, |a, (_, entry)| a.max(entry.number.abs()));
+        for (&j, entry) in entries() {
+            let size = if scale > 0.0 { entry.number.abs() / scale } else { 0.0 };
             if size.is_finite() && size > 0.0 {
-                candidates.push(Candidate { size, cost: g.size(&[e]), place: (i, j) });
+                candidates.push(Candidate { size, cost: entry.size, place: (i, j) });
             }
         }
     }
@@ -121,6 +142,9 @@ fn candidates(
 
 /// `e` multiplied out where fewer denominators are left so: the others are none, and would end a motion.
 pub(crate) fn cleared(g: &Graph, e: Expr) -> Expr {
+    if g.expanded_terms(e) > CLEARED {
+        return e;
+    }
     let expanded = g.expand(e);
     if g.denominators(&[expanded]).len() < g.denominators(&[e]).len() { expanded } else { e }
 }

@@ -61,7 +61,7 @@ pub(crate) struct Task {
     pub(crate) times: Vec<f64>,
     pub(crate) end: f64,
     pub(crate) settings: Settings,
-    pub(crate) threads: usize,
+    pub(crate) options: EnsembleOptions,
 }
 
 /// Members integrated before they are put into arrays.
@@ -87,6 +87,7 @@ struct Columns {
     cause: Vec<Option<String>>,
     reached: Vec<usize>,
     alone: Vec<Option<String>>,
+    seconds: f64,
 }
 
 /// Numbers of members, times and columns; NaN where there is none.
@@ -140,7 +141,7 @@ pub(crate) fn times(given: Option<FloatList<'_>>, scene: &Scene) -> PyResult<(Ve
 
 impl Task {
     pub(crate) fn run(self) -> Result<Integrated, SolveError> {
-        let Task { varied, scene, choice, times, end, settings, threads } = self;
+        let Task { varied, scene, choice, times, end, settings, options } = self;
         let names: Vec<&str> = varied.values.keys().map(String::as_str).collect();
         let ensemble = deltaq::Ensemble::new(&scene, &choice, &names, &settings)?.until(end);
         let (equations, n) = (ensemble.equations(), scene.system.dimension());
@@ -157,13 +158,14 @@ impl Task {
             cause: Vec::new(),
             reached: Vec::new(),
             alone: Vec::new(),
+            seconds: 0.0,
         };
-        let options = EnsembleOptions { threads, estimate: true };
         for first in (0..varied.count).step_by(CHUNK) {
             let rows: Vec<Vec<f64>> = (first..varied.count.min(first + CHUNK)).map(|i| varied.row(i)).collect();
-            for motion in ensemble.answers(ensemble.members(&rows, threads), &times, &options) {
-                done.add(motion);
-            }
+            let members = ensemble.members(&rows, options.threads);
+            let (motions, seconds) = ensemble.timed_answers(members, &times, &options);
+            done.seconds += seconds;
+            motions.into_iter().for_each(|motion| done.add(motion));
         }
         Ok(Integrated { varied, times, choice, done })
     }
@@ -211,7 +213,8 @@ pub(crate) struct Ensemble {
     multipliers: Py<PyDict>,
     /// Quantities that should stay constant by name, each of shape (m, k).
     invariants: Py<PyDict>,
-    /// Largest difference of the two runs of each member at these times, in the kinetic metric, shape (m,).
+    /// Largest difference of the two runs of each member at these times, in the kinetic metric, shape (m,);
+    /// NaN where there is one run only.
     error_estimate: Py<PyArrayDyn<f64>>,
     /// The error estimate over the largest distance from the start at these times, shape (m,).
     relative_error_estimate: Py<PyArrayDyn<f64>>,
@@ -223,6 +226,8 @@ pub(crate) struct Ensemble {
     reached: Vec<usize>,
     /// Of each member why it was integrated alone and not in company, else None: slower, and no worse.
     alone: Vec<Option<String>>,
+    /// Wall-clock seconds of the integration of all members.
+    seconds: f64,
 }
 
 impl Ensemble {
@@ -249,6 +254,7 @@ impl Ensemble {
             cause: done.cause,
             reached: done.reached,
             alone: done.alone,
+            seconds: done.seconds,
         })
     }
 }

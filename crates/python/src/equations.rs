@@ -289,7 +289,7 @@ impl Equations {
         let mut ready = self.ready();
         let is_end = |&t: &f64| t == ready.t || t == end;
         let options = Options {
-            method: ready.method.method,
+            method: settings.method.unwrap_or(ready.method.method),
             projection: settings.projection,
             max_steps,
             max_step: settings.max_step,

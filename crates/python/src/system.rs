@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{Settings, derive_at, integrability, prepare, removals, setting, solve_choice};
+use deltaq::{EnsembleOptions, Settings, derive_at, integrability, prepare, removals, setting, solve_choice};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -328,14 +328,15 @@ impl System {
     ///
     /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...).
     /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-    /// threads: 0 for one a processor; results do not depend on it. Else as in `solve`, constants for all,
+    /// threads: 0 for one a processor; results do not depend on it. estimate: whether each member is run
+    /// twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
     /// and time_limit for one run of 4096 members.
     ///
     /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
-        max_steps=1_000_000, max_step=None, time_limit=None, threads=0
+        max_steps=1_000_000, max_step=None, time_limit=None, threads=0, estimate=true
     ))]
     fn ensemble(
         &self,
@@ -352,6 +353,7 @@ impl System {
         max_step: Option<f64>,
         time_limit: Option<f64>,
         threads: usize,
+        estimate: bool,
     ) -> PyResult<Ensemble> {
         let constants = arguments::constants(constants.as_ref(), mu0)?;
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
@@ -359,10 +361,11 @@ impl System {
         let choice = arguments::choice(&scene, formulation, removal, constants)?;
         let (times, end) = ensemble::times(times, &scene)?;
         let varied = Varied::read(vary)?;
+        let options = EnsembleOptions { threads, estimate };
         if let (true, Some(name)) = (given, varied.multiplier()) {
             return Err(PyValueError::new_err(format!("{name} varies, and mu0 or constants fix it")));
         }
-        let task = ensemble::Task { varied, scene, choice, times, end, settings, threads };
+        let task = ensemble::Task { varied, scene, choice, times, end, settings, options };
         let integrated = background::run(py, &interrupt, move || task.run())?;
         Ensemble::new(py, integrated.map_err(errors::solve)?)
     }

@@ -24,6 +24,13 @@ def test_members_against_the_closed_form(sledge, system):
     assert np.ptp(many.invariants["energy"], axis=1).max() < 1e-9
 
 
+def test_members_that_run_once(system):
+    twice, once = (system.ensemble("chetaev", [10], vary={"phi": [0.1, 0.3]}, estimate=estimate) for estimate in (True, False))
+    assert np.isfinite(twice.error_estimate).all() and np.isnan(once.error_estimate).all()
+    assert once.status == ["completed"] * 2 and once.seconds > 0
+    np.testing.assert_allclose(once.coordinates, twice.coordinates, atol=1e-8)
+
+
 @pytest.mark.parametrize("formulation", ["vakonomic", "chetaev"])
 def test_parameters_against_single_motions(sledge, system, formulation):
     values = {"g": [9.81, 3.7, 1.6], "k": [0.7, 0.9, 0.5]}

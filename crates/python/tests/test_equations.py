@@ -111,6 +111,12 @@ def test_single_runs(sledge, system, method):
     np.testing.assert_allclose(ends.states[1], run.states[-1], atol=1e4 * tolerance)
 
 
+def test_the_method_that_is_asked_for_is_the_one_that_runs(system):
+    work = {method: system.equations().integrate([1], method=method).work for method in ("taylor", "dop853", "radau5")}
+    assert [name for name, done in work.items() if done["orders"]] == ["taylor"]
+    assert [name for name, done in work.items() if done["jacobians"]] == ["radau5"]
+
+
 def test_single_runs_that_stop(system):
     run = system.equations().integrate([0, 0.001, 10], max_steps=3)
     assert run.status == "stopped" and "3" in run.cause and len(run.times) == len(run.states) < 3

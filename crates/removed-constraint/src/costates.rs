@@ -31,14 +31,18 @@ impl Costates {
             memory.iter().map(|w| fresh_symbol(g, &format!("{stem}_{}", g.name(w.symbol)))).collect()
         };
         let (starts, symbols) = (named("P0"), named("P"));
-        let mut zero = vec![true; memory.len()];
-        let mut generating_function = lagrangian;
-        let moves = |i: usize, generating| all || !g.is_zero(g.derivative(generating, memory[i].symbol));
-        while let Some(i) = (0..memory.len()).find(|&i| zero[i] && moves(i, generating_function)) {
-            zero[i] = false;
-            let term = g.mul(g.variable(symbols[i]), memory[i].rate);
-            generating_function = g.add(generating_function, term);
+        let mut zero = vec![!all; memory.len()];
+        let mut reached = vec![lagrangian];
+        while let Some(e) = reached.pop() {
+            for (i, w) in memory.iter().enumerate() {
+                if zero[i] && !g.is_zero(g.derivative(e, w.symbol)) {
+                    zero[i] = false;
+                    reached.push(w.rate);
+                }
+            }
         }
+        let coupled = (0..memory.len()).filter(|&i| !zero[i]).map(|i| g.mul(g.variable(symbols[i]), memory[i].rate));
+        let generating_function = g.sum(&[lagrangian].into_iter().chain(coupled).collect::<Vec<Expr>>());
         let costate = |i: usize| Costate {
             symbol: symbols[i],
             start: starts[i],

@@ -3,6 +3,7 @@
 use crate::arena::{Arena, Node};
 use crate::number::{Number, Rational};
 use crate::{Expr, Graph};
+use rustc_hash::FxHashMap;
 
 /// Terms beyond which [`Graph::expand`] leaves a product as it is.
 const TERM_LIMIT: usize = 10_000;
@@ -21,6 +22,17 @@ impl Graph {
     /// ```
     pub fn expand(&self, e: Expr) -> Expr {
         self.arena.borrow_mut().expand(e, TERM_LIMIT)
+    }
+
+    /// Terms of `e` multiplied out, before any cancel.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let (x, y) = (g.variable(g.symbol("x")), g.variable(g.symbol("y")));
+    /// assert_eq!(g.expanded_terms(g.mul(x, g.powi(g.add(x, y), 2))), 3);
+    /// ```
+    pub fn expanded_terms(&self, e: Expr) -> usize {
+        self.arena.borrow().expanded_terms(e)
     }
 
     /// [`Graph::expand`], if that makes `e` shorter and `e` has at most `limit` nodes; a product that would
@@ -89,6 +101,26 @@ impl Arena {
         total
     }
 
+    /// Terms of `e` multiplied out, before any cancel.
+    fn expanded_terms(&self, e: Expr) -> usize {
+        let mut counts: FxHashMap<Expr, usize> = FxHashMap::default();
+        for n in self.reachable(&[e], |_| true) {
+            let count = match self.node(n) {
+                Node::Sum(constant, terms) => {
+                    terms.iter().fold(usize::from(!constant.is_zero()), |sum, (t, _)| sum.saturating_add(counts[t]))
+                }
+                Node::Product(factors) => factors.iter().fold(1, |product: usize, (base, exponent)| {
+                    let n = exponent.floor();
+                    let outside = !(1..=POWER_LIMIT).contains(&n);
+                    product.saturating_mul(if outside { 1 } else { power_terms(counts[base], n) })
+                }),
+                _ => 1,
+            };
+            counts.insert(n, count);
+        }
+        counts[&e]
+    }
+
     fn summands(&self, e: Expr) -> Vec<(Option<Expr>, Number)> {
         match self.node(e) {
             Node::Sum(constant, terms) => {
@@ -125,7 +157,7 @@ impl Arena {
 fn power_terms(k: usize, n: i64) -> usize {
     let mut count = 1_usize;
     for i in 1..=usize::try_from(n).unwrap_or(usize::MAX) {
-        count = count * (i + k - 1) / i;
+        count = count.saturating_mul((i - 1).saturating_add(k)) / i;
         if count > TERM_LIMIT {
             break;
         }

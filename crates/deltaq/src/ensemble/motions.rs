@@ -1,5 +1,7 @@
 //! Members integrated and read off.
 
+use std::time::Instant;
+
 use equations::{Compiled, Outputs};
 
 use super::run::Outcome;
@@ -39,7 +41,19 @@ impl Ensemble {
         times: &[f64],
         options: &EnsembleOptions,
     ) -> Vec<Result<MemberMotion, SolveError>> {
+        self.timed_motions(members, times, options).0
+    }
+
+    /// The same, and the seconds of the integration: nothing that was read off is in them.
+    fn timed_motions(
+        &self,
+        members: &[EnsembleMember],
+        times: &[f64],
+        options: &EnsembleOptions,
+    ) -> (Vec<Result<MemberMotion, SolveError>>, f64) {
+        let begin = Instant::now();
         let runs = self.run(members, times, options);
+        let seconds = begin.elapsed().as_secs_f64();
         let (compiled, metric) = (&self.prepared.compiled, &self.metric);
         let names: Vec<String> = self.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let read = shared(options.threads, members.len(), 1, |take| {
@@ -58,7 +72,7 @@ impl Ensemble {
             let (outputs, estimate) = read.unwrap_or_else(|| Ok((Vec::new(), None)))?;
             Ok(MemberMotion { outputs, estimate, run })
         };
-        runs.into_iter().zip(read).map(joined).collect()
+        (runs.into_iter().zip(read).map(joined).collect(), seconds)
     }
 }
 
@@ -70,15 +84,26 @@ impl Ensemble {
         times: &[f64],
         options: &EnsembleOptions,
     ) -> Vec<Result<MemberMotion, String>> {
+        self.timed_answers(members, times, options).0
+    }
+
+    /// [`Ensemble::answers`] and the seconds of the integration alone.
+    pub fn timed_answers(
+        &self,
+        members: Vec<Result<EnsembleMember, String>>,
+        times: &[f64],
+        options: &EnsembleOptions,
+    ) -> (Vec<Result<MemberMotion, String>>, f64) {
         let mut started = Vec::with_capacity(members.len());
         let refused: Vec<Option<String>> =
             members.into_iter().map(|member| member.map(|member| started.push(member)).err()).collect();
-        let mut motions = self.motions(&started, times, options).into_iter();
+        let (motions, seconds) = self.timed_motions(&started, times, options);
+        let mut motions = motions.into_iter();
         let answer = |cause: Option<String>| match cause {
             Some(cause) => Some(Err(cause)),
             None => motions.next().map(|motion| motion.map_err(|error| error.to_string())),
         };
-        refused.into_iter().filter_map(answer).collect()
+        (refused.into_iter().filter_map(answer).collect(), seconds)
     }
 }
 

@@ -120,6 +120,7 @@ class System:
         max_step: float | None = None,
         time_limit: float | None = None,
         threads: int = 0,
+        estimate: bool = True,
     ) -> Ensemble: ...
     def compare(
         self,
@@ -215,6 +216,7 @@ class Ensemble:
     cause: Final[list[str | None]]
     reached: Final[list[int]]
     alone: Final[list[str | None]]
+    seconds: Final[float]
     def __len__(self) -> int: ...
 
 @final
