@@ -10,7 +10,7 @@ METHODS = {name.title().replace("-", ""): name for name in deltaq.METHODS}
 # on the car with trailers, which is not stiff and may be long, the explicit ones
 EXPLICIT = [name for name in ("Taylor", "Dop853", "Tsit45") if name in METHODS]
 # two runs, the second at a hundredth of the tolerance, and the difference as an error estimate
-SOLVE = "solve: two runs of Dop853"
+SOLVE = "solve: two runs by the method that is chosen"
 BODIES = "quasi-velocities, a place for every body"
 # several motions in lanes, each once
 LANES = "Taylor in lanes"

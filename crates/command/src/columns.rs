@@ -34,21 +34,22 @@ impl Columns {
 
     /// Adds the columns to an object: a list of numbers a name.
     pub fn write(&self, object: &mut Value, rows: &[Outputs]) {
-        object["coordinates"] = columns(&self.coordinates, rows, |r| &r.coordinates);
-        object["velocities"] = columns(&self.coordinates, rows, |r| &r.velocities);
-        object["multipliers"] = columns(&self.multipliers, rows, |r| &r.multipliers);
+        object["coordinates"] = named_columns(&self.coordinates, rows, |r| &r.coordinates);
+        object["velocities"] = named_columns(&self.coordinates, rows, |r| &r.velocities);
+        object["multipliers"] = named_columns(&self.multipliers, rows, |r| &r.multipliers);
     }
 
     /// The error estimates up to each time, as an object likewise.
     pub fn errors(&self, rows: &[ErrorEstimate]) -> Value {
         json!({
-            "coordinates": columns(&self.coordinates, rows, |r| &r.coordinates),
-            "multipliers": columns(&self.multipliers, rows, |r| &r.multipliers),
+            "coordinates": named_columns(&self.coordinates, rows, |r| &r.coordinates),
+            "multipliers": named_columns(&self.multipliers, rows, |r| &r.multipliers),
         })
     }
 }
 
-fn columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> Value {
+/// One list of numbers a name.
+pub fn named_columns<R>(names: &[String], rows: &[R], row: fn(&R) -> &[f64]) -> Value {
     let column = |i: usize| rows.iter().map(|r| row(r)[i]).collect::<Vec<f64>>();
     names.iter().enumerate().map(|(i, name)| (name.clone(), json!(column(i)))).collect::<Map<_, _>>().into()
 }

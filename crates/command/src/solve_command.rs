@@ -6,19 +6,20 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, FORMS, FORMULATIONS, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants,
+    Choice, ErrorEstimate, FORMS, FORMULATIONS, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants,
     error_estimates, formulation, formulation_in, removal, removal_names, removals, setting, solve_by_steps,
     solve_choice,
 };
 use discrete::Composition;
+use equations::Outputs;
 use integrate::{Interrupt, Projection};
-use mechanics::{ConstantsRule, Removal};
+use mechanics::{ConstantsRule, Observables, Removal};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, pretty};
 use crate::cli::{Format, Limits, MotionArguments, SolveArguments};
-use crate::columns::{Columns, error_row, row};
+use crate::columns::{Columns, error_row, named_columns, row};
 use random::parallel;
 use validation::stability::Stepping;
 
@@ -60,17 +61,25 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     }
     let rows = reached.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
     let columns = Columns::of(&scene, &motion.equations);
+    let mut program = Observables::of(&scene.system)?;
+    let observed: Vec<Vec<f64>> =
+        reached.iter().zip(&rows).map(|(&t, now)| program.at(t, &now.coordinates, &now.velocities).to_vec()).collect();
     let text = match arguments.motion.format {
         Format::Csv => {
-            let rows = rows.iter().zip(&so_far).zip(&reached);
-            let rows = rows.map(|((now, errors), &t)| row(t, now) + "," + &error_row(errors) + "\n");
-            [columns.names(), columns.error_names()].concat().join(",") + "\n" + &rows.collect::<String>()
+            let rows = rows.iter().zip(&so_far).zip(reached.iter().zip(&observed));
+            let line = |((now, errors), (&t, observed)): ((&Outputs, &ErrorEstimate), (&f64, &Vec<f64>))| {
+                let observed: String = observed.iter().map(|x| format!(",{x:?}")).collect();
+                row(t, now) + "," + &error_row(errors) + &observed + "\n"
+            };
+            let names = [columns.names(), columns.error_names(), program.names().to_vec()].concat();
+            names.join(",") + "\n" + &rows.map(line).collect::<String>()
         }
         Format::Json => {
             let mut value = json_of(&scene, &choice, &mut motion, &grid)?;
             (value["status"], value["cause"], value["times"]) = (json!(status), json!(complaint), json!(reached));
             (value["error_estimate"], value["error_estimates"]) = (json!(estimate.absolute), columns.errors(&so_far));
             columns.write(&mut value, &rows);
+            value["observables"] = named_columns(program.names(), &observed, |row| row);
             pretty("solve", &value)
         }
     };

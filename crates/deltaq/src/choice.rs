@@ -1,8 +1,11 @@
 //! What is chosen before a motion is computed: formulation, removal, free constants; the resulting equations.
 
-use equations::{Derivation, Equations, Formulation};
+use std::collections::HashMap;
+
+use equations::{Derivation, Equations, Formulation, Named};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System};
 use scene::Scene;
+use symbolic::{Expr, Symbol};
 
 use crate::{FORMS, FORMULATIONS, SolveError, formulation};
 
@@ -84,7 +87,19 @@ fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Resul
     {
         equations = derived(true)?;
     }
+    watch(&mut equations, system);
     Ok(equations.leave_out_unneeded())
+}
+
+/// Invariants of the user's own, in the states of the equations.
+fn watch(equations: &mut Equations, system: &System) {
+    let coordinates = system.positions().into_iter().zip(equations.coordinates.iter().copied());
+    let velocities = system.velocities().into_iter().zip(equations.velocities.iter().copied());
+    let states: HashMap<Symbol, Expr> = coordinates.chain(velocities).collect();
+    for watched in system.watched.iter().filter(|watched| watched.constant) {
+        let expression = equations.graph.substitute(watched.expression, &states);
+        equations.invariants.push(Named { name: watched.name.clone(), expression });
+    }
 }
 
 /// Whether `values`, one a memory variable, give a costate that was left out another value than zero.

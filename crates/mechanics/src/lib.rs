@@ -54,6 +54,7 @@ pub mod elimination;
 mod integrability;
 pub mod linear;
 pub mod newton;
+mod observables;
 mod rank;
 mod removal;
 mod removal_error;
@@ -63,6 +64,7 @@ mod start;
 mod system;
 
 pub use integrability::{Integrability, integrability};
+pub use observables::Observables;
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use removal_error::RemovalError;
@@ -71,4 +73,4 @@ pub use start::{
     Completion, Quantity, Recombination, RemovalProgram, RemovalStart, StartData, StartError, StartNumbers,
     StartProgram, StartShape, check_regularity, complete_removal_start, complete_start, project_velocity,
 };
-pub use system::{Coordinate, Parameter, State, System, fresh_symbol};
+pub use system::{Coordinate, Parameter, State, System, Watched, fresh_symbol};

@@ -31,6 +31,17 @@ pub struct Parameter {
     pub value: f64,
 }
 
+/// A quantity that the user wants to see along a motion.
+#[derive(Clone, Debug)]
+pub struct Watched {
+    /// Its name.
+    pub name: String,
+    /// It, in `(q, v, t)`.
+    pub expression: Expr,
+    /// Whether it is to stay what it is at the start, in whatever formulation.
+    pub constant: bool,
+}
+
 /// A mechanical system: coordinates `q ∈ Rⁿ`, Lagrangian `L(q, v, t)`, constraints `f(q, v, t) = 0 ∈ Rʰ`
 /// and generalized forces `Q(q, v, t) ∈ Rⁿ`.
 ///
@@ -54,6 +65,8 @@ pub struct System {
     /// Times at which a step is to end, where something is switched, in any order; those outside of a run do
     /// not count.
     pub breakpoints: Vec<f64>,
+    /// Invariants and observables of the user's own; no equation depends on them.
+    pub watched: Vec<Watched>,
 }
 
 /// A point of the motion: time, positions and velocities.
@@ -90,6 +103,7 @@ impl System {
             constraints: Vec::new(),
             forces: vec![graph.zero(); coordinates.len()],
             breakpoints: Vec::new(),
+            watched: Vec::new(),
             coordinates,
             graph,
         }

@@ -10,14 +10,14 @@ pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
     let expected = context.system.constraints.len();
     let mut multipliers = vec![0.0; expected];
     if let Some(section) = context.root.section("vakonomic")? {
-        section.check_keys(&["multipliers"])?;
+        section.check_keys(&["multipliers"]);
         if let Some(entry) = section.get("multipliers") {
             let elements = entry.elements("an array of numbers, one a constraint")?;
             if elements.len() != expected {
                 let (what, found) = ("multipliers", elements.len());
                 return Err(entry.error(SceneErrorKind::WrongLength { what, found, expected }));
             }
-            multipliers = elements.iter().map(|e| e.number()).collect::<Result<_, _>>()?;
+            multipliers = elements.iter().map(|e| context.constant(e)).collect::<Result<_, _>>()?;
         }
     }
     for (i, multiplier) in multipliers.iter_mut().enumerate() {
@@ -44,10 +44,11 @@ pub(super) fn rule(
         };
     }
     let section = entry.section()?;
-    section.check_keys(&["horizon", "start"])?;
+    section.check_keys(&["horizon", "start"]);
+    context.source.no_fault()?;
     match (section.get("horizon"), section.section("start")?) {
         (Some(horizon), None) => {
-            let value = horizon.number()?;
+            let value = context.constant(&horizon)?;
             if value <= context.time {
                 let (what, limit) = ("the horizon", context.time);
                 return Err(horizon.error(SceneErrorKind::OutOfRange { what, value, limit }));
@@ -71,7 +72,7 @@ fn given(context: &Context, start: &Section, memory: &[MemoryVariable]) -> Resul
     let mut values = vec![0.0; memory.len()];
     for entry in start.entries() {
         match names.iter().position(|name| name == entry.key) {
-            Some(i) => values[i] = entry.number()?,
+            Some(i) => values[i] = context.constant(&entry)?,
             None => return Err(entry.unknown_name("memory variable of this removal", &names)),
         }
     }

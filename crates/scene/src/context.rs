@@ -1,6 +1,7 @@
 //! What the parts of the loader share.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use mechanics::System;
 use symbolic::{Expr, Symbol};
@@ -22,6 +23,10 @@ pub(super) struct Context<'a> {
     pub(super) written: Vec<(Symbol, Expr)>,
     /// `t₀`.
     pub(super) time: f64,
+    /// Where each constraint stands.
+    pub(super) places: Vec<Range<usize>>,
+    /// Constraints on positions as written: number, place, `g(q, t)`.
+    pub(super) on_positions: Vec<(usize, Range<usize>, Expr)>,
 }
 
 impl Context<'_> {
@@ -59,6 +64,11 @@ impl Context<'_> {
             Value::Number(x) => Ok(self.system.graph.number(x)),
             Value::Expression(text) => self.parse(&text),
         }
+    }
+
+    /// A number, or an expression in parameters.
+    pub(super) fn constant(&self, entry: &Entry) -> Result<f64, SceneError> {
+        self.evaluate(&entry.value()?, &entry.path, &self.system.parameter_values(), "parameters")
     }
 
     /// Values of parameters and time.

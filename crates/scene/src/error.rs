@@ -24,6 +24,8 @@ pub struct SceneError {
     pub length: usize,
     /// What is wrong.
     pub kind: Box<SceneErrorKind>,
+    /// What else is wrong, as far as that can be seen, in the order of the file.
+    pub also: Vec<SceneError>,
 }
 
 /// What is wrong with a scene.
@@ -164,13 +166,43 @@ pub enum SceneErrorKind {
         /// Why.
         reason: Unavailable,
     },
-    /// A constraint without a velocity.
-    #[error("constraint {number} contains no velocity{}", derivative_hint(.derivative))]
+    /// A constraint that the motion has no part in.
+    #[error("constraint {number} contains no velocity and no coordinate")]
     NoVelocity {
         /// Number of the constraint, from 1.
         number: usize,
-        /// Its time derivative, if it depends on the motion at all.
-        derivative: Option<String>,
+    },
+    /// A constraint on positions that the start does not satisfy.
+    #[error(
+        "constraint {number} is one on positions, and the start is not on it: residual {residual:.3e}, limit {limit:.0e}"
+    )]
+    OffPosition {
+        /// Number of the constraint, from 1.
+        number: usize,
+        /// Its value at the start.
+        residual: f64,
+        /// Largest value that is accepted.
+        limit: f64,
+    },
+    /// Definitions or parameters that need each other.
+    #[error("these are defined in a circle: {}", .names.join(" → "))]
+    Circle {
+        /// The names; the first is also the last.
+        names: Vec<String>,
+    },
+    /// A name that could not be read itself.
+    #[error("`{name}` has a fault of its own")]
+    Faulty {
+        /// The name.
+        name: String,
+    },
+    /// An angle in degrees.
+    #[error(
+        "`{unit}` would have to be converted, and angles are in radians: write unit = \"rad\" and, for the start, \"30*pi/180\"; other units are labels"
+    )]
+    Degrees {
+        /// The unit.
+        unit: String,
     },
     /// As many constraints as coordinates.
     #[error("{found} constraints for {dimension} coordinates leave nothing to move; at most {} are possible", .dimension.saturating_sub(1))]
@@ -210,6 +242,9 @@ pub enum NameFault {
     /// Time, a constant or a function.
     #[error("it is {0}")]
     Reserved(&'static str),
+    /// What `--set` calls something else.
+    #[error("`--set` means {0} by it")]
+    Overriding(&'static str),
     /// Used twice.
     #[error("it is already {by}")]
     Taken {
@@ -228,7 +263,7 @@ pub enum Unavailable {
         known: &'static str,
     },
     /// A derivative of something that is not a coordinate.
-    #[error("{0} has no derivative that can be written with primes")]
+    #[error("{0} does not change with time")]
     NoDerivative(&'static str),
     /// A derivative of too high an order.
     #[error(
@@ -252,13 +287,6 @@ fn meant(suggestion: &Option<String>) -> String {
     suggestion.as_ref().map_or_else(String::new, |s| format!(", did you mean `{s}`?"))
 }
 
-fn derivative_hint(derivative: &Option<String>) -> String {
-    match derivative {
-        Some(text) => format!("; a constraint on velocities is expected, enter its time derivative: {text}"),
-        None => " and no coordinate".into(),
-    }
-}
-
 fn joined(roles: &[&str]) -> String {
     if roles.is_empty() { "none of them".into() } else { roles.join(" and ") }
 }
@@ -277,26 +305,60 @@ impl SceneError {
             source_line: text[line_start..line_end].trim_end_matches('\r').into(),
             length: text[start..end.min(line_end)].chars().count().max(1),
             kind: Box::new(kind),
+            also: Vec::new(),
         }
     }
 
     /// A fault that is not in the text.
     pub(crate) fn outside(file: &str, kind: SceneErrorKind) -> Self {
         let (file, source_line) = (file.into(), String::new());
-        SceneError { file, line: 0, column: 0, source_line, length: 1, kind: Box::new(kind) }
+        SceneError { file, line: 0, column: 0, source_line, length: 1, kind: Box::new(kind), also: Vec::new() }
+    }
+
+    /// All that was found, in the order of the file, as one; what only follows from another fault is left out.
+    pub(crate) fn together(mut faults: Vec<SceneError>) -> Option<Self> {
+        let misspelt: Vec<String> = faults.iter().filter_map(SceneError::meant).collect();
+        let follows = |fault: &SceneError| match &*fault.kind {
+            SceneErrorKind::Faulty { .. } => true,
+            SceneErrorKind::MissingKey { key, .. } => misspelt.iter().any(|meant| meant == key),
+            _ => false,
+        };
+        if !faults.iter().all(follows) {
+            faults.retain(|fault| !follows(fault));
+        }
+        faults.sort_by_key(|fault| (fault.line, fault.column));
+        faults.dedup();
+        let mut faults = faults.into_iter();
+        let first = faults.next()?;
+        Some(SceneError { also: faults.collect(), ..first })
+    }
+
+    /// The key that an unknown one may have been meant for.
+    fn meant(&self) -> Option<String> {
+        match &*self.kind {
+            SceneErrorKind::UnknownKey { suggestion, .. } => suggestion.clone(),
+            _ => None,
+        }
+    }
+
+    /// Each fault apart.
+    pub fn each(&self) -> impl Iterator<Item = &SceneError> {
+        std::iter::once(self).chain(&self.also)
     }
 }
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.line == 0 {
-            return write!(f, "{}: {}", self.file, self.kind);
+            write!(f, "{}: {}", self.file, self.kind)?;
+        } else {
+            write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.kind)?;
+            let [line, carets] = excerpt(&self.source_line, self.column, self.length);
+            let number = self.line.to_string();
+            let gutter = " ".repeat(number.len());
+            write!(f, "\n{number} | {line}\n{gutter} | {carets}")?;
         }
-        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.kind)?;
-        let [line, carets] = excerpt(&self.source_line, self.column, self.length);
-        let number = self.line.to_string();
-        let gutter = " ".repeat(number.len());
-        write!(f, "\n{number} | {line}\n{gutter} | {carets}")
+        self.also.iter().try_for_each(|other| write!(f, "\n{other}"))
     }
 }
 

@@ -49,6 +49,7 @@ mod context;
 mod error;
 mod load;
 mod names;
+mod order;
 mod overrides;
 mod removal;
 mod scene;

@@ -1,12 +1,14 @@
 //! From the text of a scene to the scene.
 
+use std::cell::RefCell;
 use std::io::Read;
 use std::path::Path;
 
 use toml::de::DeTable;
 
+use super::context::Context;
 use super::overrides::Overrides;
-use super::section::{Section, Source};
+use super::section::{Entry, Section, Source};
 use super::{constants, removal, start, system};
 use crate::{Scene, SceneError, SceneErrorKind};
 
@@ -119,7 +121,20 @@ impl Scene {
 }
 
 fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
-    let source = Source { file, text };
+    let faults = RefCell::default();
+    let scene = read(name, Source { file, text, faults: &faults }, overrides);
+    let mut faults = faults.into_inner();
+    let scene = scene.map_err(|fault| faults.push(fault));
+    match (scene, SceneError::together(faults)) {
+        (Ok(scene), None) => Ok(scene),
+        (_, Some(error)) => Err(error),
+        (Err(()), None) => unreachable!("what is no scene has a fault"),
+    }
+}
+
+/// Looks at as much as can be looked at: faults that leave the rest readable are noted.
+fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+    let Source { file, text, .. } = source;
     let size = text.len() as u64;
     if size > SIZE_LIMIT {
         return Err(too_large(file, size));
@@ -139,46 +154,71 @@ fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Resu
         "parameters",
         "coordinates",
         "definitions",
+        "invariants",
+        "observables",
         "system",
         "start",
         "removal",
         "vakonomic",
         "run",
-    ])?;
-    let title = root.require("title", "a string")?.text("a string")?.text;
-    let run = root.require("run", "a table with the duration")?.section()?;
-    run.check_keys(&["duration", "breakpoints"])?;
-
+    ]);
+    let text = |key| source.note(root.text_or_empty(key)).unwrap_or_default();
+    let (origin, notes) = (text("source"), text("notes"));
+    let title = source.note(root.require("title", "a string").and_then(|title| title.text("a string")));
+    let run = root.require("run", "a table with the duration").and_then(|run| run.section());
+    let run = source.note(run);
     let mut context = system::build(source, root, Overrides::new(source, overrides)?)?;
-    if let Some(breakpoints) = run.get("breakpoints") {
-        let times = breakpoints.elements("a list of times")?;
-        context.system.breakpoints = times.iter().map(|t| t.number()).collect::<Result<_, _>>()?;
-    }
+    let duration = run.and_then(|run| {
+        run.check_keys(&["duration", "breakpoints"]);
+        if let Some(times) = run.get("breakpoints").and_then(|entry| source.note(breakpoints(&entry))) {
+            context.system.breakpoints = times;
+        }
+        source.note(duration(&context, &run))
+    });
+    // constraints that could not be read would be missed
+    let multipliers =
+        if faults_so_far(source) { Some(Vec::new()) } else { source.note(constants::multipliers(&context)) };
+    source.no_fault()?;
+    start::check_positions(&context)?;
     let removals = removal::read_all(&context)?;
     let (state, completion) = start::complete(&context, &removals)?;
-    let multipliers = constants::multipliers(&context)?;
-    let duration = run.require("duration", "a positive number")?;
-    let out_of_range = |value| SceneErrorKind::OutOfRange { what: "the duration", value, limit: 0.0 };
-    let given = duration.number()?;
-    let value = match context.overrides.get("duration") {
-        Some(value) if value > 0.0 => value,
-        Some(value) => return Err(SceneError::outside(file, out_of_range(value))),
-        None if given > 0.0 => given,
-        None => return Err(duration.error(out_of_range(given))),
-    };
     context.overrides.check_used(source)?;
+    let (Some(title), Some(duration), Some(multipliers)) = (title, duration, multipliers) else {
+        unreachable!("what could not be read was noted")
+    };
+    source.no_fault()?;
     Ok(Scene {
         name: name.into(),
-        title,
-        source: context.root.text_or_empty("source")?,
-        notes: context.root.text_or_empty("notes")?,
+        title: title.text,
+        source: origin,
+        notes,
         system: context.system,
         start: state,
         completion,
         removals,
         multipliers,
-        duration: value,
+        duration,
     })
+}
+
+fn faults_so_far(source: Source) -> bool {
+    !source.faults.borrow().is_empty()
+}
+
+fn breakpoints(entry: &Entry) -> Result<Vec<f64>, SceneError> {
+    entry.elements("a list of times")?.iter().map(Entry::number).collect()
+}
+
+fn duration(context: &Context, run: &Section) -> Result<f64, SceneError> {
+    let entry = run.require("duration", "a positive number")?;
+    let given = context.constant(&entry)?;
+    let out_of_range = |value| SceneErrorKind::OutOfRange { what: "the duration", value, limit: 0.0 };
+    match context.overrides.get("duration") {
+        Some(value) if value > 0.0 => Ok(value),
+        Some(value) => Err(SceneError::outside(context.source.file, out_of_range(value))),
+        None if given > 0.0 => Ok(given),
+        None => Err(entry.error(out_of_range(given))),
+    }
 }
 
 fn unreadable(file: &str, error: std::io::Error) -> SceneError {

@@ -1,9 +1,10 @@
 //! Names of a scene: what may be one, which are taken, and what they stand for in an expression.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use symbolic::{Expr, Graph, ParseErrorKind, Symbol};
+use mechanics::System;
+use symbolic::{Expr, Graph, ParseError, ParseErrorKind, Scope, Symbol, Value};
 
 use super::section::{Source, Text};
 use crate::{NameFault, SceneError, SceneErrorKind, Unavailable};
@@ -37,20 +38,78 @@ impl Role {
 pub(super) struct Names {
     roles: HashMap<String, Role>,
     /// Every name with its primes.
-    expressions: HashMap<String, Expr>,
-    /// The keys of `expressions` in the order of the file, for suggestions.
+    values: HashMap<String, Value>,
+    /// The keys of `values` in the order of the file, for suggestions.
     known: Vec<String>,
+    /// `dq/dt = v` and `dt/dt = 1`, once the coordinates are known.
+    flow: Vec<(Symbol, Expr)>,
+    /// What does not change with time.
+    constants: HashSet<Symbol>,
+    /// Names that are defined, but could not be read.
+    faulty: HashSet<String>,
+}
+
+/// The names, and the graph in which they are expressions.
+struct Known<'a>(&'a Names, &'a Graph);
+
+impl Scope for Known<'_> {
+    fn value(&self, name: &str) -> Option<Value> {
+        let known = self.0.values.get(name);
+        known.cloned().or_else(|| {
+            // the rate of a definition
+            let base = name.strip_suffix('\'').filter(|base| self.0.role(base) == Some(Role::Definition))?;
+            let value = self.0.values.get(base)?;
+            Some(value.with(value.entries().iter().map(|&e| self.rate(e)).collect::<Option<_>>()?))
+        })
+    }
+
+    fn rate(&self, e: Expr) -> Option<Expr> {
+        let Known(names, graph) = self;
+        let moves = |s: &Symbol| names.flow.iter().any(|(known, _)| known == s);
+        let written = graph.symbols_of(e).iter().all(|s| moves(s) || names.constants.contains(s));
+        written.then(|| graph.total_derivative(e, &names.flow))
+    }
+
+    fn known(&self) -> &[String] {
+        &self.0.known
+    }
 }
 
 impl Names {
     /// Makes `name` stand for `expression` and its derivatives for `primed`.
     pub(super) fn insert(&mut self, name: &str, role: Role, expression: Expr, primed: &[Expr]) {
-        self.roles.insert(name.into(), role);
         for (primes, &e) in std::iter::once(&expression).chain(primed).enumerate() {
-            let name = name.to_string() + &"'".repeat(primes);
-            self.known.push(name.clone());
-            self.expressions.insert(name, e);
+            self.insert_value(&(name.to_string() + &"'".repeat(primes)), Value::Scalar(e));
         }
+        self.roles.insert(name.into(), role);
+    }
+
+    /// Makes a definition stand for a number, a vector or a matrix.
+    pub(super) fn define(&mut self, name: &str, value: Value) {
+        self.insert_value(name, value);
+        self.roles.insert(name.into(), Role::Definition);
+    }
+
+    fn insert_value(&mut self, name: &str, value: Value) {
+        self.known.push(name.into());
+        self.values.insert(name.into(), value);
+    }
+
+    /// A parameter: it does not change with time.
+    pub(super) fn insert_parameter(&mut self, name: &str, graph: &Graph, value: Expr) {
+        self.insert(name, Role::Parameter, value, &[]);
+        self.constants.extend(graph.symbols_of(value));
+    }
+
+    /// What changes with time, and how.
+    pub(super) fn insert_flow(&mut self, system: &System) {
+        self.flow = system.flow();
+    }
+
+    /// A name of this role that could not be read: what uses it is not blamed.
+    pub(super) fn insert_faulty(&mut self, name: &str, role: Role) {
+        self.roles.insert(name.into(), role);
+        self.faulty.insert(name.into());
     }
 
     pub(super) fn role(&self, name: &str) -> Option<Role> {
@@ -83,6 +142,29 @@ impl Names {
         }
     }
 
+    /// Notes where `name` cannot be one that `--set` replaces; the words of [`Scene::parse_with`] cannot.
+    ///
+    /// [`Scene::parse_with`]: crate::Scene::parse_with
+    pub(super) fn check_settable(
+        &self,
+        source: Source,
+        graph: &Graph,
+        name: &str,
+        span: &Range<usize>,
+    ) -> Result<(), SceneError> {
+        let multiplier = name.strip_prefix("mu").is_some_and(|n| n.parse::<usize>().is_ok());
+        let costate = name.strip_prefix("P0_").is_some();
+        let meant = match name {
+            "time" => "the start time",
+            "duration" => "the length of the run",
+            _ if multiplier => "a multiplier",
+            _ if costate => "a costate",
+            _ => return self.check(source, graph, name, span),
+        };
+        let fault = NameFault::Overriding(meant);
+        Err(source.error(span, SceneErrorKind::InvalidName { name: name.into(), fault }))
+    }
+
     /// [`Names::check_new`] with the place.
     pub(super) fn check(
         &self,
@@ -95,24 +177,34 @@ impl Names {
             .map_err(|fault| source.error(span, SceneErrorKind::InvalidName { name: name.into(), fault }))
     }
 
-    /// Reads an expression.
+    /// Reads a number as an expression.
     pub(super) fn parse(&self, source: Source, graph: &Graph, text: &Text) -> Result<Expr, SceneError> {
-        let scope = |name: &str| self.expressions.get(name).copied();
-        graph.parse(&text.text, &scope, &self.known).map_err(|error| {
-            let kind = self.derivative_fault(&error.kind).unwrap_or(SceneErrorKind::Expression(error.kind));
-            source.error_within(text, error.offset, error.length, kind)
-        })
+        graph.parse_number(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
     }
 
-    /// An undefined derivative of something that is defined has a better explanation than a similar name.
-    fn derivative_fault(&self, kind: &ParseErrorKind) -> Option<SceneErrorKind> {
+    /// Reads an expression for a number, a vector or a matrix.
+    pub(super) fn parse_value(&self, source: Source, graph: &Graph, text: &Text) -> Result<Value, SceneError> {
+        graph.parse_value(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
+    }
+
+    fn fault(&self, source: Source, text: &Text, error: ParseError) -> SceneError {
+        let kind = self.better_fault(&error.kind).unwrap_or(SceneErrorKind::Expression(error.kind));
+        source.error_within(text, error.offset, error.length, kind)
+    }
+
+    /// An undefined derivative of something that is defined has a better explanation than a similar name, and
+    /// what has a fault of its own is not undefined.
+    fn better_fault(&self, kind: &ParseErrorKind) -> Option<SceneErrorKind> {
         let ParseErrorKind::Undefined { name, .. } = kind else { return None };
         let base = name.trim_end_matches('\'');
+        if self.faulty.contains(base) {
+            return Some(SceneErrorKind::Faulty { name: base.into() });
+        }
         if base == name {
             return None;
         }
         let reason = match self.role(base)? {
-            Role::Coordinate | Role::RemovalParameter => Unavailable::Acceleration,
+            Role::Coordinate | Role::RemovalParameter | Role::Definition => Unavailable::Acceleration,
             role => Unavailable::NoDerivative(role.noun()),
         };
         Some(SceneErrorKind::Unavailable { name: name.clone(), reason })

@@ -23,7 +23,8 @@ pub(super) fn read_all(context: &Context) -> Result<Vec<Removal>, SceneError> {
 }
 
 fn read(context: &Context, name: &str, section: &Section) -> Result<Removal, SceneError> {
-    section.check_keys(&KEYS)?;
+    section.check_keys(&KEYS);
+    context.source.no_fault()?;
     let mut reader = Reader { context, section, names: context.names.clone(), forbidden: HashMap::new() };
     let parameters = reader.parameters()?;
     let defined = reader.coordinate_roles(name, &parameters)?;

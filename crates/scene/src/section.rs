@@ -1,19 +1,31 @@
 //! Tables of a scene file with the place of everything in them.
 
+use std::cell::RefCell;
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
 use crate::{SceneError, SceneErrorKind};
 
-/// The text of a scene and where it came from.
+/// The text of a scene, where it came from, and what is wrong with it so far.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) file: &'a str,
     pub(super) text: &'a str,
+    pub(super) faults: &'a RefCell<Vec<SceneError>>,
 }
 
 impl Source<'_> {
+    /// What was read; a fault is noted, so that others are looked for.
+    pub(super) fn note<T>(&self, result: Result<T, SceneError>) -> Option<T> {
+        result.map_err(|fault| self.faults.borrow_mut().push(fault)).ok()
+    }
+
+    /// Gives up where faults were noted: what comes next rests on what could not be read.
+    pub(super) fn no_fault(&self) -> Result<(), SceneError> {
+        self.faults.borrow_mut().pop().map_or(Ok(()), Err)
+    }
+
     pub(super) fn error(&self, span: &Range<usize>, kind: SceneErrorKind) -> SceneError {
         SceneError::at(self.file, self.text, span.clone(), kind)
     }
@@ -107,16 +119,14 @@ impl<'a> Section<'a> {
         })
     }
 
-    /// Every key must be one of `known`.
-    pub(super) fn check_keys(&self, known: &[&str]) -> Result<(), SceneError> {
-        match self.entries().find(|e| !known.contains(&e.key)) {
-            None => Ok(()),
-            Some(entry) => {
-                let known: Vec<String> = known.iter().map(|k| k.to_string()).collect();
-                let (key, section) = (entry.key.to_string(), self.title());
-                let suggestion = suggestion(entry.key, &known);
-                Err(entry.error_at_key(SceneErrorKind::UnknownKey { key, section, suggestion, known }))
-            }
+    /// Notes every key that is none of `known`.
+    pub(super) fn check_keys(&self, known: &[&str]) {
+        for entry in self.entries().filter(|e| !known.contains(&e.key)) {
+            let known: Vec<String> = known.iter().map(|k| k.to_string()).collect();
+            let (key, section) = (entry.key.to_string(), self.title());
+            let suggestion = suggestion(entry.key, &known);
+            let kind = SceneErrorKind::UnknownKey { key, section, suggestion, known };
+            self.source.note::<()>(Err(entry.error_at_key(kind)));
         }
     }
 

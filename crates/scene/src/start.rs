@@ -1,5 +1,6 @@
 //! `[start]`: given velocities, and what the constraints make of them.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use symbolic::{Expr, Symbol};
@@ -19,7 +20,7 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
     let mut place = context.root.get("system").map_or(0..0, |e| e.key_span);
     if let Some(start) = &start {
         place = start.span.clone();
-        start.check_keys(&["time", "project", "velocities", "guess"])?;
+        start.check_keys(&["time", "project", "velocities", "guess"]);
         project = start.get("project").map_or(Ok(false), |e| e.boolean())?;
         if let Some(velocities) = start.section("velocities")? {
             place = velocities.span.clone();
@@ -52,6 +53,22 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         context.source.error(&place, SceneErrorKind::Start(error))
     });
     completed.map(|(state, completion)| (state, Completion { written, guessed, ..completion }))
+}
+
+/// Constraints on positions must hold at the start, within `1e-9` of the size of the coordinates.
+pub(super) fn check_positions(context: &Context) -> Result<(), SceneError> {
+    let values = context.values_at_rest();
+    let size = context.positions.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+    for (number, place, g) in &context.on_positions {
+        let residual = context.system.graph.evaluate(*g, &values).unwrap_or(f64::NAN).abs();
+        let limit = 1e-9 * size;
+        // NaN is off, too
+        if !matches!(residual.partial_cmp(&limit), Some(Ordering::Less | Ordering::Equal)) {
+            let kind = SceneErrorKind::OffPosition { number: *number, residual, limit };
+            context.source.note::<()>(Err(context.source.error(place, kind)));
+        }
+    }
+    context.source.no_fault()
 }
 
 /// Velocities of the coordinates, and rates of the first removal's own parameters.
@@ -90,10 +107,7 @@ fn rates(context: &Context, section: &Section, removal: Option<&Removal>) -> Res
 fn blamed(context: &Context, error: &StartError) -> Option<std::ops::Range<usize>> {
     let system = context.root.get("system")?.section().ok()?;
     let key = |key: &str| system.get(key).map(|e| e.key_span);
-    let constraint = |number: usize| {
-        let elements = system.get("constraints")?.elements("").ok()?;
-        elements.get(number - 1).map(|e| e.span.clone())
-    };
+    let constraint = |number: usize| context.places.get(number - 1).cloned();
     match error {
         StartError::DependentConstraints { .. } => key("constraints"),
         StartError::SingularMassMatrix { .. } => key("lagrangian"),

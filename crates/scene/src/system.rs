@@ -1,13 +1,16 @@
 //! Parameters, coordinates, definitions and `[system]`.
 
-use symbolic::{Expr, Graph};
+use std::collections::HashMap;
+
+use symbolic::{Graph, Symbol};
 
 use super::context::Context;
 use super::names::{Names, Role};
+use super::order::in_order;
 use super::overrides::Overrides;
-use super::section::{Entry, Section, Source};
+use super::section::{Entry, Section, Source, Value};
 use crate::{SceneError, SceneErrorKind};
-use mechanics::{Parameter, System};
+use mechanics::{Parameter, System, Watched};
 
 /// The parameter that can be set in a scene that does not name it.
 const KAPPA: &str = "kappa";
@@ -20,7 +23,10 @@ pub(super) fn build<'a>(
 ) -> Result<Context<'a>, SceneError> {
     let graph = Graph::new();
     let mut names = Names::default();
-    let parameters = parameters(source, &root, &overrides, &graph, &mut names)?;
+    let parameters = match source.note(root.section("parameters")).flatten() {
+        Some(section) => parameters(&section, &overrides, &graph, &mut names),
+        None => Vec::new(),
+    };
     let coordinates = root.require("coordinates", "a table with one entry a coordinate")?.section()?;
     if coordinates.is_empty() {
         let (section, expected) =
@@ -29,10 +35,9 @@ pub(super) fn build<'a>(
     }
     let mut units = Vec::new();
     for entry in coordinates.entries() {
-        names.check(source, &graph, entry.key, &entry.key_span)?;
-        let section = entry.section()?;
-        section.check_keys(&["unit", "start"])?;
-        units.push((entry.key, section.text_or_empty("unit")?));
+        source.note(names.check_settable(source, &graph, entry.key, &entry.key_span));
+        let unit = source.note(entry.section()).and_then(|section| source.note(unit(&section)));
+        units.push((entry.key, unit.unwrap_or_default()));
         let q = graph.variable(graph.symbol(entry.key));
         let v = graph.variable(graph.symbol(&format!("{}'", entry.key)));
         names.insert(entry.key, Role::Coordinate, q, &[v]);
@@ -40,104 +45,198 @@ pub(super) fn build<'a>(
     let units: Vec<(&str, &str)> = units.iter().map(|(name, unit)| (*name, unit.as_str())).collect();
     let system = System::new(graph, &units);
     names.insert("t", Role::Time, system.graph.variable(system.time), &[]);
-    let mut context =
-        Context { source, root, overrides, names, system, positions: Vec::new(), written: Vec::new(), time: 0.0 };
-    context.system.parameters = parameters;
-    definitions(&mut context)?;
-    read_system(&mut context)?;
-    context.time = start_time(&context)?;
+    names.insert_flow(&system);
+    let mut context = Context {
+        source,
+        root,
+        overrides,
+        names,
+        system,
+        positions: Vec::new(),
+        written: Vec::new(),
+        time: 0.0,
+        places: Vec::new(),
+        on_positions: Vec::new(),
+    };
+    if let Some(value) = context.overrides.get(KAPPA) {
+        // a number of the family between, which is no part of the system: any scene takes it
+        let symbol = context.system.graph.symbol(KAPPA);
+        context.system.parameters.push(Parameter { symbol, value });
+    }
+    context.system.parameters.splice(0..0, parameters);
+    source.note(definitions(&mut context));
+    source.note(read_system(&mut context));
+    for (section, constant) in [("invariants", true), ("observables", false)] {
+        source.note(watched(&mut context, section, constant));
+    }
+    context.time = source.note(start_time(&context)).unwrap_or_default();
     positions(&mut context, &coordinates)?;
     Ok(context)
 }
 
-fn parameters(
-    source: Source,
-    root: &Section,
-    overrides: &Overrides,
-    graph: &Graph,
-    names: &mut Names,
-) -> Result<Vec<Parameter>, SceneError> {
+/// The label of a coordinate's unit.
+fn unit(section: &Section) -> Result<String, SceneError> {
+    section.check_keys(&["unit", "start"]);
+    let unit = section.text_or_empty("unit")?;
+    let degrees = matches!(unit.as_str(), "deg" | "degree" | "degrees" | "°");
+    match section.get("unit").filter(|_| degrees) {
+        Some(entry) => Err(entry.error(SceneErrorKind::Degrees { unit })),
+        None => Ok(unit),
+    }
+}
+
+/// Parameters that are numbers. One that is given by others is an expression in them, and follows them.
+fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &mut Names) -> Vec<Parameter> {
+    let source = section.source;
+    let mut written = Vec::new();
+    for entry in section.entries() {
+        let checked = names.check_settable(source, graph, entry.key, &entry.key_span);
+        let value = source.note(checked).and_then(|()| {
+            let given = source.note(entry.value())?;
+            Some(overrides.get(entry.key).map_or(given, Value::Number))
+        });
+        match value {
+            Some(value) => written.push((entry, value)),
+            // it is a number in any case
+            None if names.role(entry.key).is_none() => {
+                names.insert_parameter(entry.key, graph, graph.variable(graph.symbol(entry.key)));
+            }
+            None => {}
+        }
+    }
+    let places: HashMap<&str, usize> = written.iter().enumerate().map(|(i, (e, _))| (e.key, i)).collect();
     let mut parameters = Vec::new();
-    let section = root.section("parameters")?;
-    for entry in section.iter().flat_map(Section::entries) {
-        names.check(source, graph, entry.key, &entry.key_span)?;
-        let given = entry.number()?;
-        let symbol = graph.symbol(entry.key);
-        parameters.push(Parameter { symbol, value: overrides.get(entry.key).unwrap_or(given) });
-        names.insert(entry.key, Role::Parameter, graph.variable(symbol), &[]);
+    for (entry, value) in in_order(source, written, Role::Parameter, names) {
+        let read = match value {
+            Value::Number(x) => Ok(graph.number(x)),
+            Value::Expression(text) => names.parse(source, graph, &text),
+        };
+        let e = source.note(read).unwrap_or_else(|| graph.number(f64::NAN));
+        let given_by_others = !graph.symbols_of(e).is_empty();
+        let value = if given_by_others { e } else { graph.variable(graph.symbol(entry.key)) };
+        names.insert_parameter(entry.key, graph, value);
+        if !given_by_others {
+            let value = graph.evaluate(e, &HashMap::new()).unwrap_or(f64::NAN);
+            parameters.push((places[entry.key], Parameter { symbol: graph.symbol(entry.key), value }));
+        }
     }
-    // a number of the family between, which is no part of the system: any scene takes it
-    if let Some(value) = overrides.get(KAPPA) {
-        let symbol = graph.symbol(KAPPA);
-        parameters.push(Parameter { symbol, value });
-        names.insert(KAPPA, Role::Parameter, graph.variable(symbol), &[]);
-    }
-    Ok(parameters)
+    parameters.sort_by_key(|(place, _)| *place);
+    parameters.into_iter().map(|(_, parameter)| parameter).collect()
 }
 
 fn definitions(context: &mut Context) -> Result<(), SceneError> {
     let Some(section) = context.root.section("definitions")? else { return Ok(()) };
+    let source = context.source;
+    let mut written = Vec::new();
     for entry in section.entries() {
-        context.names.check(context.source, &context.system.graph, entry.key, &entry.key_span)?;
-        let e = context.written(&entry)?;
-        context.names.insert(entry.key, Role::Definition, e, &[]);
+        let checked = context.names.check(source, &context.system.graph, entry.key, &entry.key_span);
+        match source.note(checked.and_then(|()| entry.value())) {
+            Some(value) => written.push((entry, value)),
+            None if context.names.role(entry.key).is_none() => {
+                context.names.insert_faulty(entry.key, Role::Definition);
+            }
+            None => {}
+        }
+    }
+    for (entry, value) in in_order(source, written, Role::Definition, &mut context.names) {
+        let value = match value {
+            Value::Number(x) => Ok(symbolic::Value::Scalar(context.system.graph.number(x))),
+            Value::Expression(text) => context.names.parse_value(source, &context.system.graph, &text),
+        };
+        match source.note(value) {
+            Some(value) => context.names.define(entry.key, value),
+            None => context.names.insert_faulty(entry.key, Role::Definition),
+        }
     }
     Ok(())
 }
 
 fn read_system(context: &mut Context) -> Result<(), SceneError> {
+    let source = context.source;
     let section = context.root.require("system", "a table with the Lagrangian and the constraints")?.section()?;
-    section.check_keys(&["lagrangian", "constraints", "forces"])?;
-    let lagrangian = section.require("lagrangian", "an expression in quotes")?;
-    context.system.lagrangian = context.parse(&lagrangian.text("an expression in quotes")?)?;
-    if let Some(entry) = section.get("constraints") {
-        context.system.constraints = constraints(context, &entry)?;
+    section.check_keys(&["lagrangian", "constraints", "forces"]);
+    let lagrangian = section.require("lagrangian", "an expression in quotes");
+    let lagrangian = lagrangian.and_then(|entry| context.parse(&entry.text("an expression in quotes")?));
+    if let Some(lagrangian) = source.note(lagrangian) {
+        context.system.lagrangian = lagrangian;
     }
-    if let Some(forces) = section.section("forces")? {
-        let known: Vec<String> = context.system.coordinates.iter().map(|c| c.name.clone()).collect();
-        for entry in forces.entries() {
-            let Some(i) = known.iter().position(|name| name == entry.key) else {
-                return Err(entry.unknown_name("coordinate", &known));
-            };
-            context.system.forces[i] = context.written(&entry)?;
+    if let Some(entry) = section.get("constraints") {
+        source.note(constraints(context, &entry));
+    }
+    let Some(forces) = section.section("forces")? else { return Ok(()) };
+    let known: Vec<String> = context.system.coordinates.iter().map(|c| c.name.clone()).collect();
+    for entry in forces.entries() {
+        let place = known.iter().position(|name| name == entry.key);
+        let force = place.ok_or_else(|| entry.unknown_name("coordinate", &known)).and_then(|i| {
+            let force = context.written(&entry)?;
+            Ok((i, force))
+        });
+        if let Some((i, force)) = source.note(force) {
+            context.system.forces[i] = force;
         }
     }
     Ok(())
 }
 
-fn constraints(context: &Context, entry: &Entry) -> Result<Vec<Expr>, SceneError> {
-    let (system, g) = (&context.system, &context.system.graph);
-    let elements = entry.elements("an array of expressions")?;
-    let (found, dimension) = (elements.len(), system.dimension());
+/// What the user wants to see: a vector by its components. Positions that are to stay where they are, too.
+fn watched(context: &mut Context, section: &str, constant: bool) -> Result<(), SceneError> {
+    if constant {
+        for (number, _, g) in &context.on_positions {
+            let name = format!("constraint {number} on positions");
+            context.system.watched.push(Watched { name, expression: *g, constant });
+        }
+    }
+    let Some(section) = context.root.section(section)? else { return Ok(()) };
+    for entry in section.entries() {
+        let read = entry.text("an expression in quotes");
+        let read = read.and_then(|text| context.names.parse_value(context.source, &context.system.graph, &text));
+        let Some(value) = context.source.note(read) else { continue };
+        for (i, &expression) in value.entries().iter().enumerate() {
+            let name = match &value {
+                symbolic::Value::Scalar(_) => entry.key.to_string(),
+                symbolic::Value::Vector(_) if i < 3 => format!("{}.{}", entry.key, &"xyz"[i..=i]),
+                _ => format!("{} {}", entry.key, i + 1),
+            };
+            context.system.watched.push(Watched { name, expression, constant });
+        }
+    }
+    Ok(())
+}
+
+/// Each element is a constraint, or a vector of them. One on positions is kept as its time derivative.
+fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
+    let source = context.source;
+    let mut constraints = Vec::new();
+    for (index, element) in entry.elements("an array of expressions")?.iter().enumerate() {
+        let read = element.text("an expression in quotes");
+        let read = read.and_then(|text| context.names.parse_value(source, &context.system.graph, &text));
+        for f in source.note(read).iter().flat_map(|value| value.entries()) {
+            let system = &context.system;
+            let g = &system.graph;
+            let depends = |symbols: Vec<Symbol>| symbols.into_iter().any(|s| g.depends_on(*f, s));
+            context.places.push(element.span.clone());
+            if depends(system.velocities()) {
+                constraints.push(*f);
+            } else if depends(system.positions()) {
+                constraints.push(g.total_derivative(*f, &system.flow()));
+                context.on_positions.push((index + 1, element.span.clone(), *f));
+            } else {
+                source.note::<()>(Err(element.error(SceneErrorKind::NoVelocity { number: index + 1 })));
+            }
+        }
+    }
+    let (found, dimension) = (constraints.len(), context.system.dimension());
     if found >= dimension {
         return Err(entry.error_at_key(SceneErrorKind::TooManyConstraints { found, dimension }));
     }
-    let velocities = system.velocities();
-    let mut constraints = Vec::new();
-    for (index, element) in elements.iter().enumerate() {
-        let f = context.parse(&element.text("an expression in quotes")?)?;
-        if !velocities.iter().any(|&v| g.depends_on(f, v)) {
-            let depends = system.positions().into_iter().any(|q| g.depends_on(f, q));
-            let derivative = depends.then(|| shortened(g.plain(g.total_derivative(f, &system.flow()))));
-            return Err(element.error(SceneErrorKind::NoVelocity { number: index + 1, derivative }));
-        }
-        constraints.push(f);
-    }
-    Ok(constraints)
-}
-
-fn shortened(text: String) -> String {
-    const LONGEST: usize = 200;
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text,
-    }
+    context.system.constraints = constraints;
+    Ok(())
 }
 
 fn start_time(context: &Context) -> Result<f64, SceneError> {
     let start = context.root.section("start")?;
     let given = match start.and_then(|s| s.get("time")) {
-        Some(entry) => entry.number()?,
+        Some(entry) => context.constant(&entry)?,
         None => 0.0,
     };
     Ok(context.overrides.get("time").unwrap_or(given))
@@ -146,14 +245,18 @@ fn start_time(context: &Context) -> Result<f64, SceneError> {
 fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneError> {
     let mut values = context.constants();
     for (entry, symbol) in coordinates.entries().zip(context.system.positions()) {
-        let start = entry.section()?;
-        let start = start.require("start", "a number, or an expression in parameters and earlier coordinates")?;
-        let known = "parameters, t and the coordinates above";
-        let value = start.value()?;
-        let (x, written) = match context.overrides.get(entry.key) {
-            Some(x) => (x, context.system.graph.number(x)),
-            None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&start)?),
+        let read = || -> Result<_, SceneError> {
+            let start = entry.section()?;
+            let start = start.require("start", "a number, or an expression in parameters and earlier coordinates")?;
+            let known = "parameters, t and the coordinates above";
+            let value = start.value()?;
+            Ok(match context.overrides.get(entry.key) {
+                Some(x) => (x, context.system.graph.number(x)),
+                None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&start)?),
+            })
         };
+        // nothing starts where something is at fault: a number in its place serves to look at the others
+        let (x, written) = context.source.note(read()).unwrap_or((f64::NAN, context.system.graph.zero()));
         values.insert(symbol, x);
         context.positions.push(x);
         context.written.push((symbol, written));

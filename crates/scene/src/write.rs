@@ -40,6 +40,15 @@ fn written(scene: &Scene) -> String {
         text.line(&c.name, &format!("{{ unit = {}, start = {} }}", quoted(&c.unit), number(q)));
     }
     write_system(&mut text, system);
+    for (header, constant) in [("invariants", true), ("observables", false)] {
+        let watched: Vec<_> = system.watched.iter().filter(|watched| watched.constant == constant).collect();
+        if !watched.is_empty() {
+            text.header(header);
+        }
+        for watched in watched {
+            text.line(&watched.name, &quoted(&g.plain(watched.expression)));
+        }
+    }
     text.header("start");
     text.line("time", &number(start.t));
     text.header("start.velocities");

@@ -96,7 +96,9 @@ sledge:18:1: unknown key `lagrangain` in [system], did you mean `lagrangian`?; k
 fn misspelt_keys() {
     fault!("title", "tilte", Kind::UnknownKey { suggestion: Some(s), .. } if s == "title", "tilte");
     fault!("[run]", "[rum]", Kind::UnknownKey { suggestion: Some(s), .. } if s == "run", "rum");
-    fault!("duration", "length", Kind::UnknownKey { suggestion: None, known, .. } if known == &["duration", "breakpoints"], "length");
+    let error = error("duration", "length");
+    assert!(matches!(&*error.kind, Kind::MissingKey { key: "duration", .. }), "{error}");
+    assert!(matches!(&*error.also[0].kind, Kind::UnknownKey { suggestion: None, .. }), "{error}");
     fault!("x   = { unit", "x   = { units", Kind::UnknownKey { suggestion: Some(s), .. } if s == "unit", "units");
     fault!("project", "projekt", Kind::UnknownKey { suggestion: Some(s), .. } if s == "project", "projekt");
     fault!("rates = ", "rate = ", Kind::UnknownKey { suggestion: Some(s), .. } if s == "rates", "rate");
@@ -124,7 +126,8 @@ fn formulas() {
     fault!("+ weight*x", "+ g'", Kind::Unavailable { reason: Unavailable::NoDerivative("a parameter"), .. }, "g'");
     fault!("\"2*x\"", "\"2*phi\"", Kind::Unavailable { reason: Unavailable::NotYetKnown { .. }, .. }, "phi");
     fault!("0.5*cos(phi)", "0.5*phi'", Kind::Unavailable { reason: Unavailable::NotYetKnown { .. }, .. }, "phi'");
-    fault!("weight = \"g", "weight = \"later*g", Kind::Expression(ParseErrorKind::Undefined { .. }), "later");
+    fault!("+ weight*x", "+ weight''*x", Kind::Unavailable { reason: Unavailable::Acceleration, .. }, "weight''");
+    fault!("+ weight*x", "+ [x, y]", Kind::Expression(ParseErrorKind::Shapes { .. }), "+");
     // in a string of several lines the place is exact, behind escapes it is the start of the value
     fault!("\"g*sin(alpha)\"", "\"\"\"\ng*\n  sin(alhpa)\"\"\"", Kind::Expression(_), "alhpa");
     fault!("\"g*sin(alpha)\"", "\"g\\u002Asin(alhpa)\"", Kind::Expression(_), "\"g\\u002Asin(alhpa)\"");
@@ -184,15 +187,17 @@ fn missing_things() {
 
 #[test]
 fn wrong_types() {
-    fault!("g = 9.81", "g = \"9.81\"", Kind::WrongType { found: "a string", expected: "a number" }, "\"9.81\"");
+    fault!("g = 9.81", "g = true", Kind::WrongType { found: "true or false", .. }, "true");
     fault!("project = false", "project = 0", Kind::WrongType { .. }, "0");
     fault!("[\"y'*cos(phi) - x'*sin(phi)\"]", "\"y'\"", Kind::WrongType { .. }, "\"y'\"");
     fault!("[\"y'*cos(phi) - x'*sin(phi)\"]", "[1]", Kind::WrongType { .. }, "1");
     fault!("x   = { unit = \"m\", start = 0 }", "x   = 0", Kind::WrongType { expected: "a table", .. }, "0");
-    fault!("duration = 10", "duration = \"long\"", Kind::WrongType { .. }, "\"long\"");
+    fault!("duration = 10", "duration = []", Kind::WrongType { .. }, "[]");
+    fault!("duration = 10", "duration = \"long\"", Kind::Expression(ParseErrorKind::Undefined { .. }), "long");
+    fault!("duration = 10", "duration = \"x\"", Kind::Unavailable { .. }, "x");
     fault!("duration = 10", "duration = 10\nbreakpoints = 5", Kind::WrongType { .. }, "5");
     fault!("\"phi'\" = 1.1", "\"phi'\" = true", Kind::WrongType { .. }, "true");
-    fault!("[0.0]", "[\"0\"]", Kind::WrongType { .. }, "\"0\"");
+    fault!("[0.0]", "[true]", Kind::WrongType { .. }, "true");
     fault!("[0.0]", "[0, 0]", Kind::WrongLength { found: 2, expected: 1, .. }, "[0, 0]");
     fault!("{ horizon = 10 }", "\"nil\"", Kind::WrongWord { .. }, "\"nil\"");
     fault!("{ horizon = 10 }", "{ horizon = 10, start = {} }", Kind::WrongWord { .. }, "start");
@@ -231,9 +236,13 @@ fn wrong_constraints() {
         Kind::TooManyConstraints { found: 3, dimension: 3 },
         "constraints"
     );
-    fault!("[\"y'*cos(phi) - x'*sin(phi)\"]", "[\"x^2 + y\"]",
-        Kind::NoVelocity { derivative: Some(d), .. } if d == "2*x*x' + y'", "\"x^2 + y\"");
-    fault!("[\"y'*cos(phi) - x'*sin(phi)\"]", "[\"g\"]", Kind::NoVelocity { derivative: None, .. }, "\"g\"");
+    fault!("[\"y'*cos(phi) - x'*sin(phi)\"]", "[\"g\"]", Kind::NoVelocity { number: 1 }, "\"g\"");
+    fault!(
+        "[\"y'*cos(phi) - x'*sin(phi)\"]",
+        "[\"x^2 + y - 1\"]",
+        Kind::OffPosition { number: 1, residual: 1.0, .. },
+        "\"x^2 + y - 1\""
+    );
 }
 
 #[test]
@@ -317,4 +326,89 @@ fn files() {
         assert!(matches!(*error(&path).kind, Kind::Unreadable { .. }));
     }
     assert!(error(&folder.path().join("missing.toml")).to_string().contains("not found"));
+}
+
+#[test]
+fn parameters_and_definitions_come_in_any_order() {
+    let text = SLEDGE
+        .replace("g = 9.81", "g = \"k2 + 9.81\"\nk2 = \"k^2*r\"\nr = \"pi/3\"")
+        .replace("weight = \"g", "weight = \"force*g")
+        .replace("[system]", "force = \"sin(later)/sin(later)\"\nlater = \"x + 2\"\n[system]");
+    let scene = Scene::parse("sledge", &text).unwrap();
+    let names: Vec<String> = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
+    assert_eq!(names, ["r", "alpha", "k"], "the others follow these");
+    assert_eq!(scene.system.parameters[0].value, std::f64::consts::PI / 3.0);
+    let set = Scene::parse_with("sledge", &text, &[("k2".into(), 2.0)]).unwrap();
+    assert!(set.system.parameters.iter().any(|p| p.value == 2.0), "one that is set follows nothing");
+}
+
+#[test]
+fn circles_are_shown() {
+    let shown = |error: &SceneError| match &*error.kind {
+        Kind::Circle { names } => names.join(" → "),
+        _ => panic!("{error}"),
+    };
+    let error = error("weight = \"g*sin(alpha)\"", "weight = \"a*g\"\na = \"b + 1\"\nb = \"weight\"");
+    assert_eq!((shown(&error).as_str(), error.also.len()), ("weight → a → b → weight", 0), "{error}");
+    let own = self::error("g = 9.81", "g = \"2*g\"");
+    assert_eq!(shown(&own), "g → g");
+}
+
+#[test]
+fn every_fault_is_found_at_once() {
+    let text = SLEDGE
+        .replace("title = ", "tilte = ")
+        .replace("g = 9.81", "g = true")
+        .replace("unit = \"rad\"", "unit = \"deg\"")
+        .replace("\"2*x\"", "\"2*z\"")
+        .replace("weight = \"g*sin(alpha)\"", "weight = \"g*sni(alpha)\"\nlight = \"g*cos(beta)\"")
+        .replace("+ weight*x", "+ q + weight*x")
+        .replace("forces = { x", "forces = { u")
+        .replace("duration = 10", "duration = 0");
+    let error = error_of(&text);
+    let found: Vec<(usize, String)> = error.each().map(|e| (e.line, pointed(e))).collect();
+    let expected = [
+        (1, "tilte"),
+        (5, "true"),
+        (11, "z"),
+        (12, "\"deg\""),
+        (15, "sni"),
+        (16, "beta"),
+        (19, "q"),
+        (21, "u"),
+        (41, "0"),
+    ];
+    println!("{error}");
+    let expected: Vec<(usize, String)> = expected.iter().map(|(line, at)| (*line, at.to_string())).collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn names_of_overrides_are_reserved() {
+    for name in ["time", "duration", "mu1", "P0_x"] {
+        for (old, new) in [("k = 0.7", format!("{name} = 0.7")), ("phi = {", format!("{name} = {{"))] {
+            let error = error(old, &new);
+            assert!(
+                error.each().any(|e| matches!(&*e.kind, Kind::InvalidName { fault: NameFault::Overriding(_), .. }))
+            );
+        }
+    }
+    let error = Scene::parse_with("sledge", SLEDGE, &[("t".into(), 3.0)]).unwrap_err();
+    assert!(error.to_string().contains("did you mean `time`?"), "{error}");
+}
+
+/// A pendulum by a constraint on its position: its rate is the constraint, and its value is watched.
+#[test]
+fn constraints_on_positions_and_vectors_of_constraints() {
+    let text = "title = \"pendulum\"\n[coordinates]\nx = { start = 0.6 }\ny = { start = -0.8 }\nz = { start = 0 }\n\
+        [definitions]\nr = \"[x, y, z]\"\n[system]\nlagrangian = \"dot(r', r')/2 - 9.81*y\"\n\
+        constraints = [\"dot(r, r) - 1\", \"z'\"]\n[start.velocities]\n\"x'\" = 1\n[run]\nduration = 1\n";
+    let scene = Scene::parse("pendulum", text).unwrap();
+    let system = &scene.system;
+    assert_eq!(system.graph.plain(system.constraints[0]), "2*x*x' + 2*y*y' + 2*z*z'");
+    assert!((scene.start.v[1] - 0.75).abs() < 1e-15);
+    assert_eq!(system.watched[0].name, "constraint 1 on positions");
+    let vector = text.replace("[\"dot(r, r) - 1\", \"z'\"]", "[\"[x*x' + y*y', z']\"]");
+    let scene = Scene::parse("pendulum", &vector).unwrap();
+    assert_eq!((scene.system.constraints.len(), scene.start.v[2]), (2, 0.0));
 }

@@ -15,7 +15,15 @@ pub(crate) enum Token {
     Power,
     Open,
     Close,
+    OpenList,
+    CloseList,
     Comma,
+    /// A dot and letters, right after what it is a component of.
+    Component,
+    /// A prime after a bracket or a component.
+    Prime,
+    /// A word in quotation marks.
+    Word,
     End,
 }
 
@@ -54,7 +62,18 @@ pub(crate) fn token_at(text: &str, at: usize) -> Result<Spanned, Fault> {
         b'^' => symbol(Token::Power, 1),
         b'(' => symbol(Token::Open, 1),
         b')' => symbol(Token::Close, 1),
+        b'[' => symbol(Token::OpenList, 1),
+        b']' => symbol(Token::CloseList, 1),
         b',' => symbol(Token::Comma, 1),
+        b'\'' if start == at && start > 0 => symbol(Token::Prime, 1),
+        b'.' if start == at && bytes.get(start + 1).is_some_and(u8::is_ascii_alphabetic) => {
+            let letters = bytes[start + 1..].iter().take_while(|b| b.is_ascii_alphanumeric()).count();
+            symbol(Token::Component, 1 + letters)
+        }
+        b'"' if text[start + 1..].contains('"') => {
+            let length = text[start + 1..].find('"').map_or(0, |i| i + 2);
+            symbol(Token::Word, length)
+        }
         b'0'..=b'9' => number(text, start),
         b'.' if bytes.get(start + 1).is_some_and(u8::is_ascii_digit) => number(text, start),
         b'a'..=b'z' | b'A'..=b'Z' | b'_' => {
@@ -121,10 +140,30 @@ fn hint(found: char) -> Option<String> {
         '√' => "write sqrt(…)",
         '’' | '′' | '‘' | '"' => "a time derivative is written with ', as in x'",
         '\'' => "a prime follows a name directly, as in x'",
-        '[' | ']' | '{' | '}' => "use parentheses",
+        '{' | '}' => "use parentheses",
         '|' => "an absolute value is not differentiable; a smooth substitute is sqrt(x^2 + eps^2)",
         '.' => "a number starts or ends with a digit",
         _ => return None,
     };
     Some(text.to_owned())
+}
+
+/// The names in a formula, as far as it can be read, without primes: with the place of each.
+///
+/// ```
+/// let names = symbolic::names_in("m*dot(v, r')");
+/// assert_eq!(names, [("m", 0), ("dot", 2), ("v", 6), ("r", 9)]);
+/// ```
+pub fn names_in(text: &str) -> Vec<(&str, usize)> {
+    let mut names = Vec::new();
+    let mut at = 0;
+    while let Ok(Spanned { token, start, end }) = token_at(text, at) {
+        match token {
+            Token::End => break,
+            Token::Name => names.push((text[start..end].trim_end_matches('\''), start)),
+            _ => {}
+        }
+        at = end;
+    }
+    names
 }

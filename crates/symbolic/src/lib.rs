@@ -30,6 +30,7 @@
 //! ```
 
 mod abbreviate;
+mod apply;
 mod arena;
 mod bounded;
 mod calculus;
@@ -59,6 +60,7 @@ mod print_plain;
 mod program;
 mod random;
 mod range;
+mod rotation;
 mod scalar;
 mod series;
 mod simplify;
@@ -66,6 +68,7 @@ mod steep;
 mod suggest;
 mod sum_factor;
 mod tape;
+mod value;
 
 pub use arena::{Expr, Symbol};
 pub use bounded::Bounded;
@@ -75,10 +78,12 @@ pub use excerpt::excerpt;
 pub use function::Function;
 pub use graph::Graph;
 pub use identity::Vanishing;
+pub use lexer::names_in;
 pub use matrix::Matrix;
 pub use parse_error::{ParseError, ParseErrorKind};
 pub use random::{SplitMix, Xorshift};
 pub use range::Range;
+pub use rotation::Turn;
 pub use scalar::Scalar;
 pub use series::{
     Correct, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
@@ -86,3 +91,4 @@ pub use series::{
 pub use steep::Steep;
 pub use suggest::nearest;
 pub use tape::{Tape, Workspace};
+pub use value::{Scope, Value};

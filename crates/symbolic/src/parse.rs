@@ -2,15 +2,17 @@
 
 use crate::lexer::{Fault, Spanned, Token, token_at};
 use crate::suggest::{arity, callable, nearest, smooth_substitute};
-use crate::{Expr, Function, Graph, ParseError, ParseErrorKind};
+use crate::value::{Scope, Value};
+use crate::{Expr, Graph, ParseError, ParseErrorKind};
 
 /// Nested parentheses, calls and powers that are accepted.
 const DEPTH_LIMIT: usize = 200;
 
 impl Graph {
     /// Reads a formula: `+ - * / ^` (`**` is `^`) with the usual precedence, so that −2² = −4 and
-    /// 2^3^2 = 512; parentheses; names with primes; the functions of [`Function`], `sqrt`, `ln`,
-    /// `sec`, `csc`, `cot`, `atan2(y, x)`, `pow(a, b)`; the constant `pi`.
+    /// 2^3^2 = 512; parentheses; names with primes; the functions of [`Function`](crate::Function), `sqrt`,
+    /// `ln`, `sec`, `csc`, `cot`, `atan2(y, x)`, `pow(a, b)`, `step(t, a, b, width)`; the constant `pi`; and
+    /// what [`Graph::parse_value`] reads, as far as a number comes of it.
     ///
     /// `scope` maps a name (with primes) to an expression, if defined; `known` are names to suggest instead.
     ///
@@ -28,8 +30,32 @@ impl Graph {
         scope: &dyn Fn(&str) -> Option<Expr>,
         known: &[String],
     ) -> Result<Expr, ParseError> {
+        self.parse_number(text, &Scalars { scope, known })
+    }
+
+    /// [`Graph::parse_value`] of a formula for a number.
+    ///
+    /// # Errors
+    /// As there, and [`ParseErrorKind::NotANumber`].
+    pub fn parse_number(&self, text: &str, scope: &dyn Scope) -> Result<Expr, ParseError> {
+        let value = self.parse_value(text, scope)?;
+        let kind = ParseErrorKind::NotANumber { found: value.shape() };
+        let whole = || ParseError { kind, text: text.to_owned(), offset: 0, length: text.len() };
+        value.scalar().ok_or_else(whole)
+    }
+
+    /// Reads a formula for a number, a vector or a matrix. Besides what [`Graph::parse`] says: `[a, b, c]` is a
+    /// vector, of vectors a matrix with these rows; `+ - *` as usual, `*` of two vectors refused; `r.x`, `I.xy`
+    /// are components; `dot(a, b)`, `cross(a, b)`, `norm(a)`, `transpose(R)`, `diag(a, b, c)`;
+    /// `rotation(zxz, ψ, θ, φ) = R_z(ψ) R_x(θ) R_z(φ)`, from the body's axes to those of space;
+    /// `rotation(n, α)` about an axis; `angular_velocity(R)` in space and `body_angular_velocity(R)` in the
+    /// body, of products of rotations; a prime after a name or bracket is the time derivative.
+    ///
+    /// # Errors
+    /// A [`ParseError`] with the place and, where there is one, a hint.
+    pub fn parse_value(&self, text: &str, scope: &dyn Scope) -> Result<Value, ParseError> {
         let start = Spanned { token: Token::End, start: 0, end: 0 };
-        let mut parser = Parser { graph: self, text, scope, known, next: start, last: 0, depth: 0 };
+        let mut parser = Parser { graph: self, text, scope, next: start, last: 0, depth: 0 };
         parser.formula().map_err(|fault| ParseError {
             kind: fault.kind,
             text: text.to_owned(),
@@ -39,14 +65,33 @@ impl Graph {
     }
 }
 
-struct Parser<'a> {
-    graph: &'a Graph,
-    text: &'a str,
+/// Names that stand for numbers, without time.
+struct Scalars<'a> {
     scope: &'a dyn Fn(&str) -> Option<Expr>,
     known: &'a [String],
-    next: Spanned,
+}
+
+impl Scope for Scalars<'_> {
+    fn value(&self, name: &str) -> Option<Value> {
+        (self.scope)(name).map(Value::Scalar)
+    }
+
+    fn rate(&self, _: Expr) -> Option<Expr> {
+        None
+    }
+
+    fn known(&self) -> &[String] {
+        self.known
+    }
+}
+
+pub(crate) struct Parser<'a> {
+    pub(crate) graph: &'a Graph,
+    text: &'a str,
+    pub(crate) scope: &'a dyn Scope,
+    pub(crate) next: Spanned,
     /// Where the token before `next` ends.
-    last: usize,
+    pub(crate) last: usize,
     depth: usize,
 }
 
@@ -57,11 +102,11 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn slice(&self, token: Spanned) -> &'a str {
+    pub(crate) fn slice(&self, token: Spanned) -> &'a str {
         &self.text[token.start..token.end]
     }
 
-    fn fault(&self, kind: ParseErrorKind, at: Spanned) -> Fault {
+    pub(crate) fn fault(&self, kind: ParseErrorKind, at: Spanned) -> Fault {
         Fault { kind, start: at.start, end: at.end }
     }
 
@@ -77,26 +122,33 @@ impl<'a> Parser<'a> {
         self.fault(kind, self.next)
     }
 
-    fn finite(&self, e: Expr, start: usize) -> Result<Expr, Fault> {
-        match self.graph.as_number(e) {
-            Some(x) if !x.is_finite() => Err(Fault { kind: ParseErrorKind::NotFinite, start, end: self.last }),
-            _ => Ok(e),
+    fn finite(&self, value: Value, start: usize) -> Result<Value, Fault> {
+        let infinite = |&e: &Expr| self.graph.as_number(e).is_some_and(|x| !x.is_finite());
+        match value.entries().iter().any(infinite) {
+            true => Err(Fault { kind: ParseErrorKind::NotFinite, start, end: self.last }),
+            false => Ok(value),
         }
     }
 
-    fn formula(&mut self) -> Result<Expr, Fault> {
+    /// The number that stands from `start` to here.
+    pub(crate) fn number(&self, value: &Value, start: usize) -> Result<Expr, Fault> {
+        let kind = || ParseErrorKind::NotANumber { found: value.shape() };
+        value.scalar().ok_or_else(|| Fault { kind: kind(), start, end: self.last })
+    }
+
+    fn formula(&mut self) -> Result<Value, Fault> {
         self.advance()?;
         if self.next.token == Token::End {
             return Err(Fault { kind: ParseErrorKind::Empty, start: 0, end: self.text.len() });
         }
-        let e = self.sum()?;
+        let value = self.sum()?;
         match self.next.token {
-            Token::End => Ok(e),
+            Token::End => Ok(value),
             _ => Err(self.unexpected("an operator or the end")),
         }
     }
 
-    fn sum(&mut self) -> Result<Expr, Fault> {
+    pub(crate) fn sum(&mut self) -> Result<Value, Fault> {
         let start = self.next.start;
         let mut terms = vec![self.product()?];
         loop {
@@ -105,66 +157,112 @@ impl<'a> Parser<'a> {
                 Token::Minus => true,
                 _ => break,
             };
+            let operator = self.next;
             self.advance()?;
             let term = self.product()?;
-            terms.push(if minus { self.graph.neg(term) } else { term });
+            let term = if minus { self.negative(&term) } else { term };
+            match (self.graph.add_values(&terms[0], &term), &term) {
+                (None, _) => return Err(self.mismatch("added", &terms[0], &term, operator)),
+                (Some(_), Value::Scalar(_)) => terms.push(term),
+                (Some(sum), _) => terms[0] = sum,
+            }
         }
-        if let [only] = terms[..] {
-            return Ok(only);
+        match terms.iter().map(Value::scalar).collect::<Option<Vec<Expr>>>() {
+            Some(numbers) if numbers.len() > 1 => self.finite(Value::Scalar(self.graph.sum(&numbers)), start),
+            _ => self.finite(terms.swap_remove(0), start),
         }
-        self.finite(self.graph.sum(&terms), start)
     }
 
-    fn product(&mut self) -> Result<Expr, Fault> {
+    fn negative(&self, value: &Value) -> Value {
+        value.with(value.entries().iter().map(|&e| self.graph.neg(e)).collect())
+    }
+
+    fn mismatch(&self, verb: &'static str, left: &Value, right: &Value, at: Spanned) -> Fault {
+        self.fault(ParseErrorKind::Shapes { verb, left: left.shape(), right: right.shape() }, at)
+    }
+
+    fn product(&mut self) -> Result<Value, Fault> {
         let start = self.next.start;
-        let mut factors = vec![self.signed()?];
+        let first = self.signed()?;
+        // numbers are multiplied together at the end, so that the order of the file does not matter
+        let (mut other, mut numbers) = match first {
+            Value::Scalar(e) => (None, vec![e]),
+            value => (Some(value), Vec::new()),
+        };
         loop {
             let divide = match self.next.token {
                 Token::Times => false,
                 Token::Divide => true,
                 _ => break,
             };
+            let operator = self.next;
             self.advance()?;
             let place = self.next.start;
             let factor = self.signed()?;
-            if divide && self.graph.is_zero(factor) {
-                let kind = ParseErrorKind::DivisionByZero;
-                return Err(Fault { kind, start: place, end: self.last });
+            if divide {
+                let divisor = self.number(&factor, place)?;
+                if self.graph.is_zero(divisor) {
+                    let kind = ParseErrorKind::DivisionByZero;
+                    return Err(Fault { kind, start: place, end: self.last });
+                }
+                numbers.push(self.graph.powi(divisor, -1));
+                continue;
             }
-            factors.push(if divide { self.graph.powi(factor, -1) } else { factor });
+            other = match (other, factor) {
+                (before, Value::Scalar(e)) => {
+                    numbers.push(e);
+                    before
+                }
+                (None, factor) => Some(factor),
+                (Some(before), factor) => match self.graph.multiply_values(&before, &factor) {
+                    Some(product) => Some(product),
+                    None => return Err(self.mismatch("multiplied", &before, &factor, operator)),
+                },
+            };
         }
-        if let [only] = factors[..] {
-            return Ok(only);
-        }
-        self.finite(self.graph.product(&factors), start)
+        let number = match &numbers[..] {
+            [] => None,
+            [only] => Some(*only),
+            several => Some(self.graph.product(several)),
+        };
+        let value = match (number, other) {
+            (Some(number), None) => Value::Scalar(number),
+            (Some(number), Some(other)) => self.graph.scale_value(number, &other),
+            (None, Some(other)) => other,
+            (None, None) => unreachable!("a product has a factor"),
+        };
+        self.finite(value, start)
     }
 
     /// Signs bind more loosely than powers: −x² = −(x²).
-    fn signed(&mut self) -> Result<Expr, Fault> {
+    fn signed(&mut self) -> Result<Value, Fault> {
         let mut negative = false;
         while matches!(self.next.token, Token::Plus | Token::Minus) {
             negative ^= self.next.token == Token::Minus;
             self.advance()?;
         }
-        let e = self.power()?;
-        Ok(if negative { self.graph.neg(e) } else { e })
+        let value = self.power()?;
+        Ok(if negative { self.negative(&value) } else { value })
     }
 
     /// Powers bind from the right, and their exponent may have a sign.
-    fn power(&mut self) -> Result<Expr, Fault> {
+    fn power(&mut self) -> Result<Value, Fault> {
         let start = self.next.start;
         let base = self.primary()?;
         if self.next.token != Token::Power {
             return Ok(base);
         }
+        let base = self.number(&base, start)?;
         let operator = self.next;
         self.advance()?;
+        let place = self.next.start;
         let exponent = self.nested(operator, Self::signed)?;
+        let exponent = self.number(&exponent, place)?;
         let negative = self.graph.as_number(exponent).is_some_and(|x| x < 0.0);
         if negative && self.graph.is_zero(base) {
             return Err(Fault { kind: ParseErrorKind::DivisionByZero, start, end: self.last });
         }
-        self.finite(self.graph.pow(base, exponent), start)
+        self.finite(Value::Scalar(self.graph.pow(base, exponent)), start)
     }
 
     fn nested<T>(&mut self, at: Spanned, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
@@ -177,12 +275,12 @@ impl<'a> Parser<'a> {
         result
     }
 
-    fn primary(&mut self) -> Result<Expr, Fault> {
+    fn primary(&mut self) -> Result<Value, Fault> {
         let token = self.next;
-        let e = match token.token {
+        let mut value = match token.token {
             Token::Number(_) => {
                 self.advance()?;
-                self.graph.literal(token)
+                Value::Scalar(self.graph.literal(token))
             }
             Token::Name => {
                 self.advance()?;
@@ -190,23 +288,56 @@ impl<'a> Parser<'a> {
             }
             Token::Open => {
                 self.advance()?;
-                let e = self.nested(token, Self::sum)?;
+                let value = self.nested(token, Self::sum)?;
                 self.close(token)?;
-                e
+                value
             }
+            Token::OpenList => self.list(token)?,
             _ => return Err(self.unexpected("a number, a name or `(`")),
         };
-        if matches!(self.next.token, Token::Number(_) | Token::Name | Token::Open) {
+        loop {
+            match self.next.token {
+                Token::Component => {
+                    let name = &self.slice(self.next)[1..];
+                    let Some(entry) = value.component(name) else {
+                        let kind = ParseErrorKind::NoComponent { name: name.to_owned(), shape: value.shape() };
+                        return Err(self.fault(kind, self.next));
+                    };
+                    value = Value::Scalar(entry);
+                }
+                Token::Prime => {
+                    let rates = value.entries().iter().map(|&e| self.scope.rate(e)).collect::<Option<Vec<_>>>();
+                    value = value.with(rates.ok_or_else(|| self.fault(ParseErrorKind::NoRate, self.next))?);
+                }
+                _ => break,
+            }
+            self.advance()?;
+        }
+        if matches!(self.next.token, Token::Number(_) | Token::Name | Token::Open | Token::OpenList) {
             let left = self.slice(Spanned { end: self.last, ..token });
             let left = if left.len() <= 20 { left } else { "…" }.to_owned();
             let right = match self.next.token {
                 Token::Open => "(…)".to_owned(),
+                Token::OpenList => "[…]".to_owned(),
                 _ => self.slice(self.next).to_owned(),
             };
             let kind = ParseErrorKind::ImplicitMultiplication { left, right };
             return Err(self.fault(kind, self.next));
         }
-        Ok(e)
+        Ok(value)
+    }
+
+    fn list(&mut self, open: Spanned) -> Result<Value, Fault> {
+        self.advance()?;
+        let items = self.nested(open, |parser| parser.arguments(Token::CloseList))?;
+        match self.next.token {
+            Token::CloseList => self.advance()?,
+            Token::End => return Err(self.fault(ParseErrorKind::UnclosedParenthesis, open)),
+            _ => return Err(self.unexpected("`]`, `,` or an operator")),
+        }
+        let values = items.into_iter().map(|(value, _)| value).collect();
+        let fault = || Fault { kind: ParseErrorKind::NoList, start: open.start, end: self.last };
+        Value::list(values).ok_or_else(fault)
     }
 
     fn close(&mut self, open: Spanned) -> Result<(), Fault> {
@@ -217,17 +348,17 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn variable(&self, token: Spanned) -> Result<Expr, Fault> {
+    fn variable(&self, token: Spanned) -> Result<Value, Fault> {
         let name = self.slice(token);
-        if let Some(e) = (self.scope)(name) {
-            return Ok(e);
+        if let Some(value) = self.scope.value(name) {
+            return Ok(value);
         }
         let kind = if name == "pi" {
-            return Ok(self.graph.number(std::f64::consts::PI));
+            return Ok(Value::Scalar(self.graph.number(std::f64::consts::PI)));
         } else if arity(name).is_some() {
             ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() }
         } else {
-            let known = self.known.iter().map(String::as_str).chain(["pi"]);
+            let known = self.scope.known().iter().map(String::as_str).chain(["pi"]);
             ParseErrorKind::Undefined {
                 name: name.to_owned(),
                 suggestion: nearest(name, known).or_else(|| nearest(name, callable())),
@@ -236,13 +367,13 @@ impl<'a> Parser<'a> {
         Err(self.fault(kind, token))
     }
 
-    fn call(&mut self, token: Spanned) -> Result<Expr, Fault> {
+    fn call(&mut self, token: Spanned) -> Result<Value, Fault> {
         let name = self.slice(token);
         let open = self.next;
         let Some(expected) = arity(name) else {
             let kind = if let Some(instead) = smooth_substitute(name) {
                 ParseErrorKind::NotSmooth { name: name.to_owned(), instead }
-            } else if (self.scope)(name).is_some() || name == "pi" {
+            } else if self.scope.value(name).is_some() || name == "pi" {
                 ParseErrorKind::VariableCalled { name: name.to_owned() }
             } else {
                 let suggestion = nearest(name, callable());
@@ -251,32 +382,50 @@ impl<'a> Parser<'a> {
             return Err(self.fault(kind, token));
         };
         self.advance()?;
-        let arguments = self.nested(open, Self::arguments)?;
+        let axes = if name == "rotation" { self.axes()? } else { None };
+        let arguments = self.nested(open, |parser| parser.arguments(Token::Close))?;
         self.close(open)?;
-        if arguments.len() != expected {
-            let found = arguments.len();
-            let function = name.to_owned();
+        let found = arguments.len() + usize::from(axes.is_some());
+        if !expected.contains(&found) {
+            let (function, expected) = (name.to_owned(), *expected.start());
             let kind = ParseErrorKind::WrongArgumentCount { function, expected, found };
             return Err(Fault { kind, start: token.start, end: self.last });
         }
-        let e = self.graph.apply(name, &arguments);
+        let value = self.apply(token, axes, &arguments)?;
         let divides = matches!(name, "sec" | "csc" | "cot" | "pow");
-        match self.graph.as_number(e) {
+        match value.scalar().and_then(|e| self.graph.as_number(e)) {
             Some(x) if divides && x.is_infinite() => {
                 let kind = ParseErrorKind::DivisionByZero;
                 Err(Fault { kind, start: token.start, end: self.last })
             }
-            _ => self.finite(e, token.start),
+            _ => self.finite(value, token.start),
         }
     }
 
-    fn arguments(&mut self) -> Result<Vec<Expr>, Fault> {
+    /// The word of axes with which a rotation begins, unless its first argument is a vector.
+    fn axes(&mut self) -> Result<Option<Spanned>, Fault> {
+        let word = self.next;
+        let name = self.slice(word);
+        let is_word = matches!(word.token, Token::Name) && name.chars().all(|c| "xyz".contains(c));
+        if word.token != Token::Word && (!is_word || matches!(self.scope.value(name), Some(Value::Vector(_)))) {
+            return Ok(None);
+        }
+        self.advance()?;
+        match self.next.token {
+            Token::Comma => self.advance().map(|()| Some(word)),
+            _ => Err(self.unexpected("`,` and an angle for each axis")),
+        }
+    }
+
+    /// Arguments or entries up to `close`, with where each starts.
+    fn arguments(&mut self, close: Token) -> Result<Vec<(Value, usize)>, Fault> {
         let mut arguments = Vec::new();
-        if self.next.token == Token::Close {
+        if self.next.token == close {
             return Ok(arguments);
         }
         loop {
-            arguments.push(self.sum()?);
+            let start = self.next.start;
+            arguments.push((self.sum()?, start));
             if self.next.token != Token::Comma {
                 return Ok(arguments);
             }
@@ -290,24 +439,6 @@ impl Graph {
         match token.token {
             Token::Number(n) => self.arena.borrow_mut().number(n),
             _ => self.zero(),
-        }
-    }
-
-    /// One of the [`callable`] functions with as many arguments as it takes.
-    fn apply(&self, name: &str, arguments: &[Expr]) -> Expr {
-        let x = arguments[0];
-        match name {
-            "sqrt" => self.sqrt(x),
-            "ln" => self.call(Function::Log, x),
-            "sec" => self.powi(self.call(Function::Cos, x), -1),
-            "csc" => self.powi(self.call(Function::Sin, x), -1),
-            "cot" => self.div(self.call(Function::Cos, x), self.call(Function::Sin, x)),
-            "atan2" => self.atan2(x, arguments[1]),
-            "pow" => self.pow(x, arguments[1]),
-            _ => match Function::ALL.iter().find(|f| f.name() == name) {
-                Some(f) => self.call(*f, x),
-                None => unreachable!("`{name}` is among the functions"),
-            },
         }
     }
 }

@@ -116,6 +116,54 @@ pub enum ParseErrorKind {
         /// The start of the second.
         right: String,
     },
+    /// A vector or matrix where a number has to be.
+    #[error("expected a number, found {found}")]
+    NotANumber {
+        /// What was found.
+        found: String,
+    },
+    /// Things that cannot be added or multiplied.
+    #[error("{left} and {right} cannot be {verb}{}", if *.verb == "multiplied" { "; products of vectors are dot(a, b) and cross(a, b)" } else { "" })]
+    Shapes {
+        /// What was tried.
+        verb: &'static str,
+        /// What stands at the left.
+        left: String,
+        /// What stands at the right.
+        right: String,
+    },
+    /// A list that is neither a vector nor a matrix.
+    #[error("a vector has two or more numbers, a matrix two or more vectors of one length")]
+    NoList,
+    /// A function of vectors with something else.
+    #[error("`{function}` takes {expected}, found {found}")]
+    WrongShape {
+        /// The function.
+        function: String,
+        /// What it takes.
+        expected: &'static str,
+        /// What was given.
+        found: String,
+    },
+    /// A component that there is not.
+    #[error("{shape} has no component `{name}`; they are .x .y .z of a vector, .xx to .zz of a matrix")]
+    NoComponent {
+        /// What was asked for.
+        name: String,
+        /// Of what.
+        shape: String,
+    },
+    /// Axes of a rotation that mean nothing, or not as many as angles.
+    #[error("axes are some of the letters x, y and z with an angle each, as in rotation(zxz, psi, theta, phi); found `{letters}` and {found} angle{}", plural(*.found))]
+    Axes {
+        /// The axes.
+        letters: String,
+        /// The number of angles.
+        found: usize,
+    },
+    /// A derivative that cannot be written.
+    #[error("this has no time derivative here: it contains a velocity, and its derivative would contain accelerations")]
+    NoRate,
     /// A literal beyond the range of numbers.
     #[error("the number {} is out of range (about 1e-308 to 1e308)", shortened(.literal))]
     NumberOutOfRange {

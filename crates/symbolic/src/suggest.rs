@@ -1,21 +1,38 @@
 //! The names that a formula may call, and which name was meant by an unknown one.
 
+use std::ops::RangeInclusive;
+
 use crate::Function;
 
-/// What can be called besides the functions of [`Function`].
-const OTHERS: [&str; 7] = ["ln", "sqrt", "sec", "csc", "cot", "atan2", "pow"];
+/// What can be called besides the functions of [`Function`], and with how many arguments.
+const OTHERS: [(&str, RangeInclusive<usize>); 16] = [
+    ("ln", 1..=1),
+    ("sqrt", 1..=1),
+    ("sec", 1..=1),
+    ("csc", 1..=1),
+    ("cot", 1..=1),
+    ("atan2", 2..=2),
+    ("pow", 2..=2),
+    ("step", 4..=4),
+    ("dot", 2..=2),
+    ("cross", 2..=2),
+    ("norm", 1..=1),
+    ("transpose", 1..=1),
+    ("diag", 2..=usize::MAX),
+    ("rotation", 2..=usize::MAX),
+    ("angular_velocity", 1..=1),
+    ("body_angular_velocity", 1..=1),
+];
 
 /// The names that can be called.
 pub(crate) fn callable() -> impl Iterator<Item = &'static str> {
-    Function::NAMES.into_iter().chain(OTHERS)
+    Function::NAMES.into_iter().chain(OTHERS.iter().map(|(name, _)| *name))
 }
 
 /// How many arguments a function takes.
-pub(crate) fn arity(name: &str) -> Option<usize> {
-    match name {
-        "atan2" | "pow" => Some(2),
-        _ => callable().any(|known| known == name).then_some(1),
-    }
+pub(crate) fn arity(name: &str) -> Option<RangeInclusive<usize>> {
+    let other = OTHERS.iter().find(|(known, _)| *known == name).map(|(_, count)| count.clone());
+    other.or_else(|| Function::NAMES.contains(&name).then_some(1..=1))
 }
 
 /// For a function that is not differentiable: what to write instead.
@@ -23,7 +40,7 @@ pub(crate) fn smooth_substitute(name: &str) -> Option<&'static str> {
     match name {
         "abs" => Some("a smooth substitute is sqrt(x^2 + eps^2)"),
         "sign" | "sgn" | "signum" => Some("a smooth substitute is tanh(x/eps)"),
-        "heaviside" | "step" => Some("a smooth substitute is (1 + tanh(x/eps))/2"),
+        "heaviside" => Some("a smooth substitute is (1 + tanh(x/eps))/2, or step(t, a, b, width)"),
         "min" => Some("a smooth substitute is (a + b - sqrt((a - b)^2 + eps^2))/2"),
         "max" => Some("a smooth substitute is (a + b + sqrt((a - b)^2 + eps^2))/2"),
         "floor" | "ceil" | "round" | "mod" => Some("it jumps, and nothing smooth stands in its place"),

@@ -5,6 +5,7 @@ mod evaluation;
 mod properties;
 mod series;
 mod text;
+mod vectors;
 
 /// A formula in whatever names it has.
 #[track_caller]

@@ -15,3 +15,4 @@ mod references;
 mod second_rates;
 mod support;
 mod taylor;
+mod vectors;
