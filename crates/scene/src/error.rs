@@ -315,7 +315,7 @@ impl SceneError {
         SceneError { file, line: 0, column: 0, source_line, length: 1, kind: Box::new(kind), also: Vec::new() }
     }
 
-    /// All that was found, in the order of the file, as one; what only follows from another fault is left out.
+    /// All that was found, in the order of the file, as one, without what only follows from another fault.
     pub(crate) fn together(mut faults: Vec<SceneError>) -> Option<Self> {
         let misspelt: Vec<String> = faults.iter().filter_map(SceneError::meant).collect();
         let follows = |fault: &SceneError| match &*fault.kind {

@@ -3,4 +3,5 @@
 mod bytes;
 mod catalogue;
 mod errors;
+mod language;
 mod start;

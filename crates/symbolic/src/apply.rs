@@ -1,5 +1,6 @@
 //! The functions that a formula may call, applied.
 
+use crate::atoms::Argument;
 use crate::lexer::{Fault, Spanned};
 use crate::parse::Parser;
 use crate::{Expr, Function, Graph, ParseErrorKind, Value};
@@ -10,19 +11,19 @@ impl Parser<'_> {
         &self,
         token: Spanned,
         axes: Option<Spanned>,
-        arguments: &[(Value, usize)],
+        arguments: &[Argument],
     ) -> Result<Value, Fault> {
         let (g, name) = (self.graph, self.slice(token));
         let whole = |kind| Fault { kind, start: token.start, end: self.last };
         let number = |i: usize| -> Result<Expr, Fault> {
-            let (value, start) = &arguments[i];
-            self.number(value, *start)
+            let Argument { value, start, end } = &arguments[i];
+            self.number(value, *start, *end)
         };
         let wrong = |expected: &'static str| {
-            let found = arguments.iter().map(|(value, _)| value.shape()).collect::<Vec<_>>().join(" and ");
+            let found = arguments.iter().map(|argument| argument.value.shape()).collect::<Vec<_>>().join(" and ");
             whole(ParseErrorKind::WrongShape { function: name.to_owned(), expected, found })
         };
-        let value = |i: usize| &arguments[i].0;
+        let value = |i: usize| &arguments[i].value;
         Ok(Value::Scalar(match name {
             "dot" => match (value(0), value(1)) {
                 (Value::Vector(a), Value::Vector(b)) if a.len() == b.len() => g.dot(a, b),

@@ -32,6 +32,7 @@
 mod abbreviate;
 mod apply;
 mod arena;
+mod atoms;
 mod bounded;
 mod calculus;
 mod evaluate;

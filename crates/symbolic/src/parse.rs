@@ -1,7 +1,6 @@
 //! Formulas as text to expressions.
 
 use crate::lexer::{Fault, Spanned, Token, token_at};
-use crate::suggest::{arity, callable, nearest, smooth_substitute};
 use crate::value::{Scope, Value};
 use crate::{Expr, Graph, ParseError, ParseErrorKind};
 
@@ -44,9 +43,10 @@ impl Graph {
         value.scalar().ok_or_else(whole)
     }
 
-    /// Reads a formula for a number, a vector or a matrix. Besides what [`Graph::parse`] says: `[a, b, c]` is a
-    /// vector, of vectors a matrix with these rows; `+ - *` as usual, `*` of two vectors refused; `r.x`, `I.xy`
-    /// are components; `dot(a, b)`, `cross(a, b)`, `norm(a)`, `transpose(R)`, `diag(a, b, c)`;
+    /// Reads a formula for a number, a vector or a matrix. Besides what [`Graph::parse`] says:
+    /// `[a, b, c]` is a vector, of vectors a matrix with these rows; `+ - *` as usual, `*` of two vectors
+    /// refused; `r.x`, `I.xy` are components;
+    /// `dot(a, b)`, `cross(a, b)`, `norm(a)`, `transpose(R)`, `diag(a, b, c)`;
     /// `rotation(zxz, ψ, θ, φ) = R_z(ψ) R_x(θ) R_z(φ)`, from the body's axes to those of space;
     /// `rotation(n, α)` about an axis; `angular_velocity(R)` in space and `body_angular_velocity(R)` in the
     /// body, of products of rotations; a prime after a name or bracket is the time derivative.
@@ -96,7 +96,7 @@ pub(crate) struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn advance(&mut self) -> Result<(), Fault> {
+    pub(crate) fn advance(&mut self) -> Result<(), Fault> {
         self.last = self.next.end;
         self.next = token_at(self.text, self.next.end)?;
         Ok(())
@@ -110,7 +110,7 @@ impl<'a> Parser<'a> {
         Fault { kind, start: at.start, end: at.end }
     }
 
-    fn unexpected(&self, expected: &'static str) -> Fault {
+    pub(crate) fn unexpected(&self, expected: &'static str) -> Fault {
         let kind = match self.next.token {
             Token::End => ParseErrorKind::UnexpectedEnd { expected },
             Token::Close if self.depth == 0 => ParseErrorKind::UnmatchedParenthesis,
@@ -122,7 +122,7 @@ impl<'a> Parser<'a> {
         self.fault(kind, self.next)
     }
 
-    fn finite(&self, value: Value, start: usize) -> Result<Value, Fault> {
+    pub(crate) fn finite(&self, value: Value, start: usize) -> Result<Value, Fault> {
         let infinite = |&e: &Expr| self.graph.as_number(e).is_some_and(|x| !x.is_finite());
         match value.entries().iter().any(infinite) {
             true => Err(Fault { kind: ParseErrorKind::NotFinite, start, end: self.last }),
@@ -130,10 +130,10 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The number that stands from `start` to here.
-    pub(crate) fn number(&self, value: &Value, start: usize) -> Result<Expr, Fault> {
+    /// The number that stands from `start` to `end`.
+    pub(crate) fn number(&self, value: &Value, start: usize, end: usize) -> Result<Expr, Fault> {
         let kind = || ParseErrorKind::NotANumber { found: value.shape() };
-        value.scalar().ok_or_else(|| Fault { kind: kind(), start, end: self.last })
+        value.scalar().ok_or_else(|| Fault { kind: kind(), start, end })
     }
 
     fn formula(&mut self) -> Result<Value, Fault> {
@@ -200,7 +200,7 @@ impl<'a> Parser<'a> {
             let place = self.next.start;
             let factor = self.signed()?;
             if divide {
-                let divisor = self.number(&factor, place)?;
+                let divisor = self.number(&factor, place, self.last)?;
                 if self.graph.is_zero(divisor) {
                     let kind = ParseErrorKind::DivisionByZero;
                     return Err(Fault { kind, start: place, end: self.last });
@@ -252,12 +252,12 @@ impl<'a> Parser<'a> {
         if self.next.token != Token::Power {
             return Ok(base);
         }
-        let base = self.number(&base, start)?;
+        let base = self.number(&base, start, self.last)?;
         let operator = self.next;
         self.advance()?;
         let place = self.next.start;
         let exponent = self.nested(operator, Self::signed)?;
-        let exponent = self.number(&exponent, place)?;
+        let exponent = self.number(&exponent, place, self.last)?;
         let negative = self.graph.as_number(exponent).is_some_and(|x| x < 0.0);
         if negative && self.graph.is_zero(base) {
             return Err(Fault { kind: ParseErrorKind::DivisionByZero, start, end: self.last });
@@ -265,7 +265,11 @@ impl<'a> Parser<'a> {
         self.finite(Value::Scalar(self.graph.pow(base, exponent)), start)
     }
 
-    fn nested<T>(&mut self, at: Spanned, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+    pub(crate) fn nested<T>(
+        &mut self,
+        at: Spanned,
+        read: impl FnOnce(&mut Self) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
         if self.depth == DEPTH_LIMIT {
             return Err(self.fault(ParseErrorKind::TooDeep { limit: DEPTH_LIMIT }, at));
         }
@@ -274,168 +278,10 @@ impl<'a> Parser<'a> {
         self.depth -= 1;
         result
     }
-
-    fn primary(&mut self) -> Result<Value, Fault> {
-        let token = self.next;
-        let mut value = match token.token {
-            Token::Number(_) => {
-                self.advance()?;
-                Value::Scalar(self.graph.literal(token))
-            }
-            Token::Name => {
-                self.advance()?;
-                if self.next.token == Token::Open { self.call(token)? } else { self.variable(token)? }
-            }
-            Token::Open => {
-                self.advance()?;
-                let value = self.nested(token, Self::sum)?;
-                self.close(token)?;
-                value
-            }
-            Token::OpenList => self.list(token)?,
-            _ => return Err(self.unexpected("a number, a name or `(`")),
-        };
-        loop {
-            match self.next.token {
-                Token::Component => {
-                    let name = &self.slice(self.next)[1..];
-                    let Some(entry) = value.component(name) else {
-                        let kind = ParseErrorKind::NoComponent { name: name.to_owned(), shape: value.shape() };
-                        return Err(self.fault(kind, self.next));
-                    };
-                    value = Value::Scalar(entry);
-                }
-                Token::Prime => {
-                    let rates = value.entries().iter().map(|&e| self.scope.rate(e)).collect::<Option<Vec<_>>>();
-                    value = value.with(rates.ok_or_else(|| self.fault(ParseErrorKind::NoRate, self.next))?);
-                }
-                _ => break,
-            }
-            self.advance()?;
-        }
-        if matches!(self.next.token, Token::Number(_) | Token::Name | Token::Open | Token::OpenList) {
-            let left = self.slice(Spanned { end: self.last, ..token });
-            let left = if left.len() <= 20 { left } else { "…" }.to_owned();
-            let right = match self.next.token {
-                Token::Open => "(…)".to_owned(),
-                Token::OpenList => "[…]".to_owned(),
-                _ => self.slice(self.next).to_owned(),
-            };
-            let kind = ParseErrorKind::ImplicitMultiplication { left, right };
-            return Err(self.fault(kind, self.next));
-        }
-        Ok(value)
-    }
-
-    fn list(&mut self, open: Spanned) -> Result<Value, Fault> {
-        self.advance()?;
-        let items = self.nested(open, |parser| parser.arguments(Token::CloseList))?;
-        match self.next.token {
-            Token::CloseList => self.advance()?,
-            Token::End => return Err(self.fault(ParseErrorKind::UnclosedParenthesis, open)),
-            _ => return Err(self.unexpected("`]`, `,` or an operator")),
-        }
-        let values = items.into_iter().map(|(value, _)| value).collect();
-        let fault = || Fault { kind: ParseErrorKind::NoList, start: open.start, end: self.last };
-        Value::list(values).ok_or_else(fault)
-    }
-
-    fn close(&mut self, open: Spanned) -> Result<(), Fault> {
-        match self.next.token {
-            Token::Close => self.advance(),
-            Token::End => Err(self.fault(ParseErrorKind::UnclosedParenthesis, open)),
-            _ => Err(self.unexpected("`)` or an operator")),
-        }
-    }
-
-    fn variable(&self, token: Spanned) -> Result<Value, Fault> {
-        let name = self.slice(token);
-        if let Some(value) = self.scope.value(name) {
-            return Ok(value);
-        }
-        let kind = if name == "pi" {
-            return Ok(Value::Scalar(self.graph.number(std::f64::consts::PI)));
-        } else if arity(name).is_some() {
-            ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() }
-        } else {
-            let known = self.scope.known().iter().map(String::as_str).chain(["pi"]);
-            ParseErrorKind::Undefined {
-                name: name.to_owned(),
-                suggestion: nearest(name, known).or_else(|| nearest(name, callable())),
-            }
-        };
-        Err(self.fault(kind, token))
-    }
-
-    fn call(&mut self, token: Spanned) -> Result<Value, Fault> {
-        let name = self.slice(token);
-        let open = self.next;
-        let Some(expected) = arity(name) else {
-            let kind = if let Some(instead) = smooth_substitute(name) {
-                ParseErrorKind::NotSmooth { name: name.to_owned(), instead }
-            } else if self.scope.value(name).is_some() || name == "pi" {
-                ParseErrorKind::VariableCalled { name: name.to_owned() }
-            } else {
-                let suggestion = nearest(name, callable());
-                ParseErrorKind::UnknownFunction { name: name.to_owned(), suggestion }
-            };
-            return Err(self.fault(kind, token));
-        };
-        self.advance()?;
-        let axes = if name == "rotation" { self.axes()? } else { None };
-        let arguments = self.nested(open, |parser| parser.arguments(Token::Close))?;
-        self.close(open)?;
-        let found = arguments.len() + usize::from(axes.is_some());
-        if !expected.contains(&found) {
-            let (function, expected) = (name.to_owned(), *expected.start());
-            let kind = ParseErrorKind::WrongArgumentCount { function, expected, found };
-            return Err(Fault { kind, start: token.start, end: self.last });
-        }
-        let value = self.apply(token, axes, &arguments)?;
-        let divides = matches!(name, "sec" | "csc" | "cot" | "pow");
-        match value.scalar().and_then(|e| self.graph.as_number(e)) {
-            Some(x) if divides && x.is_infinite() => {
-                let kind = ParseErrorKind::DivisionByZero;
-                Err(Fault { kind, start: token.start, end: self.last })
-            }
-            _ => self.finite(value, token.start),
-        }
-    }
-
-    /// The word of axes with which a rotation begins, unless its first argument is a vector.
-    fn axes(&mut self) -> Result<Option<Spanned>, Fault> {
-        let word = self.next;
-        let name = self.slice(word);
-        let is_word = matches!(word.token, Token::Name) && name.chars().all(|c| "xyz".contains(c));
-        if word.token != Token::Word && (!is_word || matches!(self.scope.value(name), Some(Value::Vector(_)))) {
-            return Ok(None);
-        }
-        self.advance()?;
-        match self.next.token {
-            Token::Comma => self.advance().map(|()| Some(word)),
-            _ => Err(self.unexpected("`,` and an angle for each axis")),
-        }
-    }
-
-    /// Arguments or entries up to `close`, with where each starts.
-    fn arguments(&mut self, close: Token) -> Result<Vec<(Value, usize)>, Fault> {
-        let mut arguments = Vec::new();
-        if self.next.token == close {
-            return Ok(arguments);
-        }
-        loop {
-            let start = self.next.start;
-            arguments.push((self.sum()?, start));
-            if self.next.token != Token::Comma {
-                return Ok(arguments);
-            }
-            self.advance()?;
-        }
-    }
 }
 
 impl Graph {
-    fn literal(&self, token: Spanned) -> Expr {
+    pub(crate) fn literal(&self, token: Spanned) -> Expr {
         match token.token {
             Token::Number(n) => self.arena.borrow_mut().number(n),
             _ => self.zero(),

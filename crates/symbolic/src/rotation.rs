@@ -78,8 +78,8 @@ impl Graph {
     }
 
     /// `ω` with `Ṙ = [ω]× R`, in space: the sum of `R₁…Rₖ₋₁ ωₖ`, of each turn
-    /// `ωₖ = α̇ n + sin α ṅ + (1 − cos α) n × ṅ`. In the body `Rᵀ ω`: the sum of `(Rₖ…Rₘ)ᵀ ωₖ`. `None` where an
-    /// angle or axis has no rate that could be written.
+    /// `ωₖ = α̇ n + sin α ṅ + (1 − cos α) n × ṅ`. In the body `Rᵀ ω`: the sum of `(Rₖ…Rₘ)ᵀ ωₖ`.
+    /// `None` where an angle or axis has no rate that could be written.
     pub(crate) fn angular_velocity(&self, turns: &[Turn], in_body: bool, scope: &dyn Scope) -> Option<Vec<Expr>> {
         let mut sum = vec![self.zero(); 3];
         // from the far end inwards, what is there is carried on through each turn

@@ -91,7 +91,7 @@ fn arithmetic() {
     near(&names.numbers("diag(1, s, 3)*u", 0.0), &[1.0, 1.0, 9.0], 0.0);
     near(&names.numbers("-[[1, 2], [3, 4]].yx", 0.0), &[-3.0], 0.0);
     near(
-        &names.numbers("(a*v)' + v'", 0.0),
+        &names.numbers("(a*v)' + (v)'", 0.0),
         &{
             let (a, rate) = (ANGLES[0].1, ANGLES[0].2);
             ANGLES.map(|(_, x, x_rate)| rate * x + a * x_rate + x_rate)
