@@ -42,24 +42,39 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.
 pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, NotFound> {
-    if let Some((name, text)) = SCENES.iter().chain(CLASSICS).find(|(name, _)| *name == name_or_path) {
-        return Ok(Scene::parse_with(name, text, overrides)?);
-    }
-    if let Some((trailers, coordinates)) = trailer::named(name_or_path) {
-        return Ok(Scene::parse_with(name_or_path, &trailer::text(trailers, coordinates), overrides)?);
+    let text = source(name_or_path)?;
+    Ok(match name_or_path {
+        "-" => Scene::parse_with("stdin", &text, overrides)?,
+        name if built_in(name).is_some() => Scene::parse_with(name, &text, overrides)?,
+        path => Scene::parse_file(Path::new(path), &text, overrides)?,
+    })
+}
+
+/// The text of a built-in scene.
+fn built_in(name: &str) -> Option<String> {
+    let known = SCENES.iter().chain(CLASSICS).find(|(known, _)| *known == name).map(|(_, text)| text.to_string());
+    known.or_else(|| trailer::named(name).map(|(trailers, coordinates)| trailer::text(trailers, coordinates)))
+}
+
+/// The text behind [`find`].
+///
+/// # Errors
+/// [`NotFound`].
+pub fn source(name_or_path: &str) -> Result<String, NotFound> {
+    if let Some(text) = built_in(name_or_path) {
+        return Ok(text);
     }
     if name_or_path == "-" {
         // it can be read once only, and its scene may be asked for again
         static TEXT: OnceLock<Result<String, SceneError>> = OnceLock::new();
-        let text = TEXT.get_or_init(|| Scene::read_from("stdin", std::io::stdin())).clone()?;
-        return Ok(Scene::parse_with("stdin", &text, overrides)?);
+        return Ok(TEXT.get_or_init(|| Scene::read_from("stdin", std::io::stdin())).clone()?);
     }
     let path = Path::new(name_or_path);
     if !path.exists() {
         let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).chain(["n-trailer-N"]).collect();
         return Err(NotFound::Nothing(name_or_path.into(), known.join(", ")));
     }
-    Ok(Scene::load_with(path, overrides)?)
+    Ok(Scene::read(path)?)
 }
 
 /// There is no such scene, or there is something wrong with it.

@@ -83,6 +83,10 @@ pub enum Section {
 pub enum Command {
     /// List the built-in scenes.
     List(ListArguments),
+    /// Write a commented scene to begin with.
+    New(NewArguments),
+    /// Look for all that is wrong with scene files, without deriving anything.
+    Check(CheckArguments),
     /// Show the equations of a scene, what was left out of them, and whether its constraints are integrable.
     Show(ShowArguments),
     /// Integrate a scene in one formulation.
@@ -167,6 +171,26 @@ pub struct ListArguments {
     pub format: TextOrJson,
 }
 
+/// `deltaq new`.
+#[derive(Args, Debug)]
+pub struct NewArguments {
+    /// File to write, which must not exist; to the terminal if left out.
+    pub file: Option<PathBuf>,
+    /// Built-in scene to begin with, in the place of the template.
+    #[arg(long, value_name = "SCENE")]
+    pub from: Option<String>,
+}
+
+/// `deltaq check`.
+#[derive(Args, Debug)]
+pub struct CheckArguments {
+    /// Scene files, `-` for standard input, or built-in names.
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub set: Overrides,
+}
+
 /// `deltaq show`.
 #[derive(Args, Debug)]
 pub struct ShowArguments {
@@ -175,6 +199,9 @@ pub struct ShowArguments {
     /// Formulas in LaTeX.
     #[arg(long)]
     pub latex: bool,
+    /// The text of the scene file, and nothing else.
+    #[arg(long, conflicts_with_all = ["latex", "format", "overrides"])]
+    pub source: bool,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,

@@ -11,6 +11,7 @@ mod ensemble_command;
 mod main_job;
 mod prove_command;
 mod random_command;
+mod scene_commands;
 mod show_command;
 mod solve_command;
 mod stability_command;
@@ -79,6 +80,8 @@ fn run(cli: Cli) -> Result<Answer> {
     let text = match cli.command {
         None => main_job::run(&cli.job, quiet)?,
         Some(Command::List(arguments)) => show_command::list(arguments.format)?,
+        Some(Command::New(arguments)) => scene_commands::new(&arguments)?,
+        Some(Command::Check(arguments)) => scene_commands::check(&arguments)?,
         Some(Command::Show(arguments)) => show_command::run(&arguments)?,
         Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,

@@ -30,6 +30,9 @@ pub(crate) fn list(format: TextOrJson) -> Result<String> {
 
 /// Equations of every formulation and form, what was left out, and whether constraints are integrable.
 pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
+    if arguments.source {
+        return Ok(catalogue::source(&arguments.scene.scene)?);
+    }
     let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
     let g = &scene.system.graph;

@@ -1,0 +1,81 @@
+//! `deltaq new` and `deltaq check`: a scene to begin with, and all that is wrong with one.
+
+use std::fmt::Write;
+use std::fs::OpenOptions;
+use std::io::{IsTerminal, Write as _};
+
+use anyhow::{Context, Result, bail};
+use scene::{Scene, SceneError};
+
+use crate::cli::{CheckArguments, NewArguments};
+use validation::catalogue;
+
+const TEMPLATE: &str = include_str!("template.toml");
+
+/// A commented template, or a built-in scene; to a file that is not there yet, or to the terminal.
+pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
+    let text = match &arguments.from {
+        None => TEMPLATE.to_string(),
+        Some(name) => catalogue::source(name)?,
+    };
+    let Some(path) = &arguments.file else { return Ok(text) };
+    let file = OpenOptions::new().write(true).create_new(true).open(path);
+    let mut file = file.with_context(|| format!("{} cannot be made", path.display()))?;
+    file.write_all(text.as_bytes()).with_context(|| format!("{} cannot be written", path.display()))?;
+    let path = path.display();
+    Ok(format!("{path} written; next: deltaq check {path}, deltaq compare {path}\n"))
+}
+
+/// What each scene is; or all faults of all of them, and an error.
+pub(crate) fn check(arguments: &CheckArguments) -> Result<String> {
+    let mut text = String::new();
+    let mut faults = 0;
+    for name in &arguments.scenes {
+        match catalogue::find(name, &arguments.set.overrides) {
+            Ok(scene) => text += &described(&scene),
+            Err(catalogue::NotFound::Fault(error)) => {
+                error.each().for_each(|fault| eprintln!("{}", coloured(fault)));
+                faults += error.each().count();
+            }
+            Err(nothing) => return Err(nothing.into()),
+        }
+    }
+    if faults > 0 {
+        bail!("{faults} fault{}", if faults == 1 { "" } else { "s" });
+    }
+    Ok(text)
+}
+
+fn described(scene: &Scene) -> String {
+    let system = &scene.system;
+    let mut text = format!(
+        "{}: {} coordinates, {} constraints; starts at t = {} for {}\n",
+        scene.name,
+        system.dimension(),
+        system.constraints.len(),
+        scene.start.t,
+        scene.duration
+    );
+    for ((c, q), v) in system.coordinates.iter().zip(&scene.start.q).zip(&scene.start.v) {
+        let supplied = scene.completion.supplied.contains(&format!("{}'", c.name));
+        let by = if supplied { "  by the constraints" } else { "" };
+        let _ = writeln!(text, "  {:<12} {q:<22} {:<13} {v}{by}", c.name, format!("{}'", c.name));
+    }
+    text
+}
+
+/// The fault, with its place in colour on a terminal.
+fn coloured(fault: &SceneError) -> String {
+    let alone = SceneError { also: Vec::new(), ..fault.clone() }.to_string();
+    if !std::io::stderr().is_terminal() {
+        return alone;
+    }
+    let (bold, red, plain) = ("\x1b[1m", "\x1b[1;31m", "\x1b[0m");
+    let mut lines: Vec<String> = alone.lines().map(String::from).collect();
+    let last = lines.len() - 1;
+    if last > 0 {
+        lines[last] = lines[last].replacen("| ", &format!("| {red}"), 1) + plain;
+    }
+    lines[0] = format!("{bold}{}{plain}", lines[0]);
+    lines.join("\n")
+}
