@@ -1,5 +1,6 @@
 //! Vectors, matrices and rotations in formulas.
 
+use crate::arena::Node;
 use crate::rotation::Turn;
 use crate::{Expr, Graph, Matrix};
 
@@ -95,7 +96,8 @@ impl Graph {
             (Value::Matrix(m, _), Value::Matrix(n, _)) => (m.rows(), m.columns()) == (n.rows(), n.columns()),
             _ => std::mem::discriminant(a) == std::mem::discriminant(b) && a.entries().len() == b.entries().len(),
         };
-        same.then(|| a.with(a.entries().iter().zip(b.entries()).map(|(&x, &y)| self.add(x, y)).collect()))
+        let short = |e| if a.scalar().is_some() { e } else { self.short(e) };
+        same.then(|| a.with(a.entries().iter().zip(b.entries()).map(|(&x, &y)| short(self.add(x, y))).collect()))
     }
 
     /// `s a`.
@@ -108,11 +110,12 @@ impl Graph {
         match (a, b) {
             (Value::Scalar(s), other) | (other, Value::Scalar(s)) => Some(self.scale_value(*s, other)),
             (Value::Matrix(m, _), Value::Vector(v)) => {
-                (m.columns() == v.len()).then(|| Value::Vector(self.mat_vec(m, v)))
+                let product = || self.mat_vec(m, v).into_iter().map(|e| self.short(e)).collect();
+                (m.columns() == v.len()).then(|| Value::Vector(product()))
             }
             (Value::Matrix(m, first), Value::Matrix(n, second)) => (m.columns() == n.rows()).then(|| {
                 let columns: Vec<Vec<Expr>> = (0..n.columns()).map(|j| n.column(j)).collect();
-                let product = Matrix::from_fn(m.rows(), n.columns(), |i, j| self.dot(m.row(i), &columns[j]));
+                let product = Matrix::from_fn(m.rows(), n.columns(), |i, j| self.short(self.dot(m.row(i), &columns[j])));
                 let both = !first.is_empty() && !second.is_empty();
                 Value::Matrix(product, if both { [&first[..], second].concat() } else { Vec::new() })
             }),
@@ -122,7 +125,14 @@ impl Graph {
 
     /// `a × b` of three numbers each.
     pub(crate) fn cross(&self, a: &[Expr], b: &[Expr]) -> Vec<Expr> {
-        let entry = |i: usize, j: usize| self.sub(self.mul(a[i], b[j]), self.mul(a[j], b[i]));
+        let entry = |i: usize, j: usize| self.short(self.sub(self.mul(a[i], b[j]), self.mul(a[j], b[i])));
         vec![entry(1, 2), entry(2, 0), entry(0, 1)]
+    }
+
+    /// A sum, multiplied out where that is shorter: what turns and turns back cancels.
+    fn short(&self, e: Expr) -> Expr {
+        const LONG: usize = 300;
+        let is_sum = matches!(self.arena.borrow().node(e), Node::Sum(_, terms) if terms.len() > 1);
+        if is_sum { self.expand_if_shorter(e, LONG) } else { e }
     }
 }
