@@ -179,6 +179,9 @@ pub struct NewArguments {
     /// Built-in scene to begin with, in the place of the template.
     #[arg(long, value_name = "SCENE")]
     pub from: Option<String>,
+    /// The JSON schema of scene files, for editors, in the place of the template.
+    #[arg(long, conflicts_with = "from")]
+    pub schema: bool,
 }
 
 /// `deltaq check`.

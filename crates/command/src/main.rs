@@ -12,6 +12,7 @@ mod main_job;
 mod prove_command;
 mod random_command;
 mod scene_commands;
+mod schema;
 mod show_command;
 mod solve_command;
 mod stability_command;

@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use scene::{Scene, SceneError};
 
 use crate::cli::{CheckArguments, NewArguments};
+use crate::schema::schema;
 use validation::catalogue;
 
 const TEMPLATE: &str = include_str!("template.toml");
@@ -15,6 +16,7 @@ const TEMPLATE: &str = include_str!("template.toml");
 /// A commented template, or a built-in scene; to a file that is not there yet, or to the terminal.
 pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
     let text = match &arguments.from {
+        None if arguments.schema => format!("{:#}\n", schema()),
         None => TEMPLATE.to_string(),
         Some(name) => catalogue::source(name)?,
     };
@@ -23,7 +25,8 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
     let mut file = file.with_context(|| format!("{} cannot be made", path.display()))?;
     file.write_all(text.as_bytes()).with_context(|| format!("{} cannot be written", path.display()))?;
     let path = path.display();
-    Ok(format!("{path} written; next: deltaq check {path}, deltaq compare {path}\n"))
+    let next = if arguments.schema { String::new() } else { format!("; next: deltaq check {path}, deltaq compare {path}") };
+    Ok(format!("{path} written{next}\n"))
 }
 
 /// What each scene is; or all faults of all of them, and an error.

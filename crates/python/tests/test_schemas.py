@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -62,3 +63,55 @@ def test_answers_are_as_described(kind, tmp_path):
 
 def test_committed_verdicts_are_as_described():
     check("verdicts", (ROOT / "reports" / "verdicts.json").read_text("utf-8"))
+
+
+WHOLE = """
+title = 'a'
+[parameters]
+g = '2*pi'
+[coordinates]
+x = { unit = 'm', start = 0 }
+[system]
+lagrangian = "x'^2"
+constraints = []
+[start]
+project = true
+[vakonomic]
+multipliers = []
+[removal.a]
+parameters = ['x']
+constants = 'zero'
+[run]
+duration = 1
+"""
+# what a schema can know to be wrong, keys and types; the rest is the reader's
+BROKEN = {
+    "title = 'a'": ["title = 1", "tilte = 'a'", ""],
+    "g = '2*pi'": ["g = true"],
+    "x = { unit = 'm', start = 0 }": ["x = 0", "x = { unit = 'm' }", "x = { unit = 1, start = 0 }", "x = { strt = 0 }"],
+    "lagrangian = ": ["lagrangain = ", "lagrangian = 1\nforce = "],
+    "constraints = []": ["constraints = 'x'", "constraints = [[]]"],
+    "project = true": ["project = 0", "projects = true"],
+    "multipliers = []": ["multiplier = []", "multipliers = 0"],
+    "parameters = ['x']": ["parameters = 'x'", ""],
+    "constants = 'zero'": ["constants = 'nil'", "constants = { end = 1 }"],
+    "duration = 1": ["length = 1", ""],
+}
+
+
+def test_scene_files_are_as_the_editor_is_told():
+    def answer(*words):
+        return subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=True).stdout
+
+    text = answer("new", "--schema")
+    assert (ROOT / "docs" / "scene.schema.json").read_text("utf-8") == text, "deltaq new --schema > docs/scene.schema.json"
+    Draft202012Validator.check_schema(json.loads(text))
+    scenes = Draft202012Validator(json.loads(text))
+    names = [scene["name"] for scene in json.loads(answer("list", "--format", "json"))["scenes"]]
+    assert len(names) > 35
+    for text in [answer("new"), WHOLE, *(answer("show", name, "--source") for name in [*names, "n-trailer-3"])]:
+        scenes.validate(tomllib.loads(text))
+    for sound, all_broken in BROKEN.items():
+        assert WHOLE.count(sound) == 1
+        for broken in all_broken:
+            assert not scenes.is_valid(tomllib.loads(WHOLE.replace(sound, broken))), broken

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::section::Section;
-use crate::{SceneError, SceneErrorKind};
+use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{ConstantsRule, MemoryVariable};
 
 /// `μ₀`, one a constraint; zero where the scene says nothing.
@@ -10,7 +10,7 @@ pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
     let expected = context.system.constraints.len();
     let mut multipliers = vec![0.0; expected];
     if let Some(section) = context.root.section("vakonomic")? {
-        section.check_keys(&["multipliers"]);
+        section.check_keys(format::VAKONOMIC);
         if let Some(entry) = section.get("multipliers") {
             let elements = entry.elements("an array of numbers, one a constraint")?;
             if elements.len() != expected {
@@ -44,7 +44,7 @@ pub(super) fn rule(
         };
     }
     let section = entry.section()?;
-    section.check_keys(&["horizon", "start"]);
+    section.check_keys(format::CONSTANTS);
     context.source.no_fault()?;
     match (section.get("horizon"), section.section("start")?) {
         (Some(horizon), None) => {

@@ -47,6 +47,7 @@
 mod constants;
 mod context;
 mod error;
+pub mod format;
 mod load;
 mod names;
 mod order;

@@ -10,7 +10,7 @@ use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
 use super::{constants, removal, start, system};
-use crate::{Scene, SceneError, SceneErrorKind};
+use crate::{Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
 pub const SIZE_LIMIT: u64 = 1 << 20;
@@ -147,21 +147,7 @@ fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene
         return Err(source.error(&(0..0), SceneErrorKind::Empty));
     }
     let root = Section::root(source, table.get_ref());
-    root.check_keys(&[
-        "title",
-        "source",
-        "notes",
-        "parameters",
-        "coordinates",
-        "definitions",
-        "invariants",
-        "observables",
-        "system",
-        "start",
-        "removal",
-        "vakonomic",
-        "run",
-    ]);
+    root.check_keys(format::SCENE);
     let text = |key| source.note(root.text_or_empty(key)).unwrap_or_default();
     let (origin, notes) = (text("source"), text("notes"));
     let title = source.note(root.require("title", "a string").and_then(|title| title.text("a string")));
@@ -169,7 +155,7 @@ fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene
     let run = source.note(run);
     let mut context = system::build(source, root, Overrides::new(source, overrides)?)?;
     let duration = run.and_then(|run| {
-        run.check_keys(&["duration", "breakpoints"]);
+        run.check_keys(format::RUN);
         if let Some(times) = run.get("breakpoints").and_then(|entry| source.note(breakpoints(&entry))) {
             context.system.breakpoints = times;
         }

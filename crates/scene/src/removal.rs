@@ -8,22 +8,20 @@ use super::constants;
 use super::context::Context;
 use super::names::{Names, Role, check_symbols};
 use super::section::{Entry, Section, Text, Value};
-use crate::{SceneError, SceneErrorKind, Unavailable};
+use crate::{SceneError, SceneErrorKind, Unavailable, format};
 use mechanics::{Coordinate, DisplacementParameter, MemoryVariable, Removal, RemovalError};
-
-const KEYS: [&str; 6] = ["parameters", "rates", "direct", "memory", "start", "constants"];
 
 /// All removals of the scene, verified. One without a name is called `given`.
 pub(super) fn read_all(context: &Context) -> Result<Vec<Removal>, SceneError> {
     let Some(section) = context.root.section("removal")? else { return Ok(Vec::new()) };
-    if section.entries().any(|e| KEYS.contains(&e.key)) {
+    if section.entries().any(|e| format::REMOVAL.iter().any(|key| key.name == e.key)) {
         return Ok(vec![read(context, "given", &section)?]);
     }
     section.entries().map(|e| read(context, e.key, &e.section()?)).collect()
 }
 
 fn read(context: &Context, name: &str, section: &Section) -> Result<Removal, SceneError> {
-    section.check_keys(&KEYS);
+    section.check_keys(format::REMOVAL);
     context.source.no_fault()?;
     let mut reader = Reader { context, section, names: context.names.clone(), forbidden: HashMap::new() };
     let parameters = reader.parameters()?;

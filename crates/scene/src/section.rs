@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
+use crate::format::Key;
 use crate::{SceneError, SceneErrorKind};
 
 /// The text of a scene, where it came from, and what is wrong with it so far.
@@ -120,9 +121,9 @@ impl<'a> Section<'a> {
     }
 
     /// Notes every key that is none of `known`.
-    pub(super) fn check_keys(&self, known: &[&str]) {
-        for entry in self.entries().filter(|e| !known.contains(&e.key)) {
-            let known: Vec<String> = known.iter().map(|k| k.to_string()).collect();
+    pub(super) fn check_keys(&self, known: &[Key]) {
+        for entry in self.entries().filter(|e| known.iter().all(|key| key.name != e.key)) {
+            let known: Vec<String> = known.iter().map(|key| key.name.to_string()).collect();
             let (key, section) = (entry.key.to_string(), self.title());
             let suggestion = suggestion(entry.key, &known);
             let kind = SceneErrorKind::UnknownKey { key, section, suggestion, known };

@@ -7,7 +7,7 @@ use symbolic::{Expr, Symbol};
 
 use super::context::Context;
 use super::section::Section;
-use crate::{SceneError, SceneErrorKind};
+use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{Completion, Quantity, Removal, StartData, StartError, State, System, complete_start};
 
 /// The start state of the scene.
@@ -20,7 +20,7 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
     let mut place = context.root.get("system").map_or(0..0, |e| e.key_span);
     if let Some(start) = &start {
         place = start.span.clone();
-        start.check_keys(&["time", "project", "velocities", "guess"]);
+        start.check_keys(format::START);
         project = start.get("project").map_or(Ok(false), |e| e.boolean())?;
         if let Some(velocities) = start.section("velocities")? {
             place = velocities.span.clone();

@@ -9,7 +9,7 @@ use super::names::{Names, Role};
 use super::order::in_order;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source, Value};
-use crate::{SceneError, SceneErrorKind};
+use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{Parameter, System, Watched};
 
 /// The parameter that can be set in a scene that does not name it.
@@ -76,7 +76,7 @@ pub(super) fn build<'a>(
 
 /// The label of a coordinate's unit.
 fn unit(section: &Section) -> Result<String, SceneError> {
-    section.check_keys(&["unit", "start"]);
+    section.check_keys(format::COORDINATE);
     let unit = section.text_or_empty("unit")?;
     let degrees = matches!(unit.as_str(), "deg" | "degree" | "degrees" | "°");
     match section.get("unit").filter(|_| degrees) {
@@ -154,7 +154,7 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
 fn read_system(context: &mut Context) -> Result<(), SceneError> {
     let source = context.source;
     let section = context.root.require("system", "a table with the Lagrangian and the constraints")?.section()?;
-    section.check_keys(&["lagrangian", "constraints", "forces"]);
+    section.check_keys(format::SYSTEM);
     let lagrangian = section.require("lagrangian", "an expression in quotes");
     let lagrangian = lagrangian.and_then(|entry| context.parse(&entry.text("an expression in quotes")?));
     if let Some(lagrangian) = source.note(lagrangian) {
