@@ -226,3 +226,13 @@ proptest! {
         prop_assert!(nothing < 1e-13);
     }
 }
+
+#[test]
+fn a_speed_that_is_exceeded_has_no_real_start() {
+    let speed = "\"x'^2 + y'^2 + z'^2 - 4\"";
+    let given = "velocities = { \"x'\" = 3, \"z'\" = 0 }";
+    let error = load([0.0; 3], KINETIC, speed, given).unwrap_err();
+    let StartError::NoRealSolution { velocities, constraint: 1, residual, limit } = &error else { panic!("{error}") };
+    assert!(velocities == &["y'"] && residual > limit);
+    assert!(error.to_string().starts_with("no real `y'` satisfies constraint 1"), "{error}");
+}

@@ -142,10 +142,10 @@ fn fraction(numerator: &str, denominator: &str) -> String {
 
 /// Powers of ten as such: 1.5e-7 is 1.5 · 10⁻⁷.
 fn latex_number(n: Number) -> (String, Option<String>) {
-    if n.to_f64() == std::f64::consts::PI {
-        return (r"\pi".to_owned(), None);
-    }
     let (numerator, denominator) = number_text(n);
+    if let Some(factor) = numerator.strip_suffix("pi") {
+        return (format!(r"{}\pi", factor.replace('*', " ")), denominator);
+    }
     match numerator.split_once('e') {
         Some(("1", exponent)) => (format!("10^{{{exponent}}}"), denominator),
         Some((mantissa, exponent)) => (format!(r"{mantissa} \cdot 10^{{{exponent}}}"), denominator),

@@ -1,7 +1,7 @@
 //! Expressions as text that parses back.
 
 use crate::arena::{Arena, Node};
-use crate::number::Number;
+use crate::number::{Number, Rational};
 use crate::print::{ATOM, Factor, POWER, PRODUCT, Piece, Printed, signed, text, write};
 use crate::{Expr, Graph};
 
@@ -57,7 +57,8 @@ impl Arena {
             }
         }
         if above.is_empty() || numerator != "1" {
-            above.insert(0, (vec![text(numerator)], ATOM));
+            let binds = if numerator.contains('*') { PRODUCT } else { ATOM };
+            above.insert(0, (vec![text(numerator)], binds));
         }
         let binds = if above.len() == 1 && below.is_empty() { above[0].1 } else { PRODUCT };
         let mut pieces = joined(above);
@@ -118,6 +119,10 @@ pub(crate) fn number_text(n: Number) -> (String, Option<String>) {
     match n {
         Number::Exact(r) if r.denominator() == 1 => (r.numerator().to_string(), None),
         Number::Exact(r) => {
+            if let Some((numerator, denominator)) = multiple_of_pi(r) {
+                let above = if numerator == 1 { "pi".into() } else { format!("{numerator}*pi") };
+                return (above, (denominator != 1).then(|| denominator.to_string()));
+            }
             let decimal = float_text(r.to_f64());
             if r.denominator() % 5 == 0 && Number::from_decimal(&decimal) == Some(n) {
                 (decimal, None)
@@ -127,6 +132,15 @@ pub(crate) fn number_text(n: Number) -> (String, Option<String>) {
         }
         Number::Float(x) => (float_text(x), None),
     }
+}
+
+/// `k` and `d` where the number is `k π/d` of small numbers, to the digit that π has here.
+fn multiple_of_pi(r: Rational) -> Option<(i64, i64)> {
+    const LARGEST: i64 = 360;
+    let Number::Exact(pi) = Number::from_f64(std::f64::consts::PI) else { return None };
+    let quotient = r.mul(pi.recip()?)?;
+    let (k, d) = (quotient.numerator(), quotient.denominator());
+    (k != 0 && k <= LARGEST && d <= LARGEST).then_some((k, d))
 }
 
 /// The shortest decimal that converts back to x

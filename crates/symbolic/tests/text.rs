@@ -221,3 +221,15 @@ fn names_are_printed_as_mathematics() {
         assert_eq!(g.latex_symbol(g.symbol(name)), latex, "{name}");
     }
 }
+
+#[test]
+fn multiples_of_pi_are_printed_as_such() {
+    let g = Graph::new();
+    for text in ["pi", "pi/10", "2*pi", "3*pi/4", "pi*x/180", "2*pi*x/(3*y)", "sin(x + pi/7)"] {
+        let e = parse(&g, text).unwrap();
+        assert_eq!(g.plain(e), text);
+        assert_eq!(parse(&g, &g.plain(e)).unwrap(), e);
+    }
+    assert_eq!(g.plain(parse(&g, "3.1415926535897").unwrap()), "3.1415926535897");
+    assert_eq!(g.latex(parse(&g, "3*pi/4 - x").unwrap()), r"\frac{3 \pi}{4} - x");
+}

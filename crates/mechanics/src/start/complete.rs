@@ -80,7 +80,12 @@ impl StartProgram {
     /// As [`complete_start`].
     pub fn complete(&mut self, numbers: &StartNumbers) -> Result<(State, Completion), StartError> {
         let varied = &numbers.varied;
-        let mut state = self.velocities.solve(numbers, &mut self.regularity)?;
+        let (mut state, looked_for) = self.velocities.solve(numbers, &mut self.regularity)?;
+        if let Some(velocities) = looked_for {
+            let (residual, constraint) = self.largest_residual(&state, varied)?;
+            let limit = NewtonOptions::default().limit;
+            return Err(StartError::NoRealSolution { velocities, constraint, residual, limit });
+        }
         let mut completion = self.completion.clone();
         self.regularity.check(&state, varied)?;
         if let Some(projection) = &mut self.projection {
@@ -89,14 +94,19 @@ impl StartProgram {
             self.regularity.check(&state, varied)?;
             completion.projected = Some(length);
         }
-        let residuals = self.constraints.relative(&state, varied)?.into_iter().zip(1..);
-        let (residual, constraint) = residuals.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0));
+        let (residual, constraint) = self.largest_residual(&state, varied)?;
         let limit = NewtonOptions::default().limit;
         if residual > limit {
             return Err(StartError::Contradictory { constraint, residual, limit });
         }
         completion.residual = residual;
         Ok((state, completion))
+    }
+
+    /// The largest relative residual of a constraint, and its number from 1.
+    fn largest_residual(&mut self, state: &State, varied: &[f64]) -> Result<(f64, usize), StartError> {
+        let residuals = self.constraints.relative(state, varied)?.into_iter().zip(1..);
+        Ok(residuals.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0)))
     }
 }
 

@@ -53,6 +53,18 @@ pub enum StartError {
         /// Largest residual that is accepted.
         limit: f64,
     },
+    /// A constraint that is not linear has no real solution in the velocities that are left.
+    #[error("no real {} satisfies constraint {constraint} with the given velocities: relative residual {residual:.3e} at best, limit {limit:.0e}", listed(.velocities))]
+    NoRealSolution {
+        /// Velocities that were looked for.
+        velocities: Vec<String>,
+        /// Number of the constraint with the largest residual, from 1.
+        constraint: usize,
+        /// Its residual at the least-squares point, relative to the size of its terms.
+        residual: f64,
+        /// Largest residual that is accepted.
+        limit: f64,
+    },
     /// Constraints nonlinear in the velocities have several solutions.
     #[error("the constraints leave a choice of {}: {} or {}; choose by a [start.guess]", listed(.velocities), values(.first), values(.second))]
     Ambiguous {

@@ -41,8 +41,13 @@ impl VelocityProgram {
     }
 
     /// The state with these velocities; of contradictory equations by least squares. None may be open:
-    /// dependent constraints are the deeper fault and come first.
-    pub(super) fn solve(&mut self, numbers: &StartNumbers, regularity: &mut Regularity) -> Result<State, StartError> {
+    /// dependent constraints are the deeper fault and come first. Where equations that are not linear have no
+    /// real solution, also the velocities that were looked for.
+    pub(super) fn solve(
+        &mut self,
+        numbers: &StartNumbers,
+        regularity: &mut Regularity,
+    ) -> Result<(State, Option<Vec<String>>), StartError> {
         let StartNumbers { time, positions, given, guess, varied } = numbers;
         let expected = self.names.len();
         if positions.len() != expected {
@@ -69,12 +74,18 @@ impl VelocityProgram {
                 Solved::Nowhere => {}
             }
         }
-        if let (true, Some(root)) = (roots.is_empty(), &nearest) {
+        let unsolved = roots.is_empty();
+        if let (true, Some(root)) = (unsolved, &nearest) {
             roots.push(self.problem.outputs(&known, root)?);
         }
         let Some((v, open)) = roots.first() else { return Err(StartError::NotSolved { points: guesses.len() }) };
         let state = State { t: *time, q: positions.clone(), v: v.clone() };
         let names = |places: &[usize]| places.iter().map(|&i| self.names[i].clone()).collect();
+        if unsolved && !self.problem.is_linear {
+            let open: Vec<usize> = (0..open.len()).filter(|&i| open[i]).collect();
+            let looked_for = if open.is_empty() { None } else { Some(names(&open)) };
+            return Ok((state, looked_for));
+        }
         if open.contains(&true) {
             regularity.check_constraints(&state, varied)?;
             let open: Vec<usize> = (0..open.len()).filter(|&i| open[i]).collect();
@@ -88,7 +99,7 @@ impl VelocityProgram {
                 second: differ.iter().map(|&i| second[i]).collect(),
             });
         }
-        Ok(state)
+        Ok((state, None))
     }
 
     /// Starts of unknowns without a guess: several, to see whether nonlinear equations have more solutions.
