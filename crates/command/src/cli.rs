@@ -199,6 +199,9 @@ pub struct CheckArguments {
 pub struct ShowArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
+    /// Formulations and forms to show, by name; all if left out, and of equations over 30 kB the size only.
+    #[arg(short, long, value_name = "NAME,…", value_delimiter = ',')]
+    pub formulation: Vec<String>,
     /// Formulas in LaTeX.
     #[arg(long)]
     pub latex: bool,

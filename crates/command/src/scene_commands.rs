@@ -25,7 +25,8 @@ pub(crate) fn new(arguments: &NewArguments) -> Result<String> {
     let mut file = file.with_context(|| format!("{} cannot be made", path.display()))?;
     file.write_all(text.as_bytes()).with_context(|| format!("{} cannot be written", path.display()))?;
     let path = path.display();
-    let next = if arguments.schema { String::new() } else { format!("; next: deltaq check {path}, deltaq compare {path}") };
+    let next =
+        if arguments.schema { String::new() } else { format!("; next: deltaq check {path}, deltaq compare {path}") };
     Ok(format!("{path} written{next}\n"))
 }
 

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use deltaq::{
     Choice, Chosen, ChosenForm, EquationStyle, Form, Settings, choices, derive_at, derive_in_form, equations_text,
-    forms, integrability, prepare, setting,
+    forms, integrability, prepare, setting, system_text,
 };
 use equations::{Cost, Equations};
 use mechanics::ConstantsRule;
@@ -28,6 +28,13 @@ pub(crate) fn list(format: TextOrJson) -> Result<String> {
     })
 }
 
+/// Equations of more bytes than this are printed only where they are asked for.
+const LONG: usize = 30_000;
+
+fn scene_name(arguments: &ShowArguments) -> &str {
+    &arguments.scene.scene
+}
+
 /// Equations of every formulation and form, what was left out, and whether constraints are integrable.
 pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     if arguments.source {
@@ -35,21 +42,39 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     }
     let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
-    let g = &scene.system.graph;
-    let print = |&e| if arguments.latex { g.latex(e) } else { g.plain(e) };
-    let lagrangian = print(&scene.system.lagrangian);
-    let constraints: Vec<String> = scene.system.constraints.iter().map(print).collect();
     let integrability = integrability(&scene.system, &scene.start)?.to_string();
     let mut equations = Vec::new();
-    for choice in choices(&scene).into_iter().chain(forms(&scene)) {
+    let asked = &arguments.formulation;
+    let all: Vec<Choice> = choices(&scene).into_iter().chain(forms(&scene)).collect();
+    if let Some(unknown) = asked.iter().find(|name| all.iter().all(|choice| choice.formulation != **name)) {
+        let mut known: Vec<&str> = all.iter().map(|choice| choice.formulation).collect();
+        known.dedup();
+        bail!("--formulation {unknown}: this scene has {}", known.join(", "));
+    }
+    for choice in all.into_iter().filter(|choice| asked.is_empty() || asked.iter().any(|n| n == choice.formulation)) {
         let derived = match derive_at(&scene.system, &scene.start, &choice) {
-            Ok(equations) => Ok(equations_text(&equations, style) + &form(&scene, equations, &choice)?),
+            Ok(equations) => {
+                let text = equations_text(&equations, style);
+                if asked.is_empty() && text.len() > LONG {
+                    let (size, name) = (text.len() / 1000, choice.formulation);
+                    Ok(format!(
+                        "Equations of {size} kB; `deltaq show {} -f {name}` prints them.\n",
+                        scene_name(arguments)
+                    ))
+                } else {
+                    Ok(text + &form(&scene, equations, &choice)?)
+                }
+            }
             Err(error) => Err(error.to_string()),
         };
         let integrated = derive_in_form(&scene.system, &scene.start, &choice, Form::Suited);
         equations.push((choice, derived, integrated.ok().map(|(_, chosen)| chosen)));
     }
     if arguments.format == TextOrJson::Json {
+        let g = &scene.system.graph;
+        let print = |&e| if arguments.latex { g.latex(e) } else { g.plain(e) };
+        let lagrangian = print(&scene.system.lagrangian);
+        let constraints: Vec<String> = scene.system.constraints.iter().map(print).collect();
         let entry = |(choice, derived, integrated): &(Choice, Result<String, String>, Option<ChosenForm>)| {
             let removal = choice.removal.as_ref().map(|removal| &removal.name);
             let (equations, refused) = (derived.as_ref().ok(), derived.as_ref().err());
@@ -69,8 +94,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         ));
     }
     let source = if scene.source.is_empty() { String::new() } else { format!("{}\n", scene.source) };
-    let mut text = format!("{}\n{source}\nL = {lagrangian}\n", scene.title);
-    text.extend(constraints.iter().map(|constraint| format!("0 = {constraint}\n")));
+    let mut text = format!("{}\n{source}\n{}", scene.title, system_text(&scene.system, style));
     let _ = writeln!(text, "\nConstraint: {integrability}");
     for (choice, derived, integrated) in equations {
         let mut derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));

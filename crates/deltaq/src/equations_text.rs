@@ -1,9 +1,11 @@
 //! Equations for the reader, printed from the expressions that are integrated.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use equations::Equations;
-use symbolic::Expr;
+use mechanics::System;
+use symbolic::{Expr, Graph, Symbol};
 
 /// How formulas are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,31 +19,38 @@ pub enum EquationStyle {
 /// Expressions with more nodes than this are written with named intermediate quantities.
 const LONG: usize = 60;
 
+/// The same for what the user wrote.
+const LONG_SYSTEM: usize = 200;
+
 /// The derived equations and what was left out of them.
 pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     let g = &equations.graph;
-    let mut sides: Vec<Expr> = equations.statements.iter().flat_map(|s| [s.left, s.right]).collect();
-    let mut text = String::new();
-    if !equations.definitions.is_empty() {
-        text += "By way of:\n\n";
-        for &(symbol, value) in &equations.definitions {
-            line(&mut text, equations, style, g.variable(symbol), value);
-        }
-        text += "\nEquations:\n\n";
+    let (symbols, values): (Vec<Symbol>, Vec<Expr>) = equations.definitions.iter().copied().unzip();
+    let sides = equations.statements.iter().flat_map(|s| [s.left, s.right]);
+    let mut whole: Vec<Expr> = values.into_iter().chain(sides).collect();
+    let mut pieces = Vec::new();
+    if whole.iter().any(|&e| g.size(&[e]) > LONG) {
+        (pieces, whole) = g.abbreviate(&whole, "s");
     }
-    if sides.iter().any(|&e| g.size(&[e]) > LONG) {
-        let (definitions, short) = g.abbreviate(&sides, "s");
-        sides = short;
-        for (symbol, value) in definitions {
-            line(&mut text, equations, style, g.variable(symbol), value);
+    let order: Vec<Symbol> = pieces.iter().map(|(symbol, _)| *symbol).collect();
+    let mut writer = Writer { text: String::new(), graph: g, style, pieces: pieces.into_iter().collect() };
+    let (values, sides) = whole.split_at(symbols.len());
+    if symbols.is_empty() && !order.is_empty() {
+        writer.text += "Intermediate quantities:\n\n";
+        order.into_iter().for_each(|symbol| writer.piece(symbol));
+        writer.text += "\nEquations:\n\n";
+    }
+    if !symbols.is_empty() {
+        writer.text += "By way of:\n\n";
+        for (symbol, value) in symbols.into_iter().zip(values) {
+            writer.line(g.variable(symbol), *value);
         }
-        if !text.is_empty() {
-            text = format!("Intermediate quantities:\n\n{text}\nEquations:\n\n");
-        }
+        writer.text += "\nEquations:\n\n";
     }
     for pair in sides.chunks_exact(2) {
-        line(&mut text, equations, style, pair[0], pair[1]);
+        writer.line(pair[0], pair[1]);
     }
+    let mut text = writer.text;
     if !equations.left_out.is_empty() {
         text += "\nLeft out, because this scene does not need it:\n\n";
         for left_out in &equations.left_out {
@@ -57,10 +66,45 @@ pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     text
 }
 
-fn line(text: &mut String, equations: &Equations, style: EquationStyle, left: Expr, right: Expr) {
-    let g = &equations.graph;
-    let _ = match style {
-        EquationStyle::Plain => writeln!(text, "  {} = {}", g.plain(left), g.plain(right)),
-        EquationStyle::Latex => writeln!(text, "```math\n{} = {}\n```", g.latex(left), g.latex(right)),
-    };
+/// `L` and `f = 0` of a system, a line each; what would be long is cut into named pieces, before the line.
+pub fn system_text(system: &System, style: EquationStyle) -> String {
+    let g = &system.graph;
+    let mut whole = [&[system.lagrangian], &system.constraints[..]].concat();
+    let mut pieces = Vec::new();
+    if whole.iter().any(|&e| g.size(&[e]) > LONG_SYSTEM) {
+        (pieces, whole) = g.abbreviate(&whole, "s");
+    }
+    let mut writer = Writer { text: String::new(), graph: g, style, pieces: pieces.into_iter().collect() };
+    let lagrangian = g.variable(g.symbol("L"));
+    for (i, e) in whole.into_iter().enumerate() {
+        writer.line(if i == 0 { lagrangian } else { g.zero() }, e);
+    }
+    writer.text
+}
+
+struct Writer<'a> {
+    text: String,
+    graph: &'a Graph,
+    style: EquationStyle,
+    /// Pieces that were cut out and are not written yet.
+    pieces: BTreeMap<Symbol, Expr>,
+}
+
+impl Writer<'_> {
+    fn piece(&mut self, symbol: Symbol) {
+        if let Some(value) = self.pieces.remove(&symbol) {
+            self.line(self.graph.variable(symbol), value);
+        }
+    }
+
+    /// The line, after those of the pieces that it needs.
+    fn line(&mut self, left: Expr, right: Expr) {
+        let g = self.graph;
+        let needed = [left, right].into_iter().flat_map(|e| g.symbols_of(e));
+        needed.collect::<BTreeSet<_>>().into_iter().for_each(|symbol| self.piece(symbol));
+        let _ = match self.style {
+            EquationStyle::Plain => writeln!(self.text, "  {} = {}", g.plain(left), g.plain(right)),
+            EquationStyle::Latex => writeln!(self.text, "```math\n{} = {}\n```", g.latex(left), g.latex(right)),
+        };
+    }
 }

@@ -102,7 +102,7 @@ pub use ending::Ending;
 pub use ensemble::{
     Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
 };
-pub use equations_text::{EquationStyle, equations_text};
+pub use equations_text::{EquationStyle, equations_text, system_text};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use fit::best_fit;

@@ -91,7 +91,8 @@ pub const START: &[Key] = &[
 ];
 
 /// `[vakonomic]`.
-pub const VAKONOMIC: &[Key] = &[may("multipliers", List(&Number), "μ at the start, one a constraint; zero if left out")];
+pub const VAKONOMIC: &[Key] =
+    &[may("multipliers", List(&Number), "μ at the start, one a constraint; zero if left out")];
 
 /// `[run]`.
 pub const RUN: &[Key] = &[

@@ -7,12 +7,7 @@ use crate::{Expr, Function, Graph, ParseErrorKind, Value};
 
 impl Parser<'_> {
     /// The function of that name, of as many arguments as it takes, each with its place.
-    pub(crate) fn apply(
-        &self,
-        token: Spanned,
-        axes: Option<Spanned>,
-        arguments: &[Argument],
-    ) -> Result<Value, Fault> {
+    pub(crate) fn apply(&self, token: Spanned, axes: Option<Spanned>, arguments: &[Argument]) -> Result<Value, Fault> {
         let (g, name) = (self.graph, self.slice(token));
         let whole = |kind| Fault { kind, start: token.start, end: self.last };
         let number = |i: usize| -> Result<Expr, Fault> {

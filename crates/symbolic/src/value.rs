@@ -115,7 +115,8 @@ impl Graph {
             }
             (Value::Matrix(m, first), Value::Matrix(n, second)) => (m.columns() == n.rows()).then(|| {
                 let columns: Vec<Vec<Expr>> = (0..n.columns()).map(|j| n.column(j)).collect();
-                let product = Matrix::from_fn(m.rows(), n.columns(), |i, j| self.short(self.dot(m.row(i), &columns[j])));
+                let product =
+                    Matrix::from_fn(m.rows(), n.columns(), |i, j| self.short(self.dot(m.row(i), &columns[j])));
                 let both = !first.is_empty() && !second.is_empty();
                 Value::Matrix(product, if both { [&first[..], second].concat() } else { Vec::new() })
             }),
