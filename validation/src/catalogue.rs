@@ -37,12 +37,20 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
     "snakeboard" "roller-racer" "pursuit" "isokinetic" "parallel-velocities" "sledge-with-friction"
 );
 
+/// Systems whose steady motions are looked at: in no comparison.
+pub const STEADY: &[(&str, &str)] = &[("bicycle", include_str!("../scenes/bicycle.toml"))];
+
+/// Name and text of every scene that is found by its name and not made for it.
+pub fn built_in() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+    SCENES.iter().chain(CLASSICS).chain(STEADY)
+}
+
 /// The built-in scene `name`, `-` for standard input, or the file at that path; `overrides` replace numbers.
 ///
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.
 pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, NotFound> {
-    if let Some((name, text)) = SCENES.iter().chain(CLASSICS).find(|(name, _)| *name == name_or_path) {
+    if let Some((name, text)) = built_in().find(|(name, _)| *name == name_or_path) {
         return Ok(Scene::parse_with(name, text, overrides)?);
     }
     if let Some((trailers, coordinates)) = trailer::named(name_or_path) {
@@ -56,7 +64,7 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
     }
     let path = Path::new(name_or_path);
     if !path.exists() {
-        let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).chain(["n-trailer-N"]).collect();
+        let known: Vec<&str> = built_in().map(|(name, _)| *name).chain(["n-trailer-N"]).collect();
         return Err(NotFound::Nothing(name_or_path.into(), known.join(", ")));
     }
     Ok(Scene::load_with(path, overrides)?)

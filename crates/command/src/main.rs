@@ -8,6 +8,7 @@ mod cli;
 mod columns;
 mod compare_command;
 mod ensemble_command;
+mod linearize_command;
 mod main_job;
 mod prove_command;
 mod random_command;
@@ -80,6 +81,7 @@ fn run(cli: Cli) -> Result<Answer> {
         None => main_job::run(&cli.job, quiet)?,
         Some(Command::List(arguments)) => show_command::list(arguments.format)?,
         Some(Command::Show(arguments)) => show_command::run(&arguments)?,
+        Some(Command::Linearize(arguments)) => linearize_command::run(&arguments)?,
         Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet)?,
