@@ -83,7 +83,7 @@ fn json_of(sweep: &Sweep) -> Value {
             "states": linearization.states, "values": linearization.values, "carried": carried,
             "matrix": linearization.matrix.row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
             "of": states.collect::<Vec<_>>(), "eigenvalues": eigenvalues.collect::<Vec<_>>(),
-            "zeros": part.zeros, "unstable": part.unstable(),
+            "zeros": part.zeros, "zero_vectors": linearization.spectrum.zero_vectors, "unstable": part.unstable(),
         })
     };
     let changes = sweep.changes.iter().map(|change| {

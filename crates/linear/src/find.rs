@@ -27,45 +27,53 @@ pub fn find_steady(setting: Setting) -> Result<State, LinearError> {
     if !setting.system.constraints_linear_in_velocity() {
         return Err(LinearError::NotLinear);
     }
-    let (label, removal, constants) = ("Chetaev".into(), None, ConstantsRule::Zero);
-    let mut point = Point::start(setting, &Choice { label, formulation: "chetaev", removal, constants })?;
-    let (places, speeds) = (point.places(&COORDINATES), point.places(&VELOCITIES));
-    let carried = point.carried()?;
-    let kept: Vec<usize> = (0..point.y.len()).filter(|i| !carried.contains(i)).collect();
-    let m = speeds.len();
-    let mut last = f64::INFINITY;
-    let mut iterations = 0;
-    loop {
-        let y = point.y.clone();
-        let (rates, jacobian) = (point.rates(&y)?, point.jacobian(&y)?);
-        let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| jacobian[(kept[i], kept[j])]);
-        let [values, rates] = [&y, &rates].map(|of| kept.iter().map(|&i| of[i]).collect::<Vec<f64>>());
-        let residual = DVector::from_vec(rates.clone());
-        match moving(&matrix, &values, &rates) {
-            // on, as long as it becomes better
-            None if residual.norm() > 0.5 * last || residual.norm() == 0.0 => return point.state(),
-            Some(Moving { place, rate, limit }) if iterations == ITERATIONS => {
-                let state = point.equations.graph.name(point.equations.states[kept[place]].symbol);
-                return Err(LinearError::NotFound { iterations, state, rate, limit });
-            }
-            _ => {}
-        }
-        (last, iterations) = (residual.norm(), iterations + 1);
-        let along = |i: usize, k: usize| places.iter().map(|&p| jacobian[(i, p)] * jacobian[(p, speeds[k])]).sum();
-        let columns = DMatrix::from_fn(kept.len(), 2 * m, |i, k| match k.checked_sub(m) {
-            None => along(kept[i], k),
-            Some(k) => jacobian[(kept[i], speeds[k])],
-        });
-        let svd = SingularValues::of(&columns);
-        let step = svd.solve(&-residual, FLAT * svd.values.max());
-        point.displace(&places, &speeds, &step.as_slice()[..m])?;
-        for (&w, change) in speeds.iter().zip(&step.as_slice()[m..]) {
-            point.y[w] += change;
-        }
-    }
+    Point::start(setting, &chetaev())?.settle()
+}
+
+/// Chetaev's formulation, which takes no constants.
+pub(crate) fn chetaev() -> Choice {
+    Choice { label: "Chetaev".into(), formulation: "chetaev", removal: None, constants: ConstantsRule::Zero }
 }
 
 impl Point {
+    /// Moves to a steady motion near by.
+    pub(crate) fn settle(&mut self) -> Result<State, LinearError> {
+        let (places, speeds) = (self.places(&COORDINATES), self.places(&VELOCITIES));
+        let carried = self.carried()?;
+        let kept: Vec<usize> = (0..self.y.len()).filter(|i| !carried.contains(i)).collect();
+        let m = speeds.len();
+        let mut last = f64::INFINITY;
+        let mut iterations = 0;
+        loop {
+            let y = self.y.clone();
+            let (rates, jacobian) = (self.rates(&y)?, self.jacobian(&y)?);
+            let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| jacobian[(kept[i], kept[j])]);
+            let [values, rates] = [&y, &rates].map(|of| kept.iter().map(|&i| of[i]).collect::<Vec<f64>>());
+            let residual = DVector::from_vec(rates.clone());
+            match moving(&matrix, &values, &rates) {
+                // on, as long as it becomes better
+                None if residual.norm() > 0.5 * last || residual.norm() == 0.0 => return self.state(),
+                Some(Moving { place, rate, limit }) if iterations == ITERATIONS => {
+                    let state = self.equations.graph.name(self.equations.states[kept[place]].symbol);
+                    return Err(LinearError::NotFound { iterations, state, rate, limit });
+                }
+                _ => {}
+            }
+            (last, iterations) = (residual.norm(), iterations + 1);
+            let along = |i: usize, k: usize| places.iter().map(|&p| jacobian[(i, p)] * jacobian[(p, speeds[k])]).sum();
+            let columns = DMatrix::from_fn(kept.len(), 2 * m, |i, k| match k.checked_sub(m) {
+                None => along(kept[i], k),
+                Some(k) => jacobian[(kept[i], speeds[k])],
+            });
+            let svd = SingularValues::of(&columns);
+            let step = svd.solve(&-residual, FLAT * svd.values.max());
+            self.displace(&places, &speeds, &step.as_slice()[..m])?;
+            for (&w, change) in speeds.iter().zip(&step.as_slice()[m..]) {
+                self.y[w] += change;
+            }
+        }
+    }
+
     /// Moves the coordinates by an admissible displacement.
     fn displace(&mut self, places: &[usize], speeds: &[usize], by: &[f64]) -> Result<(), LinearError> {
         let mut y = self.y.clone();

@@ -52,21 +52,7 @@ const STEADY: f64 = 1e-9;
 /// [`LinearError::NotSteady`] and [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
 /// refuses the system.
 pub fn linearize(setting: Setting, choice: &Choice) -> Result<Linearization, LinearError> {
-    let mut point = Point::start(setting, choice)?;
-    let form = point.equations.formulation;
-    if depends_on_time(&point) {
-        return Err(LinearError::TimeDependent { formulation: form.into() });
-    }
-    let (found, rates) = Linearization::at(&mut point, true)?;
-    match moving(&found.matrix, &found.values, &rates) {
-        None => Ok(found),
-        Some(Moving { place: i, rate, limit }) => {
-            let carried: Vec<&str> = found.carried.iter().map(|c| &c.name[..]).collect();
-            let carried = if carried.is_empty() { "nothing here".into() } else { carried.join(", ") };
-            let state = found.states[i].clone();
-            Err(LinearError::NotSteady { formulation: form.into(), state, rate, limit, carried })
-        }
-    }
+    Linearization::steady(&mut Point::start(setting, choice)?)
 }
 
 /// The equations of `choice` to first order about its motion from the start of `setting`, at time `t`.
@@ -111,6 +97,22 @@ fn depends_on_time(point: &Point) -> bool {
 }
 
 impl Linearization {
+    /// About a point of a steady motion.
+    pub(crate) fn steady(point: &mut Point) -> Result<Linearization, LinearError> {
+        let form = point.equations.formulation;
+        if depends_on_time(point) {
+            return Err(LinearError::TimeDependent { formulation: form.into() });
+        }
+        let (found, rates) = Linearization::at(point, true)?;
+        let Some(Moving { place, rate, limit }) = moving(&found.matrix, &found.values, &rates) else {
+            return Ok(found);
+        };
+        let carried: Vec<&str> = found.carried.iter().map(|c| &c.name[..]).collect();
+        let carried = if carried.is_empty() { "nothing here".into() } else { carried.join(", ") };
+        let state = found.states[place].clone();
+        Err(LinearError::NotSteady { formulation: form.into(), state, rate, limit, carried })
+    }
+
     /// About a point, with the rates of its states.
     fn at(point: &mut Point, is_steady: bool) -> Result<(Linearization, Vec<f64>), LinearError> {
         let y = point.y.clone();

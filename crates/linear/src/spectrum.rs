@@ -6,7 +6,7 @@ use nalgebra::{Complex, DMatrix, Schur, linalg::balancing::balance_parlett_reins
 /// One eigenvalue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eigenvalue {
-    /// `λ`, in 1 over the unit of time.
+    /// `s` of `e^(s t)`, in 1 over the unit of time.
     pub value: Complex<f64>,
     /// How far it moves where the matrix moves by its error: see [`Spectrum`].
     pub error: f64,
@@ -37,7 +37,8 @@ pub struct Block {
 /// until there is none: so zeros are counted and not computed, chains among them as well.
 ///
 /// Errors: the balanced block is moved four times, in random directions, by its own error and 4 ε of its norm
-/// an entry; the largest change of an eigenvalue is its error. A double eigenvalue that splits says so.
+/// an entry; the largest change of an eigenvalue is its error, and at least 4 ε of the largest eigenvalue. A
+/// double eigenvalue that splits says so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Blocks, by their first places.
@@ -78,15 +79,33 @@ impl Spectrum {
             DMatrix::from_fn(places.len(), places.len(), |i, j| m[(places[i], places[j])])
         };
         let blocks = components(&coupled).into_iter().map(|places| {
-            let (eigenvalues, zeros) = of_block(part(&clean, &places), part(noise, &places))?;
-            Some(Block { places, eigenvalues, zeros })
+            let eigenvalues = of_block(part(&clean, &places), part(noise, &places))?;
+            Some(Block { zeros: places.len() - eigenvalues.len(), places, eigenvalues })
         });
-        let blocks = blocks.collect::<Option<Vec<Block>>>()?;
-        let mut balanced = clean;
-        balance_parlett_reinsch(&mut balanced);
-        let zero_vectors = nullity(&SingularValues::of(&balanced), allowed(&balanced, noise));
+        let mut blocks = blocks.collect::<Option<Vec<Block>>>()?;
+        let all = blocks.iter().flat_map(|block| &block.eigenvalues);
+        let fastest = all.fold(0.0_f64, |fastest, e| fastest.max(e.value.norm()));
+        blocks.iter_mut().for_each(|block| block.resolve(4.0 * f64::EPSILON * fastest));
+        let (balanced, noise) = balanced(clean, noise.clone());
+        let zero_vectors = nullity(&SingularValues::of(&balanced), allowed(&balanced, &noise));
         Some(Spectrum { blocks, zero_vectors })
     }
+}
+
+impl Block {
+    /// No error is below this one; what is not above its error is zero.
+    fn resolve(&mut self, least: f64) {
+        self.eigenvalues.iter_mut().for_each(|e| e.error = e.error.max(least));
+        self.eigenvalues.retain(|e| e.value.norm() > e.error);
+        self.zeros = self.places.len() - self.eigenvalues.len();
+    }
+}
+
+/// A matrix in units in which its rows are about as large as its columns, and its errors in the same.
+fn balanced(mut matrix: DMatrix<f64>, noise: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+    let units = balance_parlett_reinsch(&mut matrix);
+    let noise = DMatrix::from_fn(noise.nrows(), noise.ncols(), |i, j| noise[(i, j)] * units[j] / units[i]);
+    (matrix, noise)
 }
 
 /// The error of a matrix as a length: its own, and that of arithmetic.
@@ -121,11 +140,9 @@ fn components(coupled: &DMatrix<bool>) -> Vec<Vec<usize>> {
     found
 }
 
-/// Eigenvalues other than zero, and how many are zero.
-fn of_block(mut block: DMatrix<f64>, noise: DMatrix<f64>) -> Option<(Vec<Eigenvalue>, usize)> {
-    let n = block.nrows();
-    let scale = balance_parlett_reinsch(&mut block);
-    let noise = DMatrix::from_fn(n, n, |i, j| noise[(i, j)] * scale[j] / scale[i]);
+/// Eigenvalues of one block, without those of its null space.
+fn of_block(block: DMatrix<f64>, noise: DMatrix<f64>) -> Option<Vec<Eigenvalue>> {
+    let (block, noise) = balanced(block, noise);
     let error = allowed(&block, &noise);
     let core = without_null_space(block, error);
     let values = eigenvalues(core.clone())?;
@@ -140,10 +157,8 @@ fn of_block(mut block: DMatrix<f64>, noise: DMatrix<f64>) -> Option<(Vec<Eigenva
             moved.swap_remove(nearest);
         }
     }
-    found.retain(|eigenvalue| eigenvalue.value.norm() > eigenvalue.error);
     sort(&mut found);
-    let zeros = n - found.len();
-    Some((found, zeros))
+    Some(found)
 }
 
 /// By falling real part, then by falling imaginary part: conjugates have the same real part to the last digit.

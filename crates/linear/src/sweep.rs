@@ -1,10 +1,13 @@
 //! Eigenvalues over a parameter, and where stability changes.
 
-use deltaq::{Choice, Setting, setting};
-use mechanics::ConstantsRule;
+use deltaq::{Choice, Ensemble, EnsembleStart, Form, Settings, SolveError, setting};
+use equations::Compiled;
+use mechanics::{ConstantsRule, State};
 use scene::{Scene, Starts};
 
-use crate::{LinearError, Linearization, Part, find_steady, linearize};
+use crate::find::chetaev;
+use crate::point::{Point, in_quasi_velocities};
+use crate::{LinearError, Linearization, Part};
 
 /// The steady motions of a scene over one of its numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +36,7 @@ pub struct SweepPoint {
 pub struct Change {
     /// The value.
     pub value: f64,
-    /// Width of the interval in which the number changes.
+    /// Width of the interval in which it is: no error leaves another one open.
     pub width: f64,
     /// Deviations that grow before and behind it.
     pub unstable: [usize; 2],
@@ -42,7 +45,9 @@ pub struct Change {
 }
 
 /// Bisection ends where the values are closer than this, over their size.
-const CLOSE: f64 = 1e-13;
+const CLOSE: f64 = 1e-14;
+/// So near, over the size of a value, the real part of an eigenvalue is minus its error where it crosses.
+const NEAR: [f64; 3] = [1e-12, 1e-11, 1e-9];
 
 /// `count` values from one to another, both included.
 pub fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
@@ -65,17 +70,22 @@ pub fn sweep(
     (name, values): (&str, &[f64]),
     find: bool,
 ) -> Result<Sweep, LinearError> {
-    let mut starts = scene.starts(&[name]).map_err(|error| LinearError::Scene(error.kind))?;
-    let mut at = |value: f64| {
-        let found = at(scene, &mut starts, choice, free, value, find);
-        found.map_err(|error| LinearError::At { name: name.into(), value, error: Box::new(error) })
+    let mut family = Family::new(scene, choice, name)?;
+    let mut finder = find.then(|| Family::new(scene, &chetaev(), name)).transpose()?;
+    let mut at = |value: f64| -> Result<SweepPoint, LinearError> {
+        let mut found = || {
+            let state = finder.as_mut().map(|finder| finder.at(value, None)?.settle()).transpose()?;
+            let linearization = Linearization::steady(family.at(value, state)?)?;
+            Ok(SweepPoint { value, part: linearization.part(free)?, linearization })
+        };
+        found().map_err(|error| LinearError::At { name: name.into(), value, error: Box::new(error) })
     };
     let mut sweep = Sweep { name: name.into(), points: Vec::new(), changes: Vec::new() };
     for &value in values {
         let point = at(value)?;
         let mut low = sweep.points.last().unwrap_or(&point).clone();
         while low.part.unstable() != point.part.unstable() {
-            let (change, behind) = bisect(&mut at, low, point.clone())?;
+            let (change, behind) = change(&mut at, low, point.clone())?;
             sweep.changes.push(change);
             low = behind;
         }
@@ -84,45 +94,85 @@ pub fn sweep(
     Ok(sweep)
 }
 
-fn at(
-    scene: &Scene,
-    starts: &mut Starts,
-    choice: &Choice,
-    free: &[&str],
-    value: f64,
-    find: bool,
-) -> Result<SweepPoint, LinearError> {
-    let start = starts.at(&[value]).map_err(|error| LinearError::Scene(Box::new(error)))?;
-    let mut system = scene.system.clone();
-    for (symbol, value) in starts.parameters().into_iter().zip(&start.parameters) {
-        system.parameters.iter_mut().filter(|p| p.symbol == symbol).for_each(|p| p.value = *value);
-    }
-    let mut choice = choice.clone();
-    if starts.vary_multipliers() {
-        choice.constants = ConstantsRule::Given(start.multipliers);
-    }
-    let given = Setting { system: &system, start: &start.state, ..setting(scene) };
-    let steady = if find { find_steady(given)? } else { start.state.clone() };
-    let found = linearize(Setting { start: &steady, ..given }, &choice)?;
-    Ok(SweepPoint { value, part: found.part(free)?, linearization: found })
+/// The equations of a scene with other numbers in the place of one, derived and compiled once.
+struct Family {
+    ensemble: Ensemble,
+    starts: Starts,
+    constants: ConstantsRule,
+    point: Point,
 }
 
-/// The first change that bisection comes upon, and a point just behind it.
-fn bisect(
-    at: &mut impl FnMut(f64) -> Result<SweepPoint, LinearError>,
-    mut low: SweepPoint,
-    mut high: SweepPoint,
-) -> Result<(Change, SweepPoint), LinearError> {
-    let limit = CLOSE * (low.value.abs() + high.value.abs());
-    while (high.value - low.value).abs() > limit {
-        let middle = at(0.5 * (low.value + high.value))?;
-        if middle.part.unstable() == low.part.unstable() { low = middle } else { high = middle }
+impl Family {
+    fn new(scene: &Scene, choice: &Choice, name: &str) -> Result<Family, LinearError> {
+        let starts = scene.starts(&[name]).map_err(|error| SolveError::Scene(Box::new(error)))?;
+        let choice = in_quasi_velocities(setting(scene), choice);
+        let settings = Settings { form: Form::Named, plain: true, ..Settings::default() };
+        let ensemble = Ensemble::new(scene, &choice, &[name], &settings)?;
+        let equations = ensemble.equations().clone();
+        let compile = || Compiled::plain(&equations)?.with_jacobian(&equations);
+        let compiled = compile().map_err(SolveError::from)?;
+        let point = Point { equations, compiled, t: scene.start.t, y: Vec::new() };
+        Ok(Family { ensemble, starts, constants: choice.constants, point })
     }
+
+    /// The start with this value, or another state with the same numbers.
+    fn at(&mut self, value: f64, other: Option<State>) -> Result<&mut Point, LinearError> {
+        let start = self.starts.at(&[value]).map_err(|error| LinearError::Scene(Box::new(error)))?;
+        let varied = self.starts.vary_multipliers();
+        let constants = if varied { ConstantsRule::Given(start.multipliers) } else { self.constants.clone() };
+        let (state, end) = (other.unwrap_or(start.state), f64::INFINITY);
+        let start = EnsembleStart { state, end, parameters: start.parameters, constants };
+        let member = self.ensemble.member_at(&start)?;
+        member.set(&mut self.point.compiled);
+        self.point.y = member.start().to_vec();
+        Ok(&mut self.point)
+    }
+}
+
+type At<'a> = &'a mut dyn FnMut(f64) -> Result<SweepPoint, LinearError>;
+
+/// The first change that bisection comes upon, and a point just behind it.
+///
+/// The number of growing deviations changes where a real part is as large as its error; close to that, if the
+/// eigenvalue crosses, lies the value at which it is minus its error. The change is between the two.
+fn change(at: At, low: SweepPoint, high: SweepPoint) -> Result<(Change, SweepPoint), LinearError> {
+    let [low, high] = bisect(at, low, high, Part::unstable)?;
     let unstable = [&low, &high].map(|point| point.part.unstable());
     let most = if unstable[0] > unstable[1] { &low } else { &high };
     let growing = most.part.eigenvalues.iter().filter(|e| e.is_unstable());
     let crossing = growing.min_by(|a, b| a.value.re.total_cmp(&b.value.re));
     let frequency = crossing.map_or(0.0, |e| e.value.im.abs());
-    let (value, width) = (0.5 * (low.value + high.value), (high.value - low.value).abs());
+    let mut ends = [low.value, high.value];
+    let scale = low.value.abs() + high.value.abs();
+    for near in NEAR {
+        let around = [at(low.value - near * scale)?, at(high.value + near * scale)?];
+        if not_decaying(&around[0].part) != not_decaying(&around[1].part) {
+            let [a, b] = around;
+            let others = bisect(at, a, b, not_decaying)?.map(|point| point.value);
+            ends = [ends[0].min(others[0]), ends[1].max(others[1])];
+            break;
+        }
+    }
+    let (value, width) = (0.5 * (ends[0] + ends[1]), (ends[1] - ends[0]).abs());
     Ok((Change { value, width, unstable, frequency }, high))
+}
+
+/// How many deviations do not decay beyond what their errors leave open.
+fn not_decaying(part: &Part) -> usize {
+    part.zeros + part.eigenvalues.iter().filter(|e| e.value.re >= -e.error).count()
+}
+
+/// Two neighbours between which a count changes.
+fn bisect(
+    at: At,
+    mut low: SweepPoint,
+    mut high: SweepPoint,
+    count: fn(&Part) -> usize,
+) -> Result<[SweepPoint; 2], LinearError> {
+    let limit = CLOSE * (low.value.abs() + high.value.abs());
+    while (high.value - low.value).abs() > limit {
+        let middle = at(0.5 * (low.value + high.value))?;
+        if count(&middle.part) == count(&low.part) { low = middle } else { high = middle }
+    }
+    Ok([low, high])
 }

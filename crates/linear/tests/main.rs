@@ -1,6 +1,6 @@
 //! Steady motions whose eigenvalues are known, and everything that is refused.
 
-use deltaq::{Choice, Setting, Settings, choices, removals, setting};
+use deltaq::{Choice, Setting, Settings, SolveError, choices, removals, setting};
 use linear::{LinearError, Linearization, Spectrum, find_steady, linearize, linearize_at, sweep};
 use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, dmatrix};
@@ -131,7 +131,9 @@ fn eigenvalues_over_a_parameter() {
     let error = sweep(&scene, &choice(&scene, "chetaev"), &[], ("x", &[0.0, 1.0]), false).expect_err("1 is not steady");
     assert!(matches!(error, LinearError::At { value: 1.0, .. }), "{error}");
     let error = sweep(&scene, &choice(&scene, "chetaev"), &[], ("q", &[0.0]), false).expect_err("there is no q");
-    assert!(matches!(error, LinearError::Scene(_)), "{error}");
+    assert!(matches!(error, LinearError::Solve(SolveError::Scene(_))), "{error}");
+    let error = sweep(&scene, &choice(&scene, "chetaev"), &[], ("k", &[f64::NAN]), false).expect_err("no number");
+    assert!(matches!(&error, LinearError::At { error, .. } if matches!(**error, LinearError::Scene(_))), "{error}");
 }
 
 #[test]

@@ -36,6 +36,8 @@ pub(crate) struct Linearization {
     errors: Py<PyArrayDyn<f64>>,
     /// How many more eigenvalues there are, all zero.
     zeros: usize,
+    /// Independent eigenvectors of all zeros of J: fewer than these where deviations grow as powers of time.
+    zero_vectors: usize,
     /// How many eigenvalues have a real part above their error.
     unstable: usize,
 }
@@ -85,6 +87,7 @@ impl Linearization {
             eigenvalues: PyArray1::from_vec(py, eigenvalues).unbind(),
             errors: array(py, moved, None, &[count])?.unbind(),
             zeros: part.zeros,
+            zero_vectors: found.spectrum.zero_vectors,
             unstable: part.unstable(),
         })
     }

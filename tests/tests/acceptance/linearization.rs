@@ -69,16 +69,17 @@ fn a_disc_finds_its_circle() {
     must("turn after 1 s", (end.velocities[2] - start.v[2]).abs(), 1e-9);
 }
 
-/// Turned the other way, time runs backwards: what grew decays. One way is stable, the other is not.
+/// Turned the other way, time runs backwards: what grew decays. One mode grows one way, the other mode the other
+/// way, and not as fast: so it has a way.
 #[test]
 fn a_rattleback_has_its_way() {
     let [one, other] = [3.0, -3.0].map(|spin| {
         let rest = [("psi'", spin), ("alpha'", 0.0), ("beta'", 0.0)];
         eigenvalues(&scene("rattleback", &rest), &["alpha", "beta"])
     });
-    let growing = |list: &[Eigenvalue]| list.iter().filter(|e| e.is_unstable()).count();
+    let growth = |list: &[Eigenvalue]| list.iter().map(|e| e.value.re).fold(0.0, f64::max);
     assert_eq!(one.len(), 4);
-    assert!(growing(&one) > 0 && growing(&other) > 0 || growing(&one) != growing(&other), "{one:?}, {other:?}");
+    assert!(growth(&one) > 5.0 * growth(&other) && growth(&other) > 0.1, "{one:?}, {other:?}");
     for e in &one {
         let away = other.iter().map(|o| (o.value + e.value).norm()).fold(f64::INFINITY, f64::min);
         must("λ against −λ of the other spin", away, 1e-12);

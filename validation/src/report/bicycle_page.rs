@@ -78,7 +78,7 @@ impl BicycleReport {
     /// # Errors
     /// Where the picture cannot be drawn.
     pub fn files(&self) -> Result<Vec<File>> {
-        let mut table = Table::new([">v, m/s", ">λ1", ">λ2", ">λ3", ">λ4", ">estimated error", ">difference"]);
+        let mut table = Table::new([">v, m/s", ">s1", ">s2", ">s3", ">s4", ">estimated error", ">difference"]);
         for (point, difference) in self.table.points.iter().zip(&self.differences) {
             let error = point.part.eigenvalues.iter().fold(0.0_f64, |a, e| a.max(e.error));
             let mut cells = pairs(&point.part.eigenvalues);

@@ -29,7 +29,7 @@ pub fn sweep_text(title: &str, sweep: &Sweep) -> String {
     }
     let cells: Vec<Vec<String>> = sweep.points.iter().map(|point| pairs(&point.part.eigenvalues)).collect();
     let width = cells.iter().map(Vec::len).max().unwrap_or(0);
-    let columns = (1..=width).map(|i| format!(">λ{i}")).chain([">error".into(), ">zeros".into(), ">growing".into()]);
+    let columns = (1..=width).map(|i| format!(">s{i}")).chain([">error".into(), ">zeros".into(), ">growing".into()]);
     let mut table = Table::new([format!(">{}", sweep.name)].into_iter().chain(columns));
     for (point, cells) in sweep.points.iter().zip(cells) {
         let error = point.part.eigenvalues.iter().fold(0.0_f64, |a, e| a.max(e.error));
@@ -38,6 +38,10 @@ pub fn sweep_text(title: &str, sweep: &Sweep) -> String {
         table.cells([short(point.value)].into_iter().chain(padded).chain(rest));
     }
     let _ = write!(text, "\n{table}");
+    let vectors = linearization.spectrum.zero_vectors;
+    if part.states.len() == linearization.states.len() && part.zeros > vectors {
+        let _ = writeln!(text, "\nThe zeros have {vectors} eigenvectors: some deviations grow as powers of time.");
+    }
     for change in &sweep.changes {
         let [before, behind] = change.unstable;
         let kind = if change.frequency == 0.0 {
@@ -81,11 +85,11 @@ pub fn sweep_picture(title: &str, sweep: &Sweep) -> Result<String> {
     let panel = |label: &str, part: fn(Complex<f64>) -> f64| {
         let curve = |points: &Vec<(f64, Complex<f64>)>| Curve {
             label: "eigenvalues".into(),
-            style: Style::Chetaev,
+            style: Style::Member(0),
             points: points.iter().map(|&(x, value)| (x, part(value))).collect(),
         };
         let change =
-            |x: &f64| Curve { label: "stability changes".into(), style: Style::Vakonomic, points: vec![(*x, 0.0)] };
+            |x: &f64| Curve { label: "stability changes".into(), style: Style::Member(1), points: vec![(*x, 0.0)] };
         let ends = [0, sweep.points.len() - 1].map(|i| (sweep.points[i].value, 0.0));
         let zero = Curve { label: "0".into(), style: Style::Threshold, points: ends.into() };
         let changes: Vec<f64> = sweep.changes.iter().map(|change| change.value).collect();

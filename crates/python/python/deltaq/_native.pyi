@@ -197,6 +197,7 @@ class Linearization:
     eigenvalues: Final[npt.NDArray[np.complex128]]
     errors: Final[_Array]
     zeros: Final[int]
+    zero_vectors: Final[int]
     unstable: Final[int]
 
 @final
