@@ -49,7 +49,7 @@ const STEADY: f64 = 1e-9;
 /// A rate counts as none up to 1e-9 of `1 + Σ |J_ij y_j|`.
 ///
 /// # Errors
-/// [`LinearError::NotSteady`] and [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
+/// [`LinearError::NotSteady`], [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
 /// refuses the system.
 pub fn linearize(setting: Setting, choice: &Choice) -> Result<Linearization, LinearError> {
     Linearization::steady(&mut Point::start(setting, choice)?)
@@ -143,8 +143,8 @@ impl Linearization {
         Ok((found, kept.iter().map(|&i| rates[i]).collect()))
     }
 
-    /// The eigenvalues that belong to these coordinates and their velocities, and to what is coupled with them
-    /// both ways; all of them where no coordinate is named.
+    /// The eigenvalues that belong to these coordinates and their velocities, and to what is coupled with
+    /// them both ways; all of them where no coordinate is named.
     ///
     /// # Errors
     /// [`LinearError::UnknownFree`], [`LinearError::CarriedFree`].

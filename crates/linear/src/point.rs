@@ -89,7 +89,7 @@ impl Point {
         }
     }
 
-    /// Which rates depend on which states, at random points a tenth away, or nearer if they have no rates there.
+    /// Which rates depend on which states, at random points a tenth away, or nearer if need be.
     fn dependences(&mut self) -> Result<DMatrix<bool>, LinearError> {
         let n = self.y.len();
         let mut random = Weyl::default();

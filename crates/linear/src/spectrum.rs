@@ -63,7 +63,7 @@ impl Spectrum {
     /// use linear::Spectrum;
     /// use nalgebra::{DMatrix, dmatrix};
     /// // a free particle, and an oscillator of 2 rad/s
-    /// let matrix = dmatrix![0.0, 1.0, 0.0, 0.0; 0.0, 0.0, 0.0, 0.0; 0.0, 0.0, 0.0, 1.0; 0.0, 0.0, -4.0, 0.0];
+    /// let matrix = dmatrix![0., 1., 0., 0.; 0., 0., 0., 0.; 0., 0., 0., 1.; 0., 0., -4., 0.];
     /// let spectrum = Spectrum::of(&matrix, &DMatrix::zeros(4, 4)).unwrap();
     /// let zeros: usize = spectrum.blocks.iter().map(|block| block.zeros).sum();
     /// assert_eq!((zeros, spectrum.zero_vectors), (2, 1));
@@ -161,7 +161,7 @@ fn of_block(block: DMatrix<f64>, noise: DMatrix<f64>) -> Option<Vec<Eigenvalue>>
     Some(found)
 }
 
-/// By falling real part, then by falling imaginary part: conjugates have the same real part to the last digit.
+/// By falling real part, then imaginary part: conjugates have the same real part to the last digit.
 pub(crate) fn sort(eigenvalues: &mut [Eigenvalue]) {
     let order = |a: Complex<f64>, b: Complex<f64>| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im));
     eigenvalues.sort_by(|a, b| order(a.value, b.value));

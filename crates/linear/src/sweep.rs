@@ -58,8 +58,8 @@ pub fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
 /// the parameter, start value or multiplier `name`; the `free` coordinates as in [`Linearization::part`]. The
 /// start has to be a steady motion at each value, or, with `find`, is where one is looked for.
 ///
-/// Between two neighbours with different numbers of growing deviations, the value where that number changes is
-/// found by bisection; where it changes twice and back, it is not seen.
+/// Between two neighbours with different numbers of growing deviations, the value where that number changes
+/// is found by bisection; where it changes and comes back between them, it is not seen.
 ///
 /// # Errors
 /// [`LinearError::At`] with the value; [`LinearError::Scene`] for a name that cannot vary.

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use scene::Scene;
 
 use crate::arrays::array;
-use crate::errors;
+use crate::{arguments, background, errors};
 
 /// The equations of motion to first order about a steady motion, or about an instant of any other.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -42,8 +42,7 @@ pub(crate) struct Linearization {
     unstable: usize,
 }
 
-/// Linearizes about the start, a steady motion near it, or the motion at a time.
-pub(crate) fn linearized(
+fn linearized(
     mut scene: Scene,
     choice: &Choice,
     free: &[String],
@@ -63,11 +62,17 @@ pub(crate) fn linearized(
 }
 
 impl Linearization {
-    pub(crate) fn new(
+    /// Linearizes about the start, a steady motion near it, or the motion at a time.
+    pub(crate) fn about(
         py: Python<'_>,
-        found: Result<(linear::Linearization, Part), LinearError>,
+        scene: Scene,
+        choice: Choice,
+        free: Vec<String>,
+        how: (Option<f64>, bool),
     ) -> PyResult<Linearization> {
-        let (found, part) = found.map_err(|error| match error {
+        let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
+        let work = move || linearized(scene, &choice, &free, how, &settings);
+        let (found, part) = background::run(py, &interrupt, work)?.map_err(|error| match error {
             LinearError::Solve(error) => errors::solve(error),
             other => errors::SolveError::new_err(other.to_string()),
         })?;

@@ -13,7 +13,7 @@ use crate::arrays::{Array, FloatList, Floats, array, at_points};
 use crate::comparison::{Comparison, check_tolerance, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
-use crate::linearization::{Linearization, linearized};
+use crate::linearization::Linearization;
 use crate::motion::{Motion, Sampled, State};
 use crate::scene_text::{Arguments, write};
 use crate::{arguments, background, errors, motion};
@@ -254,11 +254,9 @@ impl System {
 
     /// The equations of motion to first order about the start, which has to be a steady motion.
     ///
-    /// free: names of the coordinates whose eigenvalues are asked for, with their velocities and what is coupled
-    /// with them both ways. By default all. at: a time; about the motion there, steady or not. find: about the
-    /// steady motion of Chetaev's equations that is found near the start. Else as in `equations`.
-    ///
-    /// SolveError where the motion is not steady, with the state that moves.
+    /// free: coordinates whose eigenvalues are asked for, with those of all that is coupled with them both
+    /// ways; by default all. at: a time; about the motion there, steady or not. find: about a steady motion
+    /// of Chetaev's equations near the start. Else as in `equations`. SolveError with what moves.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize(
@@ -273,11 +271,9 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Linearization> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
         let scene = self.scene().clone();
         let choice = arguments::choice(&scene, formulation, removal, given)?;
-        let work = move || linearized(scene, &choice, &free.unwrap_or_default(), (at, find), &settings);
-        Linearization::new(py, background::run(py, &interrupt, work)?)
+        Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
     /// Derives and integrates the motion under a formulation, one of FORMULATIONS.

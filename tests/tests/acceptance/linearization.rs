@@ -69,8 +69,8 @@ fn a_disc_finds_its_circle() {
     must("turn after 1 s", (end.velocities[2] - start.v[2]).abs(), 1e-9);
 }
 
-/// Turned the other way, time runs backwards: what grew decays. One mode grows one way, the other mode the other
-/// way, and not as fast: so it has a way.
+/// Turned the other way, time runs backwards: what grew decays. One mode grows one way, the other mode the
+/// other way, and not as fast: so it has a way.
 #[test]
 fn a_rattleback_has_its_way() {
     let [one, other] = [3.0, -3.0].map(|spin| {
