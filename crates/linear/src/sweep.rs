@@ -62,7 +62,8 @@ pub fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
 /// is found by bisection; where it changes and comes back between them, it is not seen.
 ///
 /// # Errors
-/// [`LinearError::At`] with the value; [`LinearError::Scene`] for a name that cannot vary.
+/// [`LinearError::At`] with the value; [`LinearError::Solve`] for a name that cannot vary, or a formulation
+/// that refuses the system.
 pub fn sweep(
     scene: &Scene,
     choice: &Choice,
@@ -84,7 +85,11 @@ pub fn sweep(
     for &value in values {
         let point = at(value)?;
         let mut low = sweep.points.last().unwrap_or(&point).clone();
-        while low.part.unstable() != point.part.unstable() {
+        // not more often than there are eigenvalues, whatever round-off does
+        for _ in 0..point.part.states.len() {
+            if low.part.unstable() == point.part.unstable() {
+                break;
+            }
             let (change, behind) = change(&mut at, low, point.clone())?;
             sweep.changes.push(change);
             low = behind;

@@ -168,5 +168,5 @@ fn what_is_refused() {
     let cone = [("x", 0.0), ("y", 0.0), ("z", 0.0)];
     let cone = scene(&cone, "(x'^2 + y'^2 + z'^2)/2", &["z'^2 - x'^2 - y'^2"], "\"x'\" = 1, \"y'\" = 0, \"z'\" = 1");
     assert!(matches!(find_steady(setting(&cone)), Err(LinearError::NotLinear)));
-    assert!(matches!(linearize(setting(&cone), &choice(&cone, "chetaev")), Ok(_)));
+    assert!(linearize(setting(&cone), &choice(&cone, "chetaev")).is_ok());
 }
