@@ -37,6 +37,14 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
     "snakeboard" "roller-racer" "pursuit" "isokinetic" "parallel-velocities" "sledge-with-friction"
 );
 
+/// Systems whose steady motions are looked at: in no comparison.
+pub const STEADY: &[(&str, &str)] = &[("bicycle", include_str!("../scenes/bicycle.toml"))];
+
+/// Name and text of every scene that is found by its name and not made for it.
+pub fn built_in() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+    SCENES.iter().chain(CLASSICS).chain(STEADY)
+}
+
 /// The built-in scene `name`, `-` for standard input, or the file at that path; `overrides` replace numbers.
 ///
 /// # Errors
@@ -45,14 +53,14 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
     let text = source(name_or_path)?;
     Ok(match name_or_path {
         "-" => Scene::parse_with("stdin", &text, overrides)?,
-        name if built_in(name).is_some() => Scene::parse_with(name, &text, overrides)?,
+        name if text_of(name).is_some() => Scene::parse_with(name, &text, overrides)?,
         path => Scene::parse_file(Path::new(path), &text, overrides)?,
     })
 }
 
 /// The text of a built-in scene.
-fn built_in(name: &str) -> Option<String> {
-    let known = SCENES.iter().chain(CLASSICS).find(|(known, _)| *known == name).map(|(_, text)| text.to_string());
+fn text_of(name: &str) -> Option<String> {
+    let known = built_in().find(|(known, _)| *known == name).map(|(_, text)| text.to_string());
     known.or_else(|| trailer::named(name).map(|(trailers, coordinates)| trailer::text(trailers, coordinates)))
 }
 
@@ -61,7 +69,7 @@ fn built_in(name: &str) -> Option<String> {
 /// # Errors
 /// [`NotFound`].
 pub fn source(name_or_path: &str) -> Result<String, NotFound> {
-    if let Some(text) = built_in(name_or_path) {
+    if let Some(text) = text_of(name_or_path) {
         return Ok(text);
     }
     if name_or_path == "-" {
@@ -71,7 +79,7 @@ pub fn source(name_or_path: &str) -> Result<String, NotFound> {
     }
     let path = Path::new(name_or_path);
     if !path.exists() {
-        let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).chain(["n-trailer-N"]).collect();
+        let known: Vec<&str> = built_in().map(|(name, _)| *name).chain(["n-trailer-N"]).collect();
         return Err(NotFound::Nothing(name_or_path.into(), known.join(", ")));
     }
     Ok(Scene::read(path)?)

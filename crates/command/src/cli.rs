@@ -1,6 +1,7 @@
 //! The command line.
 
 mod ensemble;
+mod linearize;
 
 use std::path::PathBuf;
 
@@ -8,7 +9,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-pub use ensemble::{EnsembleArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
+pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
+pub use linearize::{LinearizeArguments, TableFormat};
 use random::Kind;
 use scene::Scene;
 use validation::bench::MEMBERS;
@@ -72,6 +74,8 @@ pub enum Section {
     PaperAudit,
     /// Which motions of classic systems are vakonomic, and what was published about that.
     Equivalence,
+    /// The benchmark bicycle to first order, against its published equations.
+    Bicycle,
     /// Error against run time.
     ErrorVsTime,
     /// Every method on stiff and extreme cases, against references.
@@ -93,6 +97,8 @@ pub enum Command {
     Solve(SolveArguments),
     /// Integrate many starts or parameters of a scene at once, by Taylor series, in one formulation.
     Ensemble(EnsembleArguments),
+    /// Linearize a steady motion: its eigenvalues, with errors, and over a parameter where stability changes.
+    Linearize(LinearizeArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
     /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.

@@ -12,7 +12,7 @@ use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, formulation, setting};
 use integrate::Method;
 
 use crate::answer::Answer;
-use crate::cli::{EnsembleArguments, Format};
+use crate::cli::{EnsembleArguments, Format, MotionArguments};
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
@@ -27,7 +27,8 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     let settings = Settings { method: Some(Method::Taylor), ..settings(&arguments.motion)? };
     let base = arguments.motion.scene.find()?;
     let members = Members::of(arguments, &base)?;
-    let choice = choice(&base, &arguments.motion)?;
+    let MotionArguments { formulation, form, free, .. } = &arguments.motion;
+    let choice = choice(&base, (formulation, form), free)?;
     check_multipliers(&members, &choice, arguments)?;
     let end = setting(&base).end;
     let asked = arguments.motion.times.as_deref();
@@ -88,7 +89,7 @@ fn check_multipliers(members: &Members, choice: &Choice, arguments: &EnsembleArg
     if !formulation(choice.formulation).is_some_and(|entry| entry.starts_multipliers) {
         bail!("{place}: `{name}` belongs to the vakonomic formulation, not to {}", choice.formulation);
     }
-    if arguments.motion.mu0.is_some() {
+    if arguments.motion.free.mu0.is_some() {
         bail!("{place}: `{name}` varies, and --mu0 fixes it");
     }
     Ok(())

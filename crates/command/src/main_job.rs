@@ -19,9 +19,9 @@ use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
 use validation::catalogue;
 use validation::report::{
-    AuditReport, EquivalenceReport, File, LiteratureReport, RealizationReport, StabilityReport, answer, bench_files,
-    bench_headline, difference_of_verdicts, overview, pictures, random_files, random_headline, random_verdicts,
-    referees_section, scene_page, verdicts, write_all,
+    AuditReport, BicycleReport, EquivalenceReport, File, LiteratureReport, RealizationReport, StabilityReport, answer,
+    bench_files, bench_headline, difference_of_verdicts, overview, pictures, random_files, random_headline,
+    random_verdicts, referees_section, scene_page, verdicts, write_all,
 };
 
 /// A compared scene with its page and pictures.
@@ -121,6 +121,11 @@ impl Results {
             let report = LiteratureReport::new(quiet)?;
             let (headline, verdicts) = (report.headline(), Some(("literature", report.verdicts())));
             parts.push(Part { page: "literature.md", headline, verdicts, files: report.files() });
+        }
+        if asked(Section::Bicycle) {
+            let report = BicycleReport::new()?;
+            let (headline, verdicts) = (report.headline(), Some(("bicycle", report.verdicts())));
+            parts.push(Part { page: "bicycle.md", headline, verdicts, files: report.files()? });
         }
         if asked(Section::Stability) {
             let report = StabilityReport::new(|_| true, quiet)?;

@@ -18,7 +18,7 @@ use validation::catalogue;
 
 /// The built-in scenes, then those of the pages about the literature, a line each.
 pub(crate) fn list(format: TextOrJson) -> Result<String> {
-    let scenes = catalogue::SCENES.iter().chain(catalogue::CLASSICS).map(|(name, text)| Scene::parse(name, text));
+    let scenes = catalogue::built_in().map(|(name, text)| Scene::parse(name, text));
     let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
     let line = |scene: &Scene| format!("{:<24} {} ({})\n", scene.name, scene.title, scene.source);
     let entry = |scene: &Scene| json!({ "name": scene.name, "title": scene.title, "source": scene.source });

@@ -18,7 +18,7 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, pretty};
-use crate::cli::{Format, Limits, MotionArguments, SolveArguments};
+use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments};
 use crate::columns::{Columns, error_row, named_columns, row};
 use random::parallel;
 use validation::stability::Stepping;
@@ -36,7 +36,8 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
         Stepping::Leapfrog => {}
     }
     let scene = arguments.motion.scene.find()?;
-    let choice = choice(&scene, &arguments.motion)?;
+    let MotionArguments { formulation, form, free, .. } = &arguments.motion;
+    let choice = choice(&scene, (formulation, form), free)?;
     let wanted = match &arguments.motion.times {
         Some(text) => times(text, &scene)?,
         None => equidistant(scene.start.t, scene.start.t + scene.duration, 101),
@@ -165,8 +166,7 @@ pub(crate) fn check_tolerance(tolerance: f64) -> Result<()> {
 }
 
 /// The formulation with the removal and the constants that were asked for.
-pub(crate) fn choice(scene: &Scene, arguments: &MotionArguments) -> Result<Choice> {
-    let (name, word) = (&arguments.formulation, &arguments.form);
+pub(crate) fn choice(scene: &Scene, (name, word): (&str, &str), arguments: &FreeArguments) -> Result<Choice> {
     if formulation(name).is_none() {
         let names: Vec<&str> = FORMULATIONS.iter().chain(FORMS).map(|f| f.name).collect();
         bail!("unknown formulation `{name}`; known: {}", names.join(", "));

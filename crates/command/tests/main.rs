@@ -4,6 +4,7 @@ mod bad_scenes;
 mod commands;
 mod documents;
 mod ensemble_command;
+mod linearize_command;
 mod output;
 mod prove_command;
 mod random_command;

@@ -10,13 +10,14 @@ use crate::support::{answer, command, refused, text};
 const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/reports");
 
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
-const ANSWERS: [&[&str]; 15] = [
+const ANSWERS: [&[&str]; 16] = [
     &["--scenes", "bowl", "--quiet", "--out", REPORTS],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
     &["list"],
     &["show", "sledge"],
     &["compare", "bowl", "--set", "duration=1"],
     &["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"],
+    &["linearize", "bicycle"],
     &["random", "--count", "1", "--quiet"],
     &["prove", "sledge", "--out", "-"],
     &["bench", "bowl", "--set", "duration=0.01", "--seconds", "0.0001", "--quiet"],

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::support::answer;
 
 /// A bicycle that falls flat; its pitch and its yaw are then turns about one axis.
-const BICYCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tests/scenes/bicycle.toml");
+const BICYCLE: [&str; 5] = ["bicycle", "--set", "lean'=0.5", "--set", "yaw=0.3"];
 
 const NAMES: [&str; 6] = ["yaw", "lean", "pitch", "steer", "rear", "front"];
 
@@ -29,7 +29,7 @@ fn has_names(cause: &str) {
 
 #[test]
 fn a_bicycle_that_falls_flat_stops_soon_and_in_its_own_names() {
-    let falling = ["solve", BICYCLE, "--times", "0", "-f"];
+    let falling = [&["solve"], &BICYCLE[..], &["--times", "0", "-f"]].concat();
     for formulation in [
         vec!["chetaev"],
         vec!["chetaev", "--method", "dop853"],
@@ -48,7 +48,8 @@ fn a_bicycle_that_falls_flat_stops_soon_and_in_its_own_names() {
 /// As the vakonomic motion: until its error is as large as it is.
 #[test]
 fn a_removal_by_coordinates_goes_on_where_the_front_wheel_is_flat() {
-    let by = ["solve", BICYCLE, "--times", "0", "-f", "removed-constraint", "--removal", "coordinates"];
+    let removed = ["--times", "0", "-f", "removed-constraint", "--removal", "coordinates"];
+    let by = [&["solve"], &BICYCLE[..], &removed].concat();
     for steered in [vec![], vec!["--set", "lean=0.05", "--set", "steer=0.1"]] {
         let value = json(&[&by[..], &steered].concat(), 3);
         assert_eq!((&value["status"], &value["end"]), (&"untrusted".into(), &20.0.into()));
@@ -59,7 +60,8 @@ fn a_removal_by_coordinates_goes_on_where_the_front_wheel_is_flat() {
 
 #[test]
 fn of_bicycles_those_that_fall_stop_and_the_others_go_on() {
-    let value = json(&["ensemble", BICYCLE, "-f", "chetaev", "--vary", "v=2..5:2"], 3);
+    let both = ["-f", "chetaev", "--vary", "v=2..5:2"];
+    let value = json(&[&["ensemble"], &BICYCLE[..], &both].concat(), 3);
     let [falls, rolls] = [&value["members"][0], &value["members"][1]];
     assert_eq!((&falls["status"], &rolls["status"]), (&"stopped".into(), &"completed".into()));
     has_names(falls["cause"].as_str().expect("a cause"));

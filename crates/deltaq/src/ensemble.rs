@@ -246,7 +246,8 @@ impl Ensemble {
 }
 
 impl EnsembleMember {
-    fn set(&self, compiled: &mut Compiled) {
+    /// Sets its constants and its guess in the equations of the ensemble, compiled.
+    pub fn set(&self, compiled: &mut Compiled) {
         compiled.set_constants(&self.constants);
         if compiled.needs_guess() {
             compiled.set_guess(&self.guess);

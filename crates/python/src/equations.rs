@@ -3,9 +3,10 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use deltaq::{EquationStyle, Prepared, SolveError, constant_names, equations_text, prepare, setting};
+use deltaq::{EquationStyle, Prepared, SolveError, constant_names, derive_at, equations_text, prepare, setting};
 use equations::{Compiled, EvaluationFailure, Role};
 use integrate::{Dense, Method, Options, Status};
+use mechanics::ConstantsRule;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -73,6 +74,29 @@ fn each(t: &Rows, y: &Rows, mut body: impl FnMut(f64, &[f64]) -> Result<(), Eval
 }
 
 impl Equations {
+    /// Derives and compiles those of a scene; constants that are natural at a horizon are zero by default.
+    pub(crate) fn derived(
+        py: Python<'_>,
+        scene: Scene,
+        (formulation, removal): (&str, Option<&str>),
+        given: Option<ConstantsRule>,
+    ) -> PyResult<Equations> {
+        let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
+        let is_given = given.is_some();
+        let mut choice = arguments::choice(&scene, formulation, removal, given)?;
+        if !is_given && matches!(choice.constants, ConstantsRule::Natural { .. }) {
+            choice.constants = ConstantsRule::Zero;
+        }
+        let work = move || {
+            let equations = derive_at(&scene.system, &scene.start, &choice)?;
+            let made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
+            Ok((made, scene))
+        };
+        let made = background::run(py, &interrupt, work)?;
+        let (made, scene) = made.map_err(|error: SolveError| errors::solve(error))?;
+        Ok(Equations::new(made, scene))
+    }
+
     pub(crate) fn new(ready: Prepared, scene: Scene) -> Equations {
         let equations = &ready.equations;
         Equations {

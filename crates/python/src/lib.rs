@@ -10,6 +10,7 @@ mod comparison;
 mod ensemble;
 mod equations;
 mod errors;
+mod linearization;
 mod motion;
 mod reading;
 mod scene_text;
@@ -28,6 +29,8 @@ mod _native {
         BoundaryError, CallError, CompileError, DeltaqError, DerivationError, EvaluationError, RemovalError,
         SceneError, SolveError, StartError,
     };
+    #[pymodule_export]
+    use crate::linearization::Linearization;
     #[pymodule_export]
     use crate::motion::{Motion, Outputs, State};
     #[pymodule_export]

@@ -8,8 +8,9 @@ use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
+use scene::Scene;
 
-use crate::arrays::{Floats, array, columns, times};
+use crate::arrays::{FloatList, Floats, array, columns, finite, times};
 use crate::errors;
 
 /// A point of a motion: time, coordinates, velocities.
@@ -41,6 +42,22 @@ pub(crate) struct Outputs {
     multipliers: Py<PyDict>,
     /// Quantities that should stay constant by name, each a float or of shape (k,).
     invariants: Py<PyDict>,
+}
+
+/// The times asked for; the run of the scene then ends at the last of them.
+pub(crate) fn times_of_run(times: Option<FloatList<'_>>, scene: &mut Scene) -> PyResult<Option<Vec<f64>>> {
+    let times = times.map(|times| finite("times", times.as_array().iter().copied().collect())).transpose()?;
+    if let Some(times) = &times {
+        let start = scene.start.t;
+        if let Some(early) = times.iter().find(|&&t| t < start) {
+            return Err(PyValueError::new_err(format!("times contains {early}, before the start {start}")));
+        }
+        let last = times.iter().fold(start, |a, &b| a.max(b));
+        if last > start {
+            scene.duration = last - start;
+        }
+    }
+    Ok(times)
 }
 
 /// Names of multipliers and invariants.

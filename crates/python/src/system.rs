@@ -3,19 +3,20 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{EnsembleOptions, Settings, derive_at, integrability, prepare, removals, setting, solve_choice};
+use deltaq::{EnsembleOptions, Settings, integrability, removals, setting, solve_choice};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{Array, FloatList, Floats, array, at_points, finite};
+use crate::arrays::{Array, FloatList, Floats, array, at_points};
 use crate::comparison::{Comparison, check_tolerance, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
+use crate::linearization::Linearization;
 use crate::motion::{Motion, Sampled, State};
 use crate::scene_text::{Arguments, write};
-use crate::{arguments, background, errors};
+use crate::{arguments, background, errors, motion};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
@@ -248,21 +249,31 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Equations> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
+        Equations::derived(py, self.scene().clone(), (formulation, removal), given)
+    }
+
+    /// The equations of motion to first order about the start, which has to be a steady motion.
+    ///
+    /// free: coordinates whose eigenvalues are asked for, with those of all that is coupled with them both
+    /// ways; by default all. at: a time; about the motion there, steady or not. find: about a steady motion
+    /// of Chetaev's equations near the start. Else as in `equations`. SolveError with what moves.
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
+    fn linearize(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        free: Option<Vec<String>>,
+        at: Option<f64>,
+        find: bool,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Linearization> {
+        let given = arguments::constants(constants.as_ref(), mu0)?;
         let scene = self.scene().clone();
-        let is_given = given.is_some();
-        let mut choice = arguments::choice(&scene, formulation, removal, given)?;
-        if !is_given && matches!(choice.constants, mechanics::ConstantsRule::Natural { .. }) {
-            choice.constants = mechanics::ConstantsRule::Zero;
-        }
-        let work = move || {
-            let equations = derive_at(&scene.system, &scene.start, &choice)?;
-            let made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
-            Ok((made, scene))
-        };
-        let made = background::run(py, &interrupt, work)?;
-        let (made, scene) = made.map_err(|error: deltaq::SolveError| errors::solve(error))?;
-        Ok(Equations::new(made, scene))
+        let choice = arguments::choice(&scene, formulation, removal, given)?;
+        Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
     /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
@@ -306,17 +317,7 @@ impl System {
         let (formulation, form) = arguments::in_form(form, formulation)?;
         let settings = Settings { form, ..settings };
         let choice = arguments::choice(&scene, formulation, removal, given)?;
-        let times = times.map(|times| finite("times", times.as_array().iter().copied().collect())).transpose()?;
-        if let Some(times) = &times {
-            let start = scene.start.t;
-            if let Some(early) = times.iter().find(|&&t| t < start) {
-                return Err(PyValueError::new_err(format!("times contains {early}, before the start {start}")));
-            }
-            let last = times.iter().fold(start, |a, &b| a.max(b));
-            if last > start {
-                scene.duration = last - start;
-            }
-        }
+        let times = motion::times_of_run(times, &mut scene)?;
         let work = move || {
             let motion = solve_choice(&scene, &choice, &settings)?;
             Sampled::new(motion, setting(&scene), times)

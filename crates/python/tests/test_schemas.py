@@ -25,6 +25,7 @@ ANSWERS = {
     "compare": {"compare sledge bowl --set duration=1": 0},
     "prove": {f"prove {scene} --out FOLDER/proof": code for scene, code in {"sledge": 0, "heisenberg": 3, "planar-body": 3}.items()},
     "certificate": {"prove sledge --out -": 0},
+    "linearize": {"linearize bicycle --free lean,steer --sweep v=4:5:2": 0, "linearize sledge --at 1": 0},
     "random": {"random --count 3": 0},
     "random-system": {"random --index 3": 0},
     "stability": {"stability --case blow-up": 0},

@@ -5,7 +5,8 @@ use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 
 use super::support::{
-    at, chetaev, complete, equations, gap, known_gap, largest_difference, motion_of, must, tight, vakonomic,
+    at, chetaev, complete, equations, falling_bicycle, gap, known_gap, largest_difference, motion_of, must, tight,
+    vakonomic,
 };
 
 fn parsed(coordinates: &str, lagrangian: &str, constraints: &str, velocities: &str, duration: f64) -> Scene {
@@ -112,7 +113,7 @@ fn classic_systems_go_on_by_other_charts_as_with_multipliers() {
         classic("rattleback", include_str!("../../../validation/equivalence/rattleback.toml"), 20.0),
         classic("snakeboard", include_str!("../../../validation/equivalence/snakeboard.toml"), 20.0),
         // it falls, and its front wheel is nearly flat on the ground at 0.9713
-        classic("bicycle", include_str!("../scenes/bicycle.toml"), 5.0),
+        Scene { duration: 5.0, ..falling_bicycle() },
     ] {
         let costates = vec![0.0; scene.system.constraints.len()];
         let (removal, mut motion) = removed(&scene, ConstantsRule::Given(costates.clone()));

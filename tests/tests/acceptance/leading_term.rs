@@ -4,7 +4,7 @@ use deltaq::{LeadingTerm, Pairing, choices, removals};
 use scene::Scene;
 use symbolic::Expr;
 
-use super::support::{at, chetaev, must, scene, vakonomic};
+use super::support::{at, chetaev, falling_bicycle, must, scene, vakonomic};
 
 fn leading_term(scene: &Scene, mu0: &[f64]) -> LeadingTerm {
     let choices = choices(scene);
@@ -40,14 +40,14 @@ fn leading_term_shows_without_a_fit() {
 /// Supplied velocities are zero up to round-off only, and so is what would be the coefficient of t².
 #[test]
 fn round_off_predicts_nothing() {
-    let bicycle = Scene::parse("bicycle", include_str!("../scenes/bicycle.toml")).expect("a scene");
+    let bicycle = falling_bicycle();
     assert_eq!(leading_term(&bicycle, &[0.0; 5]).exponent, 3);
 }
 
 /// Denominators are cleared where that is short: of all of a bicycle's it made fourteen thousand operations.
 #[test]
 fn removals_of_a_bicycle_are_short() {
-    let bicycle = Scene::parse("bicycle", include_str!("../scenes/bicycle.toml")).expect("a scene");
+    let bicycle = falling_bicycle();
     for removal in removals(&bicycle).expect("linear constraints") {
         let rates: Vec<Expr> = removal.memory.iter().map(|w| w.rate).collect();
         let size = bicycle.system.graph.size(&rates);

@@ -7,6 +7,7 @@ mod derivations;
 mod ensembles;
 mod frames;
 mod leading_term;
+mod linearization;
 mod matching;
 mod numerics;
 mod reduced_form;

@@ -29,6 +29,11 @@ pub fn scenes() -> Vec<Scene> {
     validation::catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
 }
 
+/// A bicycle that is pushed over at 2 m/s.
+pub fn falling_bicycle() -> Scene {
+    scene("bicycle", &[("lean'", 0.5), ("yaw", 0.3)])
+}
+
 /// The built-in scenes in which something is constrained.
 pub fn constrained_scenes() -> Vec<Scene> {
     scenes().into_iter().filter(|scene| !scene.system.constraints.is_empty()).collect()

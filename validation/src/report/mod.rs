@@ -2,9 +2,11 @@
 
 mod audit_page;
 mod bench_page;
+mod bicycle_page;
 mod equivalence;
 mod files;
 mod fill;
+mod linear_page;
 mod literature;
 mod membership;
 mod numbers;
@@ -22,9 +24,11 @@ mod verdicts;
 
 pub use audit_page::AuditReport;
 pub use bench_page::{bench_files, bench_headline, bench_json, bench_table, ensemble_text};
+pub use bicycle_page::BicycleReport;
 pub use equivalence::EquivalenceReport;
 pub use files::{File, write_all};
 pub use fill::fill;
+pub use linear_page::{sweep_picture, sweep_text};
 pub use literature::LiteratureReport;
 pub use membership::{sentence as membership_sentence, value as membership_value};
 pub use overview::overview;

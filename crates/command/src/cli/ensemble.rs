@@ -21,16 +21,8 @@ pub struct MotionArguments {
     /// costates (vakonomic), or quasi-velocities (constraints linear in the velocities).
     #[arg(long, default_value = "auto", value_parser = clap::builder::PossibleValuesParser::new(deltaq::FORM_WORDS))]
     pub form: String,
-    /// Vakonomic multipliers at the start, one a constraint.
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
-    pub mu0: Option<Vec<f64>>,
-    /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
-    #[arg(long, value_name = "NAME")]
-    pub removal: Option<String>,
-    /// Free constants of the removed-constraint equations: `zero`, `horizon=T` or `start=A,B,…` (P(t₀), in
-    /// the order of the memory variables). Those of the removal if left out.
-    #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
-    pub constants: Option<String>,
+    #[command(flatten)]
+    pub free: FreeArguments,
     /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
     #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
     pub tolerance: f64,
@@ -45,6 +37,21 @@ pub struct MotionArguments {
     /// Output format.
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     pub format: Format,
+}
+
+/// What the start leaves free.
+#[derive(Args, Debug)]
+pub struct FreeArguments {
+    /// Vakonomic multipliers at the start, one a constraint.
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
+    pub mu0: Option<Vec<f64>>,
+    /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
+    #[arg(long, value_name = "NAME")]
+    pub removal: Option<String>,
+    /// Free constants of the removed-constraint equations: `zero`, `horizon=T` or `start=A,B,…` (P(t₀), in
+    /// the order of the memory variables). Those of the removal if left out.
+    #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
+    pub constants: Option<String>,
 }
 
 /// Limits on steps, and when a run is given up; it stops then, and what it reached is told.
@@ -97,9 +104,13 @@ fn range(text: &str) -> Result<Range, String> {
     let parts = text.split_once('=').and_then(|(name, rest)| {
         let (ends, count) = rest.rsplit_once(':')?;
         let (from, to) = ends.split_once("..")?;
-        Some((name.trim(), from, to, count))
+        Some((name, from, to, count))
     });
-    let (name, from, to, count) = parts.ok_or_else(|| format!("`{text}` is not NAME=FROM..TO:COUNT"))?;
+    finite_range(text, parts.ok_or_else(|| format!("`{text}` is not NAME=FROM..TO:COUNT"))?)
+}
+
+/// The range of a name, a first value, a last one and a number of values.
+pub(super) fn finite_range(text: &str, (name, from, to, count): (&str, &str, &str, &str)) -> Result<Range, String> {
     let number = |x: &str| match x.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err(format!("`{x}` in `{text}` is not a finite number")),
@@ -108,5 +119,5 @@ fn range(text: &str) -> Result<Range, String> {
     if !(1..=MOST_MEMBERS).contains(&count) {
         return Err(format!("`{text}` asks for {count} values; 1 to {MOST_MEMBERS} are possible"));
     }
-    Ok(Range { name: name.into(), from: number(from)?, to: number(to)?, count })
+    Ok(Range { name: name.trim().into(), from: number(from)?, to: number(to)?, count })
 }

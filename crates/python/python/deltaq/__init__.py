@@ -5,6 +5,7 @@
     motion = system.solve("chetaev")              # Motion: times, coordinates, velocities, ...
     many = system.ensemble("chetaev", vary={"g": [1.6, 9.8]})   # Ensemble: as a motion, one axis more
     equations = system.equations("vakonomic")     # Equations: text, latex, rates(t, y), jacobian(t, y), ...
+    steady = system.linearize(find=True)          # Linearization: eigenvalues about a steady motion
     comparison = system.compare()                 # Comparison: pairs with verdicts, fits of the free constants
 
 All arrays are of float64. Everything that deltaq refuses is a DeltaqError; a wrong shape or an unknown name is a ValueError.
@@ -26,6 +27,7 @@ from ._native import (
     Fit,
     Growth,
     LeadingTerm,
+    Linearization,
     Motion,
     Outputs,
     Pair,
@@ -58,6 +60,7 @@ __all__ = [
     "Fit",
     "Growth",
     "LeadingTerm",
+    "Linearization",
     "Motion",
     "Outputs",
     "Pair",

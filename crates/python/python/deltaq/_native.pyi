@@ -89,6 +89,17 @@ class System:
         mu0: _Floats | None = None,
         constants: _Constants | None = None,
     ) -> Equations: ...
+    def linearize(
+        self,
+        formulation: str = "chetaev",
+        *,
+        free: list[str] | None = None,
+        at: float | None = None,
+        find: bool = False,
+        removal: str | None = None,
+        mu0: _Floats | None = None,
+        constants: _Constants | None = None,
+    ) -> Linearization: ...
     def solve(
         self,
         formulation: str = "chetaev",
@@ -172,6 +183,22 @@ class Trajectory:
     cause: Final[str | None]
     work: Final[dict[str, int]]
     seconds: Final[float]
+
+@final
+class Linearization:
+    form: Final[str]
+    t: Final[float]
+    is_steady: Final[bool]
+    states: Final[list[str]]
+    values: Final[_Array]
+    carried: Final[dict[str, float]]
+    matrix: Final[_Array]
+    of: Final[list[str]]
+    eigenvalues: Final[npt.NDArray[np.complex128]]
+    errors: Final[_Array]
+    zeros: Final[int]
+    zero_vectors: Final[int]
+    unstable: Final[int]
 
 @final
 class Motion:

@@ -1,0 +1,58 @@
+//! Options of `deltaq linearize`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::SceneArguments;
+use super::ensemble::{FreeArguments, Range, finite_range};
+
+/// `deltaq linearize`.
+#[derive(Args, Debug)]
+pub struct LinearizeArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// chetaev, vakonomic, removed-constraint, kappa; in quasi-velocities where there are any.
+    #[arg(long, short, default_value = "chetaev")]
+    pub formulation: String,
+    #[command(flatten)]
+    pub free_constants: FreeArguments,
+    /// Linearize about the motion at this time, steady or not: the eigenvalues are those of an instant.
+    #[arg(long, value_name = "T", allow_negative_numbers = true, conflicts_with_all = ["sweep", "find"])]
+    pub at: Option<f64>,
+    /// Coordinates whose eigenvalues are asked for, with their velocities and what is coupled with them both
+    /// ways; all if left out.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub free: Vec<String>,
+    /// Equidistant values of a parameter, a start value or mu1, …, both ends included.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = sweep)]
+    pub sweep: Option<Range>,
+    /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit.
+    #[arg(long)]
+    pub find: bool,
+    /// Folder for a page and a picture of the eigenvalues over what varies.
+    #[arg(long, value_name = "DIR", requires = "sweep")]
+    pub out: Option<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TableFormat::Table)]
+    pub format: TableFormat,
+}
+
+/// Output formats of eigenvalues.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableFormat {
+    /// A table, one line a value; digits as far as they are sure.
+    Table,
+    /// One line an eigenvalue other than zero, all digits.
+    Csv,
+    /// One object.
+    Json,
+}
+
+fn sweep(text: &str) -> Result<Range, String> {
+    let parts = text.split_once('=').and_then(|(name, rest)| match rest.split(':').collect::<Vec<_>>()[..] {
+        [from, to, count] => Some((name, from, to, count)),
+        _ => None,
+    });
+    finite_range(text, parts.ok_or_else(|| format!("`{text}` is not NAME=FROM:TO:COUNT"))?)
+}

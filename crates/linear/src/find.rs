@@ -1,0 +1,111 @@
+//! Steady motions that are looked for.
+
+use deltaq::{Choice, Setting};
+use mechanics::{ConstantsRule, SingularValues, State};
+use nalgebra::{DMatrix, DVector};
+
+use crate::LinearError;
+use crate::linearization::{Moving, moving};
+use crate::point::{COORDINATES, Point, VELOCITIES};
+
+/// Newton steps allowed.
+const ITERATIONS: usize = 50;
+/// Singular values up to this part of the largest belong to directions in which motions stay steady.
+const FLAT: f64 = 1e-9;
+/// Steps of Runge and Kutta along one displacement.
+const PARTS: usize = 100;
+
+/// A steady motion of Chetaev's equations near the start of `setting`, by the shortest Newton steps.
+///
+/// Unknowns are displacements along the quasi-velocities, and these themselves. A displacement `d` follows
+/// `dq/ds = S(q) d` for `s` from 0 to 1: it is admissible all along, so that position constraints which `f`
+/// keeps hold as they do at the start.
+///
+/// # Errors
+/// [`LinearError::NotFound`]; [`LinearError::NotLinear`]; [`LinearError::Solve`].
+pub fn find_steady(setting: Setting) -> Result<State, LinearError> {
+    if !setting.system.constraints_linear_in_velocity() {
+        return Err(LinearError::NotLinear);
+    }
+    Point::start(setting, &chetaev())?.settle()
+}
+
+/// Chetaev's formulation, which takes no constants.
+pub(crate) fn chetaev() -> Choice {
+    Choice { label: "Chetaev".into(), formulation: "chetaev", removal: None, constants: ConstantsRule::Zero }
+}
+
+impl Point {
+    /// Moves to a steady motion near by.
+    pub(crate) fn settle(&mut self) -> Result<State, LinearError> {
+        let (places, speeds) = (self.places(&COORDINATES), self.places(&VELOCITIES));
+        let carried = self.carried()?;
+        let kept: Vec<usize> = (0..self.y.len()).filter(|i| !carried.contains(i)).collect();
+        let m = speeds.len();
+        let mut last = f64::INFINITY;
+        let mut iterations = 0;
+        loop {
+            let y = self.y.clone();
+            let (rates, jacobian) = (self.rates(&y)?, self.jacobian(&y)?);
+            let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| jacobian[(kept[i], kept[j])]);
+            let [values, rates] = [&y, &rates].map(|of| kept.iter().map(|&i| of[i]).collect::<Vec<f64>>());
+            let residual = DVector::from_vec(rates.clone());
+            match moving(&matrix, &values, &rates) {
+                // on, as long as it becomes better
+                None if residual.norm() > 0.5 * last || residual.norm() == 0.0 => return self.state(),
+                Some(Moving { place, rate, limit }) if iterations == ITERATIONS => {
+                    let state = self.equations.graph.name(self.equations.states[kept[place]].symbol);
+                    return Err(LinearError::NotFound { iterations, state, rate, limit });
+                }
+                _ => {}
+            }
+            (last, iterations) = (residual.norm(), iterations + 1);
+            let along = |i: usize, k: usize| places.iter().map(|&p| jacobian[(i, p)] * jacobian[(p, speeds[k])]).sum();
+            let columns = DMatrix::from_fn(kept.len(), 2 * m, |i, k| match k.checked_sub(m) {
+                None => along(kept[i], k),
+                Some(k) => jacobian[(kept[i], speeds[k])],
+            });
+            let svd = SingularValues::of(&columns);
+            let step = svd.solve(&-residual, FLAT * svd.values.max());
+            self.displace(&places, &speeds, &step.as_slice()[..m])?;
+            for (&w, change) in speeds.iter().zip(&step.as_slice()[m..]) {
+                self.y[w] += change;
+            }
+        }
+    }
+
+    /// Moves the coordinates by an admissible displacement.
+    fn displace(&mut self, places: &[usize], speeds: &[usize], by: &[f64]) -> Result<(), LinearError> {
+        let mut y = self.y.clone();
+        let mut q: Vec<f64> = places.iter().map(|&i| self.y[i]).collect();
+        let mut slope = |q: &[f64]| -> Result<Vec<f64>, LinearError> {
+            let mut at = |scale: f64| {
+                places.iter().zip(q).for_each(|(&i, &x)| y[i] = x);
+                speeds.iter().zip(by).for_each(|(&i, &x)| y[i] = scale * x);
+                self.rates(&y)
+            };
+            // without what moves at rest
+            let (moved, rest) = (at(1.0)?, at(0.0)?);
+            Ok(places.iter().map(|&i| moved[i] - rest[i]).collect())
+        };
+        let h = 1.0 / PARTS as f64;
+        let ahead = |q: &[f64], k: &[f64], h: f64| q.iter().zip(k).map(|(q, k)| q + h * k).collect::<Vec<f64>>();
+        for _ in 0..PARTS {
+            let k1 = slope(&q)?;
+            let k2 = slope(&ahead(&q, &k1, h / 2.0))?;
+            let k3 = slope(&ahead(&q, &k2, h / 2.0))?;
+            let k4 = slope(&ahead(&q, &k3, h))?;
+            for (i, q) in q.iter_mut().enumerate() {
+                *q += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+            }
+        }
+        places.iter().zip(q).for_each(|(&i, x)| self.y[i] = x);
+        Ok(())
+    }
+
+    fn state(&mut self) -> Result<State, LinearError> {
+        let t = self.t;
+        let found = self.compiled.outputs(t, &self.y).map_err(|failure| LinearError::Evaluation { t, failure })?;
+        Ok(State { t, q: found.coordinates, v: found.velocities })
+    }
+}

@@ -1,0 +1,215 @@
+//! Equations of motion to first order about a motion.
+
+use deltaq::{Choice, Ending, Form, Setting, Settings, SolveError, solve_from};
+use equations::{Compiled, Role};
+use nalgebra::DMatrix;
+
+use crate::point::{COORDINATES, Point, VELOCITIES, in_quasi_velocities};
+use crate::spectrum::sort;
+use crate::{Eigenvalue, LinearError, Spectrum};
+
+/// A coordinate on which no rate depends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Carried {
+    /// Its name.
+    pub name: String,
+    /// Its rate.
+    pub rate: f64,
+}
+
+/// `δ̇ = J δ` about a steady motion, or about an instant of any other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linearization {
+    /// Name of the form of the formulation whose states they are.
+    pub form: &'static str,
+    /// Time.
+    pub t: f64,
+    /// Whether `J` is that of a steady motion; frozen otherwise.
+    pub is_steady: bool,
+    /// Names of the states, length N.
+    pub states: Vec<String>,
+    /// Their values.
+    pub values: Vec<f64>,
+    /// The other states: coordinates that are carried along.
+    pub carried: Vec<Carried>,
+    /// `J`, N×N.
+    pub matrix: DMatrix<f64>,
+    /// The eigenvalues, with their errors.
+    pub spectrum: Spectrum,
+    /// Places in `states` of coordinates, and of velocities and what stands for them.
+    coordinates: Vec<usize>,
+    velocities: Vec<usize>,
+}
+
+/// Rates up to this, over the sum of what they are made of to first order and 1, count as none.
+const STEADY: f64 = 1e-9;
+
+/// The equations of `choice` to first order about the start of `setting`, which has to be a steady motion.
+///
+/// A rate counts as none up to 1e-9 of `1 + Σ |J_ij y_j|`.
+///
+/// # Errors
+/// [`LinearError::NotSteady`], [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
+/// refuses the system.
+pub fn linearize(setting: Setting, choice: &Choice) -> Result<Linearization, LinearError> {
+    Linearization::steady(&mut Point::start(setting, choice)?)
+}
+
+/// The equations of `choice` to first order about its motion from the start of `setting`, at time `t`.
+///
+/// # Errors
+/// [`LinearError::NotReached`], [`LinearError::BeforeStart`] and [`LinearError::Solve`].
+pub fn linearize_at(
+    setting: Setting,
+    choice: &Choice,
+    t: f64,
+    settings: &Settings,
+) -> Result<Linearization, LinearError> {
+    let start = setting.start.t;
+    if t.is_nan() || t < start {
+        return Err(LinearError::BeforeStart { t, start });
+    }
+    if t == start {
+        return Ok(Linearization::at(&mut Point::start(setting, choice)?, false)?.0);
+    }
+    let settings = Settings { form: Form::Named, ..settings.clone() };
+    let mut motion = solve_from(Setting { end: t, ..setting }, &in_quasi_velocities(setting, choice), &settings)?;
+    if motion.end() < t {
+        let cause = match &motion.ending {
+            Ending::Stopped { cause, .. } => cause.clone(),
+            Ending::Completed => "it cannot be read off there".into(),
+        };
+        return Err(LinearError::NotReached { t, end: motion.end(), cause });
+    }
+    let y = motion.states_at(t)?;
+    let compile = || -> Result<Compiled, _> { Compiled::plain(&motion.equations)?.with_jacobian(&motion.equations) };
+    let mut compiled = compile().map_err(SolveError::from)?;
+    compiled.set_constants(&motion.constants);
+    let mut point = Point { equations: motion.equations.clone(), compiled, t, y };
+    Ok(Linearization::at(&mut point, false)?.0)
+}
+
+fn depends_on_time(point: &Point) -> bool {
+    let equations = &point.equations;
+    let residuals = equations.blocks.iter().flat_map(|block| block.residuals.iter().copied());
+    let all = equations.states.iter().map(|y| y.rate).chain(residuals);
+    equations.symbols_behind(all).contains(&equations.time)
+}
+
+impl Linearization {
+    /// About a point of a steady motion.
+    pub(crate) fn steady(point: &mut Point) -> Result<Linearization, LinearError> {
+        let form = point.equations.formulation;
+        if depends_on_time(point) {
+            return Err(LinearError::TimeDependent { formulation: form.into() });
+        }
+        let (found, rates) = Linearization::at(point, true)?;
+        let Some(Moving { place, rate, limit }) = moving(&found.matrix, &found.values, &rates) else {
+            return Ok(found);
+        };
+        let carried: Vec<&str> = found.carried.iter().map(|c| &c.name[..]).collect();
+        let carried = if carried.is_empty() { "nothing here".into() } else { carried.join(", ") };
+        let state = found.states[place].clone();
+        Err(LinearError::NotSteady { formulation: form.into(), state, rate, limit, carried })
+    }
+
+    /// About a point, with the rates of its states.
+    fn at(point: &mut Point, is_steady: bool) -> Result<(Linearization, Vec<f64>), LinearError> {
+        let y = point.y.clone();
+        let jacobian = point.jacobian(&y)?;
+        let noise = point.noise(&jacobian)?;
+        let carried = point.carried()?;
+        let rates = point.rates(&y)?;
+        let kept: Vec<usize> = (0..y.len()).filter(|i| !carried.contains(i)).collect();
+        let name = |i: usize| point.equations.graph.name(point.equations.states[i].symbol);
+        let part = |m: &DMatrix<f64>| DMatrix::from_fn(kept.len(), kept.len(), |i, j| m[(kept[i], kept[j])]);
+        let places = |roles: &[Role]| {
+            let all = point.places(roles);
+            (0..kept.len()).filter(|&k| all.contains(&kept[k])).collect::<Vec<usize>>()
+        };
+        let matrix = part(&jacobian);
+        let found = Linearization {
+            form: point.equations.formulation,
+            t: point.t,
+            is_steady,
+            states: kept.iter().map(|&i| name(i)).collect(),
+            values: kept.iter().map(|&i| y[i]).collect(),
+            carried: carried.iter().map(|&i| Carried { name: name(i), rate: rates[i] }).collect(),
+            spectrum: Spectrum::of(&matrix, &part(&noise)).ok_or(LinearError::NoEigenvalues { size: kept.len() })?,
+            matrix,
+            coordinates: places(&COORDINATES),
+            velocities: places(&VELOCITIES),
+        };
+        Ok((found, kept.iter().map(|&i| rates[i]).collect()))
+    }
+
+    /// The eigenvalues that belong to these coordinates and their velocities, and to what is coupled with
+    /// them both ways; all of them where no coordinate is named.
+    ///
+    /// # Errors
+    /// [`LinearError::UnknownFree`], [`LinearError::CarriedFree`].
+    pub fn part(&self, free: &[&str]) -> Result<Part, LinearError> {
+        let mut wanted = vec![free.is_empty(); self.states.len()];
+        for &name in free {
+            if self.carried.iter().any(|c| c.name == name) {
+                return Err(LinearError::CarriedFree { name: name.into() });
+            }
+            let Some(&i) = self.coordinates.iter().find(|&&i| self.states[i] == name) else {
+                let known: Vec<&str> = self.coordinates.iter().map(|&i| &self.states[i][..]).collect();
+                let (name, formulation) = (name.into(), self.form.into());
+                return Err(LinearError::UnknownFree { name, formulation, known: known.join(", ") });
+            };
+            wanted[i] = true;
+            for &w in self.velocities.iter().filter(|&&w| self.matrix[(i, w)] != 0.0) {
+                wanted[w] = true;
+            }
+        }
+        let blocks = self.spectrum.blocks.iter().filter(|block| block.places.iter().any(|&i| wanted[i]));
+        let mut part = Part { states: Vec::new(), eigenvalues: Vec::new(), zeros: 0 };
+        for block in blocks {
+            part.states.extend(&block.places);
+            part.eigenvalues.extend(&block.eigenvalues);
+            part.zeros += block.zeros;
+        }
+        part.states.sort_unstable();
+        sort(&mut part.eigenvalues);
+        Ok(part)
+    }
+}
+
+/// A state that is not steady.
+pub(crate) struct Moving {
+    pub(crate) place: usize,
+    pub(crate) rate: f64,
+    /// What counts as none.
+    pub(crate) limit: f64,
+}
+
+/// The state whose rate is most over its limit, if any is.
+pub(crate) fn moving(matrix: &DMatrix<f64>, values: &[f64], rates: &[f64]) -> Option<Moving> {
+    let limits = matrix.row_iter().map(|row| {
+        let size: f64 = row.iter().zip(values).map(|(a, y)| (a * y).abs()).sum();
+        STEADY * (1.0 + size)
+    });
+    let all = rates.iter().zip(limits).enumerate();
+    let over = all.map(|(place, (&rate, limit))| Moving { place, rate, limit }).filter(|m| m.rate.abs() > m.limit);
+    over.max_by(|a, b| (a.rate.abs() / a.limit).total_cmp(&(b.rate.abs() / b.limit)))
+}
+
+/// Eigenvalues of some of the states.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Places in [`Linearization::states`].
+    pub states: Vec<usize>,
+    /// Eigenvalues other than zero, by falling real part.
+    pub eigenvalues: Vec<Eigenvalue>,
+    /// How many more there are, all zero: of integrals, symmetries and families of steady motions.
+    pub zeros: usize,
+}
+
+impl Part {
+    /// How many deviations grow.
+    pub fn unstable(&self) -> usize {
+        self.eigenvalues.iter().filter(|eigenvalue| eigenvalue.is_unstable()).count()
+    }
+}

@@ -1,0 +1,121 @@
+//! Rates and their Jacobian at one point of a motion.
+
+use deltaq::{Choice, Prepared, Setting, Settings, derive_at, formulation_in, prepare};
+use equations::{Compiled, Equations, EvaluationFailure, Role};
+use integrate::Method;
+use nalgebra::DMatrix;
+
+use crate::LinearError;
+use crate::spectrum::Weyl;
+
+/// Compiled equations and a point `(t, y)`.
+pub(crate) struct Point {
+    pub(crate) equations: Equations,
+    pub(crate) compiled: Compiled,
+    pub(crate) t: f64,
+    pub(crate) y: Vec<f64>,
+}
+
+/// What is a coordinate, and what a velocity or stands for one.
+pub(crate) const COORDINATES: [Role; 3] = [Role::Position, Role::DisplacementParameter, Role::Memory];
+pub(crate) const VELOCITIES: [Role; 3] = [Role::Velocity, Role::QuasiVelocity, Role::ParameterRate];
+/// Points beside it.
+const SAMPLES: usize = 3;
+/// Entries up to this part of the largest in their row or column are no dependence.
+const INDEPENDENT: f64 = 1e-10;
+
+impl Point {
+    /// The start.
+    pub(crate) fn start(setting: Setting, choice: &Choice) -> Result<Point, LinearError> {
+        // an implicit method: the Jacobian is compiled, and no Taylor series
+        let settings = Settings { method: Some(Method::Radau5), plain: true, ..Settings::default() };
+        let choice = in_quasi_velocities(setting, choice);
+        let equations = derive_at(setting.system, setting.start, &choice)?;
+        let prepared = prepare(setting, equations, &choice.constants, &settings)?;
+        let Prepared { equations, compiled, t, start, .. } = prepared;
+        Ok(Point { equations, compiled, t, y: start })
+    }
+
+    /// `F(t, y)`.
+    pub(crate) fn rates(&mut self, y: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let mut rates = vec![0.0; y.len()];
+        let found = self.compiled.rates(self.t, y, &mut rates);
+        self.finite(found, &rates)?;
+        Ok(rates)
+    }
+
+    /// `∂F/∂y`.
+    pub(crate) fn jacobian(&mut self, y: &[f64]) -> Result<DMatrix<f64>, LinearError> {
+        let n = y.len();
+        let mut entries = vec![0.0; n * n];
+        let found = self.compiled.jacobian(self.t, y, &mut entries);
+        self.finite(found, &entries)?;
+        Ok(DMatrix::from_row_slice(n, n, &entries))
+    }
+
+    fn finite(&self, found: Result<(), EvaluationFailure>, values: &[f64]) -> Result<(), LinearError> {
+        let t = self.t;
+        found.map_err(|failure| LinearError::Evaluation { t, failure })?;
+        if values.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(LinearError::NotFinite { t }) }
+    }
+
+    /// How far entries of the Jacobian are off, by what they change where the last digits of `y` do.
+    pub(crate) fn noise(&mut self, jacobian: &DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
+        let mut random = Weyl::default();
+        let mut noise = DMatrix::zeros(self.y.len(), self.y.len());
+        for _ in 0..SAMPLES {
+            let y: Vec<f64> = self.y.iter().map(|x| x * (1.0 + 4.0 * f64::EPSILON * random.number())).collect();
+            noise = noise.sup(&(self.jacobian(&y)? - jacobian).abs());
+        }
+        Ok(noise)
+    }
+
+    /// Places of the states in these roles.
+    pub(crate) fn places(&self, roles: &[Role]) -> Vec<usize> {
+        (0..self.y.len()).filter(|&i| roles.contains(&self.equations.states[i].role)).collect()
+    }
+
+    /// The coordinates on which no rate depends but those of other such coordinates, by place.
+    pub(crate) fn carried(&mut self) -> Result<Vec<usize>, LinearError> {
+        let coupled = self.dependences()?;
+        let coordinates = self.places(&COORDINATES);
+        let mut left: Vec<usize> = (0..self.y.len()).collect();
+        loop {
+            let free = |&j: &usize| left.iter().all(|&i| !coupled[(i, j)]);
+            match left.iter().copied().find(|j| coordinates.contains(j) && free(j)) {
+                Some(j) => left.retain(|&i| i != j),
+                None => return Ok((0..self.y.len()).filter(|j| !left.contains(j)).collect()),
+            }
+        }
+    }
+
+    /// Which rates depend on which states, at random points a tenth away, or nearer if need be.
+    fn dependences(&mut self) -> Result<DMatrix<bool>, LinearError> {
+        let n = self.y.len();
+        let mut random = Weyl::default();
+        let mut coupled = DMatrix::from_element(n, n, false);
+        for _ in 0..SAMPLES {
+            let mut near = |apart: f64| {
+                let moved = |x: &f64| x + apart * x.abs().max(1.0) * random.number();
+                let y: Vec<f64> = self.y.iter().map(moved).collect();
+                self.jacobian(&y)
+            };
+            let jacobian = near(0.1).or_else(|_| near(0.01)).or_else(|_| near(0.001))?;
+            let largest = |i: usize, j: usize| jacobian.row(i).amax().max(jacobian.column(j).amax());
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                coupled[(i, j)] |= jacobian[(i, j)].abs() > INDEPENDENT * largest(i, j);
+            }
+        }
+        Ok(coupled)
+    }
+}
+
+/// The form of `choice` in quasi-velocities, where it can be derived; itself elsewhere.
+pub(crate) fn in_quasi_velocities(setting: Setting, choice: &Choice) -> Choice {
+    let own = choice.clone();
+    let Some((form, _)) = formulation_in("quasi-velocities", choice.formulation) else { return own };
+    if setting.system.constraints.is_empty() || !setting.system.constraints_linear_in_velocity() {
+        return own;
+    }
+    Choice { formulation: form.name, ..own }
+}
