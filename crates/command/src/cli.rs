@@ -9,6 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 pub use ensemble::{EnsembleArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
+use deltaq::Fits;
 use random::Kind;
 use scene::Scene;
 use validation::bench::MEMBERS;
@@ -211,11 +212,45 @@ pub struct CompareArguments {
     pub output: Output,
     #[command(flatten)]
     pub set: Overrides,
+    /// Print the whole page, in Markdown, and not only the answer.
+    #[arg(long, conflicts_with_all = ["out", "format"])]
+    pub markdown: bool,
+    /// Formulations to compare, all if left out.
+    #[arg(long, short, value_name = "NAME,…", value_delimiter = ',', value_parser = formulations())]
+    pub formulation: Vec<String>,
+    /// Fit free constants to motions, too, of which it is decided whether some constants give them.
+    #[arg(long = "with", value_name = "PART")]
+    pub with: Option<Searched>,
+    /// Fit no free constants, not even where nothing is decided.
+    #[arg(long, value_name = "PART", conflicts_with = "with")]
+    pub without: Option<Searched>,
     /// Tolerance of the looser of the two runs of every motion.
-    #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-11", allow_negative_numbers = true)]
     pub tolerance: f64,
     #[command(flatten)]
     pub limits: Limits,
+}
+
+impl CompareArguments {
+    /// Which free constants are fitted.
+    pub(crate) fn fits(&self) -> Fits {
+        match (self.with, self.without) {
+            (Some(Searched::Fits), _) => Fits::All,
+            (None, Some(Searched::Fits)) => Fits::None,
+            (None, None) => Fits::Undecided,
+        }
+    }
+}
+
+/// What takes a search.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Searched {
+    /// Fits of free constants.
+    Fits,
+}
+
+fn formulations() -> PossibleValuesParser {
+    PossibleValuesParser::new(deltaq::FORMULATIONS.iter().map(|formulation| formulation.name))
 }
 
 /// `deltaq prove`.

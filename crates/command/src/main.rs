@@ -14,6 +14,7 @@ mod random_command;
 mod show_command;
 mod solve_command;
 mod stability_command;
+mod watch;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -80,7 +81,7 @@ fn run(cli: Cli) -> Result<Answer> {
         None => main_job::run(&cli.job, quiet)?,
         Some(Command::List(arguments)) => show_command::list(arguments.format)?,
         Some(Command::Show(arguments)) => show_command::run(&arguments)?,
-        Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
+        Some(Command::Compare(arguments)) => compare_command::run(&arguments, quiet)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet)?,
         Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments, quiet)?,

@@ -8,7 +8,7 @@ use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::runs::{Decided, Pair, Run};
 use crate::{
-    Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of, setting,
+    Answer, Choice, Fits, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of, setting,
     solve,
 };
 
@@ -39,6 +39,7 @@ pub(crate) fn fits(
     runs: &mut [Run],
     pairs: &[Pair],
     decided: &[Decided],
+    fits: Fits,
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Vec<Fit>, SolveError> {
@@ -53,6 +54,11 @@ pub(crate) fn fits(
     }
     if let [first, others @ ..] = &removed[..] {
         wanted.extend(vakonomic.iter().chain(others).map(|&target| (*first, target)));
+    }
+    if fits == Fits::Undecided {
+        let open = |d: &Decided| !d.outcome.as_ref().is_ok_and(|found| found.answer() != Answer::Undecided);
+        let open: Vec<_> = decided.iter().filter(|d| open(d)).map(|d| (d.family, d.curve)).collect();
+        wanted.retain(|asked| open.contains(asked));
     }
     let mut fits = Vec::new();
     for (run, target) in wanted {

@@ -93,9 +93,9 @@ pub use decision::{Finding, Section};
 
 pub use charts::ChartChange;
 pub use choice::{
-    Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
+    Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
 };
-pub use comparison::{Comparison, compare, compare_unfitted};
+pub use comparison::{Comparison, Fits, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;

@@ -348,11 +348,3 @@ pub(crate) fn compare(scene: Scene, settings: &deltaq::Settings) -> Result<Compa
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
     Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, decided, scene })
 }
-
-/// Refuses a tolerance with which every run would be refused.
-pub(crate) fn check_tolerance(tolerance: f64) -> PyResult<()> {
-    if tolerance > 0.0 && tolerance < 1.0 {
-        return Ok(());
-    }
-    Err(PyValueError::new_err(format!("tolerance is {tolerance}; it must be above 0 and below 1")))
-}

@@ -22,7 +22,7 @@ pub struct MotionArguments {
     #[arg(long, default_value = "auto", value_parser = clap::builder::PossibleValuesParser::new(deltaq::FORM_WORDS))]
     pub form: String,
     /// Vakonomic multipliers at the start, one a constraint.
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub mu0: Option<Vec<f64>>,
     /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
     #[arg(long, value_name = "NAME")]
@@ -32,7 +32,7 @@ pub struct MotionArguments {
     #[arg(long, value_name = "RULE", allow_hyphen_values = true)]
     pub constants: Option<String>,
     /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
-    #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-10", allow_negative_numbers = true)]
     pub tolerance: f64,
     /// Times to print: `a,b,c` or `from:to:count`. If left out, 101 equidistant ones; of an ensemble the end.
     #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
@@ -73,7 +73,7 @@ pub struct EnsembleArguments {
     #[arg(long, value_name = "FILE")]
     pub members: Option<PathBuf>,
     /// Equidistant values of one of these, both ends included; several combine with each other and the file.
-    #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range, required_unless_present = "members")]
+    #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range)]
     pub vary: Vec<Range>,
     /// File to write; to the terminal if left out.
     #[arg(long, value_name = "FILE")]
