@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use console::Term;
-use deltaq::{Comparison, Fits, Settings, choices_among};
+use deltaq::{Comparison, Extent, Fits, Settings, choices_among};
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -81,7 +81,8 @@ fn compared(
     // the control judges the harness, which is for pages and machines
     let wanted = arguments.output.format == TextOrJson::Json || arguments.output.out.is_some() || arguments.markdown;
     let control = if wanted && only.is_empty() { substitution::run(&scene, &choices, settings) } else { None };
-    let mut comparison = Comparison::new(scene, settings)?;
+    let extent = if wanted { Extent::Everything } else { Extent::Answer };
+    let mut comparison = Comparison::new(scene, extent, settings)?;
     for choice in choices {
         tell(&choice.label, &mut comparison)?;
         comparison.solve(choice, settings)?;

@@ -17,6 +17,8 @@ pub struct Comparison {
     pub scene: Scene,
     /// Frobenius' verdict on the constraints.
     pub integrability: Integrability,
+    /// What is worked out of it.
+    pub extent: Extent,
     /// Runs: the formulations of the table in order, removals within.
     pub runs: Vec<Run>,
     /// Pairs of runs that both gave a motion.
@@ -26,6 +28,15 @@ pub struct Comparison {
     /// Which motions are motions of another formulation for some values of its constants. Of removals by
     /// coordinates nothing is asked: their families are the vakonomic one.
     pub decided: Vec<Decided>,
+}
+
+/// What is worked out besides gaps: how they begin, and which family has which motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Of Chetaev's motion and the vakonomic family only: what the answer to a scene says.
+    Answer,
+    /// Of all.
+    Everything,
 }
 
 /// Which free constants are fitted.
@@ -44,11 +55,12 @@ impl Comparison {
     ///
     /// # Errors
     /// [`mechanics::RemovalError`] for dependent constraints; [`SolveError::Tolerance`].
-    pub fn new(scene: Scene, settings: &Settings) -> Result<Comparison, SolveError> {
+    pub fn new(scene: Scene, extent: Extent, settings: &Settings) -> Result<Comparison, SolveError> {
         settings.check()?;
-        let integrability = integrability(&scene.system, &scene.start)?;
+        // in a graph of its own: brackets are long, and every motion has a copy of the scene's
+        let integrability = integrability(&scene.system.clone(), &scene.start)?;
         let (runs, pairs, fits, decided) = Default::default();
-        Ok(Comparison { scene, integrability, runs, pairs, fits, decided })
+        Ok(Comparison { scene, integrability, extent, runs, pairs, fits, decided })
     }
 
     /// Solves a choice, and adds it as [`Comparison::add`] does.
@@ -74,8 +86,10 @@ impl Comparison {
             let (Ok(one), Ok(two)) = (&mut before.outcome, &mut run.outcome) else { continue };
             let gap = compare_motions(one, two, &mut metric)?;
             let limit = |t: f64| gap.limit_at(t);
+            let names = [before.choice.formulation, run.choice.formulation];
+            let asked = self.extent == Extent::Everything || names == [chetaev::FORMULATION.name, vakonomic::FORMULATION.name];
             let growth = match gap.verdict {
-                Verdict::Different => growth(two, one, &mut metric, &limit)?,
+                Verdict::Different if asked => growth(two, one, &mut metric, &limit)?,
                 _ => None,
             };
             let predicted = growth.as_ref().and_then(|_| predicted(&self.scene, &before.choice, &run));
@@ -89,7 +103,9 @@ impl Comparison {
     /// What [`Comparison::decide_next`] decides next: the runs of a family, and of a motion.
     pub fn undecided(&self) -> Option<(usize, usize)> {
         let is_new = |asked: &(usize, usize)| !self.decided.iter().any(|d| (d.family, d.curve) == *asked);
-        questions(&self.scene, &self.runs).into_iter().find(is_new)
+        let asked = questions(&self.scene, &self.runs);
+        let principal = self.run(vakonomic::FORMULATION.name).zip(self.run(chetaev::FORMULATION.name));
+        asked.into_iter().filter(|asked| self.extent == Extent::Everything || Some(*asked) == principal).find(is_new)
     }
 
     /// Decides whether the next motion is one of a family; `None` where nothing is left to be asked.
@@ -142,6 +158,12 @@ impl Comparison {
         }
     }
 
+    /// The largest error estimate of a run in its pairs, kinetic metric; `None` where it is in none.
+    pub fn estimate(&self, run: usize) -> Option<f64> {
+        let of = |p: &Pair| [(p.first, 0), (p.second, 1)].into_iter().find(|(i, _)| *i == run).map(|(_, i)| p.gap.estimates[i]);
+        self.pairs.iter().filter_map(of).max_by(f64::total_cmp)
+    }
+
     /// The pair of two runs, in either order.
     pub fn pair(&self, a: usize, b: usize) -> Option<&Pair> {
         self.pairs.iter().find(|p| (p.first, p.second) == (a, b) || (p.first, p.second) == (b, a))
@@ -187,7 +209,7 @@ pub fn compare_unfitted(
     extra: Vec<Run>,
     settings: &Settings,
 ) -> Result<Comparison, SolveError> {
-    let mut comparison = Comparison::new(scene, settings)?;
+    let mut comparison = Comparison::new(scene, Extent::Everything, settings)?;
     for choice in choices {
         comparison.solve(choice, settings)?;
     }

@@ -343,7 +343,7 @@ pub(crate) struct Compared {
 pub(crate) fn compare(scene: Scene, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
     let choices = deltaq::choices(&scene);
     let compared = deltaq::compare(scene, choices, Vec::new(), settings)?;
-    let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided } = compared;
+    let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
     Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, decided, scene })

@@ -29,18 +29,19 @@ pub fn summary(comparison: &mut Comparison, width: usize) -> Result<String> {
 /// One line a motion: where it ends, how wrong it is; alone, with where it is then.
 fn motions(comparison: &mut Comparison) -> Result<String> {
     let mut table = vec![["motion", "to", "error", "by", "steps"].map(String::from).to_vec()];
-    let alone = rows(comparison).next().is_none();
+    let estimates: Vec<Option<f64>> = (0..comparison.runs.len()).map(|i| comparison.estimate(i)).collect();
     let Comparison { scene, runs, .. } = comparison;
-    for run in runs {
+    for (run, estimate) in runs.iter_mut().zip(estimates) {
         let Ok(motion) = &mut run.outcome else { continue };
-        let estimate = error_estimate(motion, setting(scene))?;
+        let (alone, method) = (estimate.is_none(), motion.method.as_ref());
+        let method = method.map_or("equal steps", |chosen| chosen.method.name());
+        let estimate = estimate.map_or_else(|| Ok(error_estimate(motion, setting(scene))?.absolute), anyhow::Ok)?;
         let end = match &motion.ending {
             Ending::Completed => format!("{} s", short(motion.end())),
             Ending::Stopped { t, .. } => format!("stops at {} s", short(*t)),
         };
-        let method = motion.method.as_ref().map_or("equal steps", |chosen| chosen.method.name());
         let steps = motion.work.steps.to_string();
-        let mut line = vec![run.choice.label.clone(), end, short(estimate.absolute), method.into(), steps];
+        let mut line = vec![run.choice.label.clone(), end, short(estimate), method.into(), steps];
         if alone {
             let last = motion.at(motion.end())?.coordinates;
             for (c, q) in scene.system.coordinates.iter().zip(last) {
