@@ -2,8 +2,8 @@
 //! in ensembles. The referee takes small steps where something is switched.
 
 use deltaq::{
-    Choice, Ending, Ensemble, EnsembleOptions, Motion, Prepared, Settings, SolveError, Steps, choices, error_estimate, setting,
-    solve_by_steps, solve_choice,
+    Choice, Ending, Ensemble, EnsembleOptions, Motion, Prepared, Settings, SolveError, Steps, choices, error_estimate,
+    setting, solve_by_steps, solve_choice,
 };
 use discrete::Composition;
 use integrate::Method;

@@ -8,8 +8,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-pub use ensemble::{EnsembleArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
 use deltaq::Fits;
+pub use ensemble::{EnsembleArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
 use random::Kind;
 use scene::Scene;
 use validation::bench::MEMBERS;

@@ -15,8 +15,8 @@ use random::substitution;
 use validation::catalogue;
 use validation::report::{summary, verdicts, write_all};
 
-/// Prints a summary of each scene as soon as it is compared; or returns pages or verdicts, or writes pages and
-/// pictures to a folder and says so. Nothing is computed before every scene has been read.
+/// Prints a summary of each scene as soon as it is compared; or returns pages or verdicts, or writes pages
+/// and pictures to a folder and says so. Nothing is computed before every scene has been read.
 pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
     let mut scenes: Vec<Scene> = Vec::new();

@@ -87,7 +87,8 @@ impl Comparison {
             let gap = compare_motions(one, two, &mut metric)?;
             let limit = |t: f64| gap.limit_at(t);
             let names = [before.choice.formulation, run.choice.formulation];
-            let asked = self.extent == Extent::Everything || names == [chetaev::FORMULATION.name, vakonomic::FORMULATION.name];
+            let asked =
+                self.extent == Extent::Everything || names == [chetaev::FORMULATION.name, vakonomic::FORMULATION.name];
             let growth = match gap.verdict {
                 Verdict::Different if asked => growth(two, one, &mut metric, &limit)?,
                 _ => None,
@@ -160,7 +161,9 @@ impl Comparison {
 
     /// The largest error estimate of a run in its pairs, kinetic metric; `None` where it is in none.
     pub fn estimate(&self, run: usize) -> Option<f64> {
-        let of = |p: &Pair| [(p.first, 0), (p.second, 1)].into_iter().find(|(i, _)| *i == run).map(|(_, i)| p.gap.estimates[i]);
+        let of = |p: &Pair| {
+            [(p.first, 0), (p.second, 1)].into_iter().find(|(i, _)| *i == run).map(|(_, i)| p.gap.estimates[i])
+        };
         self.pairs.iter().filter_map(of).max_by(f64::total_cmp)
     }
 

@@ -34,7 +34,12 @@ impl Doubt {
     ///
     /// Two runs with the same steps have the same error, which their difference hides; a run whose steps
     /// follow its round-off is no better than the looser one. Doubt begins where this first shows.
-    pub(crate) fn of([kept, looser]: &[Vec<f64>; 2], end: f64, complete: bool, method: Option<Method>) -> Option<Doubt> {
+    pub(crate) fn of(
+        [kept, looser]: &[Vec<f64>; 2],
+        end: f64,
+        complete: bool,
+        method: Option<Method>,
+    ) -> Option<Doubt> {
         let start = kept[0];
         let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };
         let sign = (end - start).signum();

@@ -8,8 +8,8 @@ use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::runs::{Decided, Pair, Run};
 use crate::{
-    Answer, Choice, Fits, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of, setting,
-    solve,
+    Answer, Choice, Fits, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at,
+    multipliers_of, setting, solve,
 };
 
 /// The best that free constants can do.

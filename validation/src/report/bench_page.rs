@@ -53,7 +53,8 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
         match picture(bench) {
             Ok(text) => {
                 files.push(File { path: format!("error-vs-time/{}.svg", bench.scene).into(), text });
-                let _ = writeln!(page, "!{}\n", link("Error over run time", &format!("error-vs-time/{}.svg", bench.scene)));
+                let _ =
+                    writeln!(page, "!{}\n", link("Error over run time", &format!("error-vs-time/{}.svg", bench.scene)));
             }
             Err(PictureError::NothingToDraw { .. }) => page += "Nothing could be measured.\n",
             Err(error) => return Err(error.into()),

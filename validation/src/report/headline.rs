@@ -73,7 +73,7 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
     let names = |class: &[usize]| names(comparison, class);
     let across = |p: &&Pair| !classes.iter().any(|class| class.contains(&p.first) && class.contains(&p.second));
     let refused = comparison.runs.iter().any(|run| run.outcome.is_err());
-    let mut sentences = Vec::new();
+    let (mut sentences, mut undecided) = (Vec::new(), Vec::new());
     match &classes[..] {
         [] => {}
         [class] if names(class).len() == 1 => sentences.push(alone(comparison, class[0])),
@@ -101,11 +101,24 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
                 };
                 sentences.push(format!("{both}: {when}, largest gap {}.", short(p.gap.largest)));
             }
-            Verdict::Undecided { because } => sentences.push(format!("{both}: undecided, {because}.")),
+            Verdict::Undecided { because } => undecided.push((because.clone(), both)),
             _ => {}
         }
     }
+    sentences.extend(by_reason(undecided).iter().map(|(why, of)| format!("{}: undecided, {why}.", of.join("; "))));
     sentences
+}
+
+/// What has the same reason, together, in the order of the first.
+fn by_reason(all: Vec<(String, String)>) -> Vec<(String, Vec<String>)> {
+    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
+    for (reason, of) in all {
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, named)) => named.push(of),
+            None => reasons.push((reason, vec![of])),
+        }
+    }
+    reasons
 }
 
 /// One motion, with nothing to compare it with.
@@ -116,20 +129,16 @@ fn alone(comparison: &Comparison, run: usize) -> String {
     format!("{what}: {label}, to {} s.", precise(motion.end()))
 }
 
-/// Which formulations have no motion, and why: one sentence for each reason.
+/// Which formulations have no motion, and why.
 fn without_motion(comparison: &Comparison) -> Vec<String> {
-    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
-    for run in comparison.runs.iter().filter(|run| formulation(run.choice.formulation).is_some()) {
-        let Err(error) = &run.outcome else { continue };
+    let in_table = comparison.runs.iter().filter(|run| formulation(run.choice.formulation).is_some());
+    let refused = in_table.filter_map(|run| {
         // a reason may begin with the name of the formulation
-        let (reason, name) = (error.to_string(), format!("{}: ", run.choice.formulation));
-        let reason = reason.strip_prefix(&name).unwrap_or(&reason).to_owned();
-        match reasons.iter_mut().find(|(known, _)| *known == reason) {
-            Some((_, labels)) => labels.push(run.choice.label.clone()),
-            None => reasons.push((reason, vec![run.choice.label.clone()])),
-        }
-    }
-    reasons.into_iter().map(|(reason, labels)| format!("{}: no motion, {reason}.", enumerate(&labels))).collect()
+        let (reason, name) = (run.outcome.as_ref().err()?.to_string(), format!("{}: ", run.choice.formulation));
+        Some((reason.strip_prefix(&name).unwrap_or(&reason).to_owned(), run.choice.label.clone()))
+    });
+    let told = by_reason(refused.collect()).into_iter();
+    told.map(|(reason, labels)| format!("{}: no motion, {reason}.", enumerate(&labels))).collect()
 }
 
 /// Why the motions part, or do not.
@@ -170,7 +179,8 @@ fn substituted(comparison: &Comparison) -> impl Iterator<Item = usize> {
 /// How large the errors are beside which gaps were judged.
 fn errors(comparison: &Comparison) -> Option<String> {
     let estimates = rows(comparison).flat_map(|p| p.gap.estimates);
-    let largest = estimates.fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| if b > a || b.is_nan() { b } else { a })))?;
+    let largest =
+        estimates.fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| if b > a || b.is_nan() { b } else { a })))?;
     let certainty = deltaq::CERTAINTY;
     Some(format!("Error estimates: at most {}; a gap counts from {certainty} times the sum of two.", short(largest)))
 }
