@@ -2,7 +2,7 @@
 
 use deltaq::{Answer, Gap, Membership, THRESHOLDS, Verdict};
 use numpy::PyArrayDyn;
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
