@@ -3,7 +3,7 @@
 use mechanics::Integrability;
 use scene::Scene;
 
-use crate::fits::{Fit, fits};
+use crate::fits::{Fit, Fits, fits};
 use crate::gap::{Verdict, compare_motions};
 use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
@@ -37,17 +37,6 @@ pub enum Extent {
     Answer,
     /// Of all.
     Everything,
-}
-
-/// Which free constants are fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fits {
-    /// None.
-    None,
-    /// Those of which it was asked whether they give a motion, and nothing was decided.
-    Undecided,
-    /// Those of all motions that differ.
-    All,
 }
 
 impl Comparison {

@@ -8,9 +8,20 @@ use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::runs::{Decided, Pair, Run};
 use crate::{
-    Answer, Choice, Fits, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at,
-    multipliers_of, setting, solve,
+    Answer, Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of,
+    setting, solve,
 };
+
+/// Which free constants are fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fits {
+    /// None.
+    None,
+    /// Those of which it was asked whether they give a motion, and nothing was decided.
+    Undecided,
+    /// Those of all motions that differ.
+    All,
+}
 
 /// The best that free constants can do.
 pub struct Fit {

@@ -96,7 +96,7 @@ pub use choice::{
     Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names,
     removals,
 };
-pub use comparison::{Comparison, Extent, Fits, compare, compare_unfitted};
+pub use comparison::{Comparison, Extent, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;
@@ -107,7 +107,7 @@ pub use equations_text::{EquationStyle, equations_text};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use fit::best_fit;
-pub use fits::{Fit, FittedMotion};
+pub use fits::{Fit, Fits, FittedMotion};
 pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
