@@ -3,4 +3,5 @@
 mod audit;
 mod bench;
 mod casadi;
+mod headlines;
 mod scaling;

@@ -2,6 +2,7 @@
 
 mod ensemble;
 mod linearize;
+mod scenes;
 
 use std::path::PathBuf;
 
@@ -9,12 +10,12 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+use deltaq::Fits;
 pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
 pub use linearize::{LinearizeArguments, TableFormat};
 use random::Kind;
-use scene::Scene;
+pub use scenes::{CheckArguments, NewArguments, Overrides, SceneArguments, ShowArguments};
 use validation::bench::MEMBERS;
-use validation::catalogue::{self, NotFound};
 use validation::stability::Stepping;
 
 /// What may a virtual displacement be? One system with velocity constraints, several formulations of motion.
@@ -125,30 +126,6 @@ pub enum Command {
     },
 }
 
-/// A scene with changes.
-#[derive(Args, Debug)]
-pub struct SceneArguments {
-    /// Built-in name (`n-trailer-5` for a car with 5 trailers), scene file path, or `-` for standard input.
-    pub scene: String,
-    #[command(flatten)]
-    pub set: Overrides,
-}
-
-impl SceneArguments {
-    /// The scene.
-    pub(crate) fn find(&self) -> Result<Scene, NotFound> {
-        catalogue::find(&self.scene, &self.set.overrides)
-    }
-}
-
-/// What is changed in a scene.
-#[derive(Args, Debug)]
-pub struct Overrides {
-    /// Replace a parameter (`g=1.6`), a start value (`x=1`, `x'=2`) or `duration`.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
-    pub overrides: Vec<(String, f64)>,
-}
-
 /// What a command with tables answers with.
 #[derive(Args, Debug)]
 pub struct Output {
@@ -172,48 +149,6 @@ pub enum TextOrJson {
 /// `deltaq list`.
 #[derive(Args, Debug)]
 pub struct ListArguments {
-    /// Output format.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub format: TextOrJson,
-}
-
-/// `deltaq new`.
-#[derive(Args, Debug)]
-pub struct NewArguments {
-    /// File to write, which must not exist; to the terminal if left out.
-    pub file: Option<PathBuf>,
-    /// Built-in scene to begin with, in the place of the template.
-    #[arg(long, value_name = "SCENE")]
-    pub from: Option<String>,
-    /// The JSON schema of scene files, for editors, in the place of the template.
-    #[arg(long, conflicts_with = "from")]
-    pub schema: bool,
-}
-
-/// `deltaq check`.
-#[derive(Args, Debug)]
-pub struct CheckArguments {
-    /// Scene files, `-` for standard input, or built-in names.
-    #[arg(required = true, value_name = "SCENE")]
-    pub scenes: Vec<String>,
-    #[command(flatten)]
-    pub set: Overrides,
-}
-
-/// `deltaq show`.
-#[derive(Args, Debug)]
-pub struct ShowArguments {
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// Formulations and forms to show, by name; all if left out, and of equations over 30 kB the size only.
-    #[arg(short, long, value_name = "NAME,…", value_delimiter = ',')]
-    pub formulation: Vec<String>,
-    /// Formulas in LaTeX.
-    #[arg(long)]
-    pub latex: bool,
-    /// The text of the scene file, and nothing else.
-    #[arg(long, conflicts_with_all = ["latex", "format", "overrides"])]
-    pub source: bool,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
@@ -250,11 +185,45 @@ pub struct CompareArguments {
     pub output: Output,
     #[command(flatten)]
     pub set: Overrides,
+    /// Print the whole page, in Markdown, and not only the answer.
+    #[arg(long, conflicts_with_all = ["out", "format"])]
+    pub markdown: bool,
+    /// Formulations to compare, all if left out.
+    #[arg(long, short, value_name = "NAME,…", value_delimiter = ',', value_parser = formulations())]
+    pub formulation: Vec<String>,
+    /// Fit free constants to motions, too, of which it is decided whether some constants give them.
+    #[arg(long = "with", value_name = "PART")]
+    pub with: Option<Searched>,
+    /// Fit no free constants, not even where nothing is decided.
+    #[arg(long, value_name = "PART", conflicts_with = "with")]
+    pub without: Option<Searched>,
     /// Tolerance of the looser of the two runs of every motion.
-    #[arg(long, default_value_t = 1e-11, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-11", allow_negative_numbers = true)]
     pub tolerance: f64,
     #[command(flatten)]
     pub limits: Limits,
+}
+
+impl CompareArguments {
+    /// Which free constants are fitted.
+    pub(crate) fn fits(&self) -> Fits {
+        match (self.with, self.without) {
+            (Some(Searched::Fits), _) => Fits::All,
+            (None, Some(Searched::Fits)) => Fits::None,
+            (None, None) => Fits::Undecided,
+        }
+    }
+}
+
+/// What takes a search.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Searched {
+    /// Fits of free constants.
+    Fits,
+}
+
+fn formulations() -> PossibleValuesParser {
+    PossibleValuesParser::new(deltaq::FORMULATIONS.iter().map(|formulation| formulation.name))
 }
 
 /// `deltaq prove`.
@@ -375,10 +344,4 @@ fn by_name<T: Copy + Send + Sync + 'static>(
         .collect();
     PossibleValuesParser::new(possible)
         .try_map(move |given| all.iter().copied().find(|&one| name(one) == given).ok_or("unknown"))
-}
-
-fn assignment(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=VALUE"))?;
-    let number: f64 = value.trim().parse().map_err(|_| format!("`{value}` in `{text}` is not a number"))?;
-    Ok((name.trim().to_string(), number))
 }

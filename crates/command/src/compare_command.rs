@@ -1,41 +1,113 @@
 //! `deltaq compare`: the protocol for scenes of the user's own.
 
-use anyhow::Result;
-use deltaq::Settings;
-use serde_json::json;
+use anyhow::{Context, Result, ensure};
+use console::Term;
+use deltaq::{Comparison, Extent, Fits, Settings, choices_among};
+use scene::Scene;
+use serde_json::{Value, json};
 
-use crate::cli::CompareArguments;
-use crate::main_job::{compared, protocol, scene_files};
-use crate::solve_command::{check_tolerance, limited};
+use crate::answer::{pretty, print};
+use crate::cli::{CompareArguments, TextOrJson};
+use crate::main_job::{protocol, scene_files};
+use crate::solve_command::limited;
+use crate::watch::Watch;
+use random::substitution;
 use validation::catalogue;
-use validation::report::verdicts;
+use validation::report::{summary, verdicts, write_all};
 
-/// Returns pages or verdicts, or writes pages and pictures to a folder and says so; on bad input nothing.
-pub(crate) fn run(arguments: &CompareArguments) -> Result<String> {
-    check_tolerance(arguments.tolerance)?;
+/// Prints a summary of each scene as soon as it is compared; or returns pages or verdicts, or writes pages
+/// and pictures to a folder and says so. Nothing is computed before every scene has been read.
+pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
-    let (mut files, mut comparisons) = (Vec::new(), Vec::new());
+    let mut scenes: Vec<Scene> = Vec::new();
     for name in &arguments.scenes {
-        let mut comparison = compared(catalogue::find(name, &arguments.set.overrides)?, &settings)?;
-        files.extend(scene_files(&mut comparison, &settings)?);
-        comparisons.push(comparison);
+        let scene = catalogue::find(name, &arguments.set.overrides)?;
+        let names = std::iter::once(scene.name.clone()).chain((2..).map(|i| format!("{}-{i}", scene.name)));
+        let name = { names }.find(|name| scenes.iter().all(|other| other.name != *name)).unwrap_or_default();
+        scenes.push(Scene { name, ..scene });
     }
-    let text = || match &arguments.output.out {
-        Some(folder) => format!("{} files in {}\n", files.len(), folder.display()),
-        None => {
-            let pages = files.iter().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
-            pages.map(|page| page.text.clone() + "\n").collect()
-        }
-    };
-    let json = || {
-        let mut value = verdicts(&comparisons);
-        for comparison in &comparisons {
-            for (i, pair) in comparison.pairs.iter().enumerate() {
-                let found = &mut value["scenes"][&comparison.scene.name]["pairs"][i];
-                (found["largest"], found["estimates"]) = (json!(pair.gap.largest), json!(pair.gap.estimates));
+    let width = usize::from(Term::stdout().size_checked().map_or(80, |(_, columns)| columns));
+    let as_json = arguments.output.format == TextOrJson::Json;
+    let as_pages = arguments.output.out.is_some() || arguments.markdown;
+    let watch = Watch::begin(quiet)?;
+    let (mut files, mut value, mut before) = (Vec::new(), verdicts(&[]), String::new());
+    for scene in scenes {
+        let mut answer = |comparison: &mut Comparison| -> Result<String> {
+            if as_json {
+                value["scenes"][&comparison.scene.name] = json_of(comparison);
+                return Ok(pretty("compare", &value));
             }
+            Ok(before.clone() + &summary(comparison, width)?)
+        };
+        let name = scene.name.clone();
+        let mut comparison = compared(scene, arguments, &settings, |doing, comparison| {
+            watch.tell(&format!("{name}: {doing}"), answer(comparison)?);
+            Ok(())
+        })
+        .with_context(|| format!("scene `{name}`"))?;
+        let text = answer(&mut comparison)?;
+        if as_pages {
+            watch.tell(&format!("{name}: page and pictures"), text.clone());
+            files.extend(scene_files(&mut comparison)?);
         }
-        value
-    };
-    arguments.output.answer("compare", || Ok(files.clone()), text, json)
+        if as_json || as_pages {
+            before = text + "\n";
+        } else if !watch.suspended(|| print(&text))? {
+            break;
+        }
+    }
+    watch.end();
+    if let Some(folder) = &arguments.output.out {
+        write_all(folder, &files)?;
+    }
+    let pages = files.iter().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
+    Ok(match &arguments.output.out {
+        _ if as_json => pretty("compare", &value),
+        Some(folder) => format!("{} files in {}\n", files.len(), folder.display()),
+        None => pages.map(|page| page.text.clone() + "\n").collect(),
+    })
+}
+
+/// Compares a scene, and tells what is done next and what there is so far.
+fn compared(
+    scene: Scene,
+    arguments: &CompareArguments,
+    settings: &Settings,
+    mut tell: impl FnMut(&str, &mut Comparison) -> Result<()>,
+) -> Result<Comparison> {
+    let only = &arguments.formulation;
+    let choices = choices_among(&scene, |name| only.is_empty() || only.iter().any(|wanted| wanted == name));
+    ensure!(!choices.is_empty(), "{} needs a parameter that the scene does not have", only.join(", "));
+    // the control judges the harness, which is for pages and machines
+    let wanted = arguments.output.format == TextOrJson::Json || arguments.output.out.is_some() || arguments.markdown;
+    let control = if wanted && only.is_empty() { substitution::run(&scene, &choices, settings) } else { None };
+    let extent = if wanted { Extent::Everything } else { Extent::Answer };
+    let mut comparison = Comparison::new(scene, extent, settings)?;
+    for choice in choices {
+        tell(&choice.label, &mut comparison)?;
+        comparison.solve(choice, settings)?;
+    }
+    control.into_iter().try_for_each(|run| comparison.add(run))?;
+    while let Some((family, curve)) = comparison.undecided() {
+        let label = |i: usize| &comparison.runs[i].choice.label;
+        let doing = format!("is {} in the family of {}?", label(curve), label(family));
+        tell(&doing, &mut comparison)?;
+        comparison.decide_next();
+    }
+    if arguments.fits() != Fits::None {
+        tell("fits of free constants", &mut comparison)?;
+    }
+    comparison.fit(arguments.fits(), settings)?;
+    Ok(comparison)
+}
+
+/// The verdicts on a scene, with largest gaps and error estimates.
+fn json_of(comparison: &Comparison) -> Value {
+    let mut value = verdicts(std::slice::from_ref(comparison));
+    let mut scene = value["scenes"][&comparison.scene.name].take();
+    for (i, pair) in comparison.pairs.iter().enumerate() {
+        let found = &mut scene["pairs"][i];
+        (found["largest"], found["estimates"]) = (json!(pair.gap.largest), json!(pair.gap.estimates));
+    }
+    scene
 }

@@ -17,6 +17,7 @@ mod schema;
 mod show_command;
 mod solve_command;
 mod stability_command;
+mod watch;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -86,7 +87,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Check(arguments)) => scene_commands::check(&arguments)?,
         Some(Command::Show(arguments)) => show_command::run(&arguments)?,
         Some(Command::Linearize(arguments)) => linearize_command::run(&arguments)?,
-        Some(Command::Compare(arguments)) => compare_command::run(&arguments)?,
+        Some(Command::Compare(arguments)) => compare_command::run(&arguments, quiet)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet)?,
         Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments, quiet)?,

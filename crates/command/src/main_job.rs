@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::{CommandFactory, ValueEnum};
-use deltaq::{Comparison, Settings, choices, compare_unfitted};
+use deltaq::{Comparison, Fits, Settings, choices, compare_unfitted};
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -19,9 +19,9 @@ use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
 use validation::catalogue;
 use validation::report::{
-    AuditReport, BicycleReport, EquivalenceReport, File, LiteratureReport, RealizationReport, StabilityReport, answer,
-    bench_files, bench_headline, difference_of_verdicts, overview, pictures, random_files, random_headline,
-    random_verdicts, referees_section, scene_page, verdicts, write_all,
+    AuditReport, BicycleReport, EquivalenceReport, File, Headline, LiteratureReport, RealizationReport,
+    StabilityReport, bench_files, bench_headline, difference_of_verdicts, overview, pictures, random_files,
+    random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all,
 };
 
 /// A compared scene with its page and pictures.
@@ -32,19 +32,17 @@ pub struct SceneReport {
     pub files: Vec<File>,
 }
 
-/// Compares all formulations of a scene, the control among them; [`scene_files`] adds the fits.
-pub(crate) fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
+/// Compares all formulations of a scene, the control among them; nothing is fitted.
+fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
     let name = scene.name.clone();
     let choices = choices(&scene);
     let control = substitution::run(&scene, &choices, settings).into_iter().collect();
     compare_unfitted(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))
 }
 
-/// Fits constants, and makes the page and the pictures.
-pub(crate) fn scene_files(comparison: &mut Comparison, settings: &Settings) -> Result<Vec<File>> {
+/// The page of a scene and its pictures.
+pub(crate) fn scene_files(comparison: &mut Comparison) -> Result<Vec<File>> {
     let name = comparison.scene.name.clone();
-    comparison.fit(settings).with_context(|| format!("scene `{name}`"))?;
-    comparison.keep_closer();
     let mut files = pictures(comparison).with_context(|| format!("pictures of scene `{name}`"))?;
     let links: Vec<String> =
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();
@@ -293,7 +291,7 @@ pub(crate) fn protocol() -> Settings {
 
 /// Of what, and the first sentence of its answer.
 fn first_sentence(comparison: &Comparison) -> (String, String) {
-    let answer = answer(comparison);
+    let answer = Headline::of(comparison).verdict;
     (comparison.scene.name.clone(), answer.split_inclusive(". ").next().unwrap_or_default().to_owned())
 }
 
@@ -320,7 +318,9 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     let files = parallel::map(&found, |comparison| {
         let mut comparison = comparison.lock().unwrap_or_else(PoisonError::into_inner);
         bar.set_message(format!("{}, fits", comparison.scene.name));
-        let files = scene_files(&mut comparison, &settings);
+        let name = comparison.scene.name.clone();
+        comparison.fit(Fits::All, &settings).with_context(|| format!("scene `{name}`"))?;
+        let files = scene_files(&mut comparison);
         bar.inc(1);
         files
     });

@@ -138,7 +138,6 @@ fn steps(arguments: &SolveArguments) -> Result<Option<Steps>> {
 
 /// Tolerance, projection and limits that were asked for.
 pub(crate) fn settings(arguments: &MotionArguments) -> Result<Settings> {
-    check_tolerance(arguments.tolerance)?;
     let projection = if arguments.no_projection { Projection::Off } else { Projection::EveryStep };
     let form = if arguments.form == "auto" { Form::Suited } else { Form::Named };
     limited(Settings { tolerance: arguments.tolerance, projection, form, ..Settings::default() }, &arguments.limits)
@@ -147,22 +146,15 @@ pub(crate) fn settings(arguments: &MotionArguments) -> Result<Settings> {
 /// Settings with these limits.
 pub(crate) fn limited(settings: Settings, limits: &Limits) -> Result<Settings> {
     if let Some(seconds) = limits.time_limit.filter(|seconds| seconds.is_nan() || *seconds <= 0.0) {
-        bail!("--time-limit is {seconds}; it must be above 0");
+        bail!("--time-limit is {seconds:?}; it must be above 0");
     }
     let max_step = limits.max_step.unwrap_or(f64::INFINITY);
     if max_step.is_nan() || max_step <= 0.0 {
-        bail!("--max-step is {max_step}; it must be above 0");
+        bail!("--max-step is {max_step:?}; it must be above 0");
     }
+    settings.check()?;
     let max_steps = limits.max_steps.map_or(settings.max_steps, |limit| limit as usize);
     Ok(Settings { max_steps, max_step, time_limit: limits.time_limit, ..settings })
-}
-
-/// Tolerances that make sense.
-pub(crate) fn check_tolerance(tolerance: f64) -> Result<()> {
-    if tolerance > 0.0 && tolerance < 1.0 {
-        return Ok(());
-    }
-    bail!("--tolerance is {tolerance}; it must be above 0 and below 1");
 }
 
 /// The formulation with the removal and the constants that were asked for.
@@ -233,7 +225,7 @@ pub(crate) fn times(text: &str, scene: &Scene) -> Result<Vec<f64>> {
     };
     for &t in &times {
         if !(start..=end).contains(&t) {
-            bail!("--times: {t} is outside of the run, which goes from {start} to {end}; see --set duration=…");
+            bail!("--times: {t:?} is outside of the run, which goes from {start:?} to {end:?}; see --set duration=…");
         }
     }
     Ok(times)

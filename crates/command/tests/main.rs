@@ -2,6 +2,7 @@
 
 mod bad_scenes;
 mod commands;
+mod compare_command;
 mod documents;
 mod ensemble_command;
 mod linearize_command;

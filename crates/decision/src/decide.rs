@@ -31,11 +31,13 @@ pub struct DecisionSettings {
     pub tolerance: f64,
     /// The tighter run has this part of it.
     pub tighter: f64,
+    /// Whether it is proved that no constants do: then a mismatch is worth one attempt, whatever it tells.
+    pub refuted: bool,
 }
 
 impl Default for DecisionSettings {
     fn default() -> Self {
-        DecisionSettings { tolerance: 1e-10, tighter: 1e-2 }
+        DecisionSettings { tolerance: 1e-10, tighter: 1e-2, refuted: false }
     }
 }
 
@@ -171,7 +173,7 @@ pub fn decide(
         let paths = [fine.run(tolerance * settings.tighter, steps)?, coarse.run(tolerance, steps)?];
         found = judged(&mut fine, &mut coarse, &paths);
         let short = paths.iter().any(|path| matches!(path.stop, Some(DecisionError::Steps { .. })));
-        if !short || found.as_ref().is_ok_and(|found| found.verdict != Verdict::Undecided) {
+        if !short || found.as_ref().is_ok_and(|found| settings.refuted || found.verdict != Verdict::Undecided) {
             break;
         }
     }

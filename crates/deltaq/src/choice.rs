@@ -25,9 +25,15 @@ pub struct Choice {
 /// Every choice that a comparison of `scene` makes. Where no removal can be found, the formulations that need
 /// one get a choice without, which [`crate::solve_choice`] refuses with the reason.
 pub fn choices(scene: &Scene) -> Vec<Choice> {
+    choices_among(scene, |_| true)
+}
+
+/// [`choices`] of the formulations whose names are wanted.
+pub fn choices_among(scene: &Scene, wanted: impl Fn(&str) -> bool) -> Vec<Choice> {
     let mut choices = Vec::new();
     let parameters: Vec<String> = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
-    let suits = |entry: &&Formulation| entry.parameter.is_none_or(|name| parameters.iter().any(|p| p == name));
+    let has = |name: &str| parameters.iter().any(|p| p == name);
+    let suits = |entry: &&Formulation| wanted(entry.name) && entry.parameter.is_none_or(has);
     for formulation in FORMULATIONS.iter().filter(suits) {
         let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
         if removals.is_empty() {

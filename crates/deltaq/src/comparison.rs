@@ -3,10 +3,10 @@
 use mechanics::Integrability;
 use scene::Scene;
 
-use crate::fits::{Fit, fits};
+use crate::fits::{Fit, Fits, fits};
 use crate::gap::{Verdict, compare_motions};
 use crate::growth::growth;
-use crate::runs::{Decided, Pair, Run, decided, predicted};
+use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
 use crate::{
     Choice, Membership, Metric, Settings, SolveError, constant_names, formulation, integrability, solve_choice,
 };
@@ -17,6 +17,8 @@ pub struct Comparison {
     pub scene: Scene,
     /// Frobenius' verdict on the constraints.
     pub integrability: Integrability,
+    /// What is worked out of it.
+    pub extent: Extent,
     /// Runs: the formulations of the table in order, removals within.
     pub runs: Vec<Run>,
     /// Pairs of runs that both gave a motion.
@@ -28,7 +30,81 @@ pub struct Comparison {
     pub decided: Vec<Decided>,
 }
 
+/// What is worked out besides gaps: how they begin, and which family has which motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Of Chetaev's motion and the vakonomic family only: what the answer to a scene says.
+    Answer,
+    /// Of all.
+    Everything,
+}
+
 impl Comparison {
+    /// Of a scene, without a motion so far.
+    ///
+    /// # Errors
+    /// [`mechanics::RemovalError`] for dependent constraints; [`SolveError::Tolerance`].
+    pub fn new(scene: Scene, extent: Extent, settings: &Settings) -> Result<Comparison, SolveError> {
+        settings.check()?;
+        // in a graph of its own: brackets are long, and every motion has a copy of the scene's
+        let integrability = integrability(&scene.system.clone(), &scene.start)?;
+        let (runs, pairs, fits, decided) = Default::default();
+        Ok(Comparison { scene, integrability, extent, runs, pairs, fits, decided })
+    }
+
+    /// Solves a choice, and adds it as [`Comparison::add`] does.
+    ///
+    /// # Errors
+    /// As [`Comparison::add`].
+    pub fn solve(&mut self, choice: Choice, settings: &Settings) -> Result<(), SolveError> {
+        let outcome = solve_choice(&self.scene, &choice, settings);
+        self.add(Run { choice, outcome })
+    }
+
+    /// Adds a run, and compares it with those before, where that is worth it.
+    ///
+    /// # Errors
+    /// [`SolveError`] where a motion cannot be read off.
+    pub fn add(&mut self, mut run: Run) -> Result<(), SolveError> {
+        let (mut metric, second) = (Metric::new(&self.scene.system)?, self.runs.len());
+        for first in 0..second {
+            let before = &mut self.runs[first];
+            if !worth_comparing(before, &run) {
+                continue;
+            }
+            let (Ok(one), Ok(two)) = (&mut before.outcome, &mut run.outcome) else { continue };
+            let gap = compare_motions(one, two, &mut metric)?;
+            let limit = |t: f64| gap.limit_at(t);
+            let names = [before.choice.formulation, run.choice.formulation];
+            let asked =
+                self.extent == Extent::Everything || names == [chetaev::FORMULATION.name, vakonomic::FORMULATION.name];
+            let growth = match gap.verdict {
+                Verdict::Different if asked => growth(two, one, &mut metric, &limit)?,
+                _ => None,
+            };
+            let predicted = growth.as_ref().and_then(|_| predicted(&self.scene, &before.choice, &run));
+            self.pairs.push(Pair { first, second, gap, growth, predicted });
+        }
+        self.runs.push(run);
+        self.pairs.sort_by_key(|pair| (pair.first, pair.second));
+        Ok(())
+    }
+
+    /// What [`Comparison::decide_next`] decides next: the runs of a family, and of a motion.
+    pub fn undecided(&self) -> Option<(usize, usize)> {
+        let is_new = |asked: &(usize, usize)| !self.decided.iter().any(|d| (d.family, d.curve) == *asked);
+        let asked = questions(&self.scene, &self.runs);
+        let principal = self.run(vakonomic::FORMULATION.name).zip(self.run(chetaev::FORMULATION.name));
+        asked.into_iter().filter(|asked| self.extent == Extent::Everything || Some(*asked) == principal).find(is_new)
+    }
+
+    /// Decides whether the next motion is one of a family; `None` where nothing is left to be asked.
+    pub fn decide_next(&mut self) -> Option<&Decided> {
+        let asked = self.undecided()?;
+        self.decided.push(decide(&self.scene, &self.runs, asked));
+        self.decided.last()
+    }
+
     /// The first run of a formulation.
     pub fn run(&self, formulation: &str) -> Option<usize> {
         self.runs.iter().position(|r| r.choice.formulation == formulation)
@@ -40,19 +116,24 @@ impl Comparison {
         self.decided.iter().find(|d| (d.family, d.curve) == (family, curve)).map(|d| &d.outcome)
     }
 
-    /// Looks for the constants with which one run comes closest to another, wherever two differ.
+    /// Looks for the constants with which one run comes closest to another, where the two differ and that is
+    /// among the `wanted`; a run's own constants stay where they leave less.
     ///
     /// # Errors
     /// [`SolveError`] where a motion cannot be read off.
-    pub fn fit(&mut self, settings: &Settings) -> Result<(), SolveError> {
+    pub fn fit(&mut self, wanted: Fits, settings: &Settings) -> Result<(), SolveError> {
         let mut metric = Metric::new(&self.scene.system)?;
-        self.fits = fits(&self.scene, &mut self.runs, &self.pairs, &self.decided, &mut metric, settings)?;
+        self.fits = match wanted {
+            Fits::None => Vec::new(),
+            _ => fits(&self.scene, &mut self.runs, &self.pairs, &self.decided, wanted, &mut metric, settings)?,
+        };
+        self.keep_closer();
         Ok(())
     }
 
     /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: fits minimize
     /// the sum of squares, not the largest gap, and a search is no reason to go farther away.
-    pub fn keep_closer(&mut self) {
+    fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));
             let pair = self.pairs.iter().find(|p| (p.first, p.second) == (first, second));
@@ -65,6 +146,14 @@ impl Comparison {
                 found.gap = pair.gap.clone();
             }
         }
+    }
+
+    /// The largest error estimate of a run in its pairs, kinetic metric; `None` where it is in none.
+    pub fn estimate(&self, run: usize) -> Option<f64> {
+        let of = |p: &Pair| {
+            [(p.first, 0), (p.second, 1)].into_iter().find(|(i, _)| *i == run).map(|(_, i)| p.gap.estimates[i])
+        };
+        self.pairs.iter().filter_map(of).max_by(f64::total_cmp)
     }
 
     /// The pair of two runs, in either order.
@@ -98,49 +187,27 @@ pub fn compare(
     settings: &Settings,
 ) -> Result<Comparison, SolveError> {
     let mut comparison = compare_unfitted(scene, choices, extra, settings)?;
-    comparison.fit(settings)?;
+    comparison.fit(Fits::All, settings)?;
     Ok(comparison)
 }
 
 /// [`compare`] without fits, which take most of its time: everything is decided, nothing searched.
 ///
 /// # Errors
-/// [`mechanics::RemovalError`] for dependent constraints; [`SolveError`] where a motion cannot be read off.
+/// As [`Comparison::new`] and [`Comparison::add`].
 pub fn compare_unfitted(
     scene: Scene,
     choices: Vec<Choice>,
     extra: Vec<Run>,
     settings: &Settings,
 ) -> Result<Comparison, SolveError> {
-    let integrability = integrability(&scene.system, &scene.start)?;
-    let mut metric = Metric::new(&scene.system)?;
-    let mut runs: Vec<Run> =
-        choices.into_iter().map(|choice| Run { outcome: solve_choice(&scene, &choice, settings), choice }).collect();
-    runs.extend(extra);
-
-    let mut pairs = Vec::new();
-    for first in 0..runs.len() {
-        for second in first + 1..runs.len() {
-            if !worth_comparing(&runs[first], &runs[second]) {
-                continue;
-            }
-            let (left, right) = runs.split_at_mut(second);
-            let (Ok(one), Ok(two)) = (&mut left[first].outcome, &mut right[0].outcome) else { continue };
-            let gap = compare_motions(one, two, &mut metric)?;
-            let limit = |t: f64| gap.limit_at(t);
-            let growth = match gap.verdict {
-                Verdict::Different => growth(two, one, &mut metric, &limit)?,
-                _ => None,
-            };
-            let predicted = match growth {
-                Some(_) => predicted(&scene, &left[first].choice, &right[0]),
-                None => None,
-            };
-            pairs.push(Pair { first, second, gap, growth, predicted });
-        }
+    let mut comparison = Comparison::new(scene, Extent::Everything, settings)?;
+    for choice in choices {
+        comparison.solve(choice, settings)?;
     }
-    let decided = decided(&scene, &runs);
-    Ok(Comparison { scene, integrability, runs, pairs, fits: Vec::new(), decided })
+    extra.into_iter().try_for_each(|run| comparison.add(run))?;
+    while comparison.decide_next().is_some() {}
+    Ok(comparison)
 }
 
 /// The costate form is compared with the vakonomic one only, a run from outside the table with Chetaev only.

@@ -22,6 +22,12 @@ pub(crate) struct DiscreteRun {
     multipliers: Vec<(usize, usize)>,
 }
 
+/// That equal steps pass over what a function does within one of them, which begins at `t`.
+pub(crate) struct PassedOver {
+    pub(crate) t: f64,
+    pub(crate) cause: String,
+}
+
 impl DiscreteRun {
     pub(crate) fn new(trajectory: Trajectory, mut values: StartValues, equations: &Equations, system: &System) -> Self {
         let places = |of: &[Symbol]| of.iter().enumerate().filter_map(|(i, &s)| Some((values.place(s)?, i))).collect();
@@ -46,13 +52,13 @@ impl DiscreteRun {
         [self.times()[0], self.trajectory.end()]
     }
 
-    /// Refuses steps within which the gauge of a steep function grows as [`integrate::Problem::gauges`] does
+    /// The first step within which the gauge of a steep function grows as [`integrate::Problem::gauges`] does
     /// not let it, on the straight line from node to node: a step knows its middle only. `kept` is the length
     /// of the steps of the run that is kept. What cannot be read off is no part of the motion.
-    pub(crate) fn look(&mut self, prepared: &mut Prepared, kept: f64) -> Result<(), SolveError> {
+    pub(crate) fn passed_over(&mut self, prepared: &mut Prepared, kept: f64) -> Option<PassedOver> {
         let Prepared { compiled, equations, .. } = prepared;
         if compiled.gauges().is_empty() {
-            return Ok(());
+            return None;
         }
         let mut from: Option<Node> = None;
         for t in self.times().to_vec() {
@@ -73,10 +79,14 @@ impl DiscreteRun {
                 }
                 let steep = equations.steep()[j];
                 let function = format!("{} of {}", steep.function, in_own_names(equations, steep.argument));
-                return Err(SolveError::PassedOver { t: begin, step: kept, function, enough: share * kept });
+                let enough = share * kept;
+                let cause = format!(
+                    "a step of {kept:.3e} passes over what {function} does; steps of {enough:.3e} would do there, or a method that chooses its own"
+                );
+                return Some(PassedOver { t: begin, cause });
             }
         }
-        Ok(())
+        None
     }
 
     pub(crate) fn times(&self) -> &[f64] {

@@ -1,5 +1,7 @@
 //! Whether the difference of two runs says how wrong they are.
 
+use integrate::Method;
+
 use crate::TIGHTER;
 
 /// That the difference of the two runs is no error estimate from some time on.
@@ -27,17 +29,23 @@ const TOO_MANY: f64 = 10.0;
 const TOGETHER: usize = 20;
 
 impl Doubt {
-    /// From the ends of the steps of the kept and of the looser run, up to the `end` of the motion, by a
-    /// method of this order, if it has one ([`integrate::Method::order_in_steps`]).
+    /// From the ends of the steps of the kept and of the looser run, up to the `end` of the motion, by this
+    /// method; equal steps have none.
     ///
     /// Two runs with the same steps have the same error, which their difference hides; a run whose steps
     /// follow its round-off is no better than the looser one. Doubt begins where this first shows.
-    pub(crate) fn of([kept, looser]: &[Vec<f64>; 2], end: f64, complete: bool, order: Option<f64>) -> Option<Doubt> {
+    pub(crate) fn of(
+        [kept, looser]: &[Vec<f64>; 2],
+        end: f64,
+        complete: bool,
+        method: Option<Method>,
+    ) -> Option<Doubt> {
         let start = kept[0];
         let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };
         let sign = (end - start).signum();
         let until = |times: &[f64], end: f64| times.partition_point(|&t| (end - t) * sign >= 0.0);
         let (tight, loose) = (until(kept, end), until(looser, end));
+        let order = method.and_then(Method::order_in_steps);
         let expected = order.map(|order| TIGHTER.recip().powf(1.0 / order));
         let too_few = |loose: usize, tight: usize| {
             expected.is_some_and(|expected| (tight as f64) < loose as f64 * expected.powf(MORE_STEPS))
@@ -45,9 +53,9 @@ impl Doubt {
         let too_many =
             |loose: usize, tight: usize| tight as f64 > TOO_MANY * loose.max(1) as f64 * expected.unwrap_or(1.0);
         let (off, what): (&dyn Fn(usize, usize) -> bool, _) = if loose >= FEW_STEPS && too_few(loose, tight) {
-            (&too_few, "something else limits the steps")
+            (&too_few, too_few_words(method))
         } else if tight >= FEW_STEPS && too_many(loose, tight) {
-            (&too_many, "round-off limits the steps")
+            (&too_many, "round-off limits the steps".into())
         } else {
             return None;
         };
@@ -64,6 +72,16 @@ impl Doubt {
     }
 }
 
+/// Steps that do not follow the tolerance: those of an explicit method follow what it is stable with.
+fn too_few_words(method: Option<Method>) -> String {
+    let explicit = method.filter(|method| !method.is_implicit());
+    let stiff = explicit.map(|method| {
+        let name = method.name();
+        format!("; stiff equations do that to {name}: radau5 is made for them, and the default method changes to it")
+    });
+    format!("something else limits the steps{}", stiff.unwrap_or_default())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,7 +95,7 @@ mod tests {
 
     fn doubt(kept: Vec<f64>, looser: Vec<f64>, direction: f64) -> Option<Doubt> {
         let times = [kept, looser].map(|times| times.into_iter().map(|t| direction * t).collect());
-        Doubt::of(&times, direction * 2.0, true, Some(8.0))
+        Doubt::of(&times, direction * 2.0, true, Some(Method::Dop853))
     }
 
     #[test]
@@ -100,7 +118,7 @@ mod tests {
     fn a_doubt_begins_where_steps_follow_something_else() {
         let (kept, looser) = (steps(54, 50), steps(30, 90));
         let doubt = doubt(kept, looser, 1.0).expect("2700 steps at both tolerances");
-        assert!(doubt.because.contains("something else limits"), "{doubt:?}");
+        assert!(doubt.because.contains("something else limits") && doubt.because.contains("stiff"), "{doubt:?}");
         assert!((doubt.from - 1.0).abs() < 0.2, "{doubt:?}");
     }
 }

@@ -26,7 +26,7 @@ impl Ending {
     /// `completed`, `untrusted` (where there is a complaint) or `stopped`, and why it is not completed.
     pub fn status(&self, complaint: Option<String>) -> (&'static str, Option<String>) {
         match (self, complaint) {
-            (Ending::Stopped { t, cause }, _) => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
+            (Ending::Stopped { t, cause }, _) => ("stopped", Some(format!("stopped at t = {t:?}: {cause}"))),
             (Ending::Completed, Some(words)) => ("untrusted", Some(words)),
             (Ending::Completed, None) => ("completed", None),
         }

@@ -30,7 +30,7 @@ pub enum SolveError {
     #[error("at the start: {0}")]
     AtStart(EvaluationFailure),
     /// The equations cannot be evaluated where a motion is read off.
-    #[error("at t = {t}: {failure}")]
+    #[error("at t = {t:?}: {failure}")]
     Reading {
         /// The time asked for.
         t: f64,
@@ -67,7 +67,7 @@ pub enum SolveError {
         formulation: String,
     },
     /// The horizon is not after the start.
-    #[error("the horizon {horizon} is not after the start {start}")]
+    #[error("the horizon {horizon:?} is not after the start {start:?}")]
     Horizon {
         /// Horizon asked for.
         horizon: f64,
@@ -75,7 +75,7 @@ pub enum SolveError {
         start: f64,
     },
     /// No free constants satisfy the natural boundary condition at the horizon, as far as was found.
-    #[error("natural boundary condition at the horizon {horizon}: {error}")]
+    #[error("natural boundary condition at the horizon {horizon:?}: {error}")]
     Boundary {
         /// Horizon asked for.
         horizon: f64,
@@ -84,7 +84,7 @@ pub enum SolveError {
     },
     /// The search for free constants that satisfy the natural boundary condition takes too many steps.
     #[error(
-        "natural boundary condition at the horizon {horizon}: given up after {steps} steps in all; the search has come to motions beside a singularity, which \
+        "natural boundary condition at the horizon {horizon:?}: given up after {steps} steps in all; the search has come to motions beside a singularity, which \
          take far more steps than the one it started from: a shorter horizon, another removal or constants that are given may help"
     )]
     Search {
@@ -94,7 +94,7 @@ pub enum SolveError {
         steps: usize,
     },
     /// The search for free constants was ended.
-    #[error("natural boundary condition at the horizon {horizon}: not found, {cause}")]
+    #[error("natural boundary condition at the horizon {horizon:?}: not found, {cause}")]
     Ended {
         /// Horizon asked for.
         horizon: f64,
@@ -112,7 +112,7 @@ pub enum SolveError {
     },
     /// The length of a step makes no sense.
     #[error(
-        "a step of {step} over a time of {length}: it must be above 0 and at most that time; at most {limit} steps are possible"
+        "a step of {step:?} over a time of {length:?}: it must be above 0 and at most that time; at most {limit} steps are possible"
     )]
     Step {
         /// The step asked for.
@@ -123,26 +123,20 @@ pub enum SolveError {
         limit: usize,
     },
     /// No step of those of equal length ends at a breakpoint.
-    #[error("no step ends at the breakpoint {t}: equal steps of {step} do not lead there")]
+    #[error("no step ends at the breakpoint {t:?}: equal steps of {step:?} do not lead there")]
     Breakpoint {
         /// The breakpoint.
         t: f64,
         /// The length of the steps.
         step: f64,
     },
-    /// Equal steps pass over what a function does within one of them.
-    #[error(
-        "at t = {t} a step of {step:.3e} passes over what {function} does; steps of {enough:.3e} would do there, or a method that chooses its own"
-    )]
-    PassedOver {
-        /// Begin of the step.
-        t: f64,
-        /// Its length.
-        step: f64,
-        /// The function, in the scene's names.
-        function: String,
-        /// Largest halved step that sees it there.
-        enough: f64,
+    /// No run can have this tolerance.
+    #[error("{}", tolerance_words(*tolerance, *least))]
+    Tolerance {
+        /// What was given.
+        tolerance: f64,
+        /// The least that can be given; the limit above is 1.
+        least: f64,
     },
     /// Something that is to vary is not in the scene.
     #[error(transparent)]
@@ -156,4 +150,11 @@ pub enum SolveError {
     /// The time integrator was called wrongly.
     #[error(transparent)]
     Call(#[from] CallError),
+}
+
+fn tolerance_words(tolerance: f64, least: f64) -> String {
+    match tolerance > 0.0 && tolerance < least {
+        true => format!("the tolerance {tolerance:e} is below round-off; the least is {least:e}"),
+        false => format!("the tolerance is {tolerance:?}; it must be above 0 and below 1"),
+    }
 }

@@ -8,9 +8,20 @@ use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::runs::{Decided, Pair, Run};
 use crate::{
-    Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of, setting,
-    solve,
+    Answer, Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of,
+    setting, solve,
 };
+
+/// Which free constants are fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fits {
+    /// None.
+    None,
+    /// Those of which it was asked whether they give a motion, and nothing was decided.
+    Undecided,
+    /// Those of all motions that differ.
+    All,
+}
 
 /// The best that free constants can do.
 pub struct Fit {
@@ -39,6 +50,7 @@ pub(crate) fn fits(
     runs: &mut [Run],
     pairs: &[Pair],
     decided: &[Decided],
+    fits: Fits,
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Vec<Fit>, SolveError> {
@@ -53,6 +65,11 @@ pub(crate) fn fits(
     }
     if let [first, others @ ..] = &removed[..] {
         wanted.extend(vakonomic.iter().chain(others).map(|&target| (*first, target)));
+    }
+    if fits == Fits::Undecided {
+        let open = |d: &Decided| !d.outcome.as_ref().is_ok_and(|found| found.answer() != Answer::Undecided);
+        let open: Vec<_> = decided.iter().filter(|d| open(d)).map(|d| (d.family, d.curve)).collect();
+        wanted.retain(|asked| open.contains(asked));
     }
     let mut fits = Vec::new();
     for (run, target) in wanted {

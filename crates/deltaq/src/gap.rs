@@ -177,12 +177,16 @@ pub fn compare_motions_by(
         Verdict::Undecided { because: stop.unwrap_or_default() }
     } else if relative < SAME_ESTIMATE {
         Verdict::Same
+    } else if scale <= CERTAINTY * estimate {
+        // nothing that an error could be relative to
+        let because = format!(
+            "at rest, as far as can be told: no way is over {CERTAINTY} times the error estimate {estimate:.1e}"
+        );
+        Verdict::Undecided { because }
     } else {
-        Verdict::Undecided {
-            because: format!(
-                "relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain"
-            ),
-        }
+        let because =
+            format!("relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain");
+        Verdict::Undecided { because }
     };
     Ok(Gap { verdict, end, certain_from, passes, largest, largest_by_coordinate, estimates, scale, points })
 }

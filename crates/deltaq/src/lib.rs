@@ -93,9 +93,10 @@ pub use decision::{Finding, Section};
 
 pub use charts::ChartChange;
 pub use choice::{
-    Choice, choices, constants_of, default_constants, derive, derive_at, forms, removal, removal_names, removals,
+    Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names,
+    removals,
 };
-pub use comparison::{Comparison, compare, compare_unfitted};
+pub use comparison::{Comparison, Extent, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;
@@ -106,7 +107,7 @@ pub use equations_text::{EquationStyle, equations_text, system_text};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use fit::best_fit;
-pub use fits::{Fit, FittedMotion};
+pub use fits::{Fit, Fits, FittedMotion};
 pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
 pub use gap::{
     CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,

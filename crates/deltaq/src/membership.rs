@@ -117,10 +117,12 @@ impl<'a> Pairing<'a> {
     pub fn decide(&self, end: f64) -> Result<Membership, SolveError> {
         let (system, start) = (&self.scene.system, &self.scene.start);
         let question = Question::new(system, &self.curve, &self.constants, &self.family)?;
-        let flow = question.flow(system, start, end);
-        let decision = decide_flow(&self.family, &flow, &DecisionSettings::default())?;
         let exact = self.exact_start()?;
         let proof = question.prove(&exact);
+        let flow = question.flow(system, start, end);
+        // the numbers only tell how far a motion misses a family in which it is proved not to be
+        let refuted = matches!(proof.this_start, Finding::None(_));
+        let decision = decide_flow(&self.family, &flow, &DecisionSettings { refuted, ..DecisionSettings::default() })?;
         // an identity would be one at almost every start
         let section = match proof.almost_every_start {
             Finding::None(_) => None,

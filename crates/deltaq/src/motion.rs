@@ -180,7 +180,7 @@ pub fn solve(
     let mut motion = Motion { work, projection, charts: changes, method: Some(chosen), ..motion };
     motion.form.fallbacks = fallbacks;
     let steps = [motion.kept.step_times(), motion.looser.step_times()];
-    let by = motion.method.as_ref().and_then(|chosen| chosen.method.order_in_steps());
+    let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), by);
     Ok(motion)
 }
@@ -253,7 +253,12 @@ pub fn solve_from(setting: Setting, choice: &Choice, settings: &Settings) -> Res
 impl Motion {
     /// It ends here: it cannot be read off behind.
     pub(crate) fn end_at(&mut self, t: f64, error: &SolveError) {
-        (self.end, self.ending) = (t, Ending::Stopped { t, cause: format!("it cannot be read off behind: {error}") });
+        self.stop_at(t, format!("it cannot be read off behind: {error}"));
+    }
+
+    /// It ends here, for this cause.
+    pub(crate) fn stop_at(&mut self, t: f64, cause: String) {
+        (self.end, self.ending) = (t, Ending::Stopped { t, cause });
     }
 
     /// Of the `kept` and the looser run, told apart by their order only; no work and no projections.

@@ -57,6 +57,7 @@ impl Prepared {
         constants: Vec<f64>,
         settings: &Settings,
     ) -> Result<Self, SolveError> {
+        settings.check()?;
         let t = setting.start.t;
         let mut values = StartValues::new(setting, &equations)?;
         values.set_constants(&constants);

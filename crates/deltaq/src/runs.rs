@@ -52,10 +52,9 @@ pub(crate) fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<Lead
     pairing.leading_term(&constants).ok().flatten()
 }
 
-/// Asks of Chetaev's motion whether it belongs to the other families, and of the vakonomic one whether it
-/// belongs to those of removals that have more than coordinates for their variables.
-pub(crate) fn decided(scene: &Scene, runs: &[Run]) -> Vec<Decided> {
-    let end = |i: usize| runs[i].outcome.as_ref().map_or(0.0, Motion::end);
+/// Families and motions: of Chetaev's it is asked whether it belongs to the other families, of the vakonomic
+/// one whether it belongs to those of removals that have more than coordinates for their variables.
+pub(crate) fn questions(scene: &Scene, runs: &[Run]) -> Vec<(usize, usize)> {
     let known = |i: usize| formulation(runs[i].choice.formulation).is_some();
     let has = |i: &usize| runs[*i].outcome.is_ok() && known(*i) && !scene.system.constraints.is_empty();
     let of = |name: &str| (0..runs.len()).filter(has).find(|&i| runs[i].choice.formulation == name);
@@ -71,10 +70,12 @@ pub(crate) fn decided(scene: &Scene, runs: &[Run]) -> Vec<Decided> {
     if let Some(curve) = of("vakonomic") {
         asked.extend(removed.iter().map(|&i| (i, curve)));
     }
-    let decide = |(family, curve): (usize, usize)| Decided {
-        family,
-        curve,
-        outcome: Pairing::new(scene, &runs[curve].choice, &runs[family].choice).and_then(|p| p.decide(end(curve))),
-    };
-    asked.into_iter().map(decide).collect()
+    asked
+}
+
+/// Whether the motion of the second run belongs to the family of the first.
+pub(crate) fn decide(scene: &Scene, runs: &[Run], (family, curve): (usize, usize)) -> Decided {
+    let end = runs[curve].outcome.as_ref().map_or(0.0, Motion::end);
+    let pairing = Pairing::new(scene, &runs[curve].choice, &runs[family].choice);
+    Decided { family, curve, outcome: pairing.and_then(|pairing| pairing.decide(end)) }
 }

@@ -4,7 +4,7 @@ use integrate::{Interrupt, Method, Options, Projection};
 use mechanics::{State, System};
 use scene::Scene;
 
-use crate::Form;
+use crate::{Form, SolveError};
 
 /// The tolerance of the second run over that of the first.
 pub const TIGHTER: f64 = 1e-2;
@@ -61,7 +61,28 @@ impl Default for Settings {
     }
 }
 
+/// Below this tolerance is round-off.
+pub const LEAST_TOLERANCE: f64 = 1e-15;
+
 impl Settings {
+    /// Refuses a tolerance with which no run would be right.
+    ///
+    /// # Errors
+    /// [`SolveError::Tolerance`].
+    ///
+    /// ```
+    /// use deltaq::Settings;
+    /// let refused = Settings { tolerance: 1e-300, ..Settings::default() }.check().unwrap_err();
+    /// assert_eq!(refused.to_string(), "the tolerance 1e-300 is below round-off; the least is 1e-15");
+    /// ```
+    pub fn check(&self) -> Result<(), SolveError> {
+        let tolerance = self.tolerance;
+        match (LEAST_TOLERANCE..1.0).contains(&tolerance) {
+            true => Ok(()),
+            false => Err(SolveError::Tolerance { tolerance, least: LEAST_TOLERANCE }),
+        }
+    }
+
     /// Of one run at `tolerance` that begins now.
     pub(crate) fn options(&self, tolerance: f64) -> Options {
         let interrupt = match self.time_limit {

@@ -7,7 +7,7 @@ use integrate::{StopCause, Work};
 use scene::Scene;
 
 use crate::constants::resolve;
-use crate::discrete_run::DiscreteRun;
+use crate::discrete_run::{DiscreteRun, PassedOver};
 use crate::trajectory::Trajectory;
 use crate::{Choice, Ending, Motion, Prepared, Seconds, Settings, SolveError, derive, setting};
 
@@ -57,12 +57,13 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// Their difference estimates the error of the longer ones. What is read off at a time, multipliers too, are
 /// the derived outputs at the discrete motion's positions, velocities (and multipliers or costates).
 ///
+/// It stops before a step of either run within which a gauge ([`Compiled::gauges`](equations::Compiled))
+/// grows too much.
+///
 /// Free constants that are natural at a horizon are found by the time loop, as they say.
 ///
 /// # Errors
-/// [`SolveError::Step`], [`SolveError::Breakpoint`]; [`SolveError::PassedOver`] where a gauge
-/// ([`Compiled::gauges`](equations::Compiled)) grows too much within a step of either run; those of
-/// [`discrete_of`] and of [`crate::solve`].
+/// [`SolveError::Step`], [`SolveError::Breakpoint`]; those of [`discrete_of`] and of [`crate::solve`].
 ///
 /// ```
 /// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
@@ -77,7 +78,7 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &Settings) -> Result<Motion, SolveError> {
-    let (length, round_off) = (scene.duration.abs(), 1e-9);
+    let (length, direction, round_off) = (scene.duration.abs(), scene.duration.signum(), 1e-9);
     // a step that divides the time up to round-off divides it; the other run has longer ones
     let count = (length / steps.step - round_off).ceil().max(2.0);
     let possible = steps.step > 0.0 && steps.step <= length * (1.0 + round_off);
@@ -111,7 +112,7 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
     let (kept, looser) = (run(count)?, run(count.div_ceil(2))?);
     let integrate = clock.elapsed().as_secs_f64();
     // a motion ends where the first of its runs ends, for that run's reason
-    let before = (kept.end() - looser.end()) * scene.duration.signum() > 0.0;
+    let before = (kept.end() - looser.end()) * direction > 0.0;
     let ending = match (&kept.stop, &looser.stop) {
         (_, Some(error)) if before => Ending::unconfirmed(looser.end(), &error.to_string()),
         (Some(error), _) | (None, Some(error)) => Ending::Stopped { t: kept.end(), cause: error.to_string() },
@@ -123,10 +124,14 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
         DiscreteRun::new(run, values, &prepared.equations, &scene.system)
     });
     let step = scene.duration / count as f64;
-    runs.iter_mut().rev().try_for_each(|run| run.look(&mut prepared, step))?;
+    let passed_over = runs.iter_mut().filter_map(|run| run.passed_over(&mut prepared, step));
+    let passed_over = passed_over.min_by(|a, b| (direction * a.t).total_cmp(&(direction * b.t)));
     let runs = runs.map(|run| Trajectory::Discrete(Box::new(run)));
     let seconds = Seconds { derive, compile, integrate };
     let mut motion = Motion::of(prepared, ending, runs, seconds);
     motion.work = work;
+    if let Some(PassedOver { t, cause }) = passed_over.filter(|found| direction * (found.t - motion.end()) < 0.0) {
+        motion.stop_at(t, cause);
+    }
     Ok(motion)
 }

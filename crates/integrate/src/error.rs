@@ -23,7 +23,7 @@ pub enum CallError {
         limit: usize,
     },
     /// The relative tolerance is not a positive finite number below 1.
-    #[error("the relative tolerance is {found}, it must be above 0 and below {limit}")]
+    #[error("the relative tolerance is {found:?}, it must be above 0 and below {limit}")]
     RelativeTolerance {
         /// What was given.
         found: f64,
@@ -31,7 +31,7 @@ pub enum CallError {
         limit: f64,
     },
     /// The absolute tolerance is not a positive finite number.
-    #[error("the absolute tolerance is {found}, it must be finite and above {limit}")]
+    #[error("the absolute tolerance is {found:?}, it must be finite and above {limit}")]
     AbsoluteTolerance {
         /// What was given.
         found: f64,
@@ -65,7 +65,7 @@ pub enum CallError {
         found: f64,
     },
     /// The start time or the end time is NaN or infinite.
-    #[error("the interval from {start} to {end} is not finite")]
+    #[error("the interval from {start:?} to {end:?} is not finite")]
     TimeNotFinite {
         /// Start time.
         start: f64,
@@ -73,7 +73,7 @@ pub enum CallError {
         end: f64,
     },
     /// Start and end are the same, or too close for a step between them.
-    #[error("the interval from {start} to {end} is shorter than the spacing {limit} needed between them")]
+    #[error("the interval from {start:?} to {end:?} is shorter than the spacing {limit:?} needed between them")]
     EmptyInterval {
         /// Start time.
         start: f64,
@@ -94,7 +94,7 @@ pub enum CallError {
         feature: &'static str,
     },
     /// The longest step is not above 0.
-    #[error("the longest step is {found}, it must be above {limit}")]
+    #[error("the longest step is {found:?}, it must be above {limit}")]
     MaxStep {
         /// [`crate::Options::max_step`].
         found: f64,
@@ -124,7 +124,7 @@ pub enum CallError {
 #[non_exhaustive]
 pub enum DenseError {
     /// The time lies outside of what was integrated.
-    #[error("the time {t} is outside of what was integrated, {start} to {end}")]
+    #[error("the time {t:?} is outside of what was integrated, {start:?} to {end:?}")]
     OutsideRange {
         /// The time asked for.
         t: f64,
@@ -134,7 +134,7 @@ pub enum DenseError {
         end: f64,
     },
     /// The run was made with [`crate::Dense::EndOnly`].
-    #[error("the time {t} is between the ends {start} and {end}, and only they were stored")]
+    #[error("the time {t:?} is between the ends {start:?} and {end:?}, and only they were stored")]
     NotStored {
         /// The time asked for.
         t: f64,

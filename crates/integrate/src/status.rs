@@ -91,7 +91,7 @@ pub enum StopCause {
         component: usize,
     },
     /// The error estimate asked for a step that no longer moves the time.
-    #[error("a step of length {step} is asked for, the shortest possible is {limit}")]
+    #[error("a step of length {step:e} is asked for, the shortest possible is {limit:e}")]
     StepTooSmall {
         /// The length of the step asked for.
         step: f64,
@@ -124,7 +124,7 @@ pub enum StopCause {
     #[error("interrupted")]
     Interrupted,
     /// The time that [`crate::Interrupt::within`] allows is over.
-    #[error("the time limit of {seconds} s is over")]
+    #[error("the time limit of {seconds:?} s is over")]
     TimeLimit {
         /// The limit, wall clock.
         seconds: f64,

@@ -1,4 +1,4 @@
-//! Pictures for the reports: curves over two axes, written as SVG.
+//! Pictures for the reports: curves over two axes, written as SVG; for terminals in characters.
 //!
 //! A [`Picture`] is one plot: a gap over time on two logarithmic axes with its certainty limit, or plane
 //! motions over one another ([`Picture::plane`]); or several over one shared horizontal axis
@@ -23,6 +23,7 @@ mod axis;
 mod draw;
 mod frame;
 mod layout;
+mod plain;
 mod style;
 #[cfg(test)]
 mod tests;
@@ -169,5 +170,14 @@ impl Picture {
     /// [`PictureError`], where an axis cannot be drawn.
     pub fn to_svg(&self) -> Result<String, PictureError> {
         draw::document(self)
+    }
+
+    /// The first panel in characters: lines of at most `width`, `height` rows of curves, axes and a legend;
+    /// the first curve in letters `a`, the second in `b`, thresholds dotted.
+    ///
+    /// # Errors
+    /// [`PictureError`], where an axis cannot be drawn.
+    pub fn to_text(&self, width: usize, height: usize) -> Result<String, PictureError> {
+        plain::text(self, width, height)
     }
 }

@@ -46,6 +46,7 @@ pub(crate) fn settings(
         interrupt: Some(interrupt.clone()),
         ..Settings::default()
     };
+    settings.check().map_err(errors::solve)?;
     Ok((settings, interrupt))
 }
 

@@ -2,7 +2,7 @@
 
 use deltaq::{Answer, Gap, Membership, THRESHOLDS, Verdict};
 use numpy::PyArrayDyn;
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
@@ -343,16 +343,8 @@ pub(crate) struct Compared {
 pub(crate) fn compare(scene: Scene, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
     let choices = deltaq::choices(&scene);
     let compared = deltaq::compare(scene, choices, Vec::new(), settings)?;
-    let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided } = compared;
+    let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
     Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, decided, scene })
-}
-
-/// Refuses a tolerance with which every run would be refused.
-pub(crate) fn check_tolerance(tolerance: f64) -> PyResult<()> {
-    if tolerance > 0.0 && tolerance < 1.0 {
-        return Ok(());
-    }
-    Err(PyValueError::new_err(format!("tolerance is {tolerance}; it must be above 0 and below 1")))
 }

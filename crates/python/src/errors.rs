@@ -43,7 +43,7 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         Error::Compile(_) => CompileError::new_err(text),
         Error::AtStart(_) | Error::Reading { .. } => EvaluationError::new_err(text),
         Error::Boundary { .. } | Error::Search { .. } | Error::Ended { .. } => BoundaryError::new_err(text),
-        Error::Call(_) => CallError::new_err(text),
+        Error::Call(_) | Error::Tolerance { .. } => CallError::new_err(text),
         Error::ConstantCount { .. }
         | Error::ConstantNotFinite { .. }
         | Error::NoNaturalCondition { .. }
@@ -53,7 +53,6 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::NoPrinciple { .. }
         | Error::Step { .. }
         | Error::Breakpoint { .. }
-        | Error::PassedOver { .. }
         | Error::Member { .. } => SolveError::new_err(text),
     }
 }

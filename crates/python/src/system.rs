@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{Array, FloatList, Floats, array, at_points};
-use crate::comparison::{Comparison, check_tolerance, compare};
+use crate::comparison::{Comparison, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
 use crate::linearization::Linearization;
@@ -382,7 +382,6 @@ impl System {
         max_step: Option<f64>,
         time_limit: Option<f64>,
     ) -> PyResult<Comparison> {
-        check_tolerance(tolerance)?;
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
         let scene = self.scene().clone();
         let compared = background::run(py, &interrupt, move || compare(scene, &settings))?;

@@ -12,6 +12,13 @@ pub fn progress(length: usize, quiet: bool) -> ProgressBar {
     bar
 }
 
+/// What is done and for how long, drawn on a terminal unless `quiet`.
+pub fn spinner(quiet: bool) -> ProgressBar {
+    let line = if quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+    let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
+    line.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
+}
+
 /// 0: one a processor.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 

@@ -50,6 +50,7 @@ mod error;
 pub mod format;
 mod load;
 mod names;
+mod number;
 mod order;
 mod overrides;
 mod removal;
@@ -62,6 +63,7 @@ mod write;
 
 pub use error::{NameFault, SceneError, SceneErrorKind, Unavailable};
 pub use load::SIZE_LIMIT;
+pub use number::number;
 pub use scene::Scene;
 pub use starts::{Start, Starts};
 pub use write::quoted;

@@ -7,6 +7,7 @@ use integrate::Method;
 use serde_json::{Value, json};
 
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
+use crate::report::files::link;
 use crate::report::numbers::{enumerate, short};
 use crate::report::{File, Table};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
@@ -52,7 +53,8 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
         match picture(bench) {
             Ok(text) => {
                 files.push(File { path: format!("error-vs-time/{}.svg", bench.scene).into(), text });
-                let _ = writeln!(page, "![Error over run time](error-vs-time/{}.svg)\n", bench.scene);
+                let _ =
+                    writeln!(page, "!{}\n", link("Error over run time", &format!("error-vs-time/{}.svg", bench.scene)));
             }
             Err(PictureError::NothingToDraw { .. }) => page += "Nothing could be measured.\n",
             Err(error) => return Err(error.into()),

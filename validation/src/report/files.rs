@@ -15,6 +15,14 @@ pub struct File {
     pub text: String,
 }
 
+/// A link in Markdown: of its path all but letters, digits and `-._/` is percent-encoded.
+pub(crate) fn link(text: &str, path: &str) -> String {
+    let text = text.replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._/".contains(&byte);
+    let encoded = |byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
+    format!("[{text}]({})", path.bytes().map(encoded).collect::<String>())
+}
+
 /// Writes every file beside its place first; only when all are written are they moved into place.
 ///
 /// # Errors
@@ -52,4 +60,15 @@ fn make_readable(file: &fs::File) -> Result<()> {
 #[cfg(not(unix))]
 fn make_readable(_: &fs::File) -> Result<()> {
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::link;
+
+    #[test]
+    fn names_of_files_do_not_end_links() {
+        assert_eq!(link("my [1].svg", "a/my [1](ü).svg"), "[my \\[1\\].svg](a/my%20%5B1%5D%28%C3%BC%29.svg)");
+        assert_eq!(link("x", "ball-in-cone_2.svg"), "[x](ball-in-cone_2.svg)");
+    }
 }

@@ -3,73 +3,12 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Comparison, EquationStyle, Pair, Verdict, derive_at, equations_text};
+use deltaq::{Comparison, EquationStyle, derive_at, equations_text};
 
-use crate::report::numbers::{enumerate, precise, short};
-use crate::report::{Table, membership, tables};
+use crate::report::files::link;
+use crate::report::numbers::{precise, short};
+use crate::report::{Headline, Table, membership, tables};
 use random::substitution;
-
-/// The answer in a few sentences: do the formulations agree; if not, from when, by how much, and why.
-pub fn answer(comparison: &Comparison) -> String {
-    let main: Vec<usize> =
-        ["chetaev", "vakonomic", "removed-constraint"].iter().filter_map(|f| comparison.run(f)).collect();
-    let label = |i: usize| comparison.runs[i].choice.label.clone();
-    let pairs: Vec<(usize, usize)> = (0..main.len())
-        .flat_map(|i| (i + 1..main.len()).map(move |j| (i, j)))
-        .map(|(i, j)| (main[i], main[j]))
-        .collect();
-    let found: Vec<&Pair> = pairs.iter().filter_map(|&(a, b)| comparison.pair(a, b)).collect();
-    let with = |verdict: Verdict| found.iter().filter(|p| p.gap.verdict == verdict).count();
-    if with(Verdict::Same) == pairs.len() && !pairs.is_empty() {
-        return "All formulations give the same motion.".into();
-    }
-    let mut sentences = Vec::new();
-    if with(Verdict::Different) == pairs.len() {
-        let names: Vec<String> = main.iter().map(|&i| label(i)).collect();
-        sentences.push(format!("{} give {} different motions.", enumerate(&names), names.len()));
-    } else {
-        for p in found.iter().filter(|p| p.gap.verdict == Verdict::Same) {
-            sentences.push(format!("{} and {} give the same motion.", label(p.first), label(p.second)));
-        }
-    }
-    for p in &found {
-        let names = format!("{} and {}", label(p.first), label(p.second));
-        match &p.gap.verdict {
-            Verdict::Different => sentences.push(format!(
-                "{names}: {} largest gap {}.",
-                p.gap.passes[1]
-                    .map_or("apart by less than 1e-3,".into(), |t| format!("1e-3 apart after {} s,", short(t))),
-                short(p.gap.largest)
-            )),
-            Verdict::Undecided { because } => sentences.push(format!("{names}: undecided, {because}.")),
-            Verdict::Same => {}
-        }
-    }
-    for &i in &main {
-        if let Err(error) = &comparison.runs[i].outcome {
-            sentences.push(format!("No motion: {error}."));
-        }
-    }
-    sentences.extend(membership::sentences(comparison));
-    sentences.join(" ")
-}
-
-/// Why the motions part, or do not.
-fn why(comparison: &Comparison) -> String {
-    let mut text = format!("Constraint: {}.", comparison.integrability);
-    let pair = comparison.run("chetaev").zip(comparison.run("vakonomic")).and_then(|(a, b)| comparison.pair(a, b));
-    if let Some((predicted, measured)) = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref())) {
-        let _ = write!(
-            text,
-            " Its curvature at the start predicts that Chetaev and vakonomic part as {} t^{}; measured: {} t^{:.2}.",
-            precise(predicted.length),
-            predicted.exponent,
-            precise(measured.length),
-            measured.exponent
-        );
-    }
-    text
-}
 
 /// The whole page, in Markdown.
 ///
@@ -78,8 +17,8 @@ fn why(comparison: &Comparison) -> String {
 pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<String> {
     let mut page = String::new();
     let scene = &comparison.scene;
-    let _ = writeln!(page, "# {}\n\n**{}**\n", scene.title, answer(comparison));
-    let _ = writeln!(page, "{}", why(comparison));
+    let Headline { verdict, why, sure } = Headline::of(comparison);
+    let _ = writeln!(page, "# {}\n\n**{verdict}**\n\n{why}\n\n{sure}", scene.title);
     if !scene.source.is_empty() {
         let _ = writeln!(page, "\nSource: {}.", scene.source.trim_end_matches('.'));
     }
@@ -108,7 +47,7 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
         "\nError estimate: largest difference, in the kinetic metric, to a run at a hundred times larger tolerance.\n";
     page += "\n## Motions\n";
     for path in pictures {
-        let _ = writeln!(page, "\n![{path}]({path})");
+        let _ = writeln!(page, "\n!{}", link(path, path));
     }
     let _ = writeln!(page, "\n## Where the motions part\n\n{}", tables::pairs(comparison));
     page += "Gaps are lengths in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$; times in s. Two motions are *different* only where the gap is over \

@@ -53,12 +53,7 @@ pub(crate) fn runs(comparison: &Comparison) -> Table {
                 };
                 let chart = |c: &ChartChange| format!("; by {} from {} s on", c.by, precise(c.t));
                 let ended = ended + &motion.charts.iter().map(chart).collect::<String>();
-                let estimate = comparison
-                    .pairs
-                    .iter()
-                    .filter(|p| p.first == i || p.second == i)
-                    .map(|p| if p.first == i { p.gap.estimates[0] } else { p.gap.estimates[1] })
-                    .fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| a.max(b))));
+                let estimate = comparison.estimate(i);
                 let constants = if constants.is_empty() { "none".into() } else { constants.join(", ") };
                 let (estimate, work) = (or_dash(estimate), &motion.work);
                 let method = motion.method.as_ref().map_or("equal steps", |chosen| chosen.method.name());

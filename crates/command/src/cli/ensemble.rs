@@ -24,7 +24,7 @@ pub struct MotionArguments {
     #[command(flatten)]
     pub free: FreeArguments,
     /// Tolerance. A second run has a hundredth of it; the difference is the error estimate.
-    #[arg(long, default_value_t = 1e-10, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-10", allow_negative_numbers = true)]
     pub tolerance: f64,
     /// Times to print: `a,b,c` or `from:to:count`. If left out, 101 equidistant ones; of an ensemble the end.
     #[arg(long, value_name = "TIMES", allow_hyphen_values = true)]
@@ -43,7 +43,7 @@ pub struct MotionArguments {
 #[derive(Args, Debug)]
 pub struct FreeArguments {
     /// Vakonomic multipliers at the start, one a constraint.
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub mu0: Option<Vec<f64>>,
     /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
     #[arg(long, value_name = "NAME")]
@@ -80,7 +80,7 @@ pub struct EnsembleArguments {
     #[arg(long, value_name = "FILE")]
     pub members: Option<PathBuf>,
     /// Equidistant values of one of these, both ends included; several combine with each other and the file.
-    #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range, required_unless_present = "members")]
+    #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range)]
     pub vary: Vec<Range>,
     /// File to write; to the terminal if left out.
     #[arg(long, value_name = "FILE")]
@@ -111,9 +111,10 @@ fn range(text: &str) -> Result<Range, String> {
 
 /// The range of a name, a first value, a last one and a number of values.
 pub(super) fn finite_range(text: &str, (name, from, to, count): (&str, &str, &str, &str)) -> Result<Range, String> {
-    let number = |x: &str| match x.trim().parse::<f64>() {
+    let number = |x: &str| match scene::number(x) {
         Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{x}` in `{text}` is not a finite number")),
+        Ok(_) => Err(format!("`{x}` in `{text}` is not a finite number")),
+        Err(error) => Err(format!("`{x}` in `{text}`: {error}")),
     };
     let count: usize = count.trim().parse().map_err(|_| format!("`{count}` in `{text}` is not a count"))?;
     if !(1..=MOST_MEMBERS).contains(&count) {

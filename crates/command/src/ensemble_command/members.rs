@@ -26,6 +26,9 @@ impl Members {
     pub(crate) fn of(arguments: &EnsembleArguments, scene: &Scene) -> Result<Members> {
         let mut members = match &arguments.members {
             Some(path) => Members::read(path)?,
+            None if arguments.vary.is_empty() => {
+                bail!("nothing varies: give --vary NAME=FROM..TO:COUNT, --members FILE, or both")
+            }
             None => Members { count: 1, ..Members::default() },
         };
         for range in &arguments.vary {

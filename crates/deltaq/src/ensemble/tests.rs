@@ -129,7 +129,7 @@ fn what_is_no_member_is_refused() {
     for tolerance in [0.0, 1.0, -1e-9, f64::NAN, f64::INFINITY] {
         let settings = Settings { tolerance, ..settings() };
         let refused = Ensemble::new(&base, &chetaev, &[], &settings);
-        assert!(matches!(refused, Err(SolveError::Call(_))), "tolerance {tolerance}");
+        assert!(matches!(refused, Err(SolveError::Tolerance { .. })), "tolerance {tolerance}");
     }
     let natural = choice(&base, "removed-constraint");
     assert!(Ensemble::new(&base, &natural, &["g"], &settings()).is_err());

@@ -1,0 +1,81 @@
+//! Scenes on the command line, and what only reads or shows them.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use scene::Scene;
+
+use super::TextOrJson;
+use validation::catalogue::{self, NotFound};
+
+/// A scene with changes.
+#[derive(Args, Debug)]
+pub struct SceneArguments {
+    /// Built-in name (`n-trailer-5` for a car with 5 trailers), scene file path, or `-` for standard input.
+    pub scene: String,
+    #[command(flatten)]
+    pub set: Overrides,
+}
+
+impl SceneArguments {
+    /// The scene.
+    pub(crate) fn find(&self) -> Result<Scene, NotFound> {
+        catalogue::find(&self.scene, &self.set.overrides)
+    }
+}
+
+/// What is changed in a scene.
+#[derive(Args, Debug)]
+pub struct Overrides {
+    /// Replace a parameter (`g=1.6`), a start value (`x=pi/3`, `x'=2`) or `duration`.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub overrides: Vec<(String, f64)>,
+}
+
+/// `deltaq new`.
+#[derive(Args, Debug)]
+pub struct NewArguments {
+    /// File to write, which must not exist; to the terminal if left out.
+    pub file: Option<PathBuf>,
+    /// Built-in scene to begin with, in the place of the template.
+    #[arg(long, value_name = "SCENE")]
+    pub from: Option<String>,
+    /// The JSON schema of scene files, for editors, in the place of the template.
+    #[arg(long, conflicts_with = "from")]
+    pub schema: bool,
+}
+
+/// `deltaq check`.
+#[derive(Args, Debug)]
+pub struct CheckArguments {
+    /// Scene files, `-` for standard input, or built-in names.
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub set: Overrides,
+}
+
+/// `deltaq show`.
+#[derive(Args, Debug)]
+pub struct ShowArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Formulations and forms to show, by name; all if left out, and of equations over 30 kB the size only.
+    #[arg(short, long, value_name = "NAME,…", value_delimiter = ',')]
+    pub formulation: Vec<String>,
+    /// Formulas in LaTeX.
+    #[arg(long)]
+    pub latex: bool,
+    /// The text of the scene file, and nothing else.
+    #[arg(long, conflicts_with_all = ["latex", "format", "overrides"])]
+    pub source: bool,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub format: TextOrJson,
+}
+
+fn assignment(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=VALUE"))?;
+    let number = scene::number(value).map_err(|error| format!("`{value}` in `{text}`: {error}"))?;
+    Ok((name.trim().to_string(), number))
+}

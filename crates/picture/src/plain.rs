@@ -1,0 +1,117 @@
+//! The first panel of a picture in characters, for terminals: a letter a curve, dots for a threshold.
+
+use super::axis::{Direction, Interval, TICK_SIZE, around, given, measure, ticks};
+use super::{Axis, Curve, Picture, PictureError, Style};
+
+/// Columns of the labels of the vertical axis, and of the least plot beside them.
+const LABELS: usize = 7;
+const LEAST: usize = 20;
+
+/// Pixels of a character, by which ticks are chosen.
+const CELL: (f64, f64) = (0.6 * TICK_SIZE, 1.5 * TICK_SIZE);
+
+/// Curves are `a`, `b`, … in their order, those before over those behind.
+pub(super) fn text(picture: &Picture, width: usize, height: usize) -> Result<String, PictureError> {
+    let curves = picture.panels.first().map_or(&[][..], |panel| &panel.curves);
+    let vertical = picture.panels.first().map_or(&picture.x, |panel| &panel.y);
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let x = range(picture, &picture.x, points().map(|p| p.0))?;
+    let y = range(picture, vertical, points().map(|p| p.1))?;
+    let (columns, rows) = (width.saturating_sub(LABELS + 1).max(LEAST), height.max(2));
+    let cell = |interval: Interval, at: f64, count: usize| {
+        let fraction = interval.fraction(at);
+        (0.0..=1.0).contains(&fraction).then(|| (fraction * (count - 1) as f64).round() as usize)
+    };
+    let mut canvas = vec![vec![' '; columns]; rows];
+    let mark =
+        |(i, curve): (u8, &Curve)| if curve.style == Style::Threshold { '·' } else { char::from(b'a' + i % 26) };
+    let marks: Vec<char> = (0..=u8::MAX).zip(curves).map(mark).collect();
+    for (curve, &mark) in curves.iter().zip(&marks).rev() {
+        let mut before = None;
+        for &(h, v) in &curve.points {
+            let place = measure(picture.x.scale, h).ok().zip(measure(vertical.scale, v).ok());
+            let place = place.and_then(|(h, v)| Some((cell(x, h, columns)?, cell(y, v, rows)?)));
+            if let Some((column, row)) = place {
+                // a steep curve has no gaps
+                let from =
+                    before.filter(|&(c, _): &(usize, usize)| c.abs_diff(column) <= 1).map_or(row, |(_, row)| row);
+                (from.min(row)..=from.max(row)).for_each(|row| canvas[rows - 1 - row][column] = mark);
+            }
+            before = place;
+        }
+    }
+    let labels = ticks(vertical.scale, y, rows as f64 * CELL.1, Direction::Vertical);
+    let mut lines =
+        vec![[Some(vertical.label.clone()), labels.factor].into_iter().flatten().collect::<Vec<_>>().join(" ")];
+    for (i, line) in canvas.iter().enumerate() {
+        let tick = labels.labelled.iter().find(|tick| cell(y, tick.at, rows) == Some(rows - 1 - i));
+        let (label, edge) = tick.map_or(("", '│'), |tick| (&tick.label[..], '┤'));
+        lines.push(format!("{label:>LABELS$}{edge}{}", line.iter().collect::<String>()));
+    }
+    let labels = ticks(picture.x.scale, x, columns as f64 * CELL.0, Direction::Horizontal);
+    let (mut rule, mut under) = (vec!['─'; columns], vec![' '; LABELS + 1 + columns + LABELS]);
+    for tick in &labels.labelled {
+        let Some(column) = cell(x, tick.at, columns) else { continue };
+        rule[column] = '┬';
+        let begin = LABELS + 1 + column - tick.label.chars().count() / 2;
+        tick.label.chars().zip(begin..).for_each(|(c, place)| under[place] = c);
+    }
+    lines.push(format!("{:LABELS$}└{}", "", rule.iter().collect::<String>()));
+    lines.push(under.iter().collect());
+    let what = [Some(picture.x.label.clone()), labels.factor].into_iter().flatten().collect::<Vec<_>>().join(" ");
+    lines.push(format!("{:LABELS$} {what}", ""));
+    for (curve, mark) in curves.iter().zip(&marks) {
+        lines.push(format!("{:LABELS$} {mark} {}", "", curve.label));
+    }
+    Ok(lines.iter().map(|line| line.trim_end().to_owned() + "\n").collect())
+}
+
+/// The range of an axis: as given, or around these values.
+fn range(picture: &Picture, axis: &Axis, values: impl Iterator<Item = f64> + Clone) -> Result<Interval, PictureError> {
+    if let Some(interval) = given(axis)? {
+        return Ok(interval);
+    }
+    let measures = values.clone().filter_map(|value| measure(axis.scale, value).ok());
+    around(axis.scale, measures, 0.0).ok_or_else(|| {
+        let left_out = |wanted| values.clone().filter(|&value| measure(axis.scale, value) == Err(wanted)).count();
+        PictureError::NothingToDraw {
+            title: picture.title.clone(),
+            axis: axis.label.clone(),
+            not_finite: left_out(super::axis::LeftOut::NotFinite),
+            not_positive: left_out(super::axis::LeftOut::NotPositive),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Axis, Curve, Picture, PictureError, Style};
+
+    fn line(label: &str, style: Style, value: impl Fn(f64) -> f64) -> Curve {
+        let points = (0..=300).map(|i| f64::from(i) / 30.0).map(|t| (t, value(t))).collect();
+        Curve { label: label.into(), style, points }
+    }
+
+    #[test]
+    fn a_decade_is_a_row() {
+        let curves =
+            vec![line("grows", Style::Vakonomic, |t| 10f64.powf(t - 10.0)), line("limit", Style::Threshold, |_| 1e-10)];
+        let text = Picture::new("gap", Axis::linear("t (s)"), Axis::log("gap"), curves).to_text(50, 11).unwrap();
+        let rows: Vec<&str> = text.lines().collect();
+        assert_eq!(rows[0], "gap");
+        assert!(rows[1].starts_with("    10⁰┤") && rows[1].ends_with('a'), "{text}");
+        assert!(rows[10].starts_with("   10⁻⁹┤") && rows[11].contains("···"), "{text}");
+        let column = |row: &str| row.chars().position(|c| c == 'a').expect("the curve");
+        // ten decades in 42 columns, one after the other
+        assert!((1..11).all(|i| column(rows[i]) - column(rows[i + 1]) <= 5 && column(rows[i]) > column(rows[i + 1])));
+        assert!(text.contains("        a grows\n        · limit\n"), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 50), "{text}");
+    }
+
+    #[test]
+    fn nothing_is_refused() {
+        let curves = vec![line("none", Style::Vakonomic, |_| 0.0)];
+        let refused = Picture::new("gap", Axis::linear("t"), Axis::log("gap"), curves).to_text(80, 12);
+        assert!(matches!(refused, Err(PictureError::NothingToDraw { not_positive: 301, .. })), "{refused:?}");
+    }
+}

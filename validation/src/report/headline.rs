@@ -1,0 +1,186 @@
+//! What is said of a scene first: the same or different, why, and how sure that is.
+//!
+//! Everything follows from the rows of the table of pairs, those of the control left out: no sentence is
+//! about more motions than its rows are.
+
+use deltaq::{Comparison, Pair, Verdict, formulation};
+use equations::Role;
+
+use crate::report::membership;
+use crate::report::numbers::{enumerate, precise, short};
+
+/// Three answers, each in a few sentences.
+pub struct Headline {
+    /// The same or different, and from when.
+    pub verdict: String,
+    /// Why.
+    pub why: String,
+    /// How sure that is; whether free constants could bring the motions together.
+    pub sure: String,
+}
+
+impl Headline {
+    /// Of what has been compared so far.
+    pub fn of(comparison: &Comparison) -> Headline {
+        let verdict = [verdicts(comparison), without_motion(comparison)].concat().join(" ");
+        let sure: Vec<String> = membership::sentences(comparison).into_iter().chain(errors(comparison)).collect();
+        Headline { verdict, why: why(comparison).join(" "), sure: sure.join(" ") }
+    }
+}
+
+fn label(comparison: &Comparison, run: usize) -> &str {
+    &comparison.runs[run].choice.label
+}
+
+/// Whether a run is of the table of formulations, not the control.
+fn is_in_table(comparison: &Comparison, run: usize) -> bool {
+    formulation(comparison.runs[run].choice.formulation).is_some()
+}
+
+/// The pairs without the control.
+pub(crate) fn rows(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
+    comparison.pairs.iter().filter(|p| is_in_table(comparison, p.first) && is_in_table(comparison, p.second))
+}
+
+/// Motions in classes: all rows between two of a class say the same, and each is in one of them.
+fn classes(comparison: &Comparison) -> Vec<Vec<usize>> {
+    let verdict = |a: usize, b: usize| comparison.pair(a, b).map(|p| p.gap.verdict == Verdict::Same);
+    let mut classes: Vec<Vec<usize>> = Vec::new();
+    for run in 0..comparison.runs.len() {
+        if comparison.runs[run].outcome.is_err() || !is_in_table(comparison, run) {
+            continue;
+        }
+        let joins = |class: &&mut Vec<usize>| {
+            let found: Vec<bool> = class.iter().filter_map(|&other| verdict(run, other)).collect();
+            !found.is_empty() && found.iter().all(|same| *same)
+        };
+        match classes.iter_mut().find(joins) {
+            Some(class) => class.push(run),
+            None => classes.push(vec![run]),
+        }
+    }
+    classes
+}
+
+/// Labels of a class; that a formulation agrees with a second form of itself goes without saying.
+fn names(comparison: &Comparison, class: &[usize]) -> Vec<String> {
+    let second = |i: &usize| class.len() > 1 && comparison.runs[*i].choice.formulation == "vakonomic-costate";
+    class.iter().filter(|i| !second(i)).map(|&i| label(comparison, i).to_owned()).collect()
+}
+
+fn verdicts(comparison: &Comparison) -> Vec<String> {
+    let classes = classes(comparison);
+    let names = |class: &[usize]| names(comparison, class);
+    let across = |p: &&Pair| !classes.iter().any(|class| class.contains(&p.first) && class.contains(&p.second));
+    let refused = comparison.runs.iter().any(|run| run.outcome.is_err());
+    let (mut sentences, mut undecided) = (Vec::new(), Vec::new());
+    match &classes[..] {
+        [] => {}
+        [class] if names(class).len() == 1 => sentences.push(alone(comparison, class[0])),
+        [_] if !refused && rows(comparison).all(|p| p.gap.verdict == Verdict::Same) => {
+            return vec!["All formulations give the same motion.".into()];
+        }
+        [_, _, ..] if rows(comparison).filter(across).all(|p| p.gap.verdict == Verdict::Different) => {
+            let each: Vec<String> = classes.iter().map(|class| names(class).join(" = ")).collect();
+            sentences.push(format!("{} different motions: {}.", classes.len(), each.join("; ")));
+        }
+        several => {
+            let shared = several.iter().map(|class| names(class)).filter(|names| names.len() > 1);
+            sentences.extend(shared.map(|names| format!("{} give the same motion.", enumerate(&names))));
+        }
+    }
+    let first = |name: &str| comparison.run(name);
+    let main = [first("chetaev"), first("vakonomic"), first("removed-constraint")];
+    for p in rows(comparison) {
+        let both = format!("{} and {}", label(comparison, p.first), label(comparison, p.second));
+        match &p.gap.verdict {
+            Verdict::Different if [p.first, p.second].iter().all(|i| main.contains(&Some(*i))) => {
+                let when = match p.gap.passes[1] {
+                    Some(t) => format!("1e-3 apart after {} s", short(t)),
+                    None => "apart by less than 1e-3".into(),
+                };
+                sentences.push(format!("{both}: {when}, largest gap {}.", short(p.gap.largest)));
+            }
+            Verdict::Undecided { because } => undecided.push((because.clone(), both)),
+            _ => {}
+        }
+    }
+    sentences.extend(by_reason(undecided).iter().map(|(why, of)| format!("{}: undecided, {why}.", of.join("; "))));
+    sentences
+}
+
+/// What has the same reason, together, in the order of the first.
+fn by_reason(all: Vec<(String, String)>) -> Vec<(String, Vec<String>)> {
+    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
+    for (reason, of) in all {
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, named)) => named.push(of),
+            None => reasons.push((reason, vec![of])),
+        }
+    }
+    reasons
+}
+
+/// One motion, with nothing to compare it with.
+fn alone(comparison: &Comparison, run: usize) -> String {
+    let label = label(comparison, run);
+    let Ok(motion) = &comparison.runs[run].outcome else { return String::new() };
+    let what = if comparison.runs.len() > 1 { "Only this formulation has a motion" } else { "One motion" };
+    format!("{what}: {label}, to {} s.", precise(motion.end()))
+}
+
+/// Which formulations have no motion, and why.
+fn without_motion(comparison: &Comparison) -> Vec<String> {
+    let in_table = comparison.runs.iter().filter(|run| formulation(run.choice.formulation).is_some());
+    let refused = in_table.filter_map(|run| {
+        // a reason may begin with the name of the formulation
+        let (reason, name) = (run.outcome.as_ref().err()?.to_string(), format!("{}: ", run.choice.formulation));
+        Some((reason.strip_prefix(&name).unwrap_or(&reason).to_owned(), run.choice.label.clone()))
+    });
+    let told = by_reason(refused.collect()).into_iter();
+    told.map(|(reason, labels)| format!("{}: no motion, {reason}.", enumerate(&labels))).collect()
+}
+
+/// Why the motions part, or do not.
+fn why(comparison: &Comparison) -> Vec<String> {
+    let mut sentences = vec![format!("Constraint: {}.", comparison.integrability)];
+    let pair = comparison.run("chetaev").zip(comparison.run("vakonomic")).and_then(|(a, b)| comparison.pair(a, b));
+    if let Some((predicted, measured)) = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref())) {
+        sentences.push(format!(
+            "Its curvature at the start predicts that Chetaev and vakonomic part as {} t^{}; measured: {} t^{:.2}.",
+            precise(predicted.length),
+            predicted.exponent,
+            precise(measured.length),
+            measured.exponent
+        ));
+    }
+    let substituted: Vec<String> = substituted(comparison).map(|i| label(comparison, i).to_owned()).collect();
+    if !substituted.is_empty() {
+        let is = if substituted.len() == 1 { "is" } else { "are" };
+        sentences.push(format!(
+            "{} {is} substitution of the constraint into L here: no memory variable has a costate, P = 0.",
+            enumerate(&substituted)
+        ));
+    }
+    sentences
+}
+
+/// The runs of the removed constraint whose equations are Lagrange's of the substituted `L`: with `P ≡ 0`,
+/// `G = L + P·B` is `L`.
+fn substituted(comparison: &Comparison) -> impl Iterator<Item = usize> {
+    let constrained = !comparison.scene.system.constraints.is_empty();
+    comparison.runs.iter().enumerate().filter_map(move |(i, run)| {
+        let motion = run.outcome.as_ref().ok().filter(|_| constrained && run.choice.removal.is_some())?;
+        let costate = motion.equations.states.iter().any(|y| y.role == Role::MemoryCostate);
+        (!costate && is_in_table(comparison, i)).then_some(i)
+    })
+}
+
+/// How large the errors are beside which gaps were judged.
+fn errors(comparison: &Comparison) -> Option<String> {
+    let estimates = rows(comparison).flat_map(|p| p.gap.estimates);
+    let largest =
+        estimates.fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| if b > a || b.is_nan() { b } else { a })))?;
+    let certainty = deltaq::CERTAINTY;
+    Some(format!("Error estimates: at most {}; a gap counts from {certainty} times the sum of two.", short(largest)))
+}

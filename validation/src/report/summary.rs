@@ -1,0 +1,124 @@
+//! A comparison for a terminal: three lines, two small tables, the gaps over time.
+
+use anyhow::Result;
+use deltaq::{Comparison, Ending, Pair, Verdict, error_estimate, setting};
+
+use crate::report::headline::{Headline, rows};
+use crate::report::numbers::{or_dash, short};
+use crate::report::verdicts::word;
+use picture::{Axis, Curve, Picture, Style};
+
+/// Rows of the plot.
+const HEIGHT: usize = 12;
+
+/// Most curves of the plot.
+const CURVES: usize = 5;
+
+/// What has been compared so far, in lines of at most `width` where they are not sentences.
+///
+/// # Errors
+/// Where a motion cannot be read off.
+pub fn summary(comparison: &mut Comparison, width: usize) -> Result<String> {
+    let Headline { verdict, why, sure } = Headline::of(comparison);
+    let name = &comparison.scene.name;
+    let lines = [(name.as_str(), verdict), ("why", why), ("how sure", sure)];
+    let lines = lines.iter().filter(|(_, text)| !text.is_empty()).map(|(of, text)| format!("{of}: {text}\n"));
+    let text: String = lines.collect();
+    Ok(text + &motions(comparison)? + &pairs(comparison) + &plot(comparison, width)?)
+}
+
+/// One line a motion: where it ends, how wrong it is; alone, with where it is then.
+fn motions(comparison: &mut Comparison) -> Result<String> {
+    let mut table = vec![["motion", "to", "error", "by", "steps"].map(String::from).to_vec()];
+    let estimates: Vec<Option<f64>> = (0..comparison.runs.len()).map(|i| comparison.estimate(i)).collect();
+    let Comparison { scene, runs, .. } = comparison;
+    for (run, estimate) in runs.iter_mut().zip(estimates) {
+        let Ok(motion) = &mut run.outcome else { continue };
+        let (alone, method) = (estimate.is_none(), motion.method.as_ref());
+        let method = method.map_or("equal steps", |chosen| chosen.method.name());
+        let estimate = estimate.map_or_else(|| Ok(error_estimate(motion, setting(scene))?.absolute), anyhow::Ok)?;
+        let end = match &motion.ending {
+            Ending::Completed => format!("{} s", short(motion.end())),
+            Ending::Stopped { t, .. } => format!("stops at {} s", short(*t)),
+        };
+        let steps = motion.work.steps.to_string();
+        let mut line = vec![run.choice.label.clone(), end, short(estimate), method.into(), steps];
+        if alone {
+            let last = motion.at(motion.end())?.coordinates;
+            for (c, q) in scene.system.coordinates.iter().zip(last) {
+                line.push(format!("{} = {}", c.name, short(q)));
+            }
+        }
+        table.push(line);
+    }
+    Ok(aligned(&table))
+}
+
+/// A label that leaves room for another one beside it.
+fn short_label(comparison: &Comparison, run: usize) -> String {
+    comparison.runs[run].choice.label.replace("removed constraint", "removed")
+}
+
+/// One line a pair with Chetaev's or the vakonomic motion, with the letter of its curve; others are counted.
+fn pairs(comparison: &Comparison) -> String {
+    let mut table = vec![["", "pair", "verdict", "1e-6 at", "1e-3 at", "largest gap"].map(String::from).to_vec()];
+    let (label, plotted) = (|i: usize| short_label(comparison, i), plotted(comparison));
+    let principal = |p: &&Pair| ["chetaev", "vakonomic"].contains(&comparison.runs[p.first].choice.formulation);
+    let (shown, others): (Vec<&Pair>, Vec<&Pair>) = rows(comparison).partition(principal);
+    for pair in &shown {
+        let letter = plotted.iter().position(|p| (p.first, p.second) == (pair.first, pair.second));
+        let letter = letter.and_then(|i| ('a'..='z').nth(i)).map_or(String::new(), String::from);
+        let names = format!("{} – {}", label(pair.first), label(pair.second));
+        let [first, second, _] = pair.gap.passes.map(or_dash);
+        let verdict = word(&pair.gap.verdict);
+        table.push([letter, names, verdict.into(), first, second, short(pair.gap.largest)].to_vec());
+    }
+    let count = |wanted: &str| others.iter().filter(|p| word(&p.gap.verdict) == wanted).count();
+    let counts = ["same", "different", "undecided"].map(|verdict| (count(verdict), verdict));
+    let counts: Vec<String> =
+        counts.iter().filter(|(n, _)| *n > 0).map(|(n, verdict)| format!("{n} {verdict}")).collect();
+    let rest = if others.is_empty() { String::new() } else { format!("   of the others: {}\n", counts.join(", ")) };
+    let table = if shown.is_empty() { String::new() } else { aligned(&table) };
+    table + &rest
+}
+
+/// Pairs that differ: those with the first motion, which is Chetaev's if it was asked for.
+fn plotted(comparison: &Comparison) -> Vec<&Pair> {
+    let differ = rows(comparison).filter(|p| p.gap.verdict == Verdict::Different);
+    let first = rows(comparison).map(|p| p.first).min();
+    differ.filter(|p| Some(p.first) == first).take(CURVES).collect()
+}
+
+/// Their gaps over time.
+fn plot(comparison: &Comparison, width: usize) -> Result<String> {
+    let start = comparison.scene.start.t;
+    let label = |i: usize| short_label(comparison, i);
+    let plotted = plotted(comparison);
+    let mut curves: Vec<Curve> = plotted
+        .iter()
+        .map(|p| Curve {
+            label: format!("{} – {}", label(p.first), label(p.second)),
+            style: Style::Vakonomic,
+            points: p.gap.points.iter().map(|p| (p.t - start, p.gap)).collect(),
+        })
+        .collect();
+    let Some(first) = plotted.first() else { return Ok(String::new()) };
+    let limit = first.gap.points.iter().map(|p| (p.t - start, p.limit)).collect();
+    curves.push(Curve { label: "what a gap has to pass".into(), style: Style::Threshold, points: limit });
+    let (x, y) = (Axis::linear("t − t₀ (s)"), Axis::log("gap, kinetic metric"));
+    let x = Axis { range: Some((0.0, comparison.scene.duration)), ..x };
+    Ok("\n".to_owned() + &Picture::new("gaps", x, y, curves).to_text(width, HEIGHT)?)
+}
+
+/// Columns two blanks apart; the first line is the head.
+fn aligned(table: &[Vec<String>]) -> String {
+    let columns = table.iter().map(Vec::len).max().unwrap_or(0);
+    let length = |line: &Vec<String>, i: usize| line.get(i).map_or(0, |cell| cell.chars().count());
+    let widths: Vec<usize> =
+        (0..columns).map(|i| table.iter().map(|line| length(line, i)).max().unwrap_or(0)).collect();
+    let line = |line: &Vec<String>| {
+        let cells = line.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}")).collect::<Vec<_>>();
+        cells.join("  ").trim_end().to_owned() + "\n"
+    };
+    table.iter().fold(String::from("\n"), |text, cells| text + &line(cells))
+}
