@@ -48,7 +48,7 @@ class System:
         lagrangian: str,
         constraints: Sequence[str] = (),
         *,
-        parameters: dict[str, float] | None = None,
+        parameters: dict[str, _Expression] | None = None,
         definitions: dict[str, _Expression] | None = None,
         units: dict[str, str] | None = None,
         forces: dict[str, _Expression] | None = None,
