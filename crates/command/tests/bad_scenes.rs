@@ -96,10 +96,12 @@ fn dependent_constraints_are_refused() {
     let (start, end) = (GOOD.find("[removal").expect("there"), GOOD.find("[run]").expect("there"));
     let good = GOOD.replace(&GOOD[start..end], "");
     accepted(&good);
-    // twice the same, no velocity at all, no constraint on velocities
-    for (bad, words) in
-        [("\"z' - y*x'\", \"2*z' - 2*y*x'\"", "dependent"), ("\"z' - y*x'\", \"0*x'\"", ""), ("\"z - y*x\"", "")]
-    {
+    // twice the same, no velocity at all, positions on which the start is not
+    for (bad, words) in [
+        ("\"z' - y*x'\", \"2*z' - 2*y*x'\"", "dependent"),
+        ("\"z' - y*x'\", \"0*x'\"", ""),
+        ("\"z - y*x - 1\"", "positions"),
+    ] {
         let stderr = refused_bytes(good.replacen("\"z' - y*x'\"", bad, 1).as_bytes(), &[words]);
         assert!(stderr.contains("FILE:13:"), "not in line 13: {stderr}");
     }

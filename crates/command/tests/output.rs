@@ -10,7 +10,9 @@ use crate::support::{answer, command, refused, text};
 const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/reports");
 
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
-const ANSWERS: [&[&str]; 16] = [
+const ANSWERS: [&[&str]; 18] = [
+    &["new"],
+    &["check", "sledge"],
     &["--scenes", "bowl", "--quiet", "--out", REPORTS],
     &["solve", "sledge", "-f", "chetaev", "--times", "0,1"],
     &["list"],

@@ -103,7 +103,8 @@ impl Names {
 
     /// What changes with time, and how.
     pub(super) fn insert_flow(&mut self, system: &System) {
-        self.flow = system.flow();
+        let velocities = system.velocities();
+        self.flow = system.flow().into_iter().filter(|(s, _)| !velocities.contains(s)).collect();
     }
 
     /// A name of this role that could not be read: what uses it is not blamed.

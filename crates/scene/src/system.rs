@@ -255,8 +255,17 @@ fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneEr
                 None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&start)?),
             })
         };
-        // nothing starts where something is at fault: a number in its place serves to look at the others
-        let (x, written) = context.source.note(read()).unwrap_or((f64::NAN, context.system.graph.zero()));
+        let (x, written) = match read() {
+            Ok(read) => read,
+            Err(fault) => {
+                // what is no number for the sake of another fault is none of its own
+                let follows = context.positions.iter().any(|x| x.is_nan());
+                if !(follows && matches!(*fault.kind, SceneErrorKind::NotFinite { .. })) {
+                    context.source.note::<()>(Err(fault));
+                }
+                (f64::NAN, context.system.graph.zero())
+            }
+        };
         values.insert(symbol, x);
         context.positions.push(x);
         context.written.push((symbol, written));

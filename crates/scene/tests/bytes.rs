@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use scene::Scene;
 
-const SCENES: [&str; 4] = [
+const SCENES: [&str; 5] = [
+    include_str!("../../../tests/tests/scenes/rattleback-by-vectors.toml"),
     include_str!("../../../validation/scenes/sledge.toml"),
     include_str!("../../../validation/scenes/appell-hamel.toml"),
     include_str!("../../../validation/scenes/three-cylinders.toml"),
@@ -11,7 +12,8 @@ const SCENES: [&str; 4] = [
 ];
 
 /// What is put in, between blanks.
-const PIECES: &str = "' \" \\ [ ] { } = nan -inf 1e400 0 -1 sin x' phi'' ^ ( ) / \n # é \0 t pi [removal]\n u , \"\"\"";
+const PIECES: &str = "' \" \\ [ ] { } = nan -inf 1e400 0 -1 sin x' phi'' ^ ( ) / \n # é \0 t pi [removal]\n u , \"\"\" rotation( zxz \
+                     .x .yz dot( cross( diag( c' R [x,y] ]' angular_velocity( step(";
 
 fn piece(index: &prop::sample::Index) -> &'static str {
     let pieces: Vec<&str> = PIECES.split(' ').collect();
@@ -50,7 +52,8 @@ fn survive(text: &str) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    // `PROPTEST_CASES=N` for more
+    #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases.max(400)))]
 
     #[test]
     fn changed_scenes(which in 0..SCENES.len(), changes in prop::collection::vec(change(), 1..4)) {

@@ -126,6 +126,7 @@ fn formulas() {
     fault!("+ weight*x", "+ g'", Kind::Unavailable { reason: Unavailable::NoDerivative("a parameter"), .. }, "g'");
     fault!("\"2*x\"", "\"2*phi\"", Kind::Unavailable { reason: Unavailable::NotYetKnown { .. }, .. }, "phi");
     fault!("0.5*cos(phi)", "0.5*phi'", Kind::Unavailable { reason: Unavailable::NotYetKnown { .. }, .. }, "phi'");
+    fault!("+ weight*x", "+ (x*y')'", Kind::Expression(ParseErrorKind::NoRate), "'");
     fault!("+ weight*x", "+ weight''*x", Kind::Unavailable { reason: Unavailable::Acceleration, .. }, "weight''");
     fault!("+ weight*x", "+ [x, y]", Kind::Expression(ParseErrorKind::Shapes { .. }), "+");
     // in a string of several lines the place is exact, behind escapes it is the start of the value

@@ -4,4 +4,5 @@ mod bytes;
 mod catalogue;
 mod errors;
 mod language;
+mod snapshots;
 mod start;

@@ -51,6 +51,10 @@ impl Parser<'_> {
             }
             self.advance()?;
         }
+        if self.next.token == Token::OpenList && value.scalar().is_none() {
+            let kind = ParseErrorKind::NoComponent { name: "[…]".to_owned(), shape: value.shape() };
+            return Err(self.fault(kind, self.next));
+        }
         if matches!(self.next.token, Token::Number(_) | Token::Name | Token::Open | Token::OpenList) {
             let left = self.slice(Spanned { end: self.last, ..token });
             let left = if left.len() <= 20 { left } else { "…" }.to_owned();

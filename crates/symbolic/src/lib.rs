@@ -84,7 +84,6 @@ pub use matrix::Matrix;
 pub use parse_error::{ParseError, ParseErrorKind};
 pub use random::{SplitMix, Xorshift};
 pub use range::Range;
-pub use rotation::Turn;
 pub use scalar::Scalar;
 pub use series::{
     Correct, LANES, Lanes, Product, SeriesInput, SeriesScalar, SeriesTape, SeriesWorkspace, Store, Task, Weights,
@@ -92,4 +91,4 @@ pub use series::{
 pub use steep::Steep;
 pub use suggest::nearest;
 pub use tape::{Tape, Workspace};
-pub use value::{Scope, Value};
+pub use value::{Scope, Turn, Value};

@@ -2,17 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::value::Scope;
-use crate::{Expr, Function, Graph, Matrix, Value};
-
-/// A turn about a unit vector `n` by an angle `α`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Turn {
-    /// `n`, in the axes that are turned.
-    pub axis: [Expr; 3],
-    /// `α`.
-    pub angle: Expr,
-}
+use crate::value::{Scope, Turn, Value};
+use crate::{Expr, Function, Graph, Matrix};
 
 impl Graph {
     /// The turns about the axes of `word` one after the other, each about an axis of the body as the turns

@@ -1,8 +1,16 @@
 //! Vectors, matrices and rotations in formulas.
 
 use crate::arena::Node;
-use crate::rotation::Turn;
 use crate::{Expr, Graph, Matrix};
+
+/// A turn about a unit vector `n` by an angle `α`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turn {
+    /// `n`, in the axes that are turned.
+    pub axis: [Expr; 3],
+    /// `α`.
+    pub angle: Expr,
+}
 
 /// What a formula stands for.
 #[derive(Clone, Debug, PartialEq)]

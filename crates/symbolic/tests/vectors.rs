@@ -170,7 +170,8 @@ fn what_means_nothing_is_refused_at_its_place() {
     assert!(matches!(names.refused("[1]", "[1]"), Kind::NoList));
     assert!(matches!(names.refused("[1, u]", "[1, u]"), Kind::NoList));
     assert!(matches!(names.refused("[1, 2", "["), Kind::UnclosedParenthesis));
-    assert!(matches!(names.refused("u[1]", "["), Kind::ImplicitMultiplication { .. }));
+    assert!(matches!(names.refused("u[1]", "["), Kind::NoComponent { .. }));
+    assert!(matches!(names.refused("a[1, 2]", "["), Kind::ImplicitMultiplication { .. }));
     assert!(matches!(names.refused("u.w", ".w"), Kind::NoComponent { .. }));
     assert!(matches!(names.refused("a.x", ".x"), Kind::NoComponent { .. }));
     assert!(matches!(names.refused("cross(u, [1, 2])", "cross(u, [1, 2])"), Kind::WrongShape { .. }));
