@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use deltaq::{Comparison, Run};
+use equations::Outputs;
+use mechanics::Observables;
 
 use crate::report::File;
 use picture::{Axis, Curve, Panel, Picture, Style};
@@ -26,7 +28,8 @@ pub(crate) fn drawn(comparison: &Comparison) -> Vec<usize> {
         .collect()
 }
 
-/// Coordinates over time, the path in the plane where there is one, the gap to Chetaev over time.
+/// Coordinates over time, the scene's observables, the path in the plane where there is one, the gap to Chetaev
+/// over time.
 ///
 /// # Errors
 /// Where a motion cannot be read off or a picture cannot be drawn.
@@ -51,6 +54,17 @@ pub fn pictures(comparison: &mut Comparison) -> Result<Vec<File>> {
     let columns = if coordinates.len() > 1 { 2 } else { 1 };
     let over_time = Picture::panels(title("coordinates over time"), Axis::linear("t (s)"), panels.collect(), columns);
     add("coordinates", over_time.to_svg()?);
+    let observables = Observables::of(&comparison.scene.system)?;
+    if !observables.names().is_empty() {
+        let panels = observables
+            .names()
+            .iter()
+            .enumerate()
+            .map(|(i, name)| Panel { y: Axis::linear(name.clone()), curves: curves(&|now| (now.t, now.observed[i])) });
+        let columns = if panels.len() > 1 { 2 } else { 1 };
+        let over_time = Picture::panels(title("observables"), Axis::linear("t (s)"), panels.collect(), columns);
+        add("observables", over_time.to_svg()?);
+    }
 
     let place = |name: &str| coordinates.iter().position(|c| c.name == name);
     if let (Some(x), Some(y)) = (place("x"), place("y")) {
@@ -76,17 +90,20 @@ struct Drawn {
 struct Instant {
     t: f64,
     q: Vec<f64>,
+    observed: Vec<f64>,
 }
 
 fn sample(comparison: &mut Comparison) -> Result<Vec<Drawn>> {
     let mut motions = Vec::new();
+    let mut observables = Observables::of(&comparison.scene.system)?;
     for i in drawn(comparison) {
         let run = &mut comparison.runs[i];
         let (label, style) = (run.choice.label.clone(), style(run));
         let Ok(motion) = &mut run.outcome else { continue };
         let mut points = Vec::new();
         for t in motion.grid(INSTANTS) {
-            points.push(Instant { t, q: motion.at(t)?.coordinates });
+            let Outputs { coordinates: q, velocities, .. } = motion.at(t)?;
+            points.push(Instant { t, observed: observables.at(t, &q, &velocities).to_vec(), q });
         }
         motions.push(Drawn { label, style, points });
     }
