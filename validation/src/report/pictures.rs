@@ -28,8 +28,8 @@ pub(crate) fn drawn(comparison: &Comparison) -> Vec<usize> {
         .collect()
 }
 
-/// Coordinates over time, the scene's observables, the path in the plane where there is one, the gap to Chetaev
-/// over time.
+/// Coordinates and the scene's observables over time, the path in the plane where there is one, the gap to
+/// Chetaev over time.
 ///
 /// # Errors
 /// Where a motion cannot be read off or a picture cannot be drawn.

@@ -10,6 +10,9 @@ use crate::expressions::{Sparse, shortest};
 /// What cancels in a pivot may leave this part of the entry that was there, at the start.
 const CANCELLED: f64 = 1e-4;
 
+/// An entry of more nodes belongs to no frame that would be cheaper, and takes long to be multiplied out.
+const LONG: usize = 100;
+
 /// `c (s (v_k + Σ l_j v_j))²`
 pub(super) struct Square {
     /// k
@@ -47,7 +50,8 @@ impl Known<'_> {
         self.g.evaluate(e, &self.values).unwrap_or(f64::NAN)
     }
 
-    /// Eliminates by diagonal pivots: constant ones, then least fill. `None` where one is no square.
+    /// Eliminates by diagonal pivots: constant ones, then least fill. `None` where one is no square, or an
+    /// entry gets long.
     pub(super) fn squares(&self, mass: &[Sparse], tie: Tie) -> Option<Vec<Square>> {
         let g = self.g;
         let mut matrix = SparseMatrix::new(mass.to_vec());
@@ -72,7 +76,11 @@ impl Known<'_> {
             for &(i, l) in &factors {
                 for (&j, &entry) in &others {
                     let before = matrix.rows()[i].get(&j).copied().unwrap_or(g.zero());
-                    let e = shortest(g, g.sub(before, g.mul(l, entry)));
+                    let e = g.sub(before, g.mul(l, entry));
+                    if g.size(&[e]) > LONG {
+                        return None;
+                    }
+                    let e = shortest(g, e);
                     matrix.set(i, j, (!g.is_zero(e)).then_some(e));
                 }
             }
