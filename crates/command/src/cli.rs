@@ -197,6 +197,12 @@ pub struct CompareArguments {
     /// Fit no free constants, not even where nothing is decided.
     #[arg(long, value_name = "PART", conflicts_with = "with")]
     pub without: Option<Searched>,
+    /// Vary a parameter, a start value or `mu1`, … and compare Chetaev's and the vakonomic motion at each
+    /// value, both ends included: a table. Several combine; with `--out` a file, which goes on where it was
+    /// cut off.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = linearize::sweep,
+          conflicts_with_all = ["markdown", "format", "formulation", "with"])]
+    pub sweep: Vec<Range>,
     /// Tolerance of the looser of the two runs of every motion.
     #[arg(long, default_value = "1e-11", allow_negative_numbers = true)]
     pub tolerance: f64,

@@ -10,6 +10,7 @@ use crate::answer::{pretty, print};
 use crate::cli::{CompareArguments, TextOrJson};
 use crate::main_job::{protocol, scene_files};
 use crate::solve_command::limited;
+use crate::sweep_command;
 use crate::watch::Watch;
 use random::substitution;
 use validation::catalogue;
@@ -18,6 +19,9 @@ use validation::report::{summary, verdicts, write_all};
 /// Prints a summary of each scene as soon as it is compared; or returns pages or verdicts, or writes pages
 /// and pictures to a folder and says so. Nothing is computed before every scene has been read.
 pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
+    if !arguments.sweep.is_empty() {
+        return sweep_command::run(arguments, quiet);
+    }
     let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
     let mut scenes: Vec<Scene> = Vec::new();
     for name in &arguments.scenes {

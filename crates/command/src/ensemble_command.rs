@@ -2,8 +2,7 @@
 
 mod members;
 mod output;
-
-mod part;
+mod resume;
 
 use std::time::Instant;
 
@@ -13,11 +12,12 @@ use integrate::Method;
 
 use crate::answer::Answer;
 use crate::cli::{EnsembleArguments, Format, MotionArguments};
+use crate::sink::Sink;
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
-use part::{Sink, resume};
 use random::parallel;
+use resume::resume;
 
 /// Members integrated before they are written down.
 const CHUNK: usize = 4096;
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     bar.finish_and_clear();
     let complaint = answers.complaint();
     reads_on = reads_on && sink.write(&answers.end(&seconds))?;
-    let text = if reads_on { sink.close(members.count())? } else { String::new() };
+    let text = if reads_on { sink.close(&format!("{} members", members.count()))? } else { String::new() };
     Ok(Answer { text, complaint })
 }
 

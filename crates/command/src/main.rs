@@ -15,8 +15,10 @@ mod random_command;
 mod scene_commands;
 mod schema;
 mod show_command;
+mod sink;
 mod solve_command;
 mod stability_command;
+mod sweep_command;
 mod watch;
 
 use std::io::IsTerminal;

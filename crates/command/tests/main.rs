@@ -12,3 +12,4 @@ mod random_command;
 mod shell;
 mod singularities;
 mod support;
+mod sweep;

@@ -22,6 +22,7 @@
 mod axis;
 mod draw;
 mod frame;
+mod heat;
 mod layout;
 mod plain;
 mod style;
@@ -30,6 +31,7 @@ mod tests;
 mod text;
 mod trace;
 
+pub use heat::HeatMap;
 pub use style::Style;
 
 /// One line of a picture.

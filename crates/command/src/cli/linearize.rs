@@ -49,7 +49,8 @@ pub enum TableFormat {
     Json,
 }
 
-fn sweep(text: &str) -> Result<Range, String> {
+/// The range that `NAME=FROM:TO:COUNT` says.
+pub(super) fn sweep(text: &str) -> Result<Range, String> {
     let parts = text.split_once('=').and_then(|(name, rest)| match rest.split(':').collect::<Vec<_>>()[..] {
         [from, to, count] => Some((name, from, to, count)),
         _ => None,

@@ -1,16 +1,15 @@
 //! Where an answer goes piece by piece: to the terminal, or to a file that has its name when it is whole.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
-use super::output::Answers;
 use crate::answer;
 
 /// Where the pieces go.
-pub(super) enum Sink {
+pub(crate) enum Sink {
     /// Standard output.
     Terminal,
     /// What is no regular file, and is written to as it is.
@@ -21,8 +20,8 @@ pub(super) enum Sink {
 
 impl Sink {
     /// To standard output or, with a name, to a file. What an earlier call has left of a file is kept, if
-    /// `keep` says how many bytes of it: those of whole members.
-    pub(super) fn open(path: Option<&Path>, keep: impl FnOnce(&File, &str) -> Result<u64>) -> Result<Sink> {
+    /// `keep` says how many bytes of it: those of whole rows.
+    pub(crate) fn open(path: Option<&Path>, keep: impl FnOnce(&File, &str) -> Result<u64>) -> Result<Sink> {
         let Some(path) = path else { return Ok(Sink::Terminal) };
         let name = path.file_name().with_context(|| format!("--out {} names no file", path.display()))?;
         let open = |path: &Path| {
@@ -48,7 +47,7 @@ impl Sink {
     }
 
     /// Writes a piece; `false` where nobody reads on.
-    pub(super) fn write(&mut self, text: &str) -> Result<bool> {
+    pub(crate) fn write(&mut self, text: &str) -> Result<bool> {
         match self {
             Sink::Terminal => answer::print(text),
             Sink::Device(file, path) | Sink::Part(file, path, _) => {
@@ -59,7 +58,7 @@ impl Sink {
     }
 
     /// The answer is whole.
-    pub(super) fn close(self, members: usize) -> Result<String> {
+    pub(crate) fn close(self, what: &str) -> Result<String> {
         let path = match self {
             Sink::Terminal => return Ok(String::new()),
             Sink::Device(_, path) => path,
@@ -68,55 +67,6 @@ impl Sink {
                 path
             }
         };
-        Ok(format!("{members} members in {}\n", path.display()))
+        Ok(format!("{what} in {}\n", path.display()))
     }
-}
-
-/// Counts the members whose rows a file has already, but for the last one, of which rows may be missing; the
-/// bytes of these rows and of the names above. `first` gives the rows of the first member.
-pub(super) fn resume(
-    answers: &mut Answers,
-    file: &File,
-    told: &str,
-    first: impl FnOnce(&Answers) -> String,
-) -> Result<u64> {
-    let is_ours = |yes: bool| {
-        ensure!(yes, "{told} is of another ensemble, or of another version: remove it, or take another --out");
-        Ok(())
-    };
-    let (mut reader, columns) = (BufReader::new(file), answers.names().len());
-    let mut next = || -> Result<Option<String>> {
-        let mut line = String::new();
-        reader.read_line(&mut line).with_context(|| format!("cannot read {told}"))?;
-        Ok(Some(line).filter(|line| line.ends_with('\n')))
-    };
-    let Some(head) = next()? else { return Ok(0) };
-    is_ours(head == answers.head())?;
-    let (mut whole, mut end, mut of_first) = (head.len(), head.len(), String::new());
-    let mut under_way: Option<(String, String)> = None;
-    while let Some(line) = next()? {
-        let begin = answers.begin(answers.done);
-        if !begin.is_some_and(|begin| line.starts_with(&begin)) {
-            is_ours(under_way.is_some())?;
-            if let Some((status, cause)) = under_way.take() {
-                let cause = cause.trim_matches('"').replace("\"\"", "\"");
-                answers.count(&status, Some(cause.as_str()).filter(|cause| !cause.is_empty()));
-            }
-            let begin = answers.begin(answers.done);
-            is_ours(begin.is_some_and(|begin| line.starts_with(&begin)))?;
-            whole = end;
-        }
-        let mut cells = line.trim_end_matches('\n').splitn(columns, ',').skip(columns - 2).map(String::from);
-        under_way = cells.next().zip(cells.next());
-        is_ours(under_way.is_some())?;
-        end += line.len();
-        if answers.done == 0 {
-            of_first += &line;
-        }
-    }
-    if answers.done == 0 {
-        return Ok(0);
-    }
-    is_ours(of_first == first(answers))?;
-    Ok(whole as u64)
 }

@@ -1,0 +1,167 @@
+//! `deltaq compare --sweep`: where Chetaev's and the vakonomic motion part, over one or two numbers.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+
+use anyhow::{Context, Result, bail, ensure};
+use deltaq::{Settings, SweepPoint, sweep_point};
+
+use crate::cli::{CompareArguments, Range};
+use crate::main_job::protocol;
+use crate::sink::Sink;
+use crate::solve_command::limited;
+use random::parallel;
+use validation::catalogue;
+use validation::report::{Swept, sweep_files, write_all};
+
+/// Points computed before they are written down.
+const CHUNK: usize = 64;
+
+const COLUMNS: &str = "verdict,apart,largest,limit,answer,order,dimension,mismatch,cause";
+
+/// A table, one row a point; of a file that was cut off the rest is computed.
+pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
+    let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
+    let [name] = &arguments.scenes[..] else { bail!("--sweep is for one scene, not for {}", arguments.scenes.len()) };
+    let grid = Grid::of(&arguments.sweep)?;
+    if let Some((fixed, _)) = arguments.set.overrides.iter().find(|(set, _)| grid.names().any(|name| name == set)) {
+        bail!("--sweep: `{fixed}` varies, and --set fixes it");
+    }
+    let set = |index: usize| [&arguments.set.overrides[..], &grid.point(index)].concat();
+    // a name that means nothing is a fault of the call, a start that there is not an answer
+    let scene = catalogue::find(name, &arguments.set.overrides)?;
+    scene.starts(&grid.names().collect::<Vec<_>>())?;
+
+    let path = arguments.output.out.as_ref().map(|folder| folder.join(format!("{}-sweep.csv", scene.name)));
+    let mut done = 0;
+    let mut sink = Sink::open(path.as_deref(), |file, told| {
+        let (rows, bytes) = whole_rows(file, told, &grid)?;
+        done = rows;
+        Ok(bytes)
+    })?;
+    let mut reads_on = done > 0 || sink.write(&grid.head())?;
+    let bar = parallel::progress(grid.count(), quiet);
+    while reads_on && done < grid.count() {
+        bar.set_position(done as u64);
+        let next: Vec<usize> = (done..grid.count().min(done + CHUNK)).collect();
+        let rows = parallel::map(&next, |&index| {
+            let point = match catalogue::find(name, &set(index)) {
+                Ok(scene) => sweep_point(scene, &settings),
+                Err(error) => {
+                    let cause = error.to_string();
+                    SweepPoint { cause: cause.lines().next().unwrap_or_default().into(), ..SweepPoint::default() }
+                }
+            };
+            grid.begin(index) + &row(&point)
+        });
+        done += rows.len();
+        reads_on = sink.write(&rows.concat())?;
+    }
+    bar.finish_and_clear();
+    if !reads_on {
+        return Ok(String::new());
+    }
+    let told = sink.close(&format!("{} points", grid.count()))?;
+    let (Some(path), Some(folder)) = (&path, &arguments.output.out) else { return Ok(told) };
+    let table = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    write_all(folder, &sweep_files(&scene.name, &scene.title, &grid.swept(), &table)?)?;
+    Ok(told)
+}
+
+fn row(point: &SweepPoint) -> String {
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
+    let count = |n: Option<usize>| n.map_or(String::new(), |n| n.to_string());
+    let SweepPoint { verdict, apart, largest, limit, answer, order, dimension, mismatch, cause } = point;
+    let quoted = if cause.is_empty() { String::new() } else { format!("\"{}\"", cause.replace('"', "\"\"")) };
+    let cells = [
+        verdict.to_string(),
+        number(*apart),
+        number(*largest),
+        number(*limit),
+        answer.to_string(),
+        count(*order),
+        count(*dimension),
+        number(*mismatch),
+        quoted.replace('\n', " "),
+    ];
+    cells.join(",") + "\n"
+}
+
+/// To fifteen digits: a proof is about the number as it is written, and 0.6 is meant, not 0.6000000000000001.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.14e}").parse().unwrap_or(x)
+}
+
+/// All combinations of some ranges, of which the last one changes fastest.
+struct Grid<'a> {
+    ranges: &'a [Range],
+}
+
+impl<'a> Grid<'a> {
+    fn of(ranges: &'a [Range]) -> Result<Self> {
+        for (i, range) in ranges.iter().enumerate() {
+            ensure!(ranges[..i].iter().all(|other| other.name != range.name), "--sweep: `{}` varies twice", range.name);
+        }
+        let count = ranges.iter().try_fold(1_usize, |count, range| count.checked_mul(range.count));
+        let most = crate::cli::MOST_MEMBERS;
+        match count {
+            Some(count) if count <= most => Ok(Grid { ranges }),
+            _ => bail!("--sweep makes more than {most} points"),
+        }
+    }
+
+    fn names(&self) -> impl Iterator<Item = &str> {
+        self.ranges.iter().map(|range| range.name.as_str())
+    }
+
+    fn count(&self) -> usize {
+        self.ranges.iter().map(|range| range.count).product()
+    }
+
+    fn point(&self, index: usize) -> Vec<(String, f64)> {
+        let mut rest = index;
+        let mut point: Vec<(String, f64)> = Vec::new();
+        for Range { name, from, to, count } in self.ranges.iter().rev() {
+            let part = (rest % count) as f64 / (*count.max(&2) - 1) as f64;
+            point.push((name.clone(), rounded(from * (1.0 - part) + to * part)));
+            rest /= count;
+        }
+        point.reverse();
+        point
+    }
+
+    fn swept(&self) -> Vec<Swept> {
+        self.ranges.iter().map(|Range { name, from, to, count }| (name.clone(), *from, *to, *count)).collect()
+    }
+
+    fn head(&self) -> String {
+        format!("{},{COLUMNS}\n", self.names().collect::<Vec<_>>().join(","))
+    }
+
+    /// How the row of a point begins.
+    fn begin(&self, index: usize) -> String {
+        self.point(index).iter().map(|(_, x)| format!("{x:?},")).collect()
+    }
+}
+
+/// The rows that a file has already, whole ones, and their bytes with the names above.
+fn whole_rows(file: &File, told: &str, grid: &Grid) -> Result<(usize, u64)> {
+    let mut bytes = 0;
+    let mut rows = 0;
+    let mut lines = BufReader::new(file);
+    loop {
+        let mut line = String::new();
+        lines.read_line(&mut line).with_context(|| format!("cannot read {told}"))?;
+        if !line.ends_with('\n') {
+            return Ok((rows, bytes));
+        }
+        let ours = if bytes == 0 {
+            line == grid.head()
+        } else {
+            rows += 1;
+            rows <= grid.count() && line.starts_with(&grid.begin(rows - 1))
+        };
+        ensure!(ours, "{told} is of another sweep, or of another version: remove it, or take another --out");
+        bytes += line.len() as u64;
+    }
+}

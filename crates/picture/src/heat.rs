@@ -1,0 +1,189 @@
+//! A number over two others, by colour.
+
+use super::axis::{Direction, Interval, TICK_SIZE, measure, ticks};
+use super::frame::TITLE_SIZE;
+use super::style::{INK, INKS};
+use super::text::{escape, px, wrap};
+use super::{Axis, Scale};
+
+/// Width and height of the cells together, in pixels; what stands around them.
+const SIDE: f64 = 360.0;
+const LEFT: f64 = 76.0;
+const BAR: f64 = 16.0;
+const WIDTH: f64 = 640.0;
+
+/// Low to high, each brighter than the one before: legible without colours, too.
+const COLOURS: [(f64, f64, f64); 5] =
+    [(68.0, 1.0, 84.0), (59.0, 82.0, 139.0), (33.0, 145.0, 140.0), (94.0, 201.0, 98.0), (253.0, 231.0, 37.0)];
+
+/// A number over a grid of two others. Cells without a number stay empty; some may be marked.
+///
+/// ```
+/// use picture::{Axis, HeatMap};
+/// let map = HeatMap {
+///     title: "Product".into(),
+///     x: Axis { range: Some((0.0, 2.0)), ..Axis::linear("a") },
+///     y: Axis { range: Some((0.0, 1.0)), ..Axis::linear("b") },
+///     columns: 3,
+///     value: Axis::linear("a b"),
+///     cells: vec![Some(0.0), Some(0.0), Some(0.0), Some(0.0), Some(1.0), None],
+///     marked: vec![false, false, true, false, false, false],
+///     mark: "chosen".into(),
+/// };
+/// let svg = map.to_svg();
+/// assert!(svg.matches("<rect").count() > 5 && svg.contains("<title>Product</title>"));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeatMap {
+    /// Headline.
+    pub title: String,
+    /// What changes from left to right, with the values of the first and of the last column.
+    pub x: Axis,
+    /// What changes upwards, with the values of the lowest and of the highest row.
+    pub y: Axis,
+    /// Cells in a row.
+    pub columns: usize,
+    /// What the colours measure; its range is that of the cells.
+    pub value: Axis,
+    /// Row by row, the lowest first.
+    pub cells: Vec<Option<f64>>,
+    /// Cells with a dot, likewise.
+    pub marked: Vec<bool>,
+    /// What a dot says.
+    pub mark: String,
+}
+
+impl HeatMap {
+    /// The picture.
+    pub fn to_svg(&self) -> String {
+        let title = wrap(&self.title, TITLE_SIZE, WIDTH - LEFT - 10.0);
+        let marks = self.marked.iter().any(|marked| *marked);
+        let top = 20.0 * title.len() as f64 + if marks { 34.0 } else { 14.0 };
+        let height = top + SIDE + 52.0;
+        let name = escape(&self.title);
+        let mut out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
+             aria-label=\"{name}\" class=\"picture\" color=\"{}\" \
+             font-family=\"system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif\">\n<title>{name}</title>\n\
+             <style>@media (prefers-color-scheme:light){{.picture{{color:{}}}}}\
+             @media (prefers-color-scheme:dark){{.picture{{color:{}}}}}</style>\n",
+            INKS[0],
+            INKS[1],
+            INKS[2],
+            w = px(WIDTH),
+            h = px(height),
+        );
+        for (line, row) in title.iter().zip(1..) {
+            let y = 20.0 * f64::from(row);
+            out += &format!(
+                "<text x=\"{}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" font-weight=\"600\" fill=\"{INK}\">{}</text>\n",
+                px(LEFT),
+                px(y),
+                escape(line)
+            );
+        }
+        if marks {
+            let y = top - 14.0;
+            out += &format!("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{INK}\"/>\n", px(LEFT + 5.0), px(y - 4.0));
+            text(&mut out, (LEFT + 16.0, y), "start", &self.mark);
+        }
+        let measured: Vec<Option<f64>> =
+            self.cells.iter().map(|cell| cell.and_then(|value| measure(self.value.scale, value).ok())).collect();
+        let finite = || measured.iter().flatten().copied();
+        let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        let scale = if low < high { Interval { low, high } } else { Interval { low: low - 0.5, high: low + 0.5 } };
+        let rows = self.cells.len().div_ceil(self.columns.max(1));
+        let (w, h) = (SIDE / self.columns.max(1) as f64, SIDE / rows.max(1) as f64);
+        for (i, value) in measured.iter().enumerate() {
+            let (x, y) = (LEFT + w * (i % self.columns) as f64, top + SIDE - h * (i / self.columns + 1) as f64);
+            if let Some(value) = value {
+                // a hair more than the cell: no seams between them
+                rectangle(&mut out, (x, y, w + 0.3, h + 0.3), &colour(scale.fraction(*value)));
+            }
+            if self.marked.get(i) == Some(&true) {
+                let (x, y) = (px(x + w / 2.0), px(y + h / 2.0));
+                let r = px((w.min(h) / 4.0).clamp(1.0, 3.0));
+                out += &format!(
+                    "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"#fff\" stroke=\"#000\" stroke-width=\".5\"/>\n"
+                );
+            }
+        }
+        self.axis(&mut out, &self.x, w, top, Direction::Horizontal);
+        self.axis(&mut out, &self.y, h, top, Direction::Vertical);
+        if finite().next().is_some() {
+            self.bar(&mut out, scale, top);
+        }
+        out + "</svg>\n"
+    }
+
+    /// Ticks in the middle of the cells; `cell` is the length of one.
+    fn axis(&self, out: &mut String, axis: &Axis, cell: f64, top: f64, direction: Direction) {
+        let (first, last) = axis.range.unwrap_or((0.0, 1.0));
+        let interval = Interval { low: first.min(last), high: first.max(last) };
+        let across = direction == Direction::Horizontal;
+        let middle = LEFT + SIDE / 2.0;
+        if interval.span() > 0.0 {
+            for tick in ticks(Scale::Linear, interval, SIDE, direction).labelled {
+                let along = cell / 2.0 + (tick.at - first) / (last - first) * (SIDE - cell);
+                match across {
+                    true => text(out, (LEFT + along, top + SIDE + 16.0), "middle", &tick.label),
+                    false => text(out, (LEFT - 6.0, top + SIDE - along + 4.0), "end", &tick.label),
+                }
+            }
+        }
+        match across {
+            true => text(out, (middle, top + SIDE + 38.0), "middle", &axis.label),
+            false => {
+                let (x, y) = (px(16.0), px(top + SIDE / 2.0));
+                let label = escape(&axis.label);
+                *out += &format!(
+                    "<text x=\"{x}\" y=\"{y}\" font-size=\"{TICK_SIZE}\" fill=\"{INK}\" text-anchor=\"middle\" \
+                     transform=\"rotate(-90 {x} {y})\">{label}</text>\n"
+                );
+            }
+        }
+    }
+
+    /// The colours with their values.
+    fn bar(&self, out: &mut String, scale: Interval, top: f64) {
+        const PARTS: usize = 48;
+        let x = LEFT + SIDE + 28.0;
+        let part = SIDE / PARTS as f64;
+        for i in 0..PARTS {
+            let fraction = (i as f64 + 0.5) / PARTS as f64;
+            let y = top + SIDE - part * (i + 1) as f64;
+            rectangle(out, (x, y, BAR, part + 0.3), &colour(fraction));
+        }
+        let ticks = ticks(self.value.scale, scale, SIDE, Direction::Vertical);
+        for tick in ticks.labelled {
+            let y = top + SIDE - scale.fraction(tick.at) * SIDE + 4.0;
+            text(out, (x + BAR + 6.0, y), "start", &tick.label);
+        }
+        let label = match ticks.factor {
+            Some(factor) => format!("{} {factor}", self.value.label),
+            None => self.value.label.clone(),
+        };
+        text(out, (x, top + SIDE + 38.0), "start", &label);
+    }
+}
+
+fn colour(fraction: f64) -> String {
+    let place = fraction.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
+    let below = (place as usize).min(COLOURS.len() - 2);
+    let part = place - below as f64;
+    let (a, b) = (COLOURS[below], COLOURS[below + 1]);
+    let mix = |x: f64, y: f64| (x + part * (y - x)).round() as u8;
+    format!("#{:02x}{:02x}{:02x}", mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}
+
+fn rectangle(out: &mut String, (x, y, w, h): (f64, f64, f64, f64), fill: &str) {
+    let [x, y, w, h] = [x, y, w, h].map(px);
+    *out += &format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"{fill}\"/>\n");
+}
+
+fn text(out: &mut String, (x, y): (f64, f64), anchor: &str, words: &str) {
+    let (x, y, words) = (px(x), px(y), escape(words));
+    *out += &format!(
+        "<text x=\"{x}\" y=\"{y}\" font-size=\"{TICK_SIZE}\" fill=\"{INK}\" text-anchor=\"{anchor}\">{words}</text>\n"
+    );
+}
