@@ -93,7 +93,7 @@ fn page(title: &str, ranges: &[Swept], points: &[Point]) -> String {
     if some.len() > SHOWN {
         let _ = write!(text, "\n- and {} more", some.len() - SHOWN);
     }
-    text + "\n"
+    text + "\n\n"
 }
 
 /// Where some μ₀ do, by proof or not.
