@@ -20,13 +20,14 @@ def test_examples_run(path, tmp_path, monkeypatch):
     Path("disc-on-slope.toml").write_text(blocks("README.md", "toml")[0])
     found = blocks(path, "python")
     assert found
+    names = {}
     for code in found:
-        exec(compile(code, path, "exec"), {})
+        exec(compile(code, path, "exec"), names)
 
 
 def test_the_removal_in_the_scene_format_is_one():
     sledge = (ROOT / "validation/scenes/sledge.toml").read_text()
-    (removal,) = blocks("docs/scenes.md", "toml")
+    *_, removal = blocks("docs/scenes.md", "toml")
     system = deltaq.parse(sledge[: sledge.index("[removal.")] + removal + "[run]\nduration = 1\n")
     assert system.removals[0] == "arc-length"
     # the momentum along the blade is constant: u' + P_x cos(phi), with P_x = g sin(alpha) (10 - t)

@@ -78,7 +78,8 @@ def test_faults_have_places(sledge):
     "changes, words",
     [
         ({"start": {"x": 0, "y": 0}}, "`start` is missing"),
-        ({"constraints": ["y - x"]}, "contains no velocity"),
+        ({"constraints": ["g"]}, "contains no velocity"),
+        ({"constraints": ["y - x - 1"], "removals": None}, "one on positions, and the start is not on it"),
         ({"velocities": {"phi'": 1.1}}, "too few start velocities"),
         ({"velocities": {"phi'": 1.1, "x'": 1, "y'": 5}}, "contradict constraint 1"),
         ({"parameters": {"g": np.nan, "alpha": 1, "k": 1}}, "finite"),
