@@ -19,6 +19,9 @@ struct Point {
     mismatch: Option<f64>,
 }
 
+/// What is drawn of a point.
+type Measure = fn(&Point) -> Option<f64>;
+
 impl Point {
     fn has_some(&self) -> bool {
         self.answer.starts_with("some")
@@ -44,7 +47,7 @@ pub fn sweep_files(name: &str, title: &str, ranges: &[Swept], table: &str) -> Re
     let points: Vec<Point> = points.collect::<Result<_>>()?;
     let mut text = page(title, ranges, &points);
     let mut files = Vec::new();
-    let measures: [(&str, &str, fn(&Point) -> Option<f64>); 2] = [
+    let measures: [(&str, &str, Measure); 2] = [
         ("apart", "time to a gap of 1e-3 (s)", |point| point.apart),
         ("decision", "least mismatch ρ", |point| point.mismatch),
     ];
@@ -105,7 +108,7 @@ fn map(
     (y, y0, y1, _): &Swept,
     label: &str,
     points: &[Point],
-    value: fn(&Point) -> Option<f64>,
+    value: Measure,
 ) -> String {
     HeatMap {
         title: format!("{title}: Chetaev and vakonomic"),
@@ -125,7 +128,7 @@ fn line(
     (name, ..): &Swept,
     label: &str,
     points: &[Point],
-    value: fn(&Point) -> Option<f64>,
+    value: Measure,
 ) -> Result<String, picture::PictureError> {
     let along = points.iter().filter_map(|point| Some((point.at[0], value(point)?))).collect();
     let mut curves = vec![Curve { label: "vakonomic".into(), style: Style::Vakonomic, points: along }];
