@@ -50,12 +50,19 @@ pub fn built_in() -> impl Iterator<Item = &'static (&'static str, &'static str)>
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.
 pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, NotFound> {
-    let text = source(name_or_path)?;
-    Ok(match name_or_path {
-        "-" => Scene::parse_with("stdin", &text, overrides)?,
-        name if text_of(name).is_some() => Scene::parse_with(name, &text, overrides)?,
-        path => Scene::parse_file(Path::new(path), &text, overrides)?,
-    })
+    Ok(read(name_or_path, &source(name_or_path)?, overrides)?)
+}
+
+/// [`find`] for who has its [`source`].
+///
+/// # Errors
+/// As [`Scene::parse_with`].
+pub fn read(name_or_path: &str, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+    match name_or_path {
+        "-" => Scene::parse_with("stdin", text, overrides),
+        name if text_of(name).is_some() => Scene::parse_with(name, text, overrides),
+        path => Scene::parse_file(Path::new(path), text, overrides),
+    }
 }
 
 /// The text of a built-in scene.

@@ -73,3 +73,8 @@ pub fn print(numbers: &[f64]) -> String {
     }
     text
 }
+
+/// A cause as a cell of a table: in one line and quotation marks; empty without one.
+pub fn quoted(cause: &str) -> String {
+    if cause.is_empty() { String::new() } else { format!("\"{}\"", cause.replace('"', "\"\"").replace('\n', " ")) }
+}

@@ -31,10 +31,6 @@ pub(crate) fn list(format: TextOrJson) -> Result<String> {
 /// Equations of more bytes than this are printed only where they are asked for.
 const LONG: usize = 30_000;
 
-fn scene_name(arguments: &ShowArguments) -> &str {
-    &arguments.scene.scene
-}
-
 /// Equations of every formulation and form, what was left out, and whether constraints are integrable.
 pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     if arguments.source {
@@ -59,7 +55,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
                     let (size, name) = (text.len() / 1000, choice.formulation);
                     Ok(format!(
                         "Equations of {size} kB; `deltaq show {} -f {name}` prints them.\n",
-                        scene_name(arguments)
+                        arguments.scene.scene
                     ))
                 } else {
                     Ok(text + &form(&scene, equations, &choice)?)

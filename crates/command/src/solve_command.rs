@@ -13,6 +13,7 @@ use deltaq::{
 use discrete::Composition;
 use equations::Outputs;
 use integrate::{Interrupt, Projection};
+use linear::equidistant;
 use mechanics::{ConstantsRule, Observables, Removal};
 use scene::Scene;
 use serde_json::{Map, Value, json};
@@ -200,10 +201,6 @@ fn constants_rule(text: &str) -> Result<ConstantsRule> {
         Some(("start", list)) => Ok(ConstantsRule::Given(numbers(list)?)),
         _ => bail!("`{text}` is none of zero, horizon=T, start=A,B,…"),
     }
-}
-
-fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
-    (0..count).map(|i| from + (to - from) * i as f64 / (count.max(2) - 1) as f64).collect()
 }
 
 /// The times that `text` says: `a,b,c` or `from:to:count`, all of them within the run.

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail, ensure};
 use deltaq::{Settings, SweepPoint, sweep_point};
 
 use crate::cli::{CompareArguments, Range};
+use crate::columns::quoted;
 use crate::main_job::protocol;
 use crate::sink::Sink;
 use crate::solve_command::limited;
@@ -29,7 +30,8 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     }
     let set = |index: usize| [&arguments.set.overrides[..], &grid.point(index)].concat();
     // a name that means nothing is a fault of the call, a start that there is not an answer
-    let scene = catalogue::find(name, &arguments.set.overrides)?;
+    let text = catalogue::source(name)?;
+    let scene = catalogue::read(name, &text, &arguments.set.overrides)?;
     scene.starts(&grid.names().collect::<Vec<_>>())?;
 
     let path = arguments.output.out.as_ref().map(|folder| folder.join(format!("{}-sweep.csv", scene.name)));
@@ -45,7 +47,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
         bar.set_position(done as u64);
         let next: Vec<usize> = (done..grid.count().min(done + CHUNK)).collect();
         let rows = parallel::map(&next, |&index| {
-            let point = match catalogue::find(name, &set(index)) {
+            let point = match catalogue::read(name, &text, &set(index)) {
                 Ok(scene) => sweep_point(scene, &settings),
                 Err(error) => {
                     let cause = error.to_string();
@@ -72,7 +74,6 @@ fn row(point: &SweepPoint) -> String {
     let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
     let count = |n: Option<usize>| n.map_or(String::new(), |n| n.to_string());
     let SweepPoint { verdict, apart, largest, limit, answer, order, dimension, mismatch, cause } = point;
-    let quoted = if cause.is_empty() { String::new() } else { format!("\"{}\"", cause.replace('"', "\"\"")) };
     let cells = [
         verdict.to_string(),
         number(*apart),
@@ -82,7 +83,7 @@ fn row(point: &SweepPoint) -> String {
         count(*order),
         count(*dimension),
         number(*mismatch),
-        quoted.replace('\n', " "),
+        quoted(cause),
     ];
     cells.join(",") + "\n"
 }

@@ -64,6 +64,17 @@ pub enum Verdict {
     },
 }
 
+impl Verdict {
+    /// `same`, `different` or `undecided`.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Verdict::Same => "same",
+            Verdict::Different => "different",
+            Verdict::Undecided { .. } => "undecided",
+        }
+    }
+}
+
 /// The gap at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct GapPoint {

@@ -48,14 +48,10 @@ fn fill(point: &mut SweepPoint, scene: Scene, settings: &Settings) -> Result<(),
     }
     if let Some(pair) = comparison.pairs.first() {
         let gap = &pair.gap;
-        point.verdict = match &gap.verdict {
-            Verdict::Same => "same",
-            Verdict::Different => "different",
-            Verdict::Undecided { because } => {
-                point.cause.clone_from(because);
-                "undecided"
-            }
-        };
+        point.verdict = gap.verdict.word();
+        if let Verdict::Undecided { because } = &gap.verdict {
+            point.cause.clone_from(because);
+        }
         point.apart = THRESHOLDS.iter().position(|&at| at == 1e-3).and_then(|i| gap.passes[i]).map(|t| t - start);
         point.largest = Some(gap.largest);
         point.limit = gap.points.last().map(|last| last.limit);

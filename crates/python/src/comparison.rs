@@ -322,11 +322,11 @@ impl Comparison {
 }
 
 fn words(gap: &Gap) -> (&'static str, Option<String>) {
-    match &gap.verdict {
-        Verdict::Same => ("same", None),
-        Verdict::Different => ("different", None),
-        Verdict::Undecided { because } => ("undecided", Some(because.clone())),
-    }
+    let because = match &gap.verdict {
+        Verdict::Undecided { because } => Some(because.clone()),
+        Verdict::Same | Verdict::Different => None,
+    };
+    (gap.verdict.word(), because)
 }
 
 /// A comparison, with its motions read off.

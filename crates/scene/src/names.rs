@@ -143,39 +143,19 @@ impl Names {
         }
     }
 
-    /// Notes where `name` cannot be one that `--set` replaces; the words of [`Scene::parse_with`] cannot.
-    ///
-    /// [`Scene::parse_with`]: crate::Scene::parse_with
-    pub(super) fn check_settable(
-        &self,
-        source: Source,
-        graph: &Graph,
-        name: &str,
-        span: &Range<usize>,
-    ) -> Result<(), SceneError> {
-        let multiplier = name.strip_prefix("mu").is_some_and(|n| n.parse::<usize>().is_ok());
-        let costate = name.strip_prefix("P0_").is_some();
-        let meant = match name {
-            "time" => "the start time",
-            "duration" => "the length of the run",
-            _ if multiplier => "a multiplier",
-            _ if costate => "a costate",
-            _ => return self.check(source, graph, name, span),
-        };
-        let fault = NameFault::Overriding(meant);
-        Err(source.error(span, SceneErrorKind::InvalidName { name: name.into(), fault }))
-    }
-
-    /// [`Names::check_new`] with the place.
+    /// [`Names::check_new`] with the place. Numbers that `--set` replaces cannot have the names by which it
+    /// means something else ([`Scene::parse_with`](crate::Scene::parse_with)).
     pub(super) fn check(
         &self,
         source: Source,
         graph: &Graph,
-        name: &str,
-        span: &Range<usize>,
+        (name, span): (&str, &Range<usize>),
+        role: Role,
     ) -> Result<(), SceneError> {
-        self.check_new(graph, name)
-            .map_err(|fault| source.error(span, SceneErrorKind::InvalidName { name: name.into(), fault }))
+        let is_set = matches!(role, Role::Parameter | Role::Coordinate);
+        let overriding = if is_set { overriding(name).map(NameFault::Overriding) } else { None };
+        let fault = overriding.map_or_else(|| self.check_new(graph, name), Err);
+        fault.map_err(|fault| source.error(span, SceneErrorKind::InvalidName { name: name.into(), fault }))
     }
 
     /// Reads a number as an expression.
@@ -209,6 +189,16 @@ impl Names {
             role => Unavailable::NoDerivative(role.noun()),
         };
         Some(SceneErrorKind::Unavailable { name: name.clone(), reason })
+    }
+}
+
+/// What `--set` means by this name, apart from the names of the scene.
+fn overriding(name: &str) -> Option<&'static str> {
+    match name {
+        "time" => Some("the start time"),
+        "duration" => Some("the length of the run"),
+        _ if name.strip_prefix("mu").is_some_and(|n| n.parse::<usize>().is_ok()) => Some("a multiplier"),
+        _ => name.starts_with("P0_").then_some("a costate"),
     }
 }
 

@@ -87,7 +87,7 @@ impl<'a> Reader<'a, '_> {
             let Text { text: name, span } = element.text("a name in quotes")?;
             let coordinate = self.coordinate(&name);
             if coordinate.is_none() {
-                self.names.check(self.context.source, g, &name, &span)?;
+                self.names.check(self.context.source, g, (&name, &span), Role::RemovalParameter)?;
             }
             let symbol = g.symbol(&name);
             if parameters.iter().any(|u| u.symbol == symbol) {
@@ -144,7 +144,7 @@ impl<'a> Reader<'a, '_> {
         let Some(section) = self.section.section("memory")? else { return Ok(Vec::new()) };
         let mut extra = Vec::new();
         for entry in section.entries() {
-            self.names.check(self.context.source, g, entry.key, &entry.key_span)?;
+            self.names.check(self.context.source, g, (entry.key, &entry.key_span), Role::Memory)?;
             let symbol = g.symbol(entry.key);
             self.names.insert(entry.key, Role::Memory, g.variable(symbol), &[]);
             extra.push((entry, symbol));

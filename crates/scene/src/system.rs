@@ -35,7 +35,7 @@ pub(super) fn build<'a>(
     }
     let mut units = Vec::new();
     for entry in coordinates.entries() {
-        source.note(names.check_settable(source, &graph, entry.key, &entry.key_span));
+        source.note(names.check(source, &graph, (entry.key, &entry.key_span), Role::Coordinate));
         let unit = source.note(entry.section()).and_then(|section| source.note(unit(&section)));
         units.push((entry.key, unit.unwrap_or_default()));
         let q = graph.variable(graph.symbol(entry.key));
@@ -90,7 +90,7 @@ fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &m
     let source = section.source;
     let mut written = Vec::new();
     for entry in section.entries() {
-        let checked = names.check_settable(source, graph, entry.key, &entry.key_span);
+        let checked = names.check(source, graph, (entry.key, &entry.key_span), Role::Parameter);
         let value = source.note(checked).and_then(|()| {
             let given = source.note(entry.value())?;
             Some(overrides.get(entry.key).map_or(given, Value::Number))
@@ -129,7 +129,8 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
     let source = context.source;
     let mut written = Vec::new();
     for entry in section.entries() {
-        let checked = context.names.check(source, &context.system.graph, entry.key, &entry.key_span);
+        let checked =
+            context.names.check(source, &context.system.graph, (entry.key, &entry.key_span), Role::Definition);
         match source.note(checked.and_then(|()| entry.value())) {
             Some(value) => written.push((entry, value)),
             None if context.names.role(entry.key).is_none() => {

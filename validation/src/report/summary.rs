@@ -5,7 +5,6 @@ use deltaq::{Comparison, Ending, Pair, Verdict, error_estimate, setting};
 
 use crate::report::headline::{Headline, rows};
 use crate::report::numbers::{or_dash, short};
-use crate::report::verdicts::word;
 use picture::{Axis, Curve, Picture, Style};
 
 /// Rows of the plot.
@@ -70,10 +69,10 @@ fn pairs(comparison: &Comparison) -> String {
         let letter = letter.and_then(|i| ('a'..='z').nth(i)).map_or(String::new(), String::from);
         let names = format!("{} – {}", label(pair.first), label(pair.second));
         let [first, second, _] = pair.gap.passes.map(or_dash);
-        let verdict = word(&pair.gap.verdict);
+        let verdict = pair.gap.verdict.word();
         table.push([letter, names, verdict.into(), first, second, short(pair.gap.largest)].to_vec());
     }
-    let count = |wanted: &str| others.iter().filter(|p| word(&p.gap.verdict) == wanted).count();
+    let count = |wanted: &str| others.iter().filter(|p| p.gap.verdict.word() == wanted).count();
     let counts = ["same", "different", "undecided"].map(|verdict| (count(verdict), verdict));
     let counts: Vec<String> =
         counts.iter().filter(|(n, _)| *n > 0).map(|(n, verdict)| format!("{n} {verdict}")).collect();

@@ -1,21 +1,12 @@
 //! The verdicts for machines. Nothing in them depends on the machine's speed.
 
-use deltaq::{Comparison, Ending, Verdict};
+use deltaq::{Comparison, Ending};
 use serde_json::{Map, Value, json};
 
 use crate::report::membership;
 
 /// Relative difference in a time that two runs may have.
 const SAME_TIME: f64 = 1e-3;
-
-/// One word for a verdict.
-pub(crate) fn word(verdict: &Verdict) -> &'static str {
-    match verdict {
-        Verdict::Same => "same",
-        Verdict::Different => "different",
-        Verdict::Undecided { .. } => "undecided",
-    }
-}
 
 /// All verdicts of all scenes.
 pub fn verdicts(comparisons: &[Comparison]) -> Value {
@@ -46,7 +37,7 @@ fn scene(comparison: &Comparison) -> Value {
             json!({
                 "first": label(p.first),
                 "second": label(p.second),
-                "verdict": word(&p.gap.verdict),
+                "verdict": p.gap.verdict.word(),
                 "passes": p.gap.passes.map(|t| t.map(rounded)),
             })
         })
@@ -55,7 +46,7 @@ fn scene(comparison: &Comparison) -> Value {
         .fits
         .iter()
         .map(|f| {
-            let verdict = f.fitted.as_ref().map(|m| word(&m.gap.verdict));
+            let verdict = f.fitted.as_ref().map(|m| m.gap.verdict.word());
             json!({ "run": label(f.run), "target": label(f.target), "verdict": verdict, "by identity": f.by_identity })
         })
         .collect();

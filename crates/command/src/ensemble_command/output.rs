@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::members::Members;
 use crate::answer::pretty;
 use crate::cli::Format;
-use crate::columns::{Columns, print, row};
+use crate::columns::{Columns, print, quoted, row};
 
 /// Members that a complaint describes.
 const DESCRIBED: usize = 3;
@@ -144,9 +144,9 @@ impl<'a> Answers<'a> {
     /// One row a time; one without numbers where nothing was reached.
     pub(super) fn rows(&self, member: usize, outcome: &Outcome) -> String {
         let begin = self.begin(member).unwrap_or_default();
-        let cause = outcome.cause.as_ref().map_or(String::new(), |cause| format!("\"{}\"", cause.replace('"', "\"\"")));
+        let cause = quoted(outcome.cause.as_deref().unwrap_or_default());
         let estimate = outcome.error_estimate().map_or(String::new(), |e| format!("{e:?}"));
-        let end = format!("{estimate},{},{}\n", outcome.status, cause.replace('\n', " "));
+        let end = format!("{estimate},{},{cause}\n", outcome.status);
         if outcome.outputs().is_empty() {
             return begin + &",".repeat(self.columns.names().len()) + &end;
         }
