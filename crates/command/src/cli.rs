@@ -197,11 +197,12 @@ pub struct CompareArguments {
     /// Fit no free constants, not even where nothing is decided.
     #[arg(long, value_name = "PART", conflicts_with = "with")]
     pub without: Option<Searched>,
-    /// Vary a parameter, a start value or `mu1`, … and compare Chetaev's and the vakonomic motion at each
-    /// value, both ends included: a table. Several combine; with `--out` a file, which goes on where it was
-    /// cut off.
-    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = linearize::sweep,
-          conflicts_with_all = ["markdown", "format", "formulation", "with"])]
+    /// Vary a parameter, a start value, `mu1`, … or `P0_w`, … and compare two motions at each value, both ends
+    /// included: a table. The motions are Chetaev's and the vakonomic one, or of costates `P0_w` the one
+    /// without constraints, or two given by `--formulation`. Several combine; with `--out` a file, which goes
+    /// on where it was cut off.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = ensemble::range,
+          conflicts_with_all = ["markdown", "format", "with"])]
     pub sweep: Vec<Range>,
     /// Tolerance of the looser of the two runs of every motion.
     #[arg(long, default_value = "1e-11", allow_negative_numbers = true)]

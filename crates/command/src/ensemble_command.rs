@@ -26,9 +26,9 @@ const CHUNK: usize = 4096;
 pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> {
     let settings = Settings { method: Some(Method::Taylor), ..settings(&arguments.motion)? };
     let base = arguments.motion.scene.find()?;
-    let members = Members::of(arguments, &base)?;
     let MotionArguments { formulation, form, free, .. } = &arguments.motion;
     let choice = choice(&base, (formulation, form), free)?;
+    let members = Members::of(arguments, &base, &choice)?;
     check_multipliers(&members, &choice, arguments)?;
     let end = setting(&base).end;
     let asked = arguments.motion.times.as_deref();

@@ -1,10 +1,10 @@
-//! `deltaq compare --sweep`: where Chetaev's and the vakonomic motion part, over one or two numbers.
+//! `deltaq compare --sweep`: where two motions part, over one or two numbers.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 
 use anyhow::{Context, Result, bail, ensure};
-use deltaq::{Settings, SweepPoint, sweep_point};
+use deltaq::{Settings, Sweep, SweepPoint};
 
 use crate::cli::{CompareArguments, Range};
 use crate::columns::quoted;
@@ -28,16 +28,25 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     if let Some((fixed, _)) = arguments.set.overrides.iter().find(|(set, _)| grid.names().any(|name| name == set)) {
         bail!("--sweep: `{fixed}` varies, and --set fixes it");
     }
-    let set = |index: usize| [&arguments.set.overrides[..], &grid.point(index)].concat();
+    let formulations = match &arguments.formulation[..] {
+        [] => None,
+        [first, second] => Some([first.clone(), second.clone()]),
+        other => bail!("--sweep compares two formulations, not {}", other.len()),
+    };
     // a name that means nothing is a fault of the call, a start that there is not an answer
     let text = catalogue::source(name)?;
     let scene = catalogue::read(name, &text, &arguments.set.overrides)?;
-    scene.starts(&grid.names().collect::<Vec<_>>())?;
+    let names: Vec<String> = grid.names().map(String::from).collect();
+    let sweep = Sweep::new(&scene.name, &text, &arguments.set.overrides, &names, formulations, &settings)?;
 
+    let computed = |index: usize| {
+        let values: Vec<f64> = grid.point(index).into_iter().map(|(_, x)| x).collect();
+        grid.begin(index) + &row(&sweep.point(&values))
+    };
     let path = arguments.output.out.as_ref().map(|folder| folder.join(format!("{}-sweep.csv", scene.name)));
     let mut done = 0;
     let mut sink = Sink::open(path.as_deref(), |file, told| {
-        let (rows, bytes) = whole_rows(file, told, &grid)?;
+        let (rows, bytes) = whole_rows(file, told, &grid, &computed)?;
         done = rows;
         Ok(bytes)
     })?;
@@ -46,16 +55,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     while reads_on && done < grid.count() {
         bar.set_position(done as u64);
         let next: Vec<usize> = (done..grid.count().min(done + CHUNK)).collect();
-        let rows = parallel::map(&next, |&index| {
-            let point = match catalogue::read(name, &text, &set(index)) {
-                Ok(scene) => sweep_point(scene, &settings),
-                Err(error) => {
-                    let cause = error.to_string();
-                    SweepPoint { cause: cause.lines().next().unwrap_or_default().into(), ..SweepPoint::default() }
-                }
-            };
-            grid.begin(index) + &row(&point)
-        });
+        let rows = parallel::map(&next, |&index| computed(index));
         done += rows.len();
         reads_on = sink.write(&rows.concat())?;
     }
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let told = sink.close(&format!("{} points", grid.count()))?;
     let (Some(path), Some(folder)) = (&path, &arguments.output.out) else { return Ok(told) };
     let table = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    write_all(folder, &sweep_files(&scene.name, &scene.title, &grid.swept(), &table)?)?;
+    write_all(folder, &sweep_files(&scene.name, &scene.title, sweep.titles(), &grid.swept(), &table)?)?;
     Ok(told)
 }
 
@@ -145,8 +145,9 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// The rows that a file has already, whole ones, and their bytes with the names above.
-fn whole_rows(file: &File, told: &str, grid: &Grid) -> Result<(usize, u64)> {
+/// The rows that a file has already, whole ones, and their bytes with the names above. The first one has to
+/// be what is computed now.
+fn whole_rows(file: &File, told: &str, grid: &Grid, computed: &dyn Fn(usize) -> String) -> Result<(usize, u64)> {
     let mut bytes = 0;
     let mut rows = 0;
     let mut lines = BufReader::new(file);
@@ -160,7 +161,8 @@ fn whole_rows(file: &File, told: &str, grid: &Grid) -> Result<(usize, u64)> {
             line == grid.head()
         } else {
             rows += 1;
-            rows <= grid.count() && line.starts_with(&grid.begin(rows - 1))
+            let is_first = rows == 1;
+            rows <= grid.count() && line.starts_with(&grid.begin(rows - 1)) && (!is_first || line == computed(0))
         };
         ensure!(ours, "{told} is of another sweep, or of another version: remove it, or take another --out");
         bytes += line.len() as u64;

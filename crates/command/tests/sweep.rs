@@ -26,7 +26,10 @@ fn the_line_on_which_the_ball_turns_with_the_table_is_found() {
         assert_eq!(row[2], "different", "{row:?}");
     }
     let page = fs::read_to_string(folder.path().join("turntable-sweep.md")).expect("the page");
-    assert!(page.contains("Some do at 3.") && page.contains("- Omega = 0.6, psi' = 0.6: some"), "{page}");
+    assert!(
+        page.contains("some constants: vakonomic = Chetaev: 3;") && page.contains("- Omega = 0.6, psi' = 0.6: some"),
+        "{page}"
+    );
     for kind in ["apart", "decision"] {
         let svg = fs::read_to_string(folder.path().join(format!("turntable-{kind}.svg"))).expect("a picture");
         roxmltree::Document::parse(&svg).expect("XML");
@@ -68,4 +71,24 @@ fn a_start_that_there_is_not_is_a_row_and_a_name_that_means_nothing_is_none() {
     refused(&["compare", "sledge", "--set", "k=1", "--sweep", "k=0:1:3"], &["--set fixes it"]);
     refused(&["compare", "sledge", "--sweep", "k=0:1:3", "--sweep", "k=0:1:3"], &["varies twice"]);
     refused(&["compare", "sledge", "--sweep", "k=0:1"], &["NAME=FROM:TO:COUNT"]);
+}
+
+#[test]
+fn costates_vary_like_multipliers_and_two_formulations_are_chosen() {
+    let call = ["compare", "sledge", "--quiet", "--sweep"];
+    let table = answer(&[&call[..], &["P0_x=-2.7:2.7:3"]].concat(), 0).0;
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), ["P0_x", "-2.7", "0.0", "2.7"]);
+    assert!(rows[1..].iter().all(|row| row[1] == "different" && row[5] == "none proved"), "{table}");
+    assert!(rows[1][2] != rows[2][2] && rows[2][2] != rows[3][2], "{table}");
+
+    let two = ["g=9:10:1", "--formulation", "removed-constraint,vakonomic"];
+    let table = answer(&[&call[..], &two].concat(), 0).0;
+    let row: Vec<&str> = table.lines().nth(1).expect("a row").split(',').collect();
+    // a removal by coordinates with other costates is vakonomic
+    assert_eq!((row[0], row[5], row[7]), ("9.0", "some proved", "0"), "{table}");
+
+    refused(&[&call[..], &["P0_z=0:1:2"]].concat(), &["`P0_z`", "P0_x, P0_y"]);
+    refused(&[&call[..], &["P0_x=0:1:2", "--formulation", "chetaev,vakonomic"]].concat(), &["P0_x", "no removal"]);
+    refused(&[&call[..], &["g=9:10:2", "--formulation", "chetaev"]].concat(), &["two formulations, not 1"]);
 }

@@ -1,5 +1,6 @@
 //! Ensembles: many starts and parameters of one system at once, over vector lanes and processor cores.
 
+mod costates;
 mod motions;
 mod run;
 #[cfg(test)]
@@ -17,6 +18,8 @@ use symbolic::Symbol;
 
 use crate::constants::free_constants;
 use crate::{Choice, Form, Metric, Prepared, Settings, SolveError, derive_in_form, formulation, setting};
+pub(crate) use costates::Costates;
+pub use costates::costate_names;
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};
@@ -49,6 +52,7 @@ pub struct Ensemble {
     choice: Choice,
     system: System,
     starts: Starts,
+    costates: Costates,
     /// Of equations in the variables of a removal: their start.
     removal: Option<RemovalProgram>,
     end: f64,
@@ -114,20 +118,24 @@ impl EnsembleMember {
 
 impl Ensemble {
     /// Derives and compiles in the form chosen at the start of `scene`, which should be one of the members;
-    /// they differ from it by the numbers of these names, as of [`Scene::starts`].
+    /// they differ from it by the numbers of these names, as of [`Scene::starts`], or `P0_w` for the costate
+    /// of the memory variable `w` of a removal.
     ///
     /// [`Settings::method`] counts for nothing.
     ///
     /// # Errors
     /// As [`crate::solve_choice`]; [`SolveError::Scene`] where the scene has no such name;
-    /// [`SolveError::Member`] where a name comes twice, where multipliers are to vary that the formulation
-    /// does not start from, or parameters while the constants are natural at a horizon.
+    /// [`SolveError::Member`] where a name comes twice, where multipliers or costates are to vary that the
+    /// formulation does not start from, or parameters while the constants are natural at a horizon.
     pub fn new(scene: &Scene, choice: &Choice, names: &[&str], settings: &Settings) -> Result<Self, SolveError> {
-        let starts = scene.starts(names).map_err(|error| SolveError::Scene(Box::new(error)))?;
         let refused = |reason: String| Err(SolveError::Member { reason });
         if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
             return refused(format!("`{}` is named twice", names[i]));
         }
+        let (costates, names) =
+            Costates::among(names, scene, choice).map_err(|reason| SolveError::Member { reason })?;
+        let choice = &costates.choice(choice);
+        let starts = scene.starts(&names).map_err(|error| SolveError::Scene(Box::new(error)))?;
         let starts_multipliers = formulation(choice.formulation).is_some_and(|entry| entry.starts_multipliers);
         if starts.vary_multipliers() && !starts_multipliers {
             return refused(format!("multipliers vary, and {} does not start from them", choice.formulation));
@@ -159,7 +167,7 @@ impl Ensemble {
         let removal = prepared.equations.removal.as_ref();
         let removal = removal.map(|removal| RemovalProgram::new(&system, removal, &varied));
         let (choice, end) = (choice.clone(), setting(scene).end);
-        Ok(Ensemble { prepared, lanes, choice, system, starts, removal, end, settings, metric, words })
+        Ok(Ensemble { prepared, lanes, choice, system, starts, costates, removal, end, settings, metric, words })
     }
 
     /// Members end at `end`, and not where the scene does.
@@ -218,10 +226,12 @@ impl Ensemble {
     pub fn member(&mut self, row: &[f64]) -> Result<EnsembleMember, String> {
         let cause = self.settings.interrupt.as_ref().and_then(Interrupt::cause);
         cause.map_or(Ok(()), |cause| Err(cause.to_string()))?;
-        let Start { state, parameters, multipliers } = self.starts.at(row).map_err(|fault| fault.to_string())?;
-        let constants = match self.starts.vary_multipliers() {
-            true => ConstantsRule::Given(multipliers),
-            false => self.choice.constants.clone(),
+        let (given, row) = self.costates.split(row);
+        let Start { state, parameters, multipliers } = self.starts.at(&row).map_err(|fault| fault.to_string())?;
+        let constants = match (given, self.starts.vary_multipliers()) {
+            (Some(costates), _) => ConstantsRule::Given(costates),
+            (None, true) => ConstantsRule::Given(multipliers),
+            (None, false) => self.choice.constants.clone(),
         };
         let start = EnsembleStart { state, end: self.end, parameters, constants };
         self.member_at(&start).map_err(|error| error.to_string())

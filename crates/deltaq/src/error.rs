@@ -141,8 +141,8 @@ pub enum SolveError {
     /// Something that is to vary is not in the scene.
     #[error(transparent)]
     Scene(Box<SceneError>),
-    /// A motion cannot be a member of an ensemble.
-    #[error("not a member of this ensemble: {reason}")]
+    /// What is to vary in an ensemble or a sweep does not, or a motion cannot be a member.
+    #[error("{reason}")]
     Member {
         /// Why not.
         reason: String,

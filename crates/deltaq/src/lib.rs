@@ -102,7 +102,8 @@ pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;
 pub use ensemble::{
-    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, number_of_threads, over_threads,
+    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, costate_names,
+    number_of_threads, over_threads,
 };
 pub use equations_text::{EquationStyle, equations_text, system_text};
 pub use error::SolveError;
@@ -124,5 +125,5 @@ pub use runs::{Decided, Pair, Run};
 pub use settings::{Setting, Settings, TIGHTER, setting};
 pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
-pub use sweep::{SweepPoint, sweep_point};
+pub use sweep::{Sweep, SweepPoint};
 pub use table::{FORMS, FORMULATIONS, formulation};

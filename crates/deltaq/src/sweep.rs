@@ -1,10 +1,16 @@
-//! One point of a sweep: where Chetaev's and the vakonomic motion of a scene part, and whether they have to.
+//! One point of a sweep: where two motions of a scene part, and whether they have to.
 
 use scene::Scene;
 
-use crate::{Answer, Comparison, Extent, Membership, Settings, SolveError, THRESHOLDS, Verdict, choices_among};
+use mechanics::ConstantsRule;
 
-/// What a comparison of Chetaev's and the vakonomic motion found.
+use crate::ensemble::Costates;
+use crate::{
+    Answer, Choice, Comparison, Extent, FORMULATIONS, Membership, Settings, SolveError, THRESHOLDS, Verdict, choices,
+    choices_among,
+};
+
+/// What a comparison of two motions found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweepPoint {
     /// `same`, `different` or `undecided`; empty where one has no motion.
@@ -15,11 +21,12 @@ pub struct SweepPoint {
     pub largest: Option<f64>,
     /// What a gap had to pass at the end.
     pub limit: Option<f64>,
-    /// Whether some `μ₀` makes the vakonomic motion Chetaev's: `some`, `none` or `undecided`, with ` proved`.
+    /// Whether some constants make the second motion the first, `μ₀` the vakonomic one Chetaev's: `some`, `none`
+    /// or `undecided`, with ` proved`. Empty where the table asks nothing of the two.
     pub answer: &'static str,
     /// The order of the Taylor coefficient that proves there is none.
     pub order: Option<usize>,
-    /// Dimension of the set of such `μ₀`.
+    /// Dimension of the set of such constants.
     pub dimension: Option<usize>,
     /// Least mismatch of accelerations over the motion's own, ρ.
     pub mismatch: Option<f64>,
@@ -27,42 +34,152 @@ pub struct SweepPoint {
     pub cause: String,
 }
 
-/// The comparison of one scene, without fits: a pure function of it.
-pub fn sweep_point(scene: Scene, settings: &Settings) -> SweepPoint {
-    let mut point = SweepPoint::default();
-    if let Err(error) = fill(&mut point, scene, settings) {
-        point.cause = error.to_string();
-    }
-    point
+/// One scene with other numbers in some places: two of its motions, compared at each choice of them.
+///
+/// ```
+/// # let text = include_str!("../../scene/sledge.toml");
+/// use deltaq::{Settings, Sweep};
+/// let names = ["k".to_string()];
+/// let sweep = Sweep::new("sledge", text, &[], &names, None, &Settings::default())?;
+/// assert_eq!(sweep.point(&[0.5]).answer, "none proved");
+/// # Ok::<(), deltaq::SolveError>(())
+/// ```
+#[derive(Clone)]
+pub struct Sweep {
+    name: String,
+    text: String,
+    overrides: Vec<(String, f64)>,
+    names: Vec<String>,
+    formulations: [String; 2],
+    settings: Settings,
 }
 
-fn fill(point: &mut SweepPoint, scene: Scene, settings: &Settings) -> Result<(), SolveError> {
-    let start = scene.start.t;
-    let choices = choices_among(&scene, |name| name == "chetaev" || name == "vakonomic");
-    let mut comparison = Comparison::new(scene, Extent::Answer, settings)?;
-    for choice in choices {
-        comparison.solve(choice, settings)?;
-    }
-    if let Some(Err(error)) = comparison.runs.iter().map(|run| &run.outcome).find(|outcome| outcome.is_err()) {
-        point.cause = error.to_string();
-    }
-    if let Some(pair) = comparison.pairs.first() {
-        let gap = &pair.gap;
-        point.verdict = gap.verdict.word();
-        if let Verdict::Undecided { because } = &gap.verdict {
-            point.cause.clone_from(because);
+impl Sweep {
+    /// A sweep over `names`: parameters, start values, multipliers `mu1`, …, all as of [`Scene::parse_with`],
+    /// and costates `P0_w` of the first removal. What is compared are two `formulations`; if none are named
+    /// Chetaev's and the vakonomic one or, where costates vary, the one without constraints.
+    ///
+    /// # Errors
+    /// [`SolveError::Scene`], [`SolveError::Member`] where a name means nothing, as far as the scene tells.
+    pub fn new(
+        name: &str,
+        text: &str,
+        overrides: &[(String, f64)],
+        names: &[String],
+        formulations: Option<[String; 2]>,
+        settings: &Settings,
+    ) -> Result<Sweep, SolveError> {
+        settings.check()?;
+        let usual = || {
+            let second = match names.iter().any(|name| is_costate(name)) {
+                true => removed_constraint::FORMULATION.name,
+                false => vakonomic::FORMULATION.name,
+            };
+            [chetaev::FORMULATION.name, second].map(String::from)
+        };
+        let (name, text, overrides, names) = (name.into(), text.into(), overrides.to_vec(), names.to_vec());
+        let formulations = formulations.unwrap_or_else(usual);
+        let sweep = Sweep { name, text, overrides, names, formulations, settings: settings.clone() };
+        let scene = sweep.read(&[])?;
+        let (costates, others): (Vec<&str>, Vec<&str>) =
+            sweep.names.iter().map(String::as_str).partition(|name| is_costate(name));
+        let twice = (1..others.len()).find(|&i| others[..i].contains(&others[i]));
+        if let Some(i) = twice {
+            return Err(refused(format!("`{}` varies twice", others[i])));
         }
-        point.apart = THRESHOLDS.iter().position(|&at| at == 1e-3).and_then(|i| gap.passes[i]).map(|t| t - start);
-        point.largest = Some(gap.largest);
-        point.limit = gap.points.last().map(|last| last.limit);
+        scene.starts(&others).map_err(|error| SolveError::Scene(Box::new(error)))?;
+        let zero: Vec<(String, f64)> = costates.iter().map(|name| (name.to_string(), 0.0)).collect();
+        sweep.choices(&scene, &zero)?;
+        Ok(sweep)
     }
-    comparison.decide_next();
-    match comparison.membership() {
-        None => {}
-        Some(Err(error)) => point.cause = error.to_string(),
-        Some(Ok(membership)) => decided(point, membership),
+
+    /// What a comparison finds for these numbers, one a name: a pure function of them.
+    ///
+    /// # Panics
+    /// If there are not as many numbers as names.
+    pub fn point(&self, values: &[f64]) -> SweepPoint {
+        assert_eq!(values.len(), self.names.len(), "numbers of a point");
+        let mut point = SweepPoint::default();
+        let given = self.names.iter().cloned().zip(values.iter().copied());
+        let (costates, others): (Vec<_>, Vec<_>) = given.partition(|(name, _)| is_costate(name));
+        if let Err(error) = self.read(&others).and_then(|scene| self.fill(&mut point, scene, &costates)) {
+            // a fault of the text stands on several lines
+            point.cause = error.to_string().lines().next().unwrap_or_default().into();
+        }
+        point
     }
-    Ok(())
+
+    /// Titles of the two formulations, in the order in which they are compared.
+    pub fn titles(&self) -> [&'static str; 2] {
+        let mut places = [0, 1].map(|i| FORMULATIONS.iter().position(|entry| entry.name == self.formulations[i]));
+        places.sort_unstable();
+        places.map(|place| FORMULATIONS[place.unwrap_or_default()].title)
+    }
+
+    fn read(&self, others: &[(String, f64)]) -> Result<Scene, SolveError> {
+        let scene = Scene::parse_with(&self.name, &self.text, &[&self.overrides[..], others].concat());
+        scene.map_err(|error| SolveError::Scene(Box::new(error)))
+    }
+
+    /// The two choices for a scene, in the order of the table; of several removals the first.
+    fn choices(&self, scene: &Scene, costates: &[(String, f64)]) -> Result<[Choice; 2], SolveError> {
+        let [first, second] = &self.formulations;
+        let of = |name: &String| choices_among(scene, |known| known == name).into_iter().next();
+        let (Some(one), Some(two), true) = (of(first), of(second), first != second) else {
+            let mut known: Vec<_> = choices(scene).iter().map(|choice| choice.formulation).collect();
+            known.dedup();
+            return Err(refused(format!("{first}, {second}: two of {} can be compared", known.join(", "))));
+        };
+        let mut choices = [one, two];
+        choices.sort_by_key(|choice| FORMULATIONS.iter().position(|entry| entry.name == choice.formulation));
+        if !costates.is_empty() {
+            let names: Vec<&str> = costates.iter().map(|(name, _)| name.as_str()).collect();
+            let values: Vec<f64> = costates.iter().map(|(_, value)| *value).collect();
+            let Some(choice) = choices.iter_mut().find(|choice| choice.removal.is_some()) else {
+                return Err(refused(format!("{} vary, and no removal is compared", names.join(", "))));
+            };
+            let (costates, _) = Costates::among(&names, scene, choice).map_err(refused)?;
+            choice.constants = ConstantsRule::Given(costates.split(&values).0.unwrap_or_default());
+        }
+        Ok(choices)
+    }
+
+    fn fill(&self, point: &mut SweepPoint, scene: Scene, costates: &[(String, f64)]) -> Result<(), SolveError> {
+        let start = scene.start.t;
+        let choices = self.choices(&scene, costates)?;
+        let mut comparison = Comparison::new(scene, Extent::Everything, &self.settings)?;
+        for choice in choices {
+            comparison.solve(choice, &self.settings)?;
+        }
+        if let Some(Err(error)) = comparison.runs.iter().map(|run| &run.outcome).find(|outcome| outcome.is_err()) {
+            point.cause = error.to_string();
+        }
+        if let Some(pair) = comparison.pairs.first() {
+            let gap = &pair.gap;
+            point.verdict = gap.verdict.word();
+            if let Verdict::Undecided { because } = &gap.verdict {
+                point.cause.clone_from(because);
+            }
+            point.apart = THRESHOLDS.iter().position(|&at| at == 1e-3).and_then(|i| gap.passes[i]).map(|t| t - start);
+            point.largest = Some(gap.largest);
+            point.limit = gap.points.last().map(|last| last.limit);
+        }
+        match comparison.decide_next().map(|decided| &decided.outcome) {
+            None => {}
+            Some(Err(error)) => point.cause = error.to_string(),
+            Some(Ok(membership)) => decided(point, membership),
+        }
+        Ok(())
+    }
+}
+
+/// Whether a name is that of a costate at the start.
+fn is_costate(name: &str) -> bool {
+    name.starts_with("P0_")
+}
+
+fn refused(reason: String) -> SolveError {
+    SolveError::Member { reason }
 }
 
 fn decided(point: &mut SweepPoint, membership: &Membership) {

@@ -28,13 +28,21 @@ impl Point {
     }
 }
 
-/// A page about the table of a sweep over these ranges, with lines or maps of when the motions part and of
-/// what is decided. The table is that of `deltaq compare --sweep`, whole.
+/// A page about the table of a sweep over these ranges, with lines or maps of when the motions of the two
+/// formulations part and of what is decided. The table is that of `deltaq compare --sweep`, whole.
 ///
 /// # Errors
 /// Where the table is none, or a picture cannot be drawn.
-pub fn sweep_files(name: &str, title: &str, ranges: &[Swept], table: &str) -> Result<Vec<File>> {
+pub fn sweep_files(
+    name: &str,
+    title: &str,
+    [first, second]: [&str; 2],
+    ranges: &[Swept],
+    table: &str,
+) -> Result<Vec<File>> {
     let count = ranges.len();
+    let title = &format!("{title}: {first} and {second}");
+    let mark = &format!("some constants: {second} = {first}");
     let point = |line: &str| -> Option<Point> {
         let cells: Vec<&str> = line.split(',').collect();
         let at = cells.get(..count)?.iter().map(|x| x.parse().ok()).collect::<Option<Vec<f64>>>()?;
@@ -45,7 +53,7 @@ pub fn sweep_files(name: &str, title: &str, ranges: &[Swept], table: &str) -> Re
     };
     let points = table.lines().skip(1).map(|line| point(line).with_context(|| format!("no row of a sweep: {line}")));
     let points: Vec<Point> = points.collect::<Result<_>>()?;
-    let mut text = page(title, ranges, &points);
+    let mut text = page(title, mark, ranges, &points);
     let mut files = Vec::new();
     let measures: [(&str, &str, Measure); 2] = [
         ("apart", "time to a gap of 1e-3 (s)", |point| point.apart),
@@ -53,8 +61,8 @@ pub fn sweep_files(name: &str, title: &str, ranges: &[Swept], table: &str) -> Re
     ];
     for (kind, label, value) in measures {
         let svg = match ranges {
-            [one] => line(title, one, label, &points, value),
-            [y, x] => Ok(map(title, x, y, label, &points, value)),
+            [one] => line(title, (second, mark), one, label, &points, value),
+            [y, x] => Ok(map(title, mark, x, y, label, &points, value)),
             _ => break,
         };
         let path = format!("{name}-{kind}.svg");
@@ -72,14 +80,14 @@ pub fn sweep_files(name: &str, title: &str, ranges: &[Swept], table: &str) -> Re
     Ok(files)
 }
 
-fn page(title: &str, ranges: &[Swept], points: &[Point]) -> String {
+fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
     let number = |word: &str| points.iter().filter(|point| point.verdict == word).count();
     let some: Vec<&Point> = points.iter().filter(|point| point.has_some()).collect();
     let proved = points.iter().filter(|point| point.answer == "none proved").count();
     let names: Vec<&str> = ranges.iter().map(|(name, ..)| name.as_str()).collect();
     let mut text = format!(
-        "# {title}: Chetaev and vakonomic over {}\n\n**Of {} points {} are different, {} the same, {} undecided, {} \
-         without a motion. No $\\mu_0$ makes the vakonomic motion Chetaev's: proved at {proved}. Some do at {}.**\n",
+        "# {title} over {}\n\n**Of {} points {} are different, {} the same, {} undecided, {} without a motion. Points with \
+         {mark}: {}; without, by proof: {proved}.**\n",
         names.join(" and "),
         points.len(),
         number("different"),
@@ -99,11 +107,9 @@ fn page(title: &str, ranges: &[Swept], points: &[Point]) -> String {
     text + "\n\n"
 }
 
-/// Where some μ₀ do, by proof or not.
-const MARK: &str = "some μ₀ makes the vakonomic motion Chetaev's";
-
 fn map(
     title: &str,
+    mark: &str,
     (x, x0, x1, columns): &Swept,
     (y, y0, y1, _): &Swept,
     label: &str,
@@ -111,32 +117,32 @@ fn map(
     value: Measure,
 ) -> String {
     HeatMap {
-        title: format!("{title}: Chetaev and vakonomic"),
+        title: title.into(),
         x: Axis { range: Some((*x0, *x1)), ..Axis::linear(x.clone()) },
         y: Axis { range: Some((*y0, *y1)), ..Axis::linear(y.clone()) },
         columns: *columns,
         value: Axis::log(label),
         cells: points.iter().map(value).collect(),
         marked: points.iter().map(Point::has_some).collect(),
-        mark: MARK.into(),
+        mark: mark.into(),
     }
     .to_svg()
 }
 
 fn line(
     title: &str,
+    (second, mark): (&str, &str),
     (name, ..): &Swept,
     label: &str,
     points: &[Point],
     value: Measure,
 ) -> Result<String, picture::PictureError> {
     let along = points.iter().filter_map(|point| Some((point.at[0], value(point)?))).collect();
-    let mut curves = vec![Curve { label: "vakonomic".into(), style: Style::Vakonomic, points: along }];
+    let mut curves = vec![Curve { label: second.into(), style: Style::Vakonomic, points: along }];
     for point in points.iter().filter(|point| point.has_some()) {
         let at = value(point).map(|value| (point.at[0], value));
-        curves.push(Curve { label: MARK.into(), style: Style::Threshold, points: at.into_iter().collect() });
+        curves.push(Curve { label: mark.into(), style: Style::Threshold, points: at.into_iter().collect() });
     }
     curves.retain(|curve| !curve.points.is_empty());
-    let title = format!("{title}: Chetaev and vakonomic");
     Picture::new(title, Axis::linear(name.clone()), Axis::log(label), curves).to_svg()
 }

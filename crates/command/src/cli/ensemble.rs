@@ -76,11 +76,12 @@ pub struct EnsembleArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
     /// File with one member a line: commas between numbers, the first line names what they replace (a
-    /// parameter, a coordinate or a velocity at the start, mu1, …).
+    /// parameter, a coordinate or a velocity at the start, mu1, …, P0_w of a memory variable w).
     #[arg(long, value_name = "FILE")]
     pub members: Option<PathBuf>,
     /// Equidistant values of one of these, both ends included; several combine with each other and the file.
-    #[arg(long, value_name = "NAME=FROM..TO:COUNT", value_parser = range)]
+    /// FROM..TO:COUNT means the same.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub vary: Vec<Range>,
     /// File to write; to the terminal if left out.
     #[arg(long, value_name = "FILE")]
@@ -100,17 +101,14 @@ pub struct Range {
     pub count: usize,
 }
 
-fn range(text: &str) -> Result<Range, String> {
+/// `NAME=FROM:TO:COUNT`, or `NAME=FROM..TO:COUNT`.
+pub(super) fn range(text: &str) -> Result<Range, String> {
     let parts = text.split_once('=').and_then(|(name, rest)| {
         let (ends, count) = rest.rsplit_once(':')?;
-        let (from, to) = ends.split_once("..")?;
+        let (from, to) = ends.split_once("..").or_else(|| ends.split_once(':'))?;
         Some((name, from, to, count))
     });
-    finite_range(text, parts.ok_or_else(|| format!("`{text}` is not NAME=FROM..TO:COUNT"))?)
-}
-
-/// The range of a name, a first value, a last one and a number of values.
-pub(super) fn finite_range(text: &str, (name, from, to, count): (&str, &str, &str, &str)) -> Result<Range, String> {
+    let (name, from, to, count) = parts.ok_or_else(|| format!("`{text}` is not NAME=FROM:TO:COUNT"))?;
     let number = |x: &str| match scene::number(x) {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err(format!("`{x}` in `{text}` is not a finite number")),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::SceneArguments;
-use super::ensemble::{FreeArguments, Range, finite_range};
+use super::ensemble::{FreeArguments, Range, range};
 
 /// `deltaq linearize`.
 #[derive(Args, Debug)]
@@ -25,7 +25,7 @@ pub struct LinearizeArguments {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub free: Vec<String>,
     /// Equidistant values of a parameter, a start value or mu1, …, both ends included.
-    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = sweep)]
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub sweep: Option<Range>,
     /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit.
     #[arg(long)]
@@ -47,13 +47,4 @@ pub enum TableFormat {
     Csv,
     /// One object.
     Json,
-}
-
-/// The range that `NAME=FROM:TO:COUNT` says.
-pub(super) fn sweep(text: &str) -> Result<Range, String> {
-    let parts = text.split_once('=').and_then(|(name, rest)| match rest.split(':').collect::<Vec<_>>()[..] {
-        [from, to, count] => Some((name, from, to, count)),
-        _ => None,
-    });
-    finite_range(text, parts.ok_or_else(|| format!("`{text}` is not NAME=FROM:TO:COUNT"))?)
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
+use deltaq::{Choice, costate_names};
 use scene::Scene;
 
 use crate::cli::{EnsembleArguments, MOST_MEMBERS, Range};
@@ -23,18 +24,18 @@ pub struct Members {
 
 impl Members {
     /// Those of the file, each combined with all values of the ranges, of which the last one changes fastest.
-    pub(crate) fn of(arguments: &EnsembleArguments, scene: &Scene) -> Result<Members> {
+    pub(crate) fn of(arguments: &EnsembleArguments, scene: &Scene, choice: &Choice) -> Result<Members> {
         let mut members = match &arguments.members {
             Some(path) => Members::read(path)?,
             None if arguments.vary.is_empty() => {
-                bail!("nothing varies: give --vary NAME=FROM..TO:COUNT, --members FILE, or both")
+                bail!("nothing varies: give --vary NAME=FROM:TO:COUNT, --members FILE, or both")
             }
             None => Members { count: 1, ..Members::default() },
         };
         for range in &arguments.vary {
             members.combine(range)?;
         }
-        let known = known(scene);
+        let known = known(scene, choice);
         for (name, place) in members.names.iter().zip(&members.places) {
             if name == "duration" || name == "time" {
                 bail!("{place}: `{name}` is the same for all members; see --set");
@@ -95,13 +96,14 @@ impl Members {
 }
 
 /// What can vary.
-fn known(scene: &Scene) -> Vec<String> {
+fn known(scene: &Scene, choice: &Choice) -> Vec<String> {
     let system = &scene.system;
     let parameters = system.parameters.iter().map(|p| system.graph.name(p.symbol));
     let coordinates = system.coordinates.iter().map(|c| c.name.clone());
     let velocities = system.coordinates.iter().map(|c| format!("{}'", c.name));
     let multipliers = (1..=system.constraints.len()).map(|i| format!("mu{i}"));
-    parameters.chain(coordinates).chain(velocities).chain(multipliers).collect()
+    let costates = choice.removal.iter().flat_map(|removal| costate_names(scene, removal));
+    parameters.chain(coordinates).chain(velocities).chain(multipliers).chain(costates).collect()
 }
 
 /// The cells of a line with their columns, in characters from 1, without blanks and quotation marks.

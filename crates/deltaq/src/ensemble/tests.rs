@@ -137,6 +137,31 @@ fn what_is_no_member_is_refused() {
 }
 
 #[test]
+fn costates_vary_as_given_constants() {
+    let base = scene(SLEDGE, &[]);
+    let removed = choice(&base, "removed-constraint");
+    let names = ["P0_y", "phi'", "P0_x"];
+    let ensemble = Ensemble::new(&base, &removed, &names, &settings()).unwrap();
+    let rows: Vec<[f64; 3]> = (0..12).map(|i| [golden(i) - 0.5, 1.0 + golden(i + 20), 2.0 * golden(i + 40)]).collect();
+    let answers = ensemble.answers(ensemble.members(&rows, 1), &[0.5], &EnsembleOptions::default());
+    for ([y, omega, x], answer) in rows.iter().zip(answers) {
+        let answer = answer.unwrap();
+        let own = scene(SLEDGE, &[("phi'", *omega)]);
+        let constants = ConstantsRule::Given(vec![*x, *y]);
+        let mut alone = solve_choice(&own, &Choice { constants, ..removed.clone() }, &settings()).unwrap();
+        let expected = alone.at(0.5).unwrap();
+        for (one, other) in answer.outputs[0].coordinates.iter().zip(&expected.coordinates) {
+            assert!((one - other).abs() < 1e-9, "{one} and {other}");
+        }
+    }
+    let without = choice(&base, "chetaev");
+    for (choice, name) in [(&removed, "P0_phi"), (&without, "P0_x")] {
+        let refused = Ensemble::new(&base, choice, &[name], &settings());
+        assert!(matches!(refused, Err(SolveError::Member { reason }) if reason.contains(name)));
+    }
+}
+
+#[test]
 fn members_that_fail_at_the_start_do_not_disturb_the_others() {
     let scenes = sledges(LANES + 5);
     let (mut ensemble, mut members) = ready(&scenes, "vakonomic", &["alpha", "k"]);
