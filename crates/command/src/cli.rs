@@ -246,12 +246,19 @@ pub struct ProveArguments {
     pub format: TextOrJson,
 }
 
+/// The first system of a part of a batch is at most this one.
+const MOST_INDEX: u64 = 1 << 40;
+
 /// `deltaq random`.
 #[derive(Args, Debug)]
 pub struct RandomArguments {
     /// Number of systems.
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     pub count: u64,
+    /// Index of the first system: so a batch can be divided among machines.
+    #[arg(long, value_name = "INDEX", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=MOST_INDEX),
+          conflicts_with = "index")]
+    pub from: u64,
     /// Seed. A system is a function of seed and index (and of the kind, where one is chosen).
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -264,6 +271,9 @@ pub struct RandomArguments {
     /// File that every finished system is added to, and that a run which was cut off goes on from.
     #[arg(long, value_name = "FILE", conflicts_with = "index")]
     pub log: Option<PathBuf>,
+    /// No systems but those that these logs hold already, of one batch: what parts of it found together.
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["count", "from", "seed", "kind", "index", "log"])]
+    pub merge: Vec<PathBuf>,
     #[command(flatten)]
     pub output: Output,
 }

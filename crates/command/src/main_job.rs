@@ -97,7 +97,7 @@ impl Results {
         let mut parts = Vec::new();
         if asked(Section::Random) {
             let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
-            let records = batch.run(RANDOM_SYSTEMS, None, quiet)?;
+            let records = batch.run(0..RANDOM_SYSTEMS, None, quiet)?;
             let verdicts = Some(("random", random_verdicts(&batch, &records)));
             let (headline, files) = (random_headline(&records), random_files(&batch, &records)?);
             parts.push(Part { page: "random.md", headline, verdicts, files });

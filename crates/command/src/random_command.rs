@@ -17,6 +17,10 @@ const COUNTEREXAMPLES: usize = 5;
 
 /// Puts random systems to the test.
 pub(crate) fn run(arguments: &RandomArguments, quiet: bool) -> Result<Answer> {
+    if !arguments.merge.is_empty() {
+        let (batch, records) = Batch::merged(&arguments.merge)?;
+        return told(&batch, &records, None, arguments);
+    }
     let kinds = arguments.kind.map_or(Kind::ALL.to_vec(), |kind| vec![kind]);
     let batch = Batch { seed: arguments.seed, kinds };
     match arguments.index {
@@ -27,11 +31,16 @@ pub(crate) fn run(arguments: &RandomArguments, quiet: bool) -> Result<Answer> {
 
 fn many(batch: &Batch, arguments: &RandomArguments, quiet: bool) -> Result<Answer> {
     let clock = Instant::now();
-    let records = batch.run(arguments.count, arguments.log.as_deref(), quiet)?;
-    let seconds = clock.elapsed().as_secs_f64();
-    let summary = Summary::of(&records);
+    let indices = arguments.from..arguments.from + arguments.count;
+    let records = batch.run(indices, arguments.log.as_deref(), quiet)?;
+    told(batch, &records, Some(clock.elapsed().as_secs_f64()), arguments)
+}
+
+/// What was found on these systems, and in how many seconds if they were put to the test now.
+fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &RandomArguments) -> Result<Answer> {
+    let summary = Summary::of(records);
     let folder = arguments.output.out.as_deref();
-    let files = folder.map_or(Vec::new(), |_| counterexamples(batch, &records));
+    let files = folder.map_or(Vec::new(), |_| counterexamples(batch, records));
     let paths: Vec<String> =
         files.iter().filter_map(|file| Some(folder?.join(&file.path).display().to_string())).collect();
     let open: Vec<&Record> = records.iter().filter(|record| !record.open.is_empty()).collect();
@@ -40,9 +49,9 @@ fn many(batch: &Batch, arguments: &RandomArguments, quiet: bool) -> Result<Answe
         for record in &open {
             text += &opened(&batch.name(record.index), record);
         }
-        let rate = records.len() as f64 / seconds;
-        let _ = writeln!(text, "\n{} systems in {seconds:.1} s, {rate:.0} a second", records.len());
-        text += &work(&records);
+        let rate = |seconds: f64| format!(" in {seconds:.1} s, {:.0} a second", records.len() as f64 / seconds);
+        let _ = writeln!(text, "\n{} systems{}", records.len(), seconds.map_or(String::new(), rate));
+        text += &work(records);
         for path in &paths {
             let _ = writeln!(text, "counterexample: {path}");
         }

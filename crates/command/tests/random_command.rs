@@ -49,6 +49,29 @@ fn a_run_that_was_cut_off_goes_on() {
 }
 
 #[test]
+fn parts_of_a_batch_are_merged_to_what_the_whole_gives() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let part = |from: &str, count: &str, name: &str| {
+        random(&["--from", from, "--count", count, "--seed", "2", "--log", &path(name)], 0);
+    };
+    part("0", "12", "a");
+    // the parts overlap
+    part("8", "12", "b");
+    let merged = json(&["--merge", &path("a"), &path("b")]);
+    let whole = json(&["--count", "20", "--seed", "2"]);
+    assert_eq!(merged["summary"], whole["summary"]);
+    assert_eq!(merged["batch"], whole["batch"]);
+    random(&["--count", "1", "--seed", "3", "--log", &path("c")], 0);
+    refused(&["random", "--merge", &path("a"), &path("c")], &["is of seed 3"]);
+    refused(&["random", "--merge", &path("none")], &["none"]);
+    // another run writes
+    let file = fs::File::open(path("a")).expect("a log");
+    file.lock().expect("locked");
+    refused(&["random", "--count", "1", "--seed", "2", "--log", &path("a")], &["is being written by another run"]);
+}
+
+#[test]
 fn a_log_of_something_else_is_refused_and_left_alone() {
     let folder = tempfile::tempdir().expect("a folder");
     let log = folder.path().join("log.jsonl");

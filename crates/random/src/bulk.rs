@@ -1,11 +1,13 @@
 //! Many random systems over all processors, and what becomes of one that breaks a claim.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 use proptest::strategy::ValueTree;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -54,12 +56,12 @@ impl Batch {
         draw(self.seed, index, &self.kinds).current().scene(&self.name(index))
     }
 
-    /// Puts `count` systems to the test. With a log, those that it holds already are taken from it, and the
-    /// others are added to it one by one: a run that was cut off goes on where it was.
+    /// Puts the systems with these indices to the test. With a log, those that it holds already are taken from
+    /// it, and the others are added to it one by one: a run that was cut off goes on where it was.
     ///
     /// # Errors
-    /// Where the log cannot be read or written, or is of another batch.
-    pub fn run(&self, count: u64, log: Option<&Path>, quiet: bool) -> Result<Vec<Record>> {
+    /// Where the log cannot be read or written, is of another batch or being written by another run.
+    pub fn run(&self, indices: Range<u64>, log: Option<&Path>, quiet: bool) -> Result<Vec<Record>> {
         let (mut records, log) = match log {
             None => (Vec::new(), None),
             Some(path) => {
@@ -67,9 +69,9 @@ impl Batch {
                 (records, Some(Mutex::new(file)))
             }
         };
-        records.retain(|record| record.index < count);
-        let known: std::collections::BTreeSet<u64> = records.iter().map(|record| record.index).collect();
-        let indices: Vec<u64> = (0..count).filter(|index| !known.contains(index)).collect();
+        records.retain(|record| indices.contains(&record.index));
+        let known: BTreeSet<u64> = records.iter().map(|record| record.index).collect();
+        let indices: Vec<u64> = indices.filter(|index| !known.contains(index)).collect();
         let name = |&index: &u64| format!("random systems, {}", self.kinds[index as usize % self.kinds.len()]);
         let new = parallel::try_map(&indices, quiet, name, |&index| -> Result<Record> {
             let record = self.record(index);
@@ -85,38 +87,41 @@ impl Batch {
         Ok(records)
     }
 
+    /// The batch of some logs, and the records of all of them, each system once.
+    ///
+    /// # Errors
+    /// Where a log cannot be read, or the logs are not of the same batch.
+    pub fn merged(logs: &[PathBuf]) -> Result<(Batch, Vec<Record>)> {
+        let mut batch = None;
+        let mut records = BTreeMap::new();
+        for path in logs {
+            let file = File::open(path).with_context(|| format!("log {}", path.display()))?;
+            let Read { batch: own, records: more, .. } = read(&file, path)?;
+            let own = own.with_context(|| format!("log {}: not a log of random systems", path.display()))?;
+            batch.get_or_insert_with(|| own.clone()).is_of(&own, path)?;
+            records.extend(more.into_iter().map(|record| (record.index, record)));
+        }
+        Ok((batch.context("no log to merge")?, records.into_values().collect()))
+    }
+
+    /// `other`, read from `path`, has to be this batch.
+    fn is_of(&self, other: &Batch, path: &Path) -> Result<()> {
+        let (path, kinds) = (path.display(), other.kinds.len());
+        ensure!(self == other, "log {path} is of seed {} and {kinds} kinds; take another file", other.seed);
+        Ok(())
+    }
+
     /// Records of an earlier run, and the file to go on with. A last line that was cut off is dropped.
     fn open_log(&self, path: &Path) -> Result<(Vec<Record>, File)> {
         let place = || format!("log {}", path.display());
         let mut file =
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).with_context(place)?;
-        let (mut records, mut end, mut first) = (Vec::new(), 0_u64, true);
-        let mut reader = BufReader::new(&file);
-        let mut line = String::new();
-        loop {
-            line.clear();
-            let length = reader.read_line(&mut line).with_context(place)?;
-            if length == 0 || !line.ends_with('\n') {
-                break;
-            }
-            if first {
-                let other: Batch =
-                    serde_json::from_str(&line).with_context(|| format!("{}: not a log of random systems", place()))?;
-                if other != *self {
-                    bail!("{} is of seed {} and {} kinds; take another file", place(), other.seed, other.kinds.len());
-                }
-            } else {
-                records.push(serde_json::from_str(&line).with_context(place)?);
-            }
-            first = false;
-            end += length as u64;
-        }
-        if first && line.trim() != "" {
-            bail!("{}: not a log of random systems", place());
-        }
+        ensure!(file.try_lock().is_ok(), "{} is being written by another run", place());
+        let Read { batch, records, end } = read(&file, path)?;
+        batch.as_ref().map_or(Ok(()), |batch| self.is_of(batch, path))?;
         file.set_len(end).with_context(place)?;
         file.seek(SeekFrom::Start(end)).with_context(place)?;
-        if first {
+        if batch.is_none() {
             let header = serde_json::to_string(self)? + "\n";
             file.write_all(header.as_bytes()).with_context(place)?;
         }
@@ -132,6 +137,37 @@ impl Batch {
             notes: format!("{} Shrunk from {}.", scene.notes, self.name(index)),
             ..scene
         })
+    }
+}
+
+/// What a log holds.
+struct Read {
+    /// `None` of an empty file.
+    batch: Option<Batch>,
+    records: Vec<Record>,
+    /// Bytes of whole lines.
+    end: u64,
+}
+
+fn read(file: &File, path: &Path) -> Result<Read> {
+    let place = || format!("log {}", path.display());
+    let mut read = Read { batch: None, records: Vec::new(), end: 0 };
+    let mut reader = BufReader::new(file);
+    loop {
+        let mut line = String::new();
+        let length = reader.read_line(&mut line).with_context(place)?;
+        if !line.ends_with('\n') {
+            let is_log = read.batch.is_some() || line.trim().is_empty();
+            ensure!(is_log, "{}: not a log of random systems", place());
+            return Ok(read);
+        }
+        if read.batch.is_some() {
+            read.records.push(serde_json::from_str(&line).with_context(place)?);
+        } else {
+            let batch = serde_json::from_str(&line);
+            read.batch = Some(batch.with_context(|| format!("{}: not a log of random systems", place()))?);
+        }
+        read.end += length as u64;
     }
 }
 
