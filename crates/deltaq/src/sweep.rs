@@ -21,8 +21,8 @@ pub struct SweepPoint {
     pub largest: Option<f64>,
     /// What a gap had to pass at the end.
     pub limit: Option<f64>,
-    /// Whether some constants make the second motion the first, `μ₀` the vakonomic one Chetaev's: `some`, `none`
-    /// or `undecided`, with ` proved`. Empty where the table asks nothing of the two.
+    /// Whether some constants make the second motion the first, `μ₀` the vakonomic one Chetaev's: `some`,
+    /// `none` or `undecided`, with ` proved`. Empty where the table asks nothing of the two.
     pub answer: &'static str,
     /// The order of the Taylor coefficient that proves there is none.
     pub order: Option<usize>,

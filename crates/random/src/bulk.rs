@@ -56,8 +56,8 @@ impl Batch {
         draw(self.seed, index, &self.kinds).current().scene(&self.name(index))
     }
 
-    /// Puts the systems with these indices to the test. With a log, those that it holds already are taken from
-    /// it, and the others are added to it one by one: a run that was cut off goes on where it was.
+    /// Puts the systems with these indices to the test. With a log, those that it holds already are taken
+    /// from it, and the others are added to it one by one: a run that was cut off goes on where it was.
     ///
     /// # Errors
     /// Where the log cannot be read or written, is of another batch or being written by another run.
