@@ -1,8 +1,8 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
 use deltaq::{
-    Choice, FORM_WORDS, FORMULATIONS, Form, Settings, default_constants, formulation, formulation_in, removal_names,
-    removals,
+    Choice, FORM_WORDS, FORMULATIONS, Fits, Form, Settings, default_constants, formulation, formulation_in,
+    removal_names, removals,
 };
 use integrate::{Interrupt, Method, Projection};
 use mechanics::{ConstantsRule, Removal};
@@ -48,6 +48,13 @@ pub(crate) fn settings(
     };
     settings.check().map_err(errors::solve)?;
     Ok((settings, interrupt))
+}
+
+/// Which free constants are fitted.
+pub(crate) fn fits(word: &str) -> PyResult<Fits> {
+    let words = [("undecided", Fits::Undecided), ("all", Fits::All), ("none", Fits::None)];
+    let found = words.iter().find(|(known, _)| *known == word);
+    found.map(|(_, fits)| *fits).ok_or_else(|| unknown("fits", word, words.iter().map(|(known, _)| *known)))
 }
 
 fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {

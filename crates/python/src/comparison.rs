@@ -1,6 +1,6 @@
 //! All formulations of a system, pair by pair.
 
-use deltaq::{Answer, Gap, Membership, THRESHOLDS, Verdict};
+use deltaq::{Answer, Fits, Gap, Membership, THRESHOLDS, Verdict};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -340,9 +340,10 @@ pub(crate) struct Compared {
 }
 
 /// Compares all formulations of `scene`.
-pub(crate) fn compare(scene: Scene, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
+pub(crate) fn compare(scene: Scene, fits: Fits, settings: &deltaq::Settings) -> Result<Compared, deltaq::SolveError> {
     let choices = deltaq::choices(&scene);
-    let compared = deltaq::compare(scene, choices, Vec::new(), settings)?;
+    let mut compared = deltaq::compare_unfitted(scene, choices, Vec::new(), settings)?;
+    compared.fit(fits, settings)?;
     let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();

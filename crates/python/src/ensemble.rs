@@ -71,6 +71,7 @@ const CHUNK: usize = 4096;
 pub(crate) struct Integrated {
     varied: Varied,
     times: Vec<f64>,
+    names: Vec<String>,
     choice: Choice,
     done: Columns,
 }
@@ -167,7 +168,8 @@ impl Task {
             done.seconds += seconds;
             motions.into_iter().for_each(|motion| done.add(motion));
         }
-        Ok(Integrated { varied, times, choice, done })
+        let names = scene.system.coordinates.iter().map(|c| c.name.clone()).collect();
+        Ok(Integrated { varied, times, names, choice, done })
     }
 }
 
@@ -205,6 +207,8 @@ pub(crate) struct Ensemble {
     times: Py<PyArrayDyn<f64>>,
     /// What varies, by name, each of shape (m,).
     varied: Py<PyDict>,
+    /// Names of the coordinates, length n.
+    coordinate_names: Vec<String>,
     /// Coordinates q, shape (m, k, n), in the units of the system.
     coordinates: Py<PyArrayDyn<f64>>,
     /// Velocities q', shape (m, k, n), in units of the coordinates per unit of time.
@@ -232,7 +236,7 @@ pub(crate) struct Ensemble {
 
 impl Ensemble {
     pub(crate) fn new(py: Python<'_>, integrated: Integrated) -> PyResult<Ensemble> {
-        let Integrated { varied: Varied { values, count: m }, times, choice, done } = integrated;
+        let Integrated { varied: Varied { values, count: m }, times, names, choice, done } = integrated;
         let k = times.len();
         let cube = |cube: Cube| array(py, cube.values, Some(m), &[k, cube.width]).map(Bound::unbind);
         let varied = PyDict::new(py);
@@ -244,6 +248,7 @@ impl Ensemble {
             removal: choice.removal.map(|removal| removal.name),
             times: array(py, times, Some(k), &[])?.unbind(),
             varied: varied.unbind(),
+            coordinate_names: names,
             coordinates: cube(done.coordinates)?,
             velocities: cube(done.velocities)?,
             multipliers: done.multipliers.1.columns(py, &done.multipliers.0)?.unbind(),

@@ -6,7 +6,7 @@ use std::time::Instant;
 use deltaq::{EquationStyle, Prepared, SolveError, constant_names, derive_at, equations_text, prepare, setting};
 use equations::{Compiled, EvaluationFailure, Role};
 use integrate::{Dense, Method, Options, Status};
-use mechanics::ConstantsRule;
+use mechanics::{ConstantsRule, Observables};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{Array, FloatList, Floats, Rows, array, common, times};
-use crate::motion::{Names, Outputs, work};
+use crate::motion::{Names, Outputs, observed, work};
 use crate::{arguments, background, ensemble, errors};
 
 /// The equations of motion y' = F(t, y) of a system under one formulation.
@@ -244,15 +244,16 @@ impl Equations {
     /// Coordinates, velocities, multipliers and invariants at (t, y).
     #[pyo3(signature = (t, y))]
     fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
+        let mut observables = Observables::of(&self.scene().system).map_err(errors::solve)?;
         let (rows, count) = self.evaluate(&t, &y, |compiled, t, y| {
             let mut rows = Vec::new();
             each(t, y, |t, y| {
-                rows.push(compiled.outputs(t, y)?);
+                rows.push(observed(&mut observables, t, compiled.outputs(t, y)?));
                 Ok(())
             })?;
             Ok(rows)
         })?;
-        let names = Names::of(&self.ready().equations);
+        let names = Names::of(&self.ready().equations, &observables);
         Outputs::new(py, &rows, self.dimension, &names, count)
     }
 

@@ -12,6 +12,7 @@ mod equations;
 mod errors;
 mod linearization;
 mod motion;
+mod questions;
 mod reading;
 mod scene_text;
 mod system;
@@ -34,7 +35,7 @@ mod _native {
     #[pymodule_export]
     use crate::motion::{Motion, Outputs, State};
     #[pymodule_export]
-    use crate::reading::{load, parse};
+    use crate::reading::{_read_again, load, parse};
     #[pymodule_export]
     use crate::system::System;
 

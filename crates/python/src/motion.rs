@@ -4,6 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use deltaq::{ErrorEstimate, Seconds, Setting, SolveError, constant_names, error_estimates};
 use integrate::Work;
+use mechanics::Observables;
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -42,6 +43,17 @@ pub(crate) struct Outputs {
     multipliers: Py<PyDict>,
     /// Quantities that should stay constant by name, each a float or of shape (k,).
     invariants: Py<PyDict>,
+    /// Observables of the system by name, each a float or of shape (k,).
+    observables: Py<PyDict>,
+}
+
+/// A row of outputs, and the observables there.
+pub(crate) type Row = (equations::Outputs, Vec<f64>);
+
+/// `row` with the observables at that time.
+pub(crate) fn observed(observables: &mut Observables, t: f64, row: equations::Outputs) -> Row {
+    let values = observables.at(t, &row.coordinates, &row.velocities).to_vec();
+    (row, values)
 }
 
 /// The times asked for; the run of the scene then ends at the last of them.
@@ -60,17 +72,19 @@ pub(crate) fn times_of_run(times: Option<FloatList<'_>>, scene: &mut Scene) -> P
     Ok(times)
 }
 
-/// Names of multipliers and invariants.
+/// Names of multipliers, invariants and observables.
 #[derive(Clone)]
 pub(crate) struct Names {
     multipliers: Vec<String>,
     invariants: Vec<String>,
+    observables: Vec<String>,
 }
 
 impl Names {
-    pub(crate) fn of(equations: &equations::Equations) -> Names {
+    pub(crate) fn of(equations: &equations::Equations, observables: &Observables) -> Names {
+        let observables = observables.names().to_vec();
         let names = |list: &[equations::Named]| list.iter().map(|n| n.name.clone()).collect();
-        Names { multipliers: names(&equations.multipliers), invariants: names(&equations.invariants) }
+        Names { multipliers: names(&equations.multipliers), invariants: names(&equations.invariants), observables }
     }
 }
 
@@ -78,18 +92,19 @@ impl Outputs {
     /// From `rows`, one an instant; `count` is `None` where there is one instant, given as a number.
     pub(crate) fn new(
         py: Python<'_>,
-        rows: &[equations::Outputs],
+        rows: &[Row],
         dimension: usize,
         names: &Names,
         count: Option<usize>,
     ) -> PyResult<Outputs> {
-        let flat = |pick: fn(&equations::Outputs) -> &[f64]| rows.iter().flat_map(|r| pick(r).to_vec()).collect();
+        let flat = |pick: fn(&equations::Outputs) -> &[f64]| rows.iter().flat_map(|(r, _)| pick(r).to_vec()).collect();
         let matrix = |pick| array(py, flat(pick), count, &[dimension]).map(Bound::unbind);
         Ok(Outputs {
             coordinates: matrix(|r| &r.coordinates)?,
             velocities: matrix(|r| &r.velocities)?,
-            multipliers: columns(py, &names.multipliers, rows.iter().map(|r| &r.multipliers[..]), count)?.unbind(),
-            invariants: columns(py, &names.invariants, rows.iter().map(|r| &r.invariants[..]), count)?.unbind(),
+            multipliers: columns(py, &names.multipliers, rows.iter().map(|(r, _)| &r.multipliers[..]), count)?.unbind(),
+            invariants: columns(py, &names.invariants, rows.iter().map(|(r, _)| &r.invariants[..]), count)?.unbind(),
+            observables: columns(py, &names.observables, rows.iter().map(|(_, o)| &o[..]), count)?.unbind(),
         })
     }
 }
@@ -98,7 +113,9 @@ impl Outputs {
 pub(crate) struct Sampled {
     motion: deltaq::Motion,
     times: Vec<f64>,
-    rows: Vec<equations::Outputs>,
+    rows: Vec<Row>,
+    coordinates: Vec<String>,
+    observables: Observables,
     so_far: Vec<ErrorEstimate>,
     estimate: ErrorEstimate,
     dimension: usize,
@@ -121,8 +138,12 @@ impl Sampled {
         times.retain(|&t| t <= motion.end());
         let (so_far, estimate) = error_estimates(&mut motion, setting, &times)?;
         let (times, so_far): (Vec<_>, _) = times.into_iter().zip(so_far).filter(|(t, _)| *t <= motion.end()).unzip();
-        let rows = times.iter().map(|&t| motion.at(t)).collect::<Result<_, _>>()?;
-        Ok(Sampled { motion, times, rows, so_far, estimate, dimension: setting.system.dimension() })
+        let mut observables = Observables::of(setting.system)?;
+        let row = |&t: &f64| Ok(observed(&mut observables, t, motion.at(t)?));
+        let rows = times.iter().map(row).collect::<Result<_, SolveError>>()?;
+        let coordinates = setting.system.coordinates.iter().map(|c| c.name.clone()).collect();
+        let dimension = setting.system.dimension();
+        Ok(Sampled { motion, times, rows, coordinates, observables, so_far, estimate, dimension })
     }
 }
 
@@ -131,9 +152,12 @@ impl Sampled {
 /// `times` are those asked for and reached; all arrays belong to them. `at(t)` gives any other time.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Motion {
-    motion: Mutex<deltaq::Motion>,
+    motion: Mutex<(deltaq::Motion, Observables)>,
     names: Names,
     dimension: usize,
+    /// Names of the coordinates, length n.
+    #[pyo3(get)]
+    coordinate_names: Vec<String>,
     /// Name of the formulation.
     #[pyo3(get)]
     formulation: &'static str,
@@ -155,6 +179,9 @@ pub(crate) struct Motion {
     /// Quantities that should stay constant by name, each of shape (k,).
     #[pyo3(get)]
     invariants: Py<PyDict>,
+    /// Observables of the system by name, each of shape (k,).
+    #[pyo3(get)]
+    observables: Py<PyDict>,
     /// Largest difference of the two runs, in the kinetic metric sqrt(dq' M dq): in practice an error bound.
     #[pyo3(get)]
     error_estimate: f64,
@@ -223,10 +250,11 @@ pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
 
 impl Motion {
     pub(crate) fn new(py: Python<'_>, sampled: Sampled) -> PyResult<Motion> {
-        let Sampled { motion, times, rows, so_far, estimate, dimension } = sampled;
-        let names = Names::of(&motion.equations);
+        let Sampled { motion, times, rows, coordinates: coordinate_names, observables: program, .. } = sampled;
+        let Sampled { so_far, estimate, dimension, .. } = sampled;
+        let names = Names::of(&motion.equations, &program);
         let count = Some(times.len());
-        let Outputs { coordinates, velocities, multipliers, invariants } =
+        let Outputs { coordinates, velocities, multipliers, invariants, observables } =
             Outputs::new(py, &rows, dimension, &names, count)?;
         let (status, cause) = estimate.status(&motion);
         let coordinate_errors = so_far.iter().flat_map(|e| e.coordinates.clone()).collect();
@@ -240,6 +268,7 @@ impl Motion {
         let seconds = [("derive", derive), ("compile", compile), ("integrate", integrate)];
         Ok(Motion {
             dimension,
+            coordinate_names,
             formulation: motion.equations.formulation,
             removal: motion.equations.removal.as_ref().map(|r| r.name.clone()),
             times: array(py, times, count, &[])?.unbind(),
@@ -247,6 +276,7 @@ impl Motion {
             velocities,
             multipliers,
             invariants,
+            observables,
             error_estimate: estimate.absolute,
             relative_error_estimate: estimate.relative,
             coordinate_error_estimates: array(py, coordinate_errors, count, &[dimension])?.unbind(),
@@ -264,7 +294,7 @@ impl Motion {
             projection: projection.unbind(),
             seconds: seconds.into_py_dict(py)?.unbind(),
             names,
-            motion: Mutex::new(motion),
+            motion: Mutex::new((motion, program)),
         })
     }
 }
@@ -283,8 +313,9 @@ impl Motion {
             return Err(PyValueError::new_err(format!("t = {outside} is outside of the motion, {start} to {end}")));
         }
         let rows = {
-            let mut motion = self.motion.lock().unwrap_or_else(PoisonError::into_inner);
-            instants.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>().map_err(errors::solve)?
+            let (motion, program) = &mut *self.motion.lock().unwrap_or_else(PoisonError::into_inner);
+            let row = |&t: &f64| Ok(observed(program, t, motion.at(t)?));
+            instants.iter().map(row).collect::<Result<Vec<_>, SolveError>>().map_err(errors::solve)?
         };
         Outputs::new(py, &rows, self.dimension, &self.names, t.count())
     }

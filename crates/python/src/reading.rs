@@ -16,8 +16,8 @@ use crate::system::{Overrides, System};
 #[pyo3(signature = (path, overrides=None))]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<String, f64>>) -> PyResult<System> {
     let overrides: Overrides = overrides.into_iter().flatten().collect();
-    let read = py.detach(|| Scene::load_with(&path, &overrides));
-    Ok(System::of(read.map_err(|error| errors::scene(py, &error))?))
+    let text = py.detach(|| Scene::read(&path)).map_err(|error| errors::scene(py, &error))?;
+    System::read(py, ("", Some(&path)), text, overrides)
 }
 
 /// A system from the text of a scene file. `name` stands for the file in errors; overrides as in `load`.
@@ -29,5 +29,11 @@ pub(crate) fn parse(
     overrides: Option<HashMap<String, f64>>,
     name: &str,
 ) -> PyResult<System> {
-    System::parse(py, name, text, &overrides.into_iter().flatten().collect())
+    System::read(py, (name, None), text.into(), overrides.into_iter().flatten().collect())
+}
+
+/// What a pickled system is read from.
+#[pyfunction]
+pub(crate) fn _read_again(py: Python<'_>, name: &str, text: String, overrides: Overrides) -> PyResult<System> {
+    System::read(py, (name, None), text, overrides)
 }

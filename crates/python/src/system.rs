@@ -1,22 +1,20 @@
 //! Systems, and what can be asked of them.
 
 use std::collections::HashMap;
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use deltaq::{EnsembleOptions, Settings, integrability, removals, setting, solve_choice};
-use pyo3::exceptions::PyValueError;
+use deltaq::{integrability, removals};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{Array, FloatList, Floats, array, at_points};
-use crate::comparison::{Comparison, compare};
-use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
 use crate::linearization::Linearization;
-use crate::motion::{Motion, Sampled, State};
+use crate::motion::State;
 use crate::scene_text::{Arguments, write};
-use crate::{arguments, background, errors, motion};
+use crate::{arguments, errors};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
@@ -24,7 +22,8 @@ use crate::{arguments, background, errors, motion};
 ///
 /// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
 /// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
-/// coordinate to text. forces: coordinate to expression, generalized forces Q. start: every coordinate to its
+/// coordinate to text. forces: coordinate to expression, generalized forces Q. observables: name to
+/// expression, what motions list besides; invariants: likewise, what should stay constant. start: every coordinate to its
 /// start. velocities: some ("x'") to their start; constraints supply the others. guess: velocities near which
 /// the others are sought. project: move given velocities onto the constraints. removals: name to
 /// {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files. multipliers: mu0, shape
@@ -34,25 +33,32 @@ use crate::{arguments, background, errors, motion};
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct System {
     scene: Mutex<Scene>,
+    /// What the scene was read from.
+    pub(crate) text: String,
+    pub(crate) overrides: Overrides,
 }
 
 /// Name to number.
 pub(crate) type Overrides = Vec<(String, f64)>;
 
 impl System {
-    /// The system of a scene.
-    pub(crate) fn of(scene: Scene) -> System {
-        System { scene: Mutex::new(scene) }
-    }
-
-    /// A system from the text of a scene.
-    pub(crate) fn parse(py: Python<'_>, name: &str, text: &str, overrides: &Overrides) -> PyResult<System> {
-        let scene = py.detach(|| Scene::parse_with(name, text, overrides));
-        Ok(System::of(scene.map_err(|error| errors::scene(py, &error))?))
+    /// A system from the text of a scene. With a `path` faults name that, and the scene is called as the file.
+    pub(crate) fn read(
+        py: Python<'_>,
+        (name, path): (&str, Option<&Path>),
+        text: String,
+        overrides: Overrides,
+    ) -> PyResult<System> {
+        let scene = py.detach(|| match path {
+            Some(path) => Scene::parse_file(path, &text, &overrides),
+            None => Scene::parse_with(name, &text, &overrides),
+        });
+        let scene = Mutex::new(scene.map_err(|error| errors::scene(py, &error))?);
+        Ok(System { scene, text, overrides })
     }
 
     /// The scene. No lock of Python is waited for while it is held.
-    fn scene(&self) -> MutexGuard<'_, Scene> {
+    pub(crate) fn scene(&self) -> MutexGuard<'_, Scene> {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -63,6 +69,7 @@ impl System {
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         coordinates, lagrangian, constraints=Vec::new(), *, parameters=None, definitions=None, units=None, forces=None,
+        observables=None, invariants=None,
         start=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
         name="system", title=None
     ))]
@@ -75,6 +82,8 @@ impl System {
         definitions: Option<Bound<'_, PyDict>>,
         units: Option<Bound<'_, PyDict>>,
         forces: Option<Bound<'_, PyDict>>,
+        observables: Option<Bound<'_, PyDict>>,
+        invariants: Option<Bound<'_, PyDict>>,
         start: Option<Bound<'_, PyDict>>,
         velocities: Option<Bound<'_, PyDict>>,
         guess: Option<Bound<'_, PyDict>>,
@@ -95,6 +104,8 @@ impl System {
                 ("parameters", parameters),
                 ("definitions", definitions),
                 ("system.forces", forces),
+                ("observables", observables),
+                ("invariants", invariants),
                 ("start.velocities", velocities),
                 ("start.guess", guess),
                 ("removal", removals),
@@ -106,12 +117,12 @@ impl System {
             multipliers,
             duration,
         })?;
-        System::parse(py, name, &text, &Overrides::new())
+        System::read(py, (name, None), text, Overrides::new())
     }
 
     /// Name: that of the file without its ending.
     #[getter]
-    fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         self.scene().name.clone()
     }
 
@@ -175,6 +186,20 @@ impl System {
         pairs.filter(|(_, force)| !g.is_zero(**force)).map(|(c, &force)| (c.name.clone(), g.plain(force))).collect()
     }
 
+    /// The Lagrangian and the constraints in LaTeX: one `aligned` environment.
+    #[getter]
+    fn latex(&self) -> String {
+        let scene = self.scene();
+        let mechanics::System { graph: g, lagrangian, constraints, .. } = &scene.system;
+        let constraints = constraints.iter().map(|&f| format!(" \\\\\n0 &= {}", g.latex(f)));
+        let lines = format!("L &= {}", g.latex(*lagrangian)) + &constraints.collect::<String>();
+        format!("\\begin{{aligned}}\n{lines}\n\\end{{aligned}}")
+    }
+
+    fn _repr_latex_(&self) -> String {
+        format!("$\\displaystyle {}$", self.latex())
+    }
+
     /// The start: t0, q0 and v0 with f(q0, v0, t0) = 0.
     #[getter]
     fn start(&self, py: Python<'_>) -> PyResult<State> {
@@ -209,6 +234,20 @@ impl System {
     fn integrability(&self) -> PyResult<String> {
         let scene = self.scene();
         Ok(integrability(&scene.system, &scene.start).map_err(errors::solve)?.to_string())
+    }
+
+    /// The same system with other numbers in some places; overrides as in `load`, over those of before.
+    #[pyo3(signature = (overrides))]
+    fn replace(&self, py: Python<'_>, overrides: HashMap<String, f64>) -> PyResult<System> {
+        let kept = self.overrides.iter().filter(|(name, _)| !overrides.contains_key(name)).cloned();
+        let all = kept.chain(overrides.clone()).collect();
+        System::read(py, (&self.name(), None), self.text.clone(), all)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Overrides))> {
+        let system = slf.get();
+        let arguments = (system.name(), system.text.clone(), system.overrides.clone());
+        Ok((slf.py().import("deltaq")?.getattr("_read_again")?, arguments))
     }
 
     /// The system as a scene file's text, every start value a number; `parse` of it gives the same system.
@@ -274,118 +313,6 @@ impl System {
         let scene = self.scene().clone();
         let choice = arguments::choice(&scene, formulation, removal, given)?;
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
-    }
-
-    /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
-    ///
-    /// times: where it is read off, shape (k,), from the start to the last. By default 101 over `duration`.
-    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
-    /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
-    /// removal or of the system.
-    /// form: of the equations, "multipliers", "costates", "quasi-velocities" or auto, which suits the system.
-    /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
-    /// kept has a hundredth of it.
-    /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
-    /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
-    ///
-    /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, form="auto", method="auto",
-        tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None
-    ))]
-    fn solve(
-        &self,
-        py: Python<'_>,
-        formulation: &str,
-        times: Option<FloatList<'_>>,
-        removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
-        constants: Option<Bound<'_, PyAny>>,
-        form: &str,
-        method: &str,
-        tolerance: f64,
-        project: bool,
-        max_steps: usize,
-        max_step: Option<f64>,
-        time_limit: Option<f64>,
-    ) -> PyResult<Motion> {
-        let given = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
-        let mut scene = self.scene().clone();
-        let (formulation, form) = arguments::in_form(form, formulation)?;
-        let settings = Settings { form, ..settings };
-        let choice = arguments::choice(&scene, formulation, removal, given)?;
-        let times = motion::times_of_run(times, &mut scene)?;
-        let work = move || {
-            let motion = solve_choice(&scene, &choice, &settings)?;
-            Sampled::new(motion, setting(&scene), times)
-        };
-        Motion::new(py, background::run(py, &interrupt, work)?.map_err(errors::solve)?)
-    }
-
-    /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
-    ///
-    /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...).
-    /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-    /// threads: 0 for one a processor; results do not depend on it. estimate: whether each member is run
-    /// twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
-    /// and time_limit for one run of 4096 members.
-    ///
-    /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (
-        formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
-        max_steps=1_000_000, max_step=None, time_limit=None, threads=0, estimate=true
-    ))]
-    fn ensemble(
-        &self,
-        py: Python<'_>,
-        formulation: &str,
-        times: Option<FloatList<'_>>,
-        vary: &Bound<'_, PyDict>,
-        removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
-        constants: Option<Bound<'_, PyAny>>,
-        tolerance: f64,
-        project: bool,
-        max_steps: usize,
-        max_step: Option<f64>,
-        time_limit: Option<f64>,
-        threads: usize,
-        estimate: bool,
-    ) -> PyResult<Ensemble> {
-        let constants = arguments::constants(constants.as_ref(), mu0)?;
-        let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
-        let (scene, given) = (self.scene().clone(), constants.is_some());
-        let choice = arguments::choice(&scene, formulation, removal, constants)?;
-        let (times, end) = ensemble::times(times, &scene)?;
-        let varied = Varied::read(vary)?;
-        let options = EnsembleOptions { threads, estimate };
-        if let (true, Some(name)) = (given, varied.multiplier()) {
-            return Err(PyValueError::new_err(format!("{name} varies, and mu0 or constants fix it")));
-        }
-        let task = ensemble::Task { varied, scene, choice, times, end, settings, options };
-        let integrated = background::run(py, &interrupt, move || task.run())?;
-        Ensemble::new(py, integrated.map_err(errors::solve)?)
-    }
-
-    /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
-    /// as in `solve`.
-    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, max_step=None, time_limit=None))]
-    fn compare(
-        &self,
-        py: Python<'_>,
-        tolerance: f64,
-        max_steps: usize,
-        max_step: Option<f64>,
-        time_limit: Option<f64>,
-    ) -> PyResult<Comparison> {
-        let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
-        let scene = self.scene().clone();
-        let compared = background::run(py, &interrupt, move || compare(scene, &settings))?;
-        Comparison::new(py, compared.map_err(errors::solve)?)
     }
 
     fn __repr__(&self) -> String {

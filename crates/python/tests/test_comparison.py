@@ -45,6 +45,8 @@ def test_what_is_decided(sledge, comparison):
 
 
 def test_runs_and_fits(sledge, comparison):
+    assert comparison.fits == []
+    comparison = sledge.system(duration=3.0).compare(fits="all")
     assert [run.formulation for run in comparison.runs][:2] == ["chetaev", "vakonomic"]
     assert all(run.error is None and run.motion.status in ("completed", "stopped") for run in comparison.runs)
     fit = next(fit for fit in comparison.fits if (fit.run, fit.target) == ("vakonomic", "Chetaev"))
@@ -77,3 +79,5 @@ def test_refused_formulations_say_why(sledge):
     assert run.motion is None and "variational principle" in run.error
     with pytest.raises(deltaq.CallError, match="tolerance"):
         sledge.system().compare(tolerance=0)
+    with pytest.raises(ValueError, match="unknown fits `some`; known: undecided, all, none"):
+        sledge.system().compare(fits="some")

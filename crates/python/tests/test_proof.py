@@ -11,7 +11,7 @@ import deltaq
 
 VALIDATION = Path(__file__).resolve().parents[3] / "validation"
 # the module is laid out beside the programs of its build
-PROGRAM = Path(deltaq.__file__).resolve().parents[2] / "release" / "deltaq"
+PROGRAM = Path(sys.prefix).parent / "release" / "deltaq"
 
 
 def written(folder, scene, **changes):

@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import deltaq
 
 ROOT = Path(__file__).resolve().parents[3]
 # the module is laid out beside the programs of its build
-PROGRAM = Path(deltaq.__file__).resolve().parents[2] / "release" / "deltaq"
+PROGRAM = Path(sys.prefix).parent / "release" / "deltaq"
 SCHEMAS = {path.stem: json.loads(path.read_text("utf-8")) for path in (ROOT / "docs" / "schemas").glob("*.json")}
 REGISTRY = Registry().with_contents((schema["$id"], schema) for schema in SCHEMAS.values())
 # by kind: calls with their exit codes; FOLDER is an empty one

@@ -26,7 +26,9 @@ def test_it_is_marked_as_typed():
 
 def test_the_same_names_everywhere():
     stubbed = public(CLASSES) | public(FUNCTIONS) | VALUES
-    assert stubbed == public(deltaq.__all__) == public(vars(_native))
+    assert stubbed == public(vars(_native))
+    # the rest is written in Python, with its types
+    assert public(deltaq.__all__) - stubbed == {"Sweep", "ensemble", "sweep"} and stubbed <= public(deltaq.__all__)
     assert all(hasattr(deltaq, name) for name in deltaq.__all__)
 
 

@@ -23,6 +23,9 @@ fn main() -> ExitCode {
     if arguments == ["engine"] {
         return checks::chore(checks::engine());
     }
+    if arguments == ["wheel"] {
+        return checks::chore(python::wheel());
+    }
     if let ["peers", rest @ ..] = arguments.as_slice() {
         return checks::chore(python::peers(rest));
     }
@@ -53,6 +56,7 @@ fn list(checks: &[checks::Check]) {
     for check in checks {
         println!("  {:<10} {}", check.name, check.about);
     }
+    println!("\n  {:<10} no check: builds wheel and source distribution of the Python module", "wheel");
     println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
     println!(
         "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look",

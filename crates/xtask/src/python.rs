@@ -1,4 +1,4 @@
-//! The Python module, laid out as a wheel installs it, and tested; the Python environment that checks share.
+//! The Python module, as a wheel, installed and tested; the Python environment that checks share.
 
 use std::collections::hash_map::DefaultHasher;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
@@ -6,6 +6,7 @@ use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::OnceLock;
+use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
@@ -25,9 +26,50 @@ const NAMES: [&str; 3] = ["python3.11", "python3", "python"];
 pub(crate) fn check() -> Result<Outcome> {
     let python = environment()?;
     let Module { site, size } = module(&python)?;
-    let mut tests = outside(&python);
-    succeed(tests.args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE).env("PYTHONPATH", &site))?;
+    let fresh = installed(&python, &site)?;
+    succeed(outside(&fresh).args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE))?;
     Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
+}
+
+/// Builds the wheel and the source distribution that are given away, in `target/wheels`.
+pub(crate) fn wheel() -> Result<Outcome> {
+    let python = environment()?;
+    let (clock, wheels) = (Instant::now(), target()?.join("wheels"));
+    let mut maturin = outside(&python);
+    maturin.args(["-m", "maturin", "build", "--release", "--sdist", "--quiet", "--out"]).arg(&wheels);
+    succeed(maturin.arg("--interpreter").arg(&python).current_dir(CRATE))?;
+    let mut made = Vec::new();
+    for file in std::fs::read_dir(&wheels).with_context(|| wheels.display().to_string())? {
+        let file = file?;
+        made.push(format!("{} of {:.1} MB", file.path().display(), file.metadata()?.len() as f64 / 1e6));
+    }
+    Ok(Outcome(format!(", {}, in {:.0} s", made.join(", "), clock.elapsed().as_secs_f64())))
+}
+
+/// A new environment with the module from a wheel of its own, and what the other one has.
+fn installed(python: &Path, site: &Path) -> Result<PathBuf> {
+    let target = target()?;
+    let (wheels, place) = (target.join("python-wheel"), target.join("python-fresh"));
+    for folder in [&wheels, &place] {
+        if folder.exists() {
+            std::fs::remove_dir_all(folder).with_context(|| folder.display().to_string())?;
+        }
+    }
+    std::fs::create_dir_all(&wheels).with_context(|| wheels.display().to_string())?;
+    succeed(outside(python).args(["-m", "wheel", "pack", "--dest-dir"]).arg(&wheels).arg(site).stdout(Stdio::null()))?;
+    succeed(outside(python).args(["-m", "venv", "--without-pip"]).arg(&place))?;
+    let fresh = interpreter_of(&place);
+    let wheel = std::fs::read_dir(&wheels)?.next().context("no wheel was packed")??.path();
+    let mut install = outside(python);
+    install.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "--python"]).arg(&fresh);
+    succeed(install.args(["install", "--no-deps", "--no-index"]).arg(wheel))?;
+    let folder = |python: &Path| -> Result<String> {
+        let ask = outside(python).args(["-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]).output()?;
+        Ok(String::from_utf8(ask.stdout)?.trim().into())
+    };
+    let link = Path::new(&folder(&fresh)?).join("others.pth");
+    std::fs::write(&link, folder(python)?).with_context(|| link.display().to_string())?;
+    Ok(fresh)
 }
 
 /// Times other tools beside the module, each in Python, and writes `reports/peers.md`.

@@ -7,10 +7,18 @@
     equations = system.equations("vakonomic")     # Equations: text, latex, rates(t, y), jacobian(t, y), ...
     steady = system.linearize(find=True)          # Linearization: eigenvalues about a steady motion
     comparison = system.compare()                 # Comparison: pairs with verdicts, fits of the free constants
+    where = deltaq.sweep(system, {"k": [0.5, 1.0]})     # Sweep: where two motions part, on all cores or a cluster
+    table = deltaq.ensemble(system, vary={"g": [1.6]})  # a table of Arrow, or Parquet files
+
+Motions, ensembles, comparisons and sweeps have to_arrow, to_pandas, to_xarray and plot where these make sense; they
+need pyarrow, pandas, xarray and matplotlib, a cluster dask.distributed.
 
 All arrays are of float64. Everything that deltaq refuses is a DeltaqError; a wrong shape or an unknown name is a ValueError.
 """
 
+from typing import TYPE_CHECKING, Any
+
+from . import _notebook, _plots, _tables
 from ._native import (
     FORMULATIONS,
     METHODS,
@@ -40,9 +48,13 @@ from ._native import (
     System,
     Trajectory,
     __version__,
+    _read_again,
     load,
     parse,
 )
+
+if TYPE_CHECKING:
+    from ._sweep import Sweep, ensemble, sweep
 
 __all__ = [
     "FORMULATIONS",
@@ -70,9 +82,29 @@ __all__ = [
     "SolveError",
     "StartError",
     "State",
+    "Sweep",
     "System",
     "Trajectory",
     "__version__",
+    "ensemble",
     "load",
     "parse",
+    "sweep",
 ]
+
+for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison, "comparison")):
+    _class.plot = getattr(_plots, _module)
+    _class._repr_html_ = getattr(_notebook, _module)
+    for _kind in ("arrow", "pandas", "xarray"):
+        _function = getattr(_tables, f"{_module}_to_{_kind}", None)
+        if _function is not None:
+            setattr(_class, f"to_{_kind}", _function)
+
+
+def __getattr__(name: str) -> Any:
+    # these need pyarrow
+    if name in ("Sweep", "ensemble", "sweep"):
+        from . import _sweep
+
+        return getattr(_sweep, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

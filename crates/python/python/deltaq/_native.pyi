@@ -32,6 +32,7 @@ class BoundaryError(SolveError): ...
 class CallError(SolveError): ...
 
 def load(path: str | PathLike[str], overrides: Mapping[str, float] | None = None) -> System: ...
+def _read_again(name: str, text: str, overrides: list[tuple[str, float]]) -> System: ...
 def parse(text: str, overrides: Mapping[str, float] | None = None, *, name: str = "scene") -> System: ...
 
 @final
@@ -52,6 +53,8 @@ class System:
         definitions: dict[str, _Expression] | None = None,
         units: dict[str, str] | None = None,
         forces: dict[str, _Expression] | None = None,
+        observables: dict[str, _Expression] | None = None,
+        invariants: dict[str, _Expression] | None = None,
         start: dict[str, _Expression] | None = None,
         velocities: dict[str, _Expression] | None = None,
         guess: dict[str, _Expression] | None = None,
@@ -78,6 +81,8 @@ class System:
     duration: Final[float]
     removals: Final[list[str]]
     integrability: Final[str]
+    latex: Final[str]
+    def replace(self, overrides: Mapping[str, float]) -> System: ...
     def to_toml(self) -> str: ...
     def constraint(self, t: _Floats, q: _Floats, v: _Floats) -> _Array: ...
     def mass(self, t: _Floats, q: _Floats, v: _Floats) -> _Array: ...
@@ -140,7 +145,21 @@ class System:
         max_steps: int = 1_000_000,
         max_step: float | None = None,
         time_limit: float | None = None,
+        fits: Literal["undecided", "all", "none"] = "undecided",
     ) -> Comparison: ...
+    def _sweep_points(
+        self,
+        names: list[str],
+        values: _Floats,
+        formulations: list[str] | None,
+        tolerance: float,
+        max_steps: int,
+        max_step: float | None,
+        time_limit: float | None,
+        threads: int,
+    ) -> dict[str, list[Any]]: ...
+    def __reduce__(self) -> tuple[Any, tuple[str, str, list[tuple[str, float]]]]: ...
+    def _repr_latex_(self) -> str: ...
 
 @final
 class Outputs:
@@ -148,6 +167,7 @@ class Outputs:
     velocities: Final[_Array]
     multipliers: Final[dict[str, Any]]
     invariants: Final[dict[str, Any]]
+    observables: Final[dict[str, Any]]
 
 @final
 class Equations:
@@ -205,10 +225,12 @@ class Motion:
     formulation: Final[str]
     removal: Final[str | None]
     times: Final[_Array]
+    coordinate_names: Final[list[str]]
     coordinates: Final[_Array]
     velocities: Final[_Array]
     multipliers: Final[dict[str, _Array]]
     invariants: Final[dict[str, _Array]]
+    observables: Final[dict[str, _Array]]
     error_estimate: Final[float]
     relative_error_estimate: Final[float]
     coordinate_error_estimates: Final[_Array]
@@ -226,6 +248,11 @@ class Motion:
     projection: Final[dict[str, float]]
     seconds: Final[dict[str, float]]
     def at(self, t: _Floats) -> Outputs: ...
+    def to_arrow(self) -> Any: ...
+    def to_pandas(self) -> Any: ...
+    def to_xarray(self) -> Any: ...
+    def plot(self, ax: Any = None) -> Any: ...
+    def _repr_html_(self) -> str: ...
 
 @final
 class Ensemble:
@@ -233,6 +260,7 @@ class Ensemble:
     removal: Final[str | None]
     times: Final[_Array]
     varied: Final[dict[str, _Array]]
+    coordinate_names: Final[list[str]]
     coordinates: Final[_Array]
     velocities: Final[_Array]
     multipliers: Final[dict[str, _Array]]
@@ -244,6 +272,11 @@ class Ensemble:
     reached: Final[list[int]]
     alone: Final[list[str | None]]
     seconds: Final[float]
+    def to_arrow(self, first: int = 0) -> Any: ...
+    def to_pandas(self) -> Any: ...
+    def to_xarray(self) -> Any: ...
+    def plot(self, ax: Any = None) -> Any: ...
+    def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
 
 @final
@@ -317,3 +350,6 @@ class Comparison:
     decided: Final[list[Decided]]
     def pair(self, a: str, b: str) -> Pair: ...
     def verdict(self, a: str, b: str) -> _Verdict: ...
+    def to_pandas(self) -> Any: ...
+    def plot(self, ax: Any = None) -> Any: ...
+    def _repr_html_(self) -> str: ...

@@ -1,0 +1,50 @@
+"""What notebooks show."""
+
+from html import escape
+from typing import Any
+
+from ._native import Comparison, Ensemble, Motion
+
+
+def _table(rows: list[list[Any]], head: list[str] | None = None) -> str:
+    cells = lambda row, tag: "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in row)  # noqa: E731
+    top = "" if head is None else f"<thead><tr>{cells(head, 'th')}</tr></thead>"
+    body = "".join(f"<tr>{cells(row, 'td')}</tr>" for row in rows)
+    return f"<table>{top}<tbody>{body}</tbody></table>"
+
+
+def motion(self: Motion) -> str:
+    method = "" if self.method is None else self.method[0]
+    rows = [
+        ["formulation", self.formulation],
+        ["form, method", f"{self.form[0]}, {method}"],
+        ["time", f"{self.start:g} to {self.end:g}"],
+        ["status", self.status if self.cause is None else f"{self.status}: {self.cause}"],
+        ["error estimate", f"{self.error_estimate:.1e}"],
+    ]
+    rows += [[name, f"{values[-1]:.9g} at the end"] for name, values in zip(self.coordinate_names, self.coordinates.T) if len(values)]
+    return _table(rows)
+
+
+def ensemble(self: Ensemble) -> str:
+    counts = {word: self.status.count(word) for word in ("completed", "untrusted", "stopped", "refused")}
+    over = ", ".join(f"{name}: {values.min():g} to {values.max():g}" for name, values in self.varied.items())
+    return _table([["formulation", self.formulation], ["members", len(self)], *counts.items(), ["over", over]])
+
+
+def comparison(self: Comparison) -> str:
+    def time(pair: Any) -> str:
+        passed = pair.tau[1e-3]
+        return "" if passed is None else f"{passed:.4g}"
+
+    pairs = [[pair.first, pair.second, pair.verdict, time(pair), f"{pair.largest_gap:.4g}"] for pair in self.pairs]
+    decided = [
+        [f"Is {d.motion} one of {d.family}, for some constants?", d.answer + (", proved" if d.proved else ""), d.dimension]
+        for d in self.decided
+    ]
+    runs = [[run.label, run.error] for run in self.runs if run.error is not None]
+    parts = [f"<p>The constraints: {escape(self.integrability)}</p>"]
+    parts += [_table(pairs, ["motion", "motion", "verdict", "time to 1e-3", "largest gap"])] if pairs else []
+    parts += [_table(decided, ["question", "answer", "dimension"])] if decided else []
+    parts += [_table(runs, ["no motion", "because"])] if runs else []
+    return "".join(parts)

@@ -1,0 +1,135 @@
+"""Pictures, by matplotlib: one colour a formulation, times on the axis below."""
+
+from typing import Any
+
+import numpy as np
+
+from ._native import Comparison, Ensemble, Motion
+
+_COLOURS = {"chetaev": "#0072b2", "vakonomic": "#d55e00", "removed-constraint": "#009e73", "kappa": "#cc79a7"}
+_STYLES = {"chetaev": "-", "vakonomic": "--", "removed-constraint": "-.", "kappa": ":"}
+
+
+def _look(formulation: str) -> dict[str, Any]:
+    """Colour and dashes of a formulation; of a form of it likewise."""
+    known = next((name for name in _COLOURS if formulation.startswith(name)), None)
+    return {} if known is None else {"color": _COLOURS[known], "linestyle": _STYLES[known]}
+
+
+# Lines of an ensemble that are drawn; more than these are a grey area.
+_LINES = 200
+
+
+def _columns(count: int, ax: Any) -> Any:
+    """Axes one above the other, for as many curves."""
+    import matplotlib.pyplot as plt
+
+    if ax is not None:
+        axes = np.atleast_1d(np.asarray(ax, dtype=object)).ravel()
+        if len(axes) != count:
+            raise ValueError(f"ax has {len(axes)} axes; {count} are needed")
+        return axes
+    figure, axes = plt.subplots(count, 1, sharex=True, figsize=(6.4, 1.2 + 1.7 * count), squeeze=False, layout="constrained")
+    return axes[:, 0]
+
+
+def _finished(axes: Any) -> Any:
+    axes[-1].set_xlabel("t")
+    figure = axes[0].figure
+    # a notebook shows what is returned, and not once more what is open
+    import matplotlib.pyplot as plt
+
+    plt.close(figure)
+    return figure
+
+
+def motion(self: Motion, ax: Any = None) -> Any:
+    """Coordinates over time, one above the other, by matplotlib; a Figure. ax: n axes to draw into."""
+    axes = _columns(len(self.coordinate_names), ax)
+    for i, (name, axis) in enumerate(zip(self.coordinate_names, axes)):
+        axis.plot(self.times, self.coordinates[:, i], label=self.formulation, **_look(self.formulation))
+        axis.set_ylabel(name)
+    axes[0].legend(frameon=False)
+    return _finished(axes)
+
+
+def ensemble(self: Ensemble, ax: Any = None) -> Any:
+    """Coordinates of the members over time, one above the other; a Figure. ax: n axes to draw into.
+
+    Of an ensemble that was read off at one time, over what varies first.
+    """
+    axes = _columns(len(self.coordinate_names), ax)
+    colour = _look(self.formulation).get("color")
+    along, (name, values) = len(self.times) > 1, next(iter(self.varied.items()))
+    shown = np.linspace(0, len(self) - 1, min(len(self), _LINES)).astype(int)
+    for i, (coordinate, axis) in enumerate(zip(self.coordinate_names, axes)):
+        if along:
+            axis.plot(self.times, self.coordinates[shown, :, i].T, color=colour, alpha=0.5, linewidth=0.8)
+        else:
+            axis.plot(values, self.coordinates[:, 0, i], ".", color=colour, markersize=3)
+        axis.set_ylabel(coordinate)
+    axes[0].set_title(f"{self.formulation}: {len(shown) if along else len(self)} of {len(self)} members", loc="left")
+    figure = _finished(axes)
+    if not along:
+        axes[-1].set_xlabel(name)
+    return figure
+
+
+def comparison(self: Comparison, ax: Any = None) -> Any:
+    """Coordinates of all motions over time, then the gaps of the pairs with what they have to pass; a Figure.
+
+    ax: n + 1 axes to draw into.
+    """
+    runs = [run for run in self.runs if run.motion is not None]
+    names = runs[0].motion.coordinate_names if runs else []
+    axes = _columns(len(names) + 1, ax)
+    for run in runs:
+        for i, axis in enumerate(axes[:-1]):
+            axis.plot(run.motion.times, run.motion.coordinates[:, i], label=run.label, **_look(run.formulation))
+    for name, axis in zip(names, axes):
+        axis.set_ylabel(name)
+    below = axes[-1]
+    for pair in self.pairs:
+        [line] = below.plot(pair.times, np.where(pair.gap > 0, pair.gap, np.nan), label=f"{pair.first}, {pair.second}")
+        below.plot(pair.times, np.where(pair.limit > 0, pair.limit, np.nan), ":", color=line.get_color(), linewidth=0.8)
+    below.set(yscale="log", ylabel="gap")
+    for axis in (axes[0], below):
+        if axis.get_legend_handles_labels()[0]:
+            axis.legend(frameon=False, fontsize="small")
+    return _finished(axes)
+
+
+def sweep(self: Any, column: str, ax: Any) -> Any:
+    """See `Sweep.plot`."""
+    table = self.to_arrow()
+    if column not in table.column_names:
+        raise ValueError(f"no column {column!r}; there are {', '.join(table.column_names)}")
+    if table[column].type != "double":
+        raise ValueError(f"the column {column!r} has words or counts; a column of numbers can be drawn")
+    if len(self.over) > 2:
+        raise ValueError(f"{len(self.over)} numbers vary; one or two can be drawn: take to_xarray()")
+    [axis] = _columns(1, ax)
+    names, axes = list(self.over), list(self.over.values())
+    values = table[column].to_numpy()
+    contained = np.array([answer.startswith("some") for answer in table["answer"].to_pylist()])
+    if len(names) == 1:
+        axis.plot(axes[0], values, color=_COLOURS["vakonomic"])
+        axis.plot(axes[0][contained], values[contained], "o", color="black", label="some constants")
+        axis.set_ylabel(column)
+    else:
+        from matplotlib.colors import LogNorm
+
+        shape = [len(numbers) for numbers in axes]
+        positive = values[np.isfinite(values) & (values > 0)]
+        norm = LogNorm(positive.min(), positive.max()) if positive.size else None
+        map = axis.pcolormesh(axes[1], axes[0], values.reshape(shape), norm=norm, shading="nearest", cmap="viridis")
+        axis.figure.colorbar(map, ax=axis, label=column)
+        down, across = np.nonzero(contained.reshape(shape))
+        axis.plot(axes[1][across], axes[0][down], ".", color="white", markeredgecolor="black", label="some constants")
+        axis.set_ylabel(names[0])
+    if contained.any():
+        axis.legend(frameon=False, loc="upper left", bbox_to_anchor=(0, 1.12))
+    figure = _finished([axis])
+    axis.set_xlabel(names[-1])
+    axis.set_title(self.title, loc="right", fontsize="small")
+    return figure

@@ -1,0 +1,201 @@
+"""Sweeps and long ensembles: tables over processes and clusters."""
+
+import math
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.dataset as ds
+
+from . import _parts
+from ._native import System, __version__
+
+_COLUMNS = {
+    "verdict": pa.string(),
+    "apart": pa.float64(),
+    "largest": pa.float64(),
+    "limit": pa.float64(),
+    "answer": pa.string(),
+    "order": pa.int32(),
+    "dimension": pa.int32(),
+    "mismatch": pa.float64(),
+    "cause": pa.string(),
+}
+_SWEEP_PART = 64
+_ENSEMBLE_PART = 4096
+
+
+class _SweepPart:
+    """Rows of a sweep: all combinations of some values, of which the last ones change fastest."""
+
+    def __init__(self, system: System, over: dict[str, list[float]], size: int, options: tuple[Any, ...]):
+        self.system, self.over, self.size, self.options = system, over, size, options
+
+    def count(self) -> int:
+        return math.prod(len(values) for values in self.over.values())
+
+    def __call__(self, part: int) -> pa.Table:
+        first = part * self.size
+        index = np.arange(first, min(first + self.size, self.count()))
+        places = np.unravel_index(index, [len(values) for values in self.over.values()])
+        values = np.stack([np.asarray(v)[i] for v, i in zip(self.over.values(), places)], axis=1)
+        found = self.system._sweep_points(list(self.over), values, *self.options)
+        columns = {name: pa.array(values[:, i]) for i, name in enumerate(self.over)}
+        columns |= {name: pa.array(found[name], kind) for name, kind in _COLUMNS.items()}
+        return pa.table(columns)
+
+
+class Sweep:
+    """Two motions of a system compared over the values of one or more numbers, a row a point.
+
+    `table` is an Arrow table or, in a folder, a dataset of Parquet files. Columns: what varies, then `verdict` ("same",
+    "different", "undecided", "" without a motion), `apart` (time to a gap of 1e-3), `largest` (gap, kinetic metric),
+    `limit` (what a gap has to pass), `answer` (whether some constants make the second motion the first), `order` (of
+    the Taylor coefficient that proves they do not), `dimension` (of the set of such constants), `mismatch` (least one of
+    accelerations over the motion's own), `cause` (why something is missing).
+    """
+
+    def __init__(self, table: pa.Table | ds.Dataset, over: dict[str, npt.NDArray[np.float64]], title: str):
+        self.table, self.over, self.title = table, over, title
+
+    def to_arrow(self) -> pa.Table:
+        """The table, in memory."""
+        return self.table if isinstance(self.table, pa.Table) else self.table.to_table()
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame, a row a point."""
+        return self.to_arrow().to_pandas()
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset over what varies."""
+        import xarray
+
+        shape, table = [len(values) for values in self.over.values()], self.to_arrow()
+        cells = {name: table[name].to_numpy().reshape(shape) for name in _COLUMNS}
+        return xarray.Dataset({name: (list(self.over), values) for name, values in cells.items()}, dict(self.over))
+
+    def plot(self, column: str = "apart", ax: Any = None) -> Any:
+        """A column over one number as a line, over two as a map with dots where some constants do; a Figure."""
+        from ._plots import sweep
+
+        return sweep(self, column, ax)
+
+    def __len__(self) -> int:
+        return math.prod(len(values) for values in self.over.values())
+
+    def __repr__(self) -> str:
+        over = ", ".join(f"{name}: {len(values)}" for name, values in self.over.items())
+        return f"<deltaq.Sweep {self.title!r}, {len(self)} points ({over})>"
+
+    def _repr_html_(self) -> str:
+        return self.to_pandas()._repr_html_()
+
+
+def sweep(
+    system: System,
+    over: Mapping[str, npt.ArrayLike],
+    *,
+    formulations: Sequence[str] | None = None,
+    tolerance: float = 1e-10,
+    max_steps: int = 1_000_000,
+    max_step: float | None = None,
+    time_limit: float | None = None,
+    client: Any = None,
+    out: str | os.PathLike[str] | None = None,
+    part: int = _SWEEP_PART,
+    progress: Callable[[int, int], None] | None = None,
+) -> Sweep:
+    """Compares two motions of a system at all combinations of some values: `deltaq compare --sweep`.
+
+    over: name to values: parameters, start values ("x", "x'"), multipliers ("mu1"), costates ("P0_w") of the first
+    removal. formulations: two names; Chetaev's and the vakonomic motion by default or, where costates vary, that without
+    constraints. tolerance, max_steps, max_step, time_limit: as in `System.solve`.
+    client: a `dask.distributed.Client`, whose workers then compute; by default all processors of this machine.
+    out: a folder for Parquet files, of `part` points each; what a call that was cut off has left there is kept.
+    progress: called with the number of parts that are there, and of all.
+
+    A row is a pure function of its numbers: no cluster, thread or part changes a bit of it. A start that there is not
+    is a row with a cause; a name that means nothing is a ValueError or a DeltaqError.
+    """
+    values = {name: np.atleast_1d(np.asarray(numbers, dtype=float)) for name, numbers in over.items()}
+    for name, numbers in values.items():
+        if numbers.ndim != 1 or numbers.size == 0 or not np.isfinite(numbers).all():
+            raise ValueError(f"over: {name} has to be a list of finite numbers, not of shape {numbers.shape}")
+    if not values:
+        raise ValueError("over is empty; it needs values for something that varies")
+    if formulations is not None and len(formulations) != 2:
+        raise ValueError(f"formulations names {len(formulations)}; two can be compared")
+    chosen = None if formulations is None else list(formulations)
+    limits = (chosen, tolerance, max_steps, max_step, time_limit)
+    lists = {name: numbers.tolist() for name, numbers in values.items()}
+    # a name that means nothing is refused before anything is computed or written
+    system._sweep_points(list(lists), np.empty((0, len(lists))), *limits, 1)
+    work = _SweepPart(system, lists, _size(part), (*limits, 0 if client is None else 1))
+    text = _written(system)
+    mark = _parts.identity(sweep=text, over=lists, limits=limits, part=part, version=__version__)
+    count = -(-work.count() // part)
+    table = _parts.run(work, count, mark, client=client, out=out, progress=progress)
+    return Sweep(table, values, system.title)
+
+
+class _EnsemblePart:
+    """Members of an ensemble as rows, one a member and time."""
+
+    def __init__(self, system: System, vary: dict[str, npt.NDArray[np.float64]], size: int, options: dict[str, Any]):
+        self.system, self.vary, self.size, self.options = system, vary, size, options
+
+    def __call__(self, part: int) -> pa.Table:
+        first = part * self.size
+        vary = {name: values[first : first + self.size] for name, values in self.vary.items()}
+        return self.system.ensemble(vary=vary, **self.options).to_arrow(first)
+
+
+def ensemble(
+    system: System,
+    formulation: str = "chetaev",
+    times: npt.ArrayLike | None = None,
+    *,
+    vary: Mapping[str, npt.ArrayLike],
+    client: Any = None,
+    out: str | os.PathLike[str] | None = None,
+    part: int = _ENSEMBLE_PART,
+    progress: Callable[[int, int], None] | None = None,
+    **options: Any,
+) -> pa.Table | ds.Dataset:
+    """`System.ensemble` as a table, a row a member and time, for more members than have room in memory.
+
+    Columns as of `Ensemble.to_arrow`. client, out, progress: as in `sweep`; part: members of a file. options: those
+    of `System.ensemble`. Without `out` a pyarrow.Table comes back, with it a pyarrow.dataset.Dataset, which reads
+    only what is asked of it. An answer does not depend on the other members, nor on parts and workers.
+    """
+    values = {name: np.atleast_1d(np.asarray(numbers, dtype=float)) for name, numbers in vary.items()}
+    lengths = {name: len(numbers) for name, numbers in values.items()}
+    if not values or len(set(lengths.values())) > 1 or 0 in lengths.values():
+        raise ValueError(f"vary needs as many values of each, and some: {lengths}")
+    instants = None if times is None else np.asarray(times, dtype=float).tolist()
+    options |= {"formulation": formulation, "times": instants}
+    if client is not None:
+        options.setdefault("threads", 1)
+    count = -(-next(iter(lengths.values())) // _size(part))
+    listed = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in options.items()}
+    listed.pop("threads", None)
+    digests = {name: _parts.identity(values=values[name].tobytes().hex()).decode() for name in values}
+    text = _written(system)
+    mark = _parts.identity(ensemble=text, vary=digests, options=listed, part=part, version=__version__)
+    work = _EnsemblePart(system, values, part, options)
+    return _parts.run(work, count, mark, client=client, out=out, progress=progress)
+
+
+def _size(part: int) -> int:
+    if part < 1:
+        raise ValueError(f"part is {part}; it must be at least 1")
+    return part
+
+
+def _written(system: System) -> Any:
+    """What a system is read from."""
+    _, arguments = system.__reduce__()
+    return arguments

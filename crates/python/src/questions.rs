@@ -1,0 +1,165 @@
+//! What is asked of a system: motions, ensembles, comparisons, points of sweeps.
+
+use deltaq::{EnsembleOptions, Settings, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{FloatList, Floats};
+use crate::comparison::{Comparison, compare};
+use crate::ensemble::{self, Ensemble, Varied};
+use crate::motion::{self, Motion, Sampled};
+use crate::system::System;
+use crate::{arguments, background, errors};
+
+#[pymethods]
+impl System {
+    /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
+    ///
+    /// times: where it is read off, shape (k,), from the start to the last. By default 101 over `duration`.
+    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
+    /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
+    /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
+    /// removal or of the system.
+    /// form: of the equations, "multipliers", "costates", "quasi-velocities" or auto, which suits the system.
+    /// method: one of METHODS, or auto, which suits the motion. tolerance: of the looser run; the one that is
+    /// kept has a hundredth of it.
+    /// project: move velocities onto the constraint after every step. max_steps, time_limit: limits on the
+    /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
+    ///
+    /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, form="auto", method="auto",
+        tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None
+    ))]
+    fn solve(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        times: Option<FloatList<'_>>,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+        form: &str,
+        method: &str,
+        tolerance: f64,
+        project: bool,
+        max_steps: usize,
+        max_step: Option<f64>,
+        time_limit: Option<f64>,
+    ) -> PyResult<Motion> {
+        let given = arguments::constants(constants.as_ref(), mu0)?;
+        let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
+        let mut scene = self.scene().clone();
+        let (formulation, form) = arguments::in_form(form, formulation)?;
+        let settings = Settings { form, ..settings };
+        let choice = arguments::choice(&scene, formulation, removal, given)?;
+        let times = motion::times_of_run(times, &mut scene)?;
+        let work = move || {
+            let motion = solve_choice(&scene, &choice, &settings)?;
+            Sampled::new(motion, setting(&scene), times)
+        };
+        Motion::new(py, background::run(py, &interrupt, work)?.map_err(errors::solve)?)
+    }
+
+    /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
+    ///
+    /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...).
+    /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
+    /// threads: 0 for one a processor; results do not depend on it. estimate: whether each member is run
+    /// twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
+    /// and time_limit for one run of 4096 members.
+    ///
+    /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (
+        formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
+        max_steps=1_000_000, max_step=None, time_limit=None, threads=0, estimate=true
+    ))]
+    fn ensemble(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        times: Option<FloatList<'_>>,
+        vary: &Bound<'_, PyDict>,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+        tolerance: f64,
+        project: bool,
+        max_steps: usize,
+        max_step: Option<f64>,
+        time_limit: Option<f64>,
+        threads: usize,
+        estimate: bool,
+    ) -> PyResult<Ensemble> {
+        let constants = arguments::constants(constants.as_ref(), mu0)?;
+        let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
+        let (scene, given) = (self.scene().clone(), constants.is_some());
+        let choice = arguments::choice(&scene, formulation, removal, constants)?;
+        let (times, end) = ensemble::times(times, &scene)?;
+        let varied = Varied::read(vary)?;
+        let options = EnsembleOptions { threads, estimate };
+        if let (true, Some(name)) = (given, varied.multiplier()) {
+            return Err(PyValueError::new_err(format!("{name} varies, and mu0 or constants fix it")));
+        }
+        let task = ensemble::Task { varied, scene, choice, times, end, settings, options };
+        let integrated = background::run(py, &interrupt, move || task.run())?;
+        Ensemble::new(py, integrated.map_err(errors::solve)?)
+    }
+
+    /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
+    /// as in `solve`. fits: free constants are fitted where nothing is decided ("undecided"), always ("all"),
+    /// which takes most of the time, or never ("none").
+    #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, max_step=None, time_limit=None, fits="undecided"))]
+    fn compare(
+        &self,
+        py: Python<'_>,
+        tolerance: f64,
+        max_steps: usize,
+        max_step: Option<f64>,
+        time_limit: Option<f64>,
+        fits: &str,
+    ) -> PyResult<Comparison> {
+        let fits = arguments::fits(fits)?;
+        let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
+        let scene = self.scene().clone();
+        let compared = background::run(py, &interrupt, move || compare(scene, fits, &settings))?;
+        Comparison::new(py, compared.map_err(errors::solve)?)
+    }
+
+    /// What `deltaq.sweep` finds at some points: columns by name.
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    #[pyo3(signature = (names, values, formulations, tolerance, max_steps, max_step, time_limit, threads))]
+    fn _sweep_points<'py>(
+        &self,
+        py: Python<'py>,
+        names: Vec<String>,
+        values: Floats<'_>,
+        formulations: Option<[String; 2]>,
+        tolerance: f64,
+        max_steps: usize,
+        max_step: Option<f64>,
+        time_limit: Option<f64>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
+        let values: Vec<f64> = values.as_array().iter().copied().collect();
+        let (name, width) = (self.name(), names.len());
+        let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
+            let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;
+            let rows: Vec<&[f64]> = values.chunks_exact(width.max(1)).collect();
+            Ok(over_threads(number_of_threads(threads), rows.len(), |i| sweep.point(rows[i])))
+        };
+        let points = background::run(py, &interrupt, work)?.map_err(errors::solve)?;
+        let columns = PyDict::new(py);
+        macro_rules! column {
+            ($($name:ident)*) => { $(
+                columns.set_item(stringify!($name), points.iter().map(|p| p.$name.clone()).collect::<Vec<_>>())?;
+            )* };
+        }
+        column!(verdict apart largest limit answer order dimension mismatch cause);
+        Ok(columns)
+    }
+}
