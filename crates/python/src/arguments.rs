@@ -12,7 +12,7 @@ use pyo3::types::{PyDict, PyString};
 use scene::Scene;
 
 use crate::arrays::FloatList;
-use crate::errors;
+use crate::{background, errors};
 
 /// How to integrate, and the flag that ends it.
 pub(crate) fn settings(
@@ -76,13 +76,22 @@ pub(crate) fn in_form<'a>(word: &str, formulation: &'a str) -> PyResult<(&'a str
     }
 }
 
-/// The choice of a formulation, a removal and constants for a scene.
+/// The choice of a formulation, a removal and constants for a scene, which it comes back with: a removal is
+/// derived, and that can take long.
 pub(crate) fn choice(
-    scene: &Scene,
-    name: &str,
-    removal: Option<&str>,
+    py: Python<'_>,
+    interrupt: &Interrupt,
+    scene: Scene,
+    (name, removal): (&str, Option<&str>),
     constants: Option<ConstantsRule>,
-) -> PyResult<Choice> {
+) -> PyResult<(Scene, Choice)> {
+    background::run(py, interrupt, move || {
+        let choice = chosen(&scene, name, removal, constants)?;
+        Ok((scene, choice))
+    })?
+}
+
+fn chosen(scene: &Scene, name: &str, removal: Option<&str>, constants: Option<ConstantsRule>) -> PyResult<Choice> {
     let Some(entry) = formulation(name) else {
         return Err(unknown("formulation", name, FORMULATIONS.iter().map(|f| f.name)));
     };

@@ -8,6 +8,7 @@ use std::time::Duration;
 use integrate::Interrupt;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use symbolic::cancellable;
 
 /// How often signals are looked at.
 const POLL: Duration = Duration::from_millis(50);
@@ -16,12 +17,13 @@ const POLL: Duration = Duration::from_millis(50);
 const STACK: usize = 16 << 20;
 
 /// Runs `work` while other threads of Python go on. A signal handler that raises, as Ctrl-C does, raises
-/// `interrupt`; when `work` has come to its end by that, the exception is handed on.
+/// `interrupt`, which ends derivations and integrations; then the exception is handed on.
 pub(crate) fn run<T: Send>(py: Python<'_>, interrupt: &Interrupt, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let (sender, mut receiver) = channel();
     scope(|threads| {
+        let unwanted = interrupt.clone();
         let body = move || {
-            let result = work();
+            let result = cancellable(move || unwanted.is_raised(), work);
             // The receiver is gone only after this thread is.
             let _ = sender.send(());
             result
@@ -40,6 +42,7 @@ pub(crate) fn run<T: Send>(py: Python<'_>, interrupt: &Interrupt, work: impl FnO
             }
         }
         let result = py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic));
-        signal.map(|()| result)
+        signal?;
+        result.ok_or_else(|| PyRuntimeError::new_err("the work was ended"))
     })
 }

@@ -83,7 +83,7 @@ impl Equations {
     ) -> PyResult<Equations> {
         let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
         let is_given = given.is_some();
-        let mut choice = arguments::choice(&scene, formulation, removal, given)?;
+        let (scene, mut choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         if !is_given && matches!(choice.constants, ConstantsRule::Natural { .. }) {
             choice.constants = ConstantsRule::Zero;
         }

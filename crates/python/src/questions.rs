@@ -28,6 +28,12 @@ impl System {
     /// steps of a run and on its seconds, after which it stops. max_step: no step is longer.
     ///
     /// Other threads go on; Ctrl-C ends it. SolveError without a motion; `status` says if it stops early.
+    ///
+    /// >>> motion = sledge.solve("chetaev", [0.0, 0.5, 1.0])
+    /// >>> motion.coordinates[:, 2].round(9)
+    /// array([0. , 0.5, 1. ])
+    /// >>> motion.status, motion.error_estimate < 1e-9
+    /// ('completed', True)
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, removal=None, mu0=None, constants=None, form="auto", method="auto",
@@ -51,10 +57,10 @@ impl System {
     ) -> PyResult<Motion> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
-        let mut scene = self.scene().clone();
         let (formulation, form) = arguments::in_form(form, formulation)?;
         let settings = Settings { form, ..settings };
-        let choice = arguments::choice(&scene, formulation, removal, given)?;
+        let scene = self.scene().clone();
+        let (mut scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         let times = motion::times_of_run(times, &mut scene)?;
         let work = move || {
             let motion = solve_choice(&scene, &choice, &settings)?;
@@ -72,6 +78,9 @@ impl System {
     /// and time_limit for one run of 4096 members.
     ///
     /// A member that cannot start or that stops is in the answer with its cause. Ctrl-C as in `solve`.
+    ///
+    /// >>> sledge.ensemble("chetaev", [1.0], vary={"phi'": [0.5, 1.0]}).coordinates[:, 0, 2].round(9)
+    /// array([0.5, 1. ])
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         formulation="chetaev", times=None, *, vary, removal=None, mu0=None, constants=None, tolerance=1e-11, project=true,
@@ -97,7 +106,7 @@ impl System {
         let constants = arguments::constants(constants.as_ref(), mu0)?;
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
         let (scene, given) = (self.scene().clone(), constants.is_some());
-        let choice = arguments::choice(&scene, formulation, removal, constants)?;
+        let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
         let (times, end) = ensemble::times(times, &scene)?;
         let varied = Varied::read(vary)?;
         let options = EnsembleOptions { threads, estimate };
@@ -112,6 +121,12 @@ impl System {
     /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
     /// as in `solve`. fits: free constants are fitted where nothing is decided ("undecided"), always ("all"),
     /// which takes most of the time, or never ("none").
+    ///
+    /// >>> comparison = sledge.compare()
+    /// >>> comparison.verdict("chetaev", "vakonomic")
+    /// 'different'
+    /// >>> comparison.decided[0].answer, comparison.decided[0].proved
+    /// ('none', True)
     #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, max_step=None, time_limit=None, fits="undecided"))]
     fn compare(
         &self,

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{integrability, removals};
+use integrate::Interrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
@@ -23,11 +24,22 @@ use crate::{arguments, errors};
 /// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
 /// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
 /// coordinate to text. forces: coordinate to expression, generalized forces Q. observables: name to
-/// expression, what motions list besides; invariants: likewise, what should stay constant. start: every coordinate to its
-/// start. velocities: some ("x'") to their start; constraints supply the others. guess: velocities near which
-/// the others are sought. project: move given velocities onto the constraints. removals: name to
-/// {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files. multipliers: mu0, shape
-/// (h,), zero by default. time: t0. duration: length of the run.
+/// expression, what motions list besides; invariants: likewise, what should stay constant. start: every
+/// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others. guess:
+/// velocities near which the others are sought. project: move given velocities onto the constraints.
+/// removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
+/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run.
+///
+/// >>> sledge = deltaq.System(
+/// ...     coordinates=["x", "y", "phi"],
+/// ...     lagrangian="(x'^2 + y'^2)/2 + k^2*phi'^2/2 + g*sin(alpha)*x",
+/// ...     constraints=["y'*cos(phi) - x'*sin(phi)"],
+/// ...     parameters={"g": 9.81, "alpha": 0.4, "k": 0.7},
+/// ...     start={"x": 0, "y": 0, "phi": 0},
+/// ...     velocities={"phi'": 1, "x'": 0},
+/// ... )
+/// >>> sledge.constraint(0.0, sledge.start.q, sledge.start.v)
+/// array([0.])
 ///
 /// SceneError names the line of the scene file that the arguments amount to.
 #[pyclass(frozen, module = "deltaq")]
@@ -42,7 +54,7 @@ pub(crate) struct System {
 pub(crate) type Overrides = Vec<(String, f64)>;
 
 impl System {
-    /// A system from the text of a scene. With a `path` faults name that, and the scene is called as the file.
+    /// A system from the text of a scene; with a `path` faults name that, and the scene is called as the file.
     pub(crate) fn read(
         py: Python<'_>,
         (name, path): (&str, Option<&Path>),
@@ -237,6 +249,9 @@ impl System {
     }
 
     /// The same system with other numbers in some places; overrides as in `load`, over those of before.
+    ///
+    /// >>> sledge.replace({"g": 1.6}).parameters["g"]
+    /// 1.6
     #[pyo3(signature = (overrides))]
     fn replace(&self, py: Python<'_>, overrides: HashMap<String, f64>) -> PyResult<System> {
         let kept = self.overrides.iter().filter(|(name, _)| !overrides.contains_key(name)).cloned();
@@ -278,6 +293,12 @@ impl System {
     ///
     /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
     /// constants: those of `Equations.initial_state`, as in `solve`; by default zero if natural at a horizon.
+    ///
+    /// >>> equations = sledge.equations("chetaev")
+    /// >>> equations.states
+    /// ['x', 'y', 'phi', "x'", "y'", "phi'"]
+    /// >>> equations.rates(0.0, equations.initial_state())[:3]
+    /// array([0., 0., 1.])
     #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
     fn equations(
         &self,
@@ -311,7 +332,8 @@ impl System {
     ) -> PyResult<Linearization> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
         let scene = self.scene().clone();
-        let choice = arguments::choice(&scene, formulation, removal, given)?;
+        let interrupt = Interrupt::default();
+        let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 

@@ -1,11 +1,17 @@
 """The Python that README and docs show runs as it is printed."""
 
+import doctest
+import inspect
 import math
 import re
 from pathlib import Path
 
+import dask_jobqueue
+import dask_jobqueue.local
 import deltaq
+import nbformat
 import pytest
+from nbclient import NotebookClient
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -14,7 +20,7 @@ def blocks(path, language):
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / path).read_text(), re.DOTALL)
 
 
-@pytest.mark.parametrize("path", ["README.md", "docs/python.md"])
+@pytest.mark.parametrize("path", ["README.md", "docs/python.md", "crates/python/README.md"])
 def test_examples_run(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("disc-on-slope.toml").write_text(blocks("README.md", "toml")[0])
@@ -23,6 +29,61 @@ def test_examples_run(path, tmp_path, monkeypatch):
     names = {}
     for code in found:
         exec(compile(code, path, "exec"), names)
+
+
+# the jobs that stand in for Slurm's are not waited for
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")
+def test_the_page_about_clusters(tmp_path, monkeypatch, capsys):
+    """Slurm's jobs are processes of this machine; their script is Slurm's."""
+    monkeypatch.chdir(tmp_path)
+    Path("own.toml").write_text((ROOT / "validation/scenes/sledge.toml").read_text())
+    scripts, asked = [], []
+
+    def jobs(cores, processes, memory, walltime):
+        with SLURMCluster(cores=cores, processes=processes, memory=memory, walltime=walltime) as cluster:
+            scripts.append(cluster.job_script())
+        return LocalCluster(cores=2, processes=2, memory=memory, walltime=walltime)
+
+    class LocalCluster(dask_jobqueue.local.LocalCluster):
+        def scale(self, jobs):
+            asked.append(jobs)
+            return super().scale(jobs=min(jobs, 1))
+
+    SLURMCluster = dask_jobqueue.SLURMCluster
+    monkeypatch.setattr(dask_jobqueue, "SLURMCluster", jobs)
+    here, slurm = blocks("docs/cluster.md", "python")
+    for code in (here.replace("n_workers=4", "n_workers=2"), slurm):
+        exec(compile(code, "docs/cluster.md", "exec"), {"__name__": "__main__"})
+    out = capsys.readouterr().out
+    assert asked[0] == 10 and "#SBATCH -t 02:00:00" in scripts[0] and out.count("none proved") == 2 and "25 of 25 parts" in out
+    assert len(list(Path("sweep-of-k").glob("part-*.parquet"))) == 25
+
+
+def test_examples_of_docstrings_run():
+    """Those of the system come first: the others take it from there."""
+    objects = [deltaq.System, deltaq.sweep, deltaq.ensemble]
+    for cls in vars(deltaq).copy().values():
+        if isinstance(cls, type) and cls.__module__ == "deltaq":
+            objects += [cls, *(member for name, member in vars(cls).items() if not name.startswith("_"))]
+    names, runner, parser, seen = {"deltaq": deltaq}, doctest.DocTestRunner(), doctest.DocTestParser(), set()
+    for member in objects:
+        text = inspect.getdoc(member)
+        if text and ">>>" in text and id(member) not in seen:
+            seen.add(id(member))
+            test = parser.get_doctest(text, names, getattr(member, "__name__", "?"), None, 0)
+            runner.run(test, clear_globs=False)
+            names |= test.globs
+    assert runner.failures == 0 and len(seen) >= 7, (runner.failures, len(seen))
+
+
+def test_the_notebook_runs(tmp_path):
+    """All of it, in a new kernel, as it is printed."""
+    notebook = nbformat.read(ROOT / "docs/tour.ipynb", 4)
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    printed = ["".join(output.get("text", "") for output in cell.outputs) for cell in code]
+    assert len(code) > 8 and all(cell.execution_count for cell in code)
+    NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
+    assert ["".join(output.get("text", "") for output in cell.outputs) for cell in code] == printed
 
 
 def test_the_removal_in_the_scene_format_is_one():

@@ -7,6 +7,8 @@ import time
 import numpy as np
 import pytest
 
+import deltaq
+
 LONG = 1e9
 
 
@@ -52,9 +54,25 @@ def test_two_threads_give_what_one_gives(system):
         np.testing.assert_array_equal(again, rates)
 
 
-@pytest.mark.parametrize("ask", ["solve", "compare", "horizon", "ensemble"])
+def snake(links):
+    """Links of length 2 on a plane, each with a wheel in its middle that does not slip sideways."""
+    definitions = {f"d{i}": f"[cos(a{i}), sin(a{i})]" for i in range(links)}
+    definitions |= {"r0": "[x, y]"} | {f"r{i}": f"r{i - 1} - d{i - 1} - d{i}" for i in range(1, links)}
+    return deltaq.System(
+        coordinates=["x", "y"] + [f"a{i}" for i in range(links)],
+        definitions=definitions,
+        lagrangian=" + ".join(f"dot(r{i}', r{i}')/2 + a{i}'^2/6" for i in range(links)),
+        constraints=[f"r{i}'.y*d{i}.x - r{i}'.x*d{i}.y" for i in range(links)],
+        start={"x": 0, "y": 0} | {f"a{i}": 0.2 * (-1) ** i for i in range(links)},
+        velocities={"x'": 1.0, "a0'": 0.5},
+    )
+
+
+@pytest.mark.parametrize("ask", ["solve", "compare", "horizon", "ensemble", "derive"])
 def test_control_c(sledge, system, ask):
+    long = snake(60) if ask == "derive" else None
     endless = {
+        "derive": lambda: long.equations("removed-constraint"),
         "solve": lambda: system.solve(times=[0, LONG], max_steps=2**60),
         "compare": lambda: sledge.system(duration=LONG).compare(max_steps=2**60),
         "horizon": lambda: system.solve("removed-constraint", constants={"horizon": LONG}, max_steps=2**60),

@@ -1,6 +1,7 @@
 //! The node store behind a graph: hash-consing, names, dependency sets.
 
 use crate::Function;
+use crate::cancel;
 use crate::number::{Number, Rational};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
@@ -90,6 +91,9 @@ impl Arena {
     pub(crate) fn intern(&mut self, node: Node) -> Expr {
         if let Some(&e) = self.ids.get(&node) {
             return e;
+        }
+        if self.nodes.len().is_multiple_of(cancel::EVERY) {
+            cancel::check();
         }
         let e = Expr(u32::try_from(self.nodes.len()).expect("fewer than 2^32 expressions"));
         let set = self.dependency_set(&node);

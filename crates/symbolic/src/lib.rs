@@ -35,6 +35,7 @@ mod arena;
 mod atoms;
 mod bounded;
 mod calculus;
+mod cancel;
 mod evaluate;
 mod evaluator;
 mod excerpt;
@@ -73,6 +74,7 @@ mod value;
 
 pub use arena::{Expr, Symbol};
 pub use bounded::Bounded;
+pub use cancel::cancellable;
 pub use evaluate::CompileError;
 pub use evaluator::Evaluator;
 pub use excerpt::excerpt;

@@ -29,7 +29,7 @@ def _columns(count: int, ax: Any) -> Any:
         if len(axes) != count:
             raise ValueError(f"ax has {len(axes)} axes; {count} are needed")
         return axes
-    figure, axes = plt.subplots(count, 1, sharex=True, figsize=(6.4, 1.2 + 1.7 * count), squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(count, 1, sharex=True, figsize=(7.2, 2.4 + 1.4 * count), squeeze=False, layout="constrained")
     return axes[:, 0]
 
 
@@ -80,22 +80,26 @@ def comparison(self: Comparison, ax: Any = None) -> Any:
 
     ax: n + 1 axes to draw into.
     """
-    runs = [run for run in self.runs if run.motion is not None]
+    # the costate form is a form of the vakonomic motion
+    runs = [run for run in self.runs if run.motion is not None and run.formulation in _COLOURS]
     names = runs[0].motion.coordinate_names if runs else []
     axes = _columns(len(names) + 1, ax)
-    for run in runs:
+    for place, run in enumerate(runs):
+        # of several removals the first is the widest
+        width = 1.8 / (1 + sum(other.formulation == run.formulation for other in runs[:place]))
         for i, axis in enumerate(axes[:-1]):
-            axis.plot(run.motion.times, run.motion.coordinates[:, i], label=run.label, **_look(run.formulation))
+            axis.plot(run.motion.times, run.motion.coordinates[:, i], label=run.label, linewidth=width, **_look(run.formulation))
     for name, axis in zip(names, axes):
         axis.set_ylabel(name)
     below = axes[-1]
-    for pair in self.pairs:
+    labels = {run.label for run in runs}
+    for pair in (pair for pair in self.pairs if {pair.first, pair.second} <= labels):
         [line] = below.plot(pair.times, np.where(pair.gap > 0, pair.gap, np.nan), label=f"{pair.first}, {pair.second}")
         below.plot(pair.times, np.where(pair.limit > 0, pair.limit, np.nan), ":", color=line.get_color(), linewidth=0.8)
     below.set(yscale="log", ylabel="gap")
-    for axis in (axes[0], below):
+    for axis, columns in ((axes[0], 2), (below, 1)):
         if axis.get_legend_handles_labels()[0]:
-            axis.legend(frameon=False, fontsize="small")
+            axis.legend(frameon=False, fontsize="small", loc="lower left", bbox_to_anchor=(0, 1), ncols=columns)
     return _finished(axes)
 
 
@@ -125,10 +129,10 @@ def sweep(self: Any, column: str, ax: Any) -> Any:
         map = axis.pcolormesh(axes[1], axes[0], values.reshape(shape), norm=norm, shading="nearest", cmap="viridis")
         axis.figure.colorbar(map, ax=axis, label=column)
         down, across = np.nonzero(contained.reshape(shape))
-        axis.plot(axes[1][across], axes[0][down], ".", color="white", markeredgecolor="black", label="some constants")
+        axis.plot(axes[1][across], axes[0][down], "o", color="white", markeredgecolor="black", markersize=5, label="some constants")
         axis.set_ylabel(names[0])
     if contained.any():
-        axis.legend(frameon=False, loc="upper left", bbox_to_anchor=(0, 1.12))
+        axis.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1))
     figure = _finished([axis])
     axis.set_xlabel(names[-1])
     axis.set_title(self.title, loc="right", fontsize="small")

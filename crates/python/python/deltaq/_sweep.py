@@ -119,6 +119,10 @@ def sweep(
 
     A row is a pure function of its numbers: no cluster, thread or part changes a bit of it. A start that there is not
     is a row with a cause; a name that means nothing is a ValueError or a DeltaqError.
+
+    >>> where = deltaq.sweep(sledge, {"k": [0.5, 1.0], "phi'": [0.5, 1.0, 1.5]})
+    >>> len(where), where.to_xarray()["answer"].sel(k=0.5).values.tolist()
+    (6, ['none proved', 'none proved', 'none proved'])
     """
     values = {name: np.atleast_1d(np.asarray(numbers, dtype=float)) for name, numbers in over.items()}
     for name, numbers in values.items():
@@ -170,6 +174,10 @@ def ensemble(
     Columns as of `Ensemble.to_arrow`. client, out, progress: as in `sweep`; part: members of a file. options: those
     of `System.ensemble`. Without `out` a pyarrow.Table comes back, with it a pyarrow.dataset.Dataset, which reads
     only what is asked of it. An answer does not depend on the other members, nor on parts and workers.
+
+    >>> table = deltaq.ensemble(sledge, "chetaev", [0.5, 1.0], vary={"phi'": [0.5, 1.0]})
+    >>> table.column_names[:4], table.num_rows
+    (['member', "set phi'", 't', 'x'], 4)
     """
     values = {name: np.atleast_1d(np.asarray(numbers, dtype=float)) for name, numbers in vary.items()}
     lengths = {name: len(numbers) for name, numbers in values.items()}
