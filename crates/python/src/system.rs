@@ -54,7 +54,7 @@ pub(crate) struct System {
 pub(crate) type Overrides = Vec<(String, f64)>;
 
 impl System {
-    /// A system from the text of a scene; with a `path` faults name that, and the scene is called as the file.
+    /// A system from the text of a scene. Of one with a `path`, faults name that, and the file its name.
     pub(crate) fn read(
         py: Python<'_>,
         (name, path): (&str, Option<&Path>),

@@ -15,8 +15,8 @@ thread_local! {
 /// What the stack is unwound with.
 struct Cancelled;
 
-/// Does `work` on this thread until `is_unwanted` says so, which is asked at every [`EVERY`]-th new expression:
-/// `None` then. The graphs that the work has built on are whole, with more expressions than before.
+/// Does `work` on this thread until `is_unwanted` says so: `None` then. It is asked at every 256th new
+/// expression. The graphs that the work has built on are whole, with more expressions than before.
 ///
 /// ```
 /// let graph = symbolic::Graph::new();
