@@ -42,7 +42,7 @@ pub fn sweep_files(
 ) -> Result<Vec<File>> {
     let count = ranges.len();
     let title = &format!("{title}: {first} and {second}");
-    let mark = &format!("some constants: {second} = {first}");
+    let mark = &format!("constants make the {second} motion the {first} one");
     let point = |line: &str| -> Option<Point> {
         let cells: Vec<&str> = line.split(',').collect();
         let at = cells.get(..count)?.iter().map(|x| x.parse().ok()).collect::<Option<Vec<f64>>>()?;
@@ -86,8 +86,8 @@ fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
     let proved = points.iter().filter(|point| point.answer == "none proved").count();
     let names: Vec<&str> = ranges.iter().map(|(name, ..)| name.as_str()).collect();
     let mut text = format!(
-        "# {title} over {}\n\n**Of {} points {} are different, {} the same, {} undecided, {} without a motion. Points with \
-         {mark}: {}; without, by proof: {proved}.**\n",
+        "# {title} over {}\n\n**Of {} points {} are different, {} the same, {} undecided, {} without a motion. No {mark}: \
+         proved at {proved}. Some do at {}.**\n",
         names.join(" and "),
         points.len(),
         number("different"),
@@ -124,7 +124,7 @@ fn map(
         value: Axis::log(label),
         cells: points.iter().map(value).collect(),
         marked: points.iter().map(Point::has_some).collect(),
-        mark: mark.into(),
+        mark: format!("some {mark}"),
     }
     .to_svg()
 }
@@ -141,7 +141,7 @@ fn line(
     let mut curves = vec![Curve { label: second.into(), style: Style::Vakonomic, points: along }];
     for point in points.iter().filter(|point| point.has_some()) {
         let at = value(point).map(|value| (point.at[0], value));
-        curves.push(Curve { label: mark.into(), style: Style::Threshold, points: at.into_iter().collect() });
+        curves.push(Curve { label: format!("some {mark}"), style: Style::Threshold, points: at.into_iter().collect() });
     }
     curves.retain(|curve| !curve.points.is_empty());
     Picture::new(title, Axis::linear(name.clone()), Axis::log(label), curves).to_svg()
