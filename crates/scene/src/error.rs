@@ -7,6 +7,8 @@ use symbolic::{ParseErrorKind, excerpt};
 
 use mechanics::{RemovalError, StartError};
 
+use crate::{NameFault, Unavailable};
+
 /// A fault in a scene file: the place and what was expected there.
 ///
 /// Displayed as `file:line:column: message`, the line, and carets under the place.
@@ -129,6 +131,36 @@ pub enum SceneErrorKind {
         /// Number needed.
         expected: usize,
     },
+    /// A number, vector or matrix of the wrong shape.
+    #[error("expected {expected}, found {found}")]
+    WrongShape {
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// Too few or too many sizes of a body.
+    #[error("the size of a {word} is [{sizes}], found {found} number{}", if *.found == 1 { "" } else { "s" })]
+    WrongSizes {
+        /// What it looks like.
+        word: &'static str,
+        /// Its sizes.
+        sizes: String,
+        /// How many there are.
+        found: usize,
+    },
+    /// A matrix that does not rotate.
+    #[error(
+        "no rotation at the start: R Rᵀ differs from the unit matrix by {residual:.3e}, limit {limit:.0e}, and det R is {determinant:.3}"
+    )]
+    NoRotation {
+        /// Largest entry of `R Rᵀ − 1` in magnitude.
+        residual: f64,
+        /// Largest value that is accepted.
+        limit: f64,
+        /// `det R`, which has to be positive.
+        determinant: f64,
+    },
     /// A number that is not finite.
     #[error("{what} must be finite, found {value}")]
     NotFinite {
@@ -228,59 +260,6 @@ pub enum SceneErrorKind {
     /// Start data from which no motion starts.
     #[error(transparent)]
     Start(StartError),
-}
-
-/// Why something cannot be a name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NameFault {
-    /// Not a letter followed by letters, digits and underscores.
-    #[error("a name is a letter followed by letters, digits and underscores")]
-    NotIdentifier,
-    /// With primes.
-    #[error("primes are time derivatives and are not part of a name")]
-    Primed,
-    /// Time, a constant or a function.
-    #[error("it is {0}")]
-    Reserved(&'static str),
-    /// What `--set` calls something else.
-    #[error("`--set` means {0} by it")]
-    Overriding(&'static str),
-    /// Used twice.
-    #[error("it is already {by}")]
-    Taken {
-        /// What uses it.
-        by: String,
-    },
-}
-
-/// Why a defined name cannot be used at some place.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Unavailable {
-    /// A start value that is not known yet.
-    #[error("it has no value yet; known are {known}")]
-    NotYetKnown {
-        /// What can be used.
-        known: &'static str,
-    },
-    /// A derivative of something that is not a coordinate.
-    #[error("{0} does not change with time")]
-    NoDerivative(&'static str),
-    /// A derivative of too high an order.
-    #[error(
-        "derivatives of this order do not enter: a system contains coordinates and velocities, a parametrization the first two rates of its parameters"
-    )]
-    Acceleration,
-    /// The velocity of a removed coordinate, in the parametrization that is to give it.
-    #[error(
-        "it is the velocity of a removed coordinate, which the parametrization is to give; use parameters and their rates"
-    )]
-    RemovedVelocity,
-    /// A coordinate that is given directly.
-    #[error("this coordinate is given directly by the parametrization; use parameters and memory variables")]
-    DirectCoordinate,
-    /// `ü` in a coordinate.
-    #[error("a coordinate given directly may contain parameters and their first rates only")]
-    SecondRate,
 }
 
 fn meant(suggestion: &Option<String>) -> String {
