@@ -35,6 +35,7 @@ mod arena;
 mod atoms;
 mod bounded;
 mod calculus;
+mod code;
 mod evaluate;
 mod evaluator;
 mod excerpt;
@@ -73,6 +74,7 @@ mod value;
 
 pub use arena::{Expr, Symbol};
 pub use bounded::Bounded;
+pub use code::{Code, Language};
 pub use evaluate::CompileError;
 pub use evaluator::Evaluator;
 pub use excerpt::excerpt;
