@@ -1,4 +1,4 @@
-//! Equations as code in other languages: what stands in it. Files around it are written where systems are known.
+//! Equations as code in other languages: what stands in it. The files are written where systems are known.
 
 use std::collections::HashMap;
 
