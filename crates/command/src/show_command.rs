@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use anyhow::{Result, bail};
 use deltaq::{
-    Choice, Chosen, ChosenForm, EquationStyle, Form, Settings, choices, derive_at, derive_in_form, equations_text,
-    forms, integrability, prepare, setting, system_text,
+    Choice, Chosen, ChosenForm, EquationStyle, Form, Prepared, Settings, SolveError, choices, code, derive_at,
+    derive_in_form, equations_text, forms, integrability, prepare, setting, system_text,
 };
 use equations::{Cost, Equations};
 use mechanics::ConstantsRule;
@@ -47,7 +47,16 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         known.dedup();
         bail!("--formulation {unknown}: this scene has {}", known.join(", "));
     }
-    for choice in all.into_iter().filter(|choice| asked.is_empty() || asked.iter().any(|n| n == choice.formulation)) {
+    let wanted = |choice: &Choice| asked.is_empty() || asked.iter().any(|name| name == choice.formulation);
+    let all: Vec<Choice> = all.into_iter().filter(wanted).collect();
+    if let Some(language) = arguments.code {
+        if asked.len() > 1 {
+            bail!("--code takes one formulation, and --formulation names {}", asked.join(", "));
+        }
+        let equations = derive_at(&scene.system, &scene.start, &all[0])?;
+        return Ok(code(&scene, &started(&scene, equations, &all[0])?, language.into())?);
+    }
+    for choice in all {
         let derived = match derive_at(&scene.system, &scene.start, &choice) {
             Ok(equations) => {
                 let text = equations_text(&equations, style);
@@ -104,12 +113,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
 
 /// In which form the equations are evaluated, why, and what that costs.
 fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> {
-    // the start is needed, not the constants that are natural at a horizon: zero stands for them
-    let constants = match &choice.constants {
-        ConstantsRule::Natural { .. } => &ConstantsRule::Zero,
-        given => given,
-    };
-    let ready = match prepare(setting(scene), equations, constants, &Settings::default()) {
+    let ready = match started(scene, equations, choice) {
         Ok(ready) => ready,
         Err(error) => return Ok(format!("\nNot started: {error}\n")),
     };
@@ -134,4 +138,13 @@ fn form(scene: &Scene, equations: Equations, choice: &Choice) -> Result<String> 
     }
     text.push('\n');
     Ok(text)
+}
+
+/// The start is needed, not the constants that are natural at a horizon: zero stands for them.
+fn started(scene: &Scene, equations: Equations, choice: &Choice) -> Result<Prepared, SolveError> {
+    let constants = match &choice.constants {
+        ConstantsRule::Natural { .. } => &ConstantsRule::Zero,
+        given => given,
+    };
+    prepare(setting(scene), equations, constants, &Settings::default())
 }

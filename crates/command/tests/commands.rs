@@ -305,6 +305,22 @@ fn list_and_show_answer() {
 }
 
 #[test]
+fn show_writes_code() {
+    let code = |language: &str| {
+        let output = deltaq(&["show", "disc", "-f", "vakonomic", "--code", language]);
+        exit(&output, 0);
+        text(&output.stdout).to_string()
+    };
+    assert!(code("c").contains("int disc_vakonomic_rates(double t, const double state[10],"));
+    assert!(code("numpy").contains("def rates(t, state, parameters=PARAMETERS):"));
+    assert!(code("sympy").contains("RATES = sp.Matrix(["));
+    let output = deltaq(&["show", "disc", "--code", "c"]);
+    assert!(text(&output.stdout).contains("disc_chetaev_rates"));
+    refused(&["show", "disc", "-f", "chetaev,vakonomic", "--code", "c"], &["--code takes one formulation"]);
+    refused(&["show", "appell-hamel", "-f", "vakonomic-costate", "--code", "c"], &["are not linear in them"]);
+}
+
+#[test]
 fn show_says_in_which_form_equations_are_evaluated() {
     let output = deltaq(&["show", "trailer"]);
     exit(&output, 0);

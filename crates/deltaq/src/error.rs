@@ -26,6 +26,17 @@ pub enum SolveError {
     /// The derived equations contain an unknown symbol.
     #[error("the derived equations cannot be compiled: {0}")]
     Compile(#[from] CompileError),
+    /// Code is asked for where the equations of the instant take Newton's method.
+    #[error(
+        "{formulation}: the equations for {unknowns} are not linear in them, and are not written as code; ask for another form or \
+         formulation"
+    )]
+    NotLinear {
+        /// Name of the formulation.
+        formulation: String,
+        /// The unknowns.
+        unknowns: String,
+    },
     /// The equations cannot be evaluated at the start.
     #[error("at the start: {0}")]
     AtStart(EvaluationFailure),

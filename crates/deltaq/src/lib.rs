@@ -9,7 +9,7 @@
 //! - [`FORMULATIONS`]: the table.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate `e(t)`, the difference of two runs.
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
-//! - [`prepare`]: the equations compiled and started, for other integrators.
+//! - [`prepare`]: the equations compiled and started, for other integrators; [`code()`]: as source text.
 //! - [`Ensemble`]: many starts and parameters of one system at once.
 //! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
 //! - [`membership()`]: whether the motion of one formulation is one of another for *some* free constants.
@@ -59,6 +59,7 @@
 
 mod charts;
 mod choice;
+mod code;
 mod comparison;
 mod constants;
 mod discrete_run;
@@ -91,12 +92,14 @@ mod trajectory;
 mod trial;
 
 pub use decision::{Finding, Section};
+pub use symbolic::Language;
 
 pub use charts::ChartChange;
 pub use choice::{
     Choice, choices, choices_among, constants_of, default_constants, derive, derive_at, forms, removal, removal_names,
     removals,
 };
+pub use code::code;
 pub use comparison::{Comparison, Extent, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;

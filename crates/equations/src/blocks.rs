@@ -1,8 +1,6 @@
 //! The blocks of one instant: `R(z; t, y) = 0`, solved for `z`.
 
-use std::collections::{HashMap, HashSet};
-
-use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
+use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
 use crate::equations::{Block, Equations};
 use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
@@ -133,13 +131,10 @@ impl CompiledBlock {
         known: &[Symbol],
         all: &[Symbol],
     ) -> Result<CompiledBlock, CompileError> {
-        let g = &equations.graph;
-        let matrix = g.jacobian(&block.residuals, &block.unknowns);
-        let unknowns: HashSet<Symbol> = block.unknowns.iter().copied().collect();
-        let linear = matrix.entries().iter().all(|&e| g.symbols_of(e).iter().all(|s| !unknowns.contains(s)));
-        let at_zero: HashMap<Symbol, Expr> = block.unknowns.iter().map(|&z| (z, g.zero())).collect();
+        let (matrix, rest) = equations.linear_system(block);
+        let linear = rest.is_some();
         let mut outputs = matrix.entries().to_vec();
-        outputs.extend(block.residuals.iter().map(|&r| if linear { g.substitute(r, &at_zero) } else { r }));
+        outputs.extend(rest.unwrap_or_else(|| block.residuals.clone()));
         let size = block.unknowns.len();
         Ok(CompiledBlock {
             first,

@@ -59,6 +59,7 @@
 //! Integration*, IV.4.
 
 mod blocks;
+mod code;
 mod compiled;
 mod definitions;
 mod equations;

@@ -3,7 +3,9 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use deltaq::{EquationStyle, Prepared, SolveError, constant_names, derive_at, equations_text, prepare, setting};
+use deltaq::{
+    EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare, setting,
+};
 use equations::{Compiled, EvaluationFailure, Role};
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, Observables};
@@ -154,6 +156,11 @@ impl Equations {
         })
     }
 
+    fn code(&self, language: Language) -> PyResult<String> {
+        let scene = self.scene();
+        code(&scene, &self.ready(), language).map_err(errors::solve)
+    }
+
     /// The state with these coordinates, velocities and multipliers, and the places of the velocities in it.
     fn state(&self, q: &[f64], v: &[f64], mu: &[f64]) -> PyResult<(Vec<f64>, Vec<usize>)> {
         let ready = self.ready();
@@ -202,6 +209,26 @@ impl Equations {
         let lines: Vec<String> =
             equations.statements.iter().map(|s| format!("{} &= {}", latex(s.left), latex(s.right))).collect();
         format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
+    }
+
+    /// A file of C99: functions for rates and outputs without allocation, the start, the parameters.
+    ///
+    /// SolveError where unknowns of the instant are not found by linear equations; so in all three languages.
+    #[pyo3(signature = ())]
+    fn to_c(&self) -> PyResult<String> {
+        self.code(Language::C)
+    }
+
+    /// A module of Python: rates(t, y) and outputs(t, y) in NumPy, for one state or many at once.
+    #[pyo3(signature = ())]
+    fn to_numpy(&self) -> PyResult<String> {
+        self.code(Language::Numpy)
+    }
+
+    /// A module of Python: RATES, OUTPUTS, MATRIX and RIGHT as matrices of SymPy in STATES and UNKNOWNS.
+    #[pyo3(signature = ())]
+    fn to_sympy(&self) -> PyResult<String> {
+        self.code(Language::Sympy)
     }
 
     /// The state y(t0) that belongs to the start of the system, shape (m,).

@@ -48,6 +48,7 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::ConstantNotFinite { .. }
         | Error::NoNaturalCondition { .. }
         | Error::Horizon { .. }
+        | Error::NotLinear { .. }
         | Error::Decision(_)
         | Error::Discrete(_)
         | Error::NoPrinciple { .. }

@@ -7,12 +7,58 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyMapping, PySequence, PyString};
 
+/// A name or a formula: text, or an expression of SymPy.
+pub(crate) struct Formula(pub(crate) String);
+
+/// Any iterable of formulas.
+pub(crate) struct Formulas(pub(crate) Vec<String>);
+
+impl<'py> FromPyObject<'_, 'py> for Formula {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match text_of(&object)? {
+            Some(text) => Ok(Formula(text)),
+            None => Err(unexpected(&object, "a string or an expression of SymPy")),
+        }
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Formulas {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if text_of(&object)?.is_some() {
+            return Err(unexpected(&object, "a list of strings or of expressions of SymPy"));
+        }
+        object.try_iter()?.map(|entry| Ok(entry?.extract::<Formula>()?.0)).collect::<PyResult<_>>().map(Formulas)
+    }
+}
+
+/// The text of a string or of an expression of SymPy.
+fn text_of(object: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
+    if let Ok(text) = object.cast::<PyString>() {
+        return Ok(Some(text.to_cow()?.into_owned()));
+    }
+    object.py().import("deltaq._sympy")?.call_method1("text", (object,))?.extract()
+}
+
+fn unexpected(object: &Bound<'_, PyAny>, expected: &str) -> PyErr {
+    PyTypeError::new_err(format!("{} where {expected} is expected", object.get_type()))
+}
+
+/// Names with what is said of them.
+fn entries<'py>(table: Option<&Bound<'py, PyDict>>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
+    let pairs = table.into_iter().flat_map(|table| table.iter());
+    pairs.map(|(key, entry)| Ok((key.extract::<Formula>()?.0, entry))).collect()
+}
+
 /// The arguments of `System(...)`.
 pub(crate) struct Arguments<'py> {
     pub(crate) title: String,
     pub(crate) coordinates: Vec<String>,
     pub(crate) units: Option<Bound<'py, PyDict>>,
-    pub(crate) start: Option<Bound<'py, PyDict>>,
+    pub(crate) start: Bound<'py, PyDict>,
     /// Sections whose entries are handed on as they are: name and entries.
     pub(crate) tables: Vec<(&'static str, Option<Bound<'py, PyDict>>)>,
     pub(crate) lagrangian: String,
@@ -25,25 +71,23 @@ pub(crate) struct Arguments<'py> {
 
 /// The text of the scene.
 pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
-    let Arguments { coordinates, units, start, .. } = arguments;
+    let coordinates = &arguments.coordinates;
+    let (units, start) = (entries(arguments.units.as_ref())?, entries(Some(&arguments.start))?);
     let mut text = format!("title = {}\n[coordinates]\n", quoted(&arguments.title));
-    for (name, table) in [("units", units), ("start", start)] {
-        let keys = table.iter().flat_map(|t| t.keys().iter().collect::<Vec<_>>());
-        for key in keys.map(|key| key.extract::<String>()).collect::<PyResult<Vec<_>>>()? {
-            if !coordinates.contains(&key) {
-                let known = coordinates.join(", ");
-                return Err(PyValueError::new_err(format!("`{key}` in {name} is no coordinate; known: {known}")));
-            }
+    for (name, table) in [("units", &units), ("start", &start)] {
+        if let Some((key, _)) = table.iter().find(|(key, _)| !coordinates.contains(key)) {
+            let known = coordinates.join(", ");
+            return Err(PyValueError::new_err(format!("`{key}` in {name} is no coordinate; known: {known}")));
         }
     }
     for name in coordinates {
-        let mut entries = Vec::new();
-        for (key, table) in [("unit", units), ("start", start)] {
-            if let Some(entry) = table.as_ref().map(|t| t.get_item(name)).transpose()?.flatten() {
-                entries.push(format!("{key} = {}", value(&entry)?));
+        let mut said = Vec::new();
+        for (key, table) in [("unit", &units), ("start", &start)] {
+            if let Some((_, entry)) = table.iter().find(|(of, _)| of == name) {
+                said.push(format!("{key} = {}", value(entry)?));
             }
         }
-        let _ = writeln!(text, "{} = {{ {} }}", quoted(name), entries.join(", "));
+        let _ = writeln!(text, "{} = {{ {} }}", quoted(name), said.join(", "));
     }
     let _ = writeln!(text, "[system]\nlagrangian = {}\nconstraints = [", quoted(&arguments.lagrangian));
     for constraint in &arguments.constraints {
@@ -53,8 +97,8 @@ pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
     for (section, table) in &arguments.tables {
         let Some(table) = table else { continue };
         let _ = writeln!(text, "[{section}]");
-        for (key, entry) in table.iter() {
-            let _ = writeln!(text, "{} = {}", quoted(&key.extract::<String>()?), value(&entry)?);
+        for (key, entry) in entries(Some(table))? {
+            let _ = writeln!(text, "{} = {}", quoted(&key), value(&entry)?);
         }
     }
     if let Some(multipliers) = &arguments.multipliers {
@@ -66,8 +110,8 @@ pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
 
 /// A value as TOML, on one line.
 fn value(object: &Bound<'_, PyAny>) -> PyResult<String> {
-    if let Ok(text) = object.cast::<PyString>() {
-        return Ok(quoted(&text.to_cow()?));
+    if let Some(text) = text_of(object)? {
+        return Ok(quoted(&text));
     }
     if let Ok(truth) = object.cast::<PyBool>() {
         return Ok(truth.is_true().to_string());
@@ -75,8 +119,8 @@ fn value(object: &Bound<'_, PyAny>) -> PyResult<String> {
     if let Ok(table) = object.cast::<PyMapping>() {
         let mut entries = Vec::new();
         for pair in table.items()?.iter() {
-            let (key, entry): (String, Bound<'_, PyAny>) = pair.extract()?;
-            entries.push(format!("{} = {}", quoted(&key), value(&entry)?));
+            let (key, entry): (Formula, Bound<'_, PyAny>) = pair.extract()?;
+            entries.push(format!("{} = {}", quoted(&key.0), value(&entry)?));
         }
         return Ok(format!("{{ {} }}", entries.join(", ")));
     }
@@ -89,10 +133,7 @@ fn value(object: &Bound<'_, PyAny>) -> PyResult<String> {
     match object.extract::<f64>() {
         // TOML's `inf` is Rust's, too; its `nan` is not
         Ok(number) => Ok(format!("{number:?}").to_lowercase()),
-        Err(_) => Err(PyTypeError::new_err(format!(
-            "{} where a number, a string, a list or a dict is expected",
-            object.get_type()
-        ))),
+        Err(_) => Err(unexpected(object, "a number, a string, an expression of SymPy, a list or a dict")),
     }
 }
 

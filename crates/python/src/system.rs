@@ -14,12 +14,13 @@ use crate::arrays::{Array, FloatList, Floats, array, at_points};
 use crate::equations::Equations;
 use crate::linearization::Linearization;
 use crate::motion::State;
-use crate::scene_text::{Arguments, write};
+use crate::scene_text::{Arguments, Formula, Formulas, write};
 use crate::{arguments, errors};
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
-/// Expressions: numbers, or strings as in scene files: coordinates, velocities (`x'`), parameters, time `t`.
+/// Expressions: numbers, or strings as in scene files: coordinates, velocities (`x'`), parameters, time `t`;
+/// or SymPy's: coordinates are dynamicsymbols or names, velocities their derivatives, parameters symbols.
 ///
 /// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
 /// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
@@ -80,23 +81,22 @@ impl System {
     #[new]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
-        coordinates, lagrangian, constraints=Vec::new(), *, parameters=None, definitions=None, units=None, forces=None,
-        observables=None, invariants=None,
-        start=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
+        coordinates, lagrangian, constraints=Formulas(Vec::new()), *, start, parameters=None, definitions=None, units=None,
+        forces=None, observables=None, invariants=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
         name="system", title=None
     ))]
     fn new(
         py: Python<'_>,
-        coordinates: Vec<String>,
-        lagrangian: String,
-        constraints: Vec<String>,
+        coordinates: Formulas,
+        lagrangian: Formula,
+        constraints: Formulas,
+        start: Bound<'_, PyDict>,
         parameters: Option<Bound<'_, PyDict>>,
         definitions: Option<Bound<'_, PyDict>>,
         units: Option<Bound<'_, PyDict>>,
         forces: Option<Bound<'_, PyDict>>,
         observables: Option<Bound<'_, PyDict>>,
         invariants: Option<Bound<'_, PyDict>>,
-        start: Option<Bound<'_, PyDict>>,
         velocities: Option<Bound<'_, PyDict>>,
         guess: Option<Bound<'_, PyDict>>,
         project: bool,
@@ -109,7 +109,7 @@ impl System {
     ) -> PyResult<System> {
         let text = write(&Arguments {
             title: title.unwrap_or_else(|| name.into()),
-            coordinates,
+            coordinates: coordinates.0,
             units,
             start,
             tables: vec![
@@ -122,8 +122,8 @@ impl System {
                 ("start.guess", guess),
                 ("removal", removals),
             ],
-            lagrangian,
-            constraints,
+            lagrangian: lagrangian.0,
+            constraints: constraints.0,
             time,
             project,
             multipliers,

@@ -211,7 +211,7 @@ impl Graph {
         Ok(known[&e])
     }
 
-    fn check_bound(&self, es: &[Expr], bound: impl Fn(Symbol) -> bool) -> Result<(), CompileError> {
+    pub(crate) fn check_bound(&self, es: &[Expr], bound: impl Fn(Symbol) -> bool) -> Result<(), CompileError> {
         match self.symbols_of_all(es).into_iter().find(|s| !bound(*s)) {
             Some(s) => Err(CompileError::Unbound { name: self.name(s) }),
             None => Ok(()),

@@ -147,7 +147,7 @@ fn register(index: usize) -> Register {
 }
 
 /// Values that outputs need, operands first, each as late as its first user.
-fn order_of_need(program: &Program, outputs: &[Id]) -> Vec<Id> {
+pub(crate) fn order_of_need(program: &Program, outputs: &[Id]) -> Vec<Id> {
     let mut done = vec![false; program.len()];
     let mut order = Vec::new();
     let mut stack: Vec<(Id, bool)> = outputs.iter().rev().map(|o| (*o, false)).collect();

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use scene::Scene;
 
 use super::TextOrJson;
@@ -69,9 +69,33 @@ pub struct ShowArguments {
     /// The text of the scene file, and nothing else.
     #[arg(long, conflicts_with_all = ["latex", "format", "overrides"])]
     pub source: bool,
+    /// The equations as a source file in a language, and nothing else; by default those of Chetaev.
+    #[arg(long, value_enum, value_name = "LANGUAGE", conflicts_with_all = ["latex", "source", "format"])]
+    pub code: Option<CodeLanguage>,
     /// Output format.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,
+}
+
+/// Languages that equations are written in.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CodeLanguage {
+    /// C99: functions without allocation.
+    C,
+    /// Python: functions of arrays of NumPy.
+    Numpy,
+    /// Python: matrices of SymPy.
+    Sympy,
+}
+
+impl From<CodeLanguage> for deltaq::Language {
+    fn from(language: CodeLanguage) -> Self {
+        match language {
+            CodeLanguage::C => deltaq::Language::C,
+            CodeLanguage::Numpy => deltaq::Language::Numpy,
+            CodeLanguage::Sympy => deltaq::Language::Sympy,
+        }
+    }
 }
 
 fn assignment(text: &str) -> Result<(String, f64), String> {

@@ -1,7 +1,7 @@
 """Mechanical systems with velocity constraints: three formulations of their motion, derived, integrated, compared.
 
     import deltaq
-    system = deltaq.load("sledge.toml")           # or deltaq.System(...), deltaq.parse(text)
+    system = deltaq.load("sledge.toml")           # or deltaq.System(...), parse(text), from_sympy(method)
     motion = system.solve("chetaev")              # Motion: times, coordinates, velocities, ...
     many = system.ensemble("chetaev", vary={"g": [1.6, 9.8]})   # Ensemble: as a motion, one axis more
     equations = system.equations("vakonomic")     # Equations: text, latex, rates(t, y), jacobian(t, y), ...
@@ -52,6 +52,7 @@ from ._native import (
     load,
     parse,
 )
+from ._sympy import from_sympy
 
 if TYPE_CHECKING:
     from ._sweep import Sweep, ensemble, sweep
@@ -87,6 +88,7 @@ __all__ = [
     "Trajectory",
     "__version__",
     "ensemble",
+    "from_sympy",
     "load",
     "parse",
     "sweep",

@@ -1,4 +1,4 @@
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import Any, Final, Literal, TypeAlias, final
 
@@ -7,7 +7,9 @@ import numpy.typing as npt
 
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Floats: TypeAlias = npt.ArrayLike
-_Expression: TypeAlias = str | float
+# text, or an expression of SymPy, which has no types
+_Formula: TypeAlias = Any
+_Expression: TypeAlias = _Formula | float
 _Constants: TypeAlias = Literal["zero"] | dict[str, float] | npt.ArrayLike
 _Verdict: TypeAlias = Literal["same", "different", "undecided"]
 
@@ -45,19 +47,19 @@ class State:
 class System:
     def __new__(
         cls,
-        coordinates: Sequence[str],
-        lagrangian: str,
-        constraints: Sequence[str] = (),
+        coordinates: Iterable[_Formula],
+        lagrangian: _Formula,
+        constraints: Iterable[_Formula] = (),
         *,
-        parameters: dict[str, _Expression] | None = None,
-        definitions: dict[str, _Expression] | None = None,
-        units: dict[str, str] | None = None,
-        forces: dict[str, _Expression] | None = None,
+        start: dict[Any, _Expression],
+        parameters: dict[Any, _Expression] | None = None,
+        definitions: dict[Any, _Expression] | None = None,
+        units: dict[Any, str] | None = None,
+        forces: dict[Any, _Expression] | None = None,
         observables: dict[str, _Expression] | None = None,
         invariants: dict[str, _Expression] | None = None,
-        start: dict[str, _Expression] | None = None,
-        velocities: dict[str, _Expression] | None = None,
-        guess: dict[str, _Expression] | None = None,
+        velocities: dict[Any, _Expression] | None = None,
+        guess: dict[Any, _Expression] | None = None,
         project: bool = False,
         removals: dict[str, dict[str, Any]] | None = None,
         multipliers: _Floats | None = None,
@@ -177,6 +179,9 @@ class Equations:
     constants: Final[list[str]]
     text: Final[str]
     latex: Final[str]
+    def to_c(self) -> str: ...
+    def to_numpy(self) -> str: ...
+    def to_sympy(self) -> str: ...
     def initial_state(self, constants: _Constants | None = None) -> _Array: ...
     def rates(self, t: _Floats, y: _Floats) -> _Array: ...
     def jacobian(self, t: _Floats, y: _Floats) -> _Array: ...
