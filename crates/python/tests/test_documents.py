@@ -88,7 +88,7 @@ def test_the_notebook_runs(tmp_path):
 
 def test_the_removal_in_the_scene_format_is_one():
     sledge = (ROOT / "validation/scenes/sledge.toml").read_text()
-    *_, removal = blocks("docs/scenes.md", "toml")
+    [removal] = [block for block in blocks("docs/scenes.md", "toml") if block.startswith("[removal.")]
     system = deltaq.parse(sledge[: sledge.index("[removal.")] + removal + "[run]\nduration = 1\n")
     assert system.removals[0] == "arc-length"
     # the momentum along the blade is constant: u' + P_x cos(phi), with P_x = g sin(alpha) (10 - t)
