@@ -9,6 +9,7 @@ use scene::Scene;
 
 use crate::arrays::array;
 use crate::motion::{Motion, Sampled};
+use crate::system::System;
 
 /// How a gap grows near the start: gap = length * (t - t0)**exponent.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -193,6 +194,8 @@ impl Run {
 /// A system in every formulation, pair by pair.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Comparison {
+    /// The system that moves.
+    system: Py<System>,
     /// Frobenius' verdict on the constraints, in words.
     integrability: String,
     /// All runs.
@@ -239,7 +242,8 @@ impl Comparison {
             .ok_or_else(|| PyKeyError::new_err(format!("no run `{name}`; there are {}", known())))
     }
 
-    pub(crate) fn new(py: Python<'_>, compared: Compared) -> PyResult<Comparison> {
+    pub(crate) fn new(system: &Bound<'_, System>, compared: Compared) -> PyResult<Comparison> {
+        let py = system.py();
         let Compared { scene, integrability, runs, pairs, fits, decided } = compared;
         let labels: Vec<String> = runs.iter().map(|r| r.0.label.clone()).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
@@ -302,7 +306,7 @@ impl Comparison {
         };
         let run = |(choice, outcome): (deltaq::Choice, Result<Sampled, deltaq::SolveError>)| {
             let (motion, error) = match outcome {
-                Ok(sampled) => (Some(Py::new(py, Motion::new(py, sampled)?)?), None),
+                Ok(sampled) => (Some(Py::new(py, Motion::new(system, sampled)?)?), None),
                 Err(error) => (None, Some(error.to_string())),
             };
             let removal = choice.removal.map(|r| r.name);
@@ -312,6 +316,7 @@ impl Comparison {
             Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)
         };
         Ok(Comparison {
+            system: system.clone().unbind(),
             integrability,
             decided: decided.into_iter().map(membership).collect::<PyResult<_>>()?,
             runs: runs.into_iter().map(run).collect::<PyResult<_>>()?,

@@ -11,6 +11,7 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{FloatList, array, finite};
+use crate::system::System;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.
 pub(crate) struct Varied {
@@ -199,6 +200,8 @@ impl Columns {
 /// `reached` counts the times that it did, `status` and `cause` say why.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Ensemble {
+    /// The system that moves.
+    system: Py<System>,
     /// Name of the formulation.
     formulation: &'static str,
     /// Name of the removal, None where the formulation needs none.
@@ -235,7 +238,8 @@ pub(crate) struct Ensemble {
 }
 
 impl Ensemble {
-    pub(crate) fn new(py: Python<'_>, integrated: Integrated) -> PyResult<Ensemble> {
+    pub(crate) fn new(system: &Bound<'_, System>, integrated: Integrated) -> PyResult<Ensemble> {
+        let py = system.py();
         let Integrated { varied: Varied { values, count: m }, times, names, choice, done } = integrated;
         let k = times.len();
         let cube = |cube: Cube| array(py, cube.values, Some(m), &[k, cube.width]).map(Bound::unbind);
@@ -244,6 +248,7 @@ impl Ensemble {
             varied.set_item(name, array(py, values, Some(m), &[])?)?;
         }
         Ok(Ensemble {
+            system: system.clone().unbind(),
             formulation: choice.formulation,
             removal: choice.removal.map(|removal| removal.name),
             times: array(py, times, Some(k), &[])?.unbind(),

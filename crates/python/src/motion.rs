@@ -13,6 +13,7 @@ use scene::Scene;
 
 use crate::arrays::{FloatList, Floats, array, columns, finite, times};
 use crate::errors;
+use crate::system::System;
 
 /// A point of a motion: time, coordinates, velocities.
 #[pyclass(frozen, get_all, module = "deltaq")]
@@ -155,6 +156,9 @@ pub(crate) struct Motion {
     motion: Mutex<(deltaq::Motion, Observables)>,
     names: Names,
     dimension: usize,
+    /// The system that moves.
+    #[pyo3(get)]
+    system: Py<System>,
     /// Names of the coordinates, length n.
     #[pyo3(get)]
     coordinate_names: Vec<String>,
@@ -249,7 +253,8 @@ pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
 }
 
 impl Motion {
-    pub(crate) fn new(py: Python<'_>, sampled: Sampled) -> PyResult<Motion> {
+    pub(crate) fn new(system: &Bound<'_, System>, sampled: Sampled) -> PyResult<Motion> {
+        let py = system.py();
         let Sampled { motion, times, rows, coordinates: coordinate_names, observables: program, .. } = sampled;
         let Sampled { so_far, estimate, dimension, .. } = sampled;
         let names = Names::of(&motion.equations, &program);
@@ -268,6 +273,7 @@ impl Motion {
         let seconds = [("derive", derive), ("compile", compile), ("integrate", integrate)];
         Ok(Motion {
             dimension,
+            system: system.clone().unbind(),
             coordinate_names,
             formulation: motion.equations.formulation,
             removal: motion.equations.removal.as_ref().map(|r| r.name.clone()),

@@ -1,11 +1,15 @@
 //! What is asked of a system: motions, ensembles, comparisons, points of sweeps.
 
+use std::convert::Infallible;
+
 use deltaq::{EnsembleOptions, Settings, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice};
+use picture::Style;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use scenery::{Drawn, moving};
 
-use crate::arrays::{FloatList, Floats};
+use crate::arrays::{FloatList, Floats, Rows};
 use crate::comparison::{Comparison, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::motion::{self, Motion, Sampled};
@@ -40,8 +44,7 @@ impl System {
         tolerance=1e-11, project=true, max_steps=1_000_000, max_step=None, time_limit=None
     ))]
     fn solve(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         formulation: &str,
         times: Option<FloatList<'_>>,
         removal: Option<&str>,
@@ -55,18 +58,18 @@ impl System {
         max_step: Option<f64>,
         time_limit: Option<f64>,
     ) -> PyResult<Motion> {
-        let given = arguments::constants(constants.as_ref(), mu0)?;
+        let (py, given) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
         let (formulation, form) = arguments::in_form(form, formulation)?;
         let settings = Settings { form, ..settings };
-        let scene = self.scene().clone();
+        let scene = slf.get().scene().clone();
         let (mut scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         let times = motion::times_of_run(times, &mut scene)?;
         let work = move || {
             let motion = solve_choice(&scene, &choice, &settings)?;
             Sampled::new(motion, setting(&scene), times)
         };
-        Motion::new(py, background::run(py, &interrupt, work)?.map_err(errors::solve)?)
+        Motion::new(slf, background::run(py, &interrupt, work)?.map_err(errors::solve)?)
     }
 
     /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
@@ -87,8 +90,7 @@ impl System {
         max_steps=1_000_000, max_step=None, time_limit=None, threads=0, estimate=true
     ))]
     fn ensemble(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         formulation: &str,
         times: Option<FloatList<'_>>,
         vary: &Bound<'_, PyDict>,
@@ -103,9 +105,9 @@ impl System {
         threads: usize,
         estimate: bool,
     ) -> PyResult<Ensemble> {
-        let constants = arguments::constants(constants.as_ref(), mu0)?;
+        let (py, constants) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
-        let (scene, given) = (self.scene().clone(), constants.is_some());
+        let (scene, given) = (slf.get().scene().clone(), constants.is_some());
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
         let (times, end) = ensemble::times(times, &scene)?;
         let varied = Varied::read(vary)?;
@@ -115,7 +117,7 @@ impl System {
         }
         let task = ensemble::Task { varied, scene, choice, times, end, settings, options };
         let integrated = background::run(py, &interrupt, move || task.run())?;
-        Ensemble::new(py, integrated.map_err(errors::solve)?)
+        Ensemble::new(slf, integrated.map_err(errors::solve)?)
     }
 
     /// Compares the motions of all formulations pair by pair; tolerance, max_steps, max_step and time_limit
@@ -129,19 +131,18 @@ impl System {
     /// ('none', True)
     #[pyo3(signature = (*, tolerance=1e-11, max_steps=1_000_000, max_step=None, time_limit=None, fits="undecided"))]
     fn compare(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         tolerance: f64,
         max_steps: usize,
         max_step: Option<f64>,
         time_limit: Option<f64>,
         fits: &str,
     ) -> PyResult<Comparison> {
-        let fits = arguments::fits(fits)?;
+        let (py, fits) = (slf.py(), arguments::fits(fits)?);
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
-        let scene = self.scene().clone();
+        let scene = slf.get().scene().clone();
         let compared = background::run(py, &interrupt, move || compare(scene, fits, &settings))?;
-        Comparison::new(py, compared.map_err(errors::solve)?)
+        Comparison::new(slf, compared.map_err(errors::solve)?)
     }
 
     /// What `deltaq.sweep` finds at some points: columns by name.
@@ -176,5 +177,31 @@ impl System {
         }
         column!(verdict apart largest limit answer order dimension mismatch cause);
         Ok(columns)
+    }
+
+    /// The bodies along curves (label, formulation, times, coordinates of shape (k, n)) as an SVG that moves;
+    /// None where nothing is seen to move. Between times a curve is straight.
+    #[pyo3(signature = (curves))]
+    fn _moving(&self, curves: Vec<(String, String, FloatList<'_>, Floats<'_>)>) -> PyResult<Option<String>> {
+        let mut scene = self.scene().clone();
+        let mut motions = Vec::new();
+        let mut end = scene.start.t;
+        for (label, formulation, times, coordinates) in curves {
+            let times: Vec<f64> = times.as_array().iter().copied().collect();
+            let rows = Rows::read("coordinates", &coordinates, scene.system.dimension())?;
+            end = times.iter().fold(end, |end, &t| end.max(t));
+            let at = move |t: f64| -> Result<Vec<f64>, Infallible> {
+                let next = times.partition_point(|&known| known <= t).clamp(1, times.len().max(2) - 1);
+                let (one, two) = (rows.row(next - 1), rows.row(next.min(times.len() - 1)));
+                let length = times.get(next).map_or(0.0, |two| two - times[next - 1]);
+                let part = if length > 0.0 { ((t - times[next - 1]) / length).clamp(0.0, 1.0) } else { 0.0 };
+                Ok(one.iter().zip(two).map(|(one, two)| one + (two - one) * part).collect())
+            };
+            let style = Style::of_formulation(&formulation).unwrap_or(Style::Member(motions.len() as u8));
+            motions.push(Drawn { label, style, at: Box::new(at) });
+        }
+        scene.duration = end - scene.start.t;
+        let picture = moving(&scene, motions).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(picture.and_then(|picture| picture.to_svg()))
     }
 }

@@ -25,7 +25,8 @@ use crate::{arguments, errors};
 /// coordinates: names of the n coordinates. lagrangian: L(q, v, t). constraints: f(q, v, t), h of them, each
 /// to be zero. parameters: name to number. definitions: name to expression, usable in all others. units:
 /// coordinate to text. forces: coordinate to expression, generalized forces Q. observables: name to
-/// expression, what motions list besides; invariants: likewise, what should stay constant. start: every
+/// expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
+/// body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
 /// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others. guess:
 /// velocities near which the others are sought. project: move given velocities onto the constraints.
 /// removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
@@ -82,7 +83,7 @@ impl System {
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         coordinates, lagrangian, constraints=Formulas(Vec::new()), *, start, parameters=None, definitions=None, units=None,
-        forces=None, observables=None, invariants=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
+        forces=None, observables=None, invariants=None, view=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
         name="system", title=None
     ))]
     fn new(
@@ -97,6 +98,7 @@ impl System {
         forces: Option<Bound<'_, PyDict>>,
         observables: Option<Bound<'_, PyDict>>,
         invariants: Option<Bound<'_, PyDict>>,
+        view: Option<Bound<'_, PyDict>>,
         velocities: Option<Bound<'_, PyDict>>,
         guess: Option<Bound<'_, PyDict>>,
         project: bool,
@@ -118,6 +120,7 @@ impl System {
                 ("system.forces", forces),
                 ("observables", observables),
                 ("invariants", invariants),
+                ("view", view),
                 ("start.velocities", velocities),
                 ("start.guess", guess),
                 ("removal", removals),

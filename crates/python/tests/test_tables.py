@@ -1,5 +1,9 @@
 """Motions, ensembles and comparisons as tables, pictures and what a notebook shows."""
 
+import pickle
+import re
+from xml.etree import ElementTree
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -45,6 +49,23 @@ def test_pictures(sledge, system, tmp_path):
     assert len(again.axes) == 3
     with pytest.raises(ValueError, match="ax has 1 axes; 3 are needed"):
         system.solve("chetaev", [0, 1]).plot(ax=again.axes[0])
+
+
+def test_bodies_in_motion(sledge, tmp_path):
+    view = {"sledge": {"shape": "blade", "size": [1.2, 0.3], "at": "[x, y]", "rotation": "phi"}}
+    system = sledge.system(view=view, duration=2.0)
+    animation = system.compare().animate()
+    animation.save(tmp_path / "bodies.svg")
+    root = ElementTree.parse(tmp_path / "bodies.svg").getroot()
+    assert root.tag.endswith("svg") and "<animate" in animation.svg and animation._repr_html_() == animation.svg
+    for label in ("Chetaev", "vakonomic", "removed constraint"):
+        assert label in animation.svg
+    assert "chetaev" in system.solve("chetaev", [0.0, 1.0]).animate().svg
+    many = system.ensemble("chetaev", np.linspace(0, 2, 21), vary={"phi": np.linspace(0, 1, 20)}).animate()
+    assert len(set(re.findall(r"phi = (\d+(?:\.\d+)?)", many.svg))) == 8
+    assert pickle.loads(pickle.dumps(system)).solve("chetaev", [0.0, 1.0]).animate().svg
+    with pytest.raises(ValueError, match="says nothing of bodies that move"):
+        sledge.system().solve("chetaev", [0.0, 1.0]).animate()
 
 
 def test_what_a_notebook_shows(sledge, system):

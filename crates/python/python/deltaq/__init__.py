@@ -18,7 +18,7 @@ All arrays are of float64. Everything that deltaq refuses is a DeltaqError; a wr
 
 from typing import TYPE_CHECKING, Any
 
-from . import _notebook, _plots, _tables
+from . import _animate, _notebook, _plots, _tables
 from ._native import (
     FORMULATIONS,
     METHODS,
@@ -96,6 +96,7 @@ __all__ = [
 
 for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison, "comparison")):
     _class.plot = getattr(_plots, _module)
+    _class.animate = getattr(_animate, _module)
     _class._repr_html_ = getattr(_notebook, _module)
     for _kind in ("arrow", "pandas", "xarray"):
         _function = getattr(_tables, f"{_module}_to_{_kind}", None)

@@ -1,0 +1,60 @@
+"""Bodies in motion, as pictures that play by themselves."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ._native import Comparison, Ensemble, Motion, System
+
+# Points of a motion that are read off.
+_POINTS = 961
+# Members of an ensemble that are drawn.
+_MEMBERS = 8
+
+
+class Animation:
+    """An SVG that plays by itself, without script; `svg` is its text. A notebook shows it."""
+
+    def __init__(self, system: System, curves: list[tuple[str, str, Any, Any]]):
+        svg = system._moving([curve for curve in curves if len(curve[2])])
+        if svg is None:
+            raise ValueError(f"{system.title!r} says nothing of bodies that move: give a view")
+        self.svg = svg
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the SVG file."""
+        Path(path).write_text(self.svg, "utf-8")
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+    def __repr__(self) -> str:
+        return f"<deltaq animation, {len(self.svg) / 1000:.0f} kB of SVG>"
+
+
+def _curve(label: str, motion: Motion) -> tuple[str, str, Any, Any]:
+    times = np.linspace(motion.start, motion.end, _POINTS)
+    return label, motion.formulation, times, motion.at(times).coordinates
+
+
+def motion(self: Motion) -> Animation:
+    """The bodies of the system's view along the motion, as a picture that plays by itself."""
+    return Animation(self.system, [_curve(self.formulation, self)])
+
+
+def comparison(self: Comparison) -> Animation:
+    """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself."""
+    shown = {run.formulation: run for run in reversed(self.runs) if run.motion is not None}
+    order = [name for name in ("chetaev", "vakonomic", "removed-constraint", "kappa") if name in shown]
+    return Animation(self.system, [_curve(shown[name].label, shown[name].motion) for name in order])
+
+
+def ensemble(self: Ensemble) -> Animation:
+    """The bodies of the system's view along eight of the members, straight between the ensemble's times."""
+    name, values = next(iter(self.varied.items()))
+    members = np.unique(np.linspace(0, len(self) - 1, min(len(self), _MEMBERS)).round().astype(int))
+    reached = lambda i: slice(0, self.reached[i])  # noqa: E731
+    curve = lambda i: (f"{name} = {values[i]:g}", "", self.times[reached(i)], self.coordinates[i, reached(i)])  # noqa: E731
+    return Animation(self.system, [curve(i) for i in members])
