@@ -33,11 +33,11 @@ mod _native {
     #[pymodule_export]
     use crate::linearization::Linearization;
     #[pymodule_export]
-    use crate::motion::{Motion, Outputs, State};
+    use crate::motion::{Motion, Outputs};
     #[pymodule_export]
     use crate::reading::{_read_again, load, parse};
     #[pymodule_export]
-    use crate::system::System;
+    use crate::system::{State, System};
 
     use integrate::Method;
     use pyo3::prelude::*;

@@ -15,24 +15,6 @@ use crate::arrays::{FloatList, Floats, array, columns, finite, times};
 use crate::errors;
 use crate::system::System;
 
-/// A point of a motion: time, coordinates, velocities.
-#[pyclass(frozen, get_all, module = "deltaq")]
-pub(crate) struct State {
-    /// Time.
-    pub(crate) t: f64,
-    /// Coordinates, shape (n,), in the units of the system.
-    pub(crate) q: Py<PyArrayDyn<f64>>,
-    /// Velocities, shape (n,), in units of the coordinates per unit of time.
-    pub(crate) v: Py<PyArrayDyn<f64>>,
-}
-
-#[pymethods]
-impl State {
-    fn __repr__(&self) -> String {
-        format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)
-    }
-}
-
 /// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Outputs {

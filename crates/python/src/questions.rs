@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 
 use deltaq::{EnsembleOptions, Settings, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice};
+use integrate::Interrupt;
 use picture::Style;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -12,12 +13,62 @@ use scenery::{Drawn, moving};
 use crate::arrays::{FloatList, Floats, Rows};
 use crate::comparison::{Comparison, compare};
 use crate::ensemble::{self, Ensemble, Varied};
+use crate::equations::Equations;
+use crate::linearization::Linearization;
 use crate::motion::{self, Motion, Sampled};
 use crate::system::System;
 use crate::{arguments, background, errors};
 
 #[pymethods]
 impl System {
+    /// The equations of motion under a formulation, one of FORMULATIONS.
+    ///
+    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
+    /// constants: those of `Equations.initial_state`, as in `solve`; by default zero if natural at a horizon.
+    ///
+    /// >>> equations = sledge.equations("chetaev")
+    /// >>> equations.states
+    /// ['x', 'y', 'phi', "x'", "y'", "phi'"]
+    /// >>> equations.rates(0.0, equations.initial_state())[:3]
+    /// array([0., 0., 1.])
+    #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
+    fn equations(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Equations> {
+        let given = arguments::constants(constants.as_ref(), mu0)?;
+        Equations::derived(py, self.scene().clone(), (formulation, removal), given)
+    }
+
+    /// The equations of motion to first order about the start, which has to be a steady motion.
+    ///
+    /// free: coordinates whose eigenvalues are asked for, with those of all that is coupled with them both
+    /// ways; by default all. at: a time; about the motion there, steady or not. find: about a steady motion
+    /// of Chetaev's equations near the start. Else as in `equations`. SolveError with what moves.
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
+    fn linearize(
+        &self,
+        py: Python<'_>,
+        formulation: &str,
+        free: Option<Vec<String>>,
+        at: Option<f64>,
+        find: bool,
+        removal: Option<&str>,
+        mu0: Option<FloatList<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Linearization> {
+        let given = arguments::constants(constants.as_ref(), mu0)?;
+        let scene = self.scene().clone();
+        let interrupt = Interrupt::default();
+        let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
+        Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
+    }
+
     /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
     ///
     /// times: where it is read off, shape (k,), from the start to the last. By default 101 over `duration`.

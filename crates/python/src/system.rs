@@ -5,17 +5,32 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use deltaq::{integrability, removals};
-use integrate::Interrupt;
+use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{Array, FloatList, Floats, array, at_points};
-use crate::equations::Equations;
-use crate::linearization::Linearization;
-use crate::motion::State;
+use crate::arrays::{Array, Floats, array, at_points};
+use crate::errors;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
-use crate::{arguments, errors};
+
+/// A point of a motion: time, coordinates, velocities.
+#[pyclass(frozen, get_all, module = "deltaq")]
+pub(crate) struct State {
+    /// Time.
+    pub(crate) t: f64,
+    /// Coordinates, shape (n,), in the units of the system.
+    pub(crate) q: Py<PyArrayDyn<f64>>,
+    /// Velocities, shape (n,), in units of the coordinates per unit of time.
+    pub(crate) v: Py<PyArrayDyn<f64>>,
+}
+
+#[pymethods]
+impl State {
+    fn __repr__(&self) -> String {
+        format!("<deltaq.State t={}, q={}, v={}>", self.t, self.q, self.v)
+    }
+}
 
 /// A mechanical system with velocity constraints, its start and everything else that a scene file says.
 ///
@@ -290,54 +305,6 @@ impl System {
             at_points(&self.scene().system, [t, q, v], |system| system.velocity_hessian().entries().to_vec())?;
         let n = self.scene().system.dimension();
         array(py, values, count, &[n, n])
-    }
-
-    /// The equations of motion under a formulation, one of FORMULATIONS.
-    ///
-    /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
-    /// constants: those of `Equations.initial_state`, as in `solve`; by default zero if natural at a horizon.
-    ///
-    /// >>> equations = sledge.equations("chetaev")
-    /// >>> equations.states
-    /// ['x', 'y', 'phi', "x'", "y'", "phi'"]
-    /// >>> equations.rates(0.0, equations.initial_state())[:3]
-    /// array([0., 0., 1.])
-    #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
-    fn equations(
-        &self,
-        py: Python<'_>,
-        formulation: &str,
-        removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
-        constants: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Equations> {
-        let given = arguments::constants(constants.as_ref(), mu0)?;
-        Equations::derived(py, self.scene().clone(), (formulation, removal), given)
-    }
-
-    /// The equations of motion to first order about the start, which has to be a steady motion.
-    ///
-    /// free: coordinates whose eigenvalues are asked for, with those of all that is coupled with them both
-    /// ways; by default all. at: a time; about the motion there, steady or not. find: about a steady motion
-    /// of Chetaev's equations near the start. Else as in `equations`. SolveError with what moves.
-    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
-    #[pyo3(signature = (formulation="chetaev", *, free=None, at=None, find=false, removal=None, mu0=None, constants=None))]
-    fn linearize(
-        &self,
-        py: Python<'_>,
-        formulation: &str,
-        free: Option<Vec<String>>,
-        at: Option<f64>,
-        find: bool,
-        removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
-        constants: Option<Bound<'_, PyAny>>,
-    ) -> PyResult<Linearization> {
-        let given = arguments::constants(constants.as_ref(), mu0)?;
-        let scene = self.scene().clone();
-        let interrupt = Interrupt::default();
-        let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
-        Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
     fn __repr__(&self) -> String {
