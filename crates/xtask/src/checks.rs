@@ -125,7 +125,10 @@ pub(crate) fn run(checks: &[Check]) -> ExitCode {
 /// Runs a chore that is no check.
 pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
     match outcome {
-        Ok(_) => ExitCode::SUCCESS,
+        Ok(Outcome(told)) => {
+            println!("done{told}");
+            ExitCode::SUCCESS
+        }
         Err(error) => {
             println!("{error:#}");
             ExitCode::FAILURE
