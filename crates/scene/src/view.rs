@@ -66,11 +66,9 @@ fn shape(context: &Context, section: &Section) -> Result<Shape, SceneError> {
         let (sizes, found) = (sizes.join(", "), elements.len());
         return Err(list.error(SceneErrorKind::WrongSizes { word: kind.word(), sizes, found }));
     }
-    let positive = |element: &Entry| match context.constant(element)? {
-        value if value > 0.0 => Ok(value),
-        value => Err(element.error(SceneErrorKind::OutOfRange { what: "a size", value, limit: 0.0 })),
-    };
-    Ok(Shape { kind, size: elements.iter().map(positive).collect::<Result<_, _>>()? })
+    // a motion with a parameter below zero is not refused for its picture
+    let length = |element: &Entry| context.constant(element).map(f64::abs);
+    Ok(Shape { kind, size: elements.iter().map(length).collect::<Result<_, _>>()? })
 }
 
 /// A vector of three numbers, or of two in the plane z = 0.
