@@ -42,7 +42,7 @@ fn sheet(
 ) -> String {
     let frame = Frame::new(plots, ranges, legend);
     let framed = frame.plots(plots, measured, legend);
-    let mut out = opening(&plots.title, &description(plots, legend), frame.height);
+    let mut out = opening(&plots.title, &description(plots, legend), (WIDTH, frame.height));
     headline(&mut out, &frame.title, frame.left);
     let (placed, _) = layout::place_legend(legend, WIDTH - frame.left - 8.0);
     for place in &placed {
@@ -56,8 +56,8 @@ fn sheet(
     out
 }
 
-/// The beginning of a document, with its inks.
-pub(super) fn opening(title: &str, description: &str, height: f64) -> String {
+/// The beginning of a document of this width and height, with its inks.
+pub(super) fn opening(title: &str, description: &str, (width, height): (f64, f64)) -> String {
     let title = escape(title);
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
@@ -70,7 +70,7 @@ pub(super) fn opening(title: &str, description: &str, height: f64) -> String {
         escape(description),
         INKS[1],
         INKS[2],
-        w = px(WIDTH),
+        w = px(width),
         h = px(height),
     )
 }
@@ -183,7 +183,8 @@ fn thresholds(out: &mut String, plot: &Framed) {
     }
 }
 
-fn text(out: &mut String, (x, y): Place, anchor: &str, content: &str) {
+/// A line of text, as large as what it stands in says.
+pub(super) fn text(out: &mut String, (x, y): Place, anchor: &str, content: &str) {
     out.push_str(&format!(
         "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text>\n",
         px(x),
