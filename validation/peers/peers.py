@@ -46,13 +46,24 @@ def write(folder, files):
     print(", ".join(str(folder / name) for name in files))
 
 
+def pictures(measured):
+    """Of the problems with one motion at a time, from what was measured, as it is kept."""
+    names = {case.title: case.name for case in problems() if not case.vary}
+    drawn = [problem for problem in measured if problem["problem"] in names and problem["rungs"]]
+    return {f"peers-{names[problem['problem']]}.svg": picture(problem["problem"], problem["rungs"]) for problem in drawn}
+
+
 def main():
     parser = argparse.ArgumentParser("cargo xtask peers", description="The same problems in other tools, timed beside ours.")
     parser.add_argument("--quick", action="store_true", help="few tolerances and few repeats: for a look, not for figures that are kept")
     parser.add_argument("--only", metavar="TEXT,…", default="", help="only problems whose file names contain one of these")
+    parser.add_argument("--redraw", action="store_true", help="no times: the pictures again, from what the last run measured")
     parser.add_argument("--out", metavar="DIR", type=Path, help="folder of the page: `reports` for a full run, that of build results for any other")
     parser.add_argument("--target", type=Path, required=True, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    kept = arguments.target / "peers.json"
+    if arguments.redraw:
+        return write(arguments.out or Path("reports"), pictures(json.loads(kept.read_text())["problems"]))
     begin, effort = time.monotonic(), QUICK if arguments.quick else Effort()
     races = []
     with tempfile.TemporaryDirectory() as home:
@@ -74,14 +85,13 @@ def main():
         "effort": effort,
         "seconds": time.monotonic() - begin,
     }
-    pictures = {f"peers-{race.case.name}.svg": picture(race) for race in races if race.rungs and not race.case.vary}
-    whole = not arguments.quick and not arguments.only
-    write(arguments.out or (Path("reports") if whole else arguments.target), {"peers.md": page(races, provenance)} | pictures)
     fields = ("reference", "setups", "checks", "rungs", "failures")
     measured = [{"problem": race.case.title} | {name: getattr(race, name) for name in fields} for race in races]
-    everything = provenance | {"effort": effort._asdict(), "problems": measured}
-    text = json.dumps(everything, indent=1, default=vars)
-    write(arguments.target, {"peers.json": text + "\n"})
+    text = json.dumps(provenance | {"effort": effort._asdict(), "problems": measured}, indent=1, default=vars)
+    write(kept.parent, {kept.name: text + "\n"})
+    whole = not arguments.quick and not arguments.only
+    files = {"peers.md": page(races, provenance)} | pictures(json.loads(text)["problems"])
+    return write(arguments.out or (Path("reports") if whole else arguments.target), files)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ fn three_lines_two_tables_and_a_plot() {
     for words in [
         "a  Chetaev – vakonomic ",
         "of the others: 3 different",
-        "gap, kinetic metric",
+        "gap in the kinetic metric (m √kg)",
         "·····",
         "t − t₀ (s)",
         "what a gap has to pass",

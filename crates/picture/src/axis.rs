@@ -98,17 +98,35 @@ pub(super) fn given(axis: &Axis) -> Result<Option<Interval>, PictureError> {
     Ok(Some(interval))
 }
 
-/// The range that holds all `measures`, with `margin` of its span on both sides.
-pub(super) fn around(scale: Scale, measures: impl Iterator<Item = f64>, margin: f64) -> Option<Interval> {
-    let (low, high) = measures.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-    if low > high {
-        return None;
+/// A runaway alone makes an axis so many times as long as all others do.
+const RUNAWAY: f64 = 5.0;
+/// Ranges of so small a part of another are round-off.
+const ROUND_OFF: f64 = 1e-6;
+
+/// The range of what is compared, of the `measures` of some curves: that of all, or on a linear axis of the
+/// first and at least another one, without runaways; with `margin` of its span on both sides.
+pub(super) fn around(scale: Scale, measures: impl Iterator<Item = Vec<f64>>, margin: f64) -> Option<Interval> {
+    let hull = |a: Interval, b: Interval| Interval { low: a.low.min(b.low), high: a.high.max(b.high) };
+    let each = |curve: Vec<f64>| curve.into_iter().map(|at| Interval { low: at, high: at }).reduce(hull);
+    let mut curves: Vec<Interval> = measures.filter_map(each).collect();
+    let all = |curves: &[Interval]| curves.iter().copied().reduce(hull);
+    let without = |curves: &[Interval], i: usize| all(&[&curves[..i], &curves[i + 1..]].concat());
+    let runs_away = |curves: &[Interval], i: usize| {
+        let spans = without(curves, i).zip(all(curves)).map(|(rest, all)| rest.span() / all.span());
+        spans.is_some_and(|part| part > ROUND_OFF && part < 1.0 / RUNAWAY)
+    };
+    while scale == Scale::Linear
+        && curves.len() > 2
+        && let Some(i) = (1..curves.len()).find(|&i| runs_away(&curves, i))
+    {
+        curves.remove(i);
     }
-    let interval = Interval { low, high };
+    let interval = all(&curves)?;
+    let Interval { low, high } = interval;
     let magnitude = low.abs().max(high.abs());
     let span = interval.span();
     let one_value = match scale {
-        Scale::Linear => span <= 1e-6 * magnitude || span < 1e-290,
+        Scale::Linear => span <= ROUND_OFF * magnitude || span < 1e-290,
         Scale::Log => span < 1e-6,
     };
     Some(match (one_value, scale) {
@@ -301,11 +319,21 @@ mod tests {
 
     #[test]
     fn ranges() {
-        let same = around(Scale::Linear, [3.0, 3.0].into_iter(), 0.05).unwrap();
+        let same = around(Scale::Linear, [vec![3.0, 3.0]].into_iter(), 0.05).unwrap();
         assert!(same.low < 3.0 && same.high > 3.0);
-        let zero = around(Scale::Linear, [0.0].into_iter(), 0.05).unwrap();
+        let zero = around(Scale::Linear, [vec![0.0]].into_iter(), 0.05).unwrap();
         assert_eq!((zero.low, zero.high), (-1.0, 1.0));
         assert_eq!(around(Scale::Log, std::iter::empty(), 0.05), None);
+        let of = |scale, ends: &[f64]| {
+            let range = around(scale, ends.iter().map(|&end| vec![0.0, end]), 0.0).unwrap();
+            (range.low, range.high)
+        };
+        assert_eq!(of(Scale::Linear, &[1.0, 8.0, 39.0]), (0.0, 39.0));
+        assert_eq!(of(Scale::Linear, &[1.0, 39.0]), (0.0, 39.0));
+        assert_eq!(of(Scale::Linear, &[41.0, 1.0, 8.0]), (0.0, 41.0));
+        assert_eq!(of(Scale::Linear, &[1.0, 8.0, 41.0, -1000.0]), (0.0, 8.0));
+        assert_eq!(of(Scale::Log, &[1.0, 8.0, 41.0]), (0.0, 41.0));
+        assert_eq!(of(Scale::Linear, &[1e-9, 1e-9, 41.0]), (0.0, 41.0), "round-off is nothing to compare with");
         assert_eq!(measure(Scale::Log, -1.0), Err(LeftOut::NotPositive));
         assert_eq!(measure(Scale::Linear, f64::INFINITY), Err(LeftOut::NotFinite));
         for range in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (1.0, 1.0 + 1e-12), (0.0, f64::MAX)] {

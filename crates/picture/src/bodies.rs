@@ -171,7 +171,8 @@ impl MovingPicture {
         let top = legend_top + f64::from(rows) * LEGEND_ROW + 8.0;
         let bottom = top + sheet.extent.height;
         let labels: Vec<String> = placed.iter().map(|place| place.text.clone()).collect();
-        let mut out = opening(&self.title, &format!("Bodies in motion: {}.", labels.join("; ")), bottom + 34.0);
+        let mut out =
+            opening(&self.title, &format!("Bodies in motion: {}.", labels.join("; ")), (WIDTH, bottom + 34.0));
         // who animates and is not asked to be still sees the moving ones
         out += "<style>.still{display:none}@media (prefers-reduced-motion:reduce){.moving{display:none}.still{display:inline}}</style>\n";
         headline(&mut out, &title, MARGIN);

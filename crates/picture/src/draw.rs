@@ -1,10 +1,10 @@
 //! The SVG document.
 
 use super::axis::TICK_SIZE;
-use super::frame::{Frame, Framed, LEGEND_ROW, TITLE_SIZE};
+use super::frame::{BOLD, Frame, Framed, LEGEND_ROW, TITLE_SIZE};
 use super::layout::{self, Entry, LABEL_SIZE, Measured, SWATCH, WIDTH};
 use super::style::{INK, INKS, Stroke, Style};
-use super::text::{escape, fit, px, width};
+use super::text::{decimal, escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
 use super::{Curve, Picture, PictureError};
 
@@ -42,7 +42,7 @@ fn sheet(
 ) -> String {
     let frame = Frame::new(plots, ranges, legend);
     let framed = frame.plots(plots, measured, legend);
-    let mut out = opening(&plots.title, &description(plots, legend), frame.height);
+    let mut out = opening(&plots.title, &description(plots, legend), (WIDTH, frame.height));
     headline(&mut out, &frame.title, frame.left);
     let (placed, _) = layout::place_legend(legend, WIDTH - frame.left - 8.0);
     for place in &placed {
@@ -56,8 +56,8 @@ fn sheet(
     out
 }
 
-/// The beginning of a document, with its inks.
-pub(super) fn opening(title: &str, description: &str, height: f64) -> String {
+/// The beginning of a document of this width and height, with its inks.
+pub(super) fn opening(title: &str, description: &str, (width, height): (f64, f64)) -> String {
     let title = escape(title);
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
@@ -70,7 +70,7 @@ pub(super) fn opening(title: &str, description: &str, height: f64) -> String {
         escape(description),
         INKS[1],
         INKS[2],
-        w = px(WIDTH),
+        w = px(width),
         h = px(height),
     )
 }
@@ -147,6 +147,11 @@ fn axes(out: &mut String, plot: &Framed) {
     if let Some(factor) = &plot.y_ticks.factor {
         text(out, (0.0, -7.0), "start", factor);
     }
+    if !plot.plot.title.is_empty() {
+        out.push_str("<g font-weight=\"600\">");
+        text(out, (w / 2.0, -7.0), "middle", &fit(&plot.plot.title, BOLD * TICK_SIZE, w));
+        out.push_str("</g>\n");
+    }
     if let Some(label) = plot.x_label {
         for tick in &plot.x_ticks.labelled {
             text(out, (plot.across(tick.at), h + 18.0), "middle", &tick.label);
@@ -183,7 +188,8 @@ fn thresholds(out: &mut String, plot: &Framed) {
     }
 }
 
-fn text(out: &mut String, (x, y): Place, anchor: &str, content: &str) {
+/// A line of text, as large as what it stands in says.
+pub(super) fn text(out: &mut String, (x, y): Place, anchor: &str, content: &str) {
     out.push_str(&format!(
         "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{}</text>\n",
         px(x),
@@ -204,10 +210,25 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
     let mut order: Vec<(&Curve, &Measured)> = plot.plot.curves.iter().zip(plot.measured).collect();
     order.sort_by_key(|(curve, _)| curve.style);
     let place = |&(x, y): &(f64, f64)| (plot.across(x), plot.down(y));
-    for (curve, measured) in order {
-        let runs: Vec<Vec<Place>> = measured.runs.iter().map(|run| run.iter().map(place).collect()).collect();
-        let trace = Trace::new(&runs, plot.extent, coarseness);
+    // members of a family are drawn together
+    for curves in order.chunk_by(|a, b| [a.0.style, b.0.style] == [Style::Family; 2]) {
+        let (curve, measured) = curves[0];
+        let runs = curves.iter().flat_map(|(_, measured)| &measured.runs);
+        let runs: Vec<Vec<Place>> = runs.map(|run| run.iter().map(place).collect()).collect();
+        if curve.style == Style::Family {
+            band(out, &runs, plot.extent);
+            continue;
+        }
+        let mut trace = Trace::new(&runs, plot.extent, coarseness);
+        if plot.every > 0 {
+            let Extent { width: w, height: h } = plot.extent;
+            let seen = |&(x, y): &Place| (0.0..=w).contains(&x) && (0.0..=h).contains(&y);
+            trace.dots.extend(runs.iter().flat_map(|run| run.iter().step_by(plot.every)).copied().filter(seen));
+        }
         strokes(out, curve.style, &trace);
+        if curve.style > Style::Threshold {
+            leaving(out, plot, curve.style, measured);
+        }
         if let Some(entry) = plot.legend.iter().find(|entry| entry.stands_for(curve)) {
             let phase = 0.25 + 0.5 * (entry.rank % 4) as f64 / 4.0;
             let points: Vec<Place> = measured.runs.iter().flatten().map(place).collect();
@@ -215,16 +236,75 @@ fn curves(out: &mut String, plot: &Framed, coarseness: Coarseness) {
             marks(out, entry, &places);
         }
     }
+    let first = plot.plot.curves.iter().zip(plot.measured).find(|(curve, _)| curve.style > Style::Threshold);
+    if let Some(start) = first.and_then(|(_, measured)| measured.points().next()).filter(|_| plot.every > 0) {
+        let (x, y) = place(&start);
+        out.push_str(&format!(
+            "<circle cx=\"{}\" cy=\"{}\" r=\"9\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\"/>\n",
+            px(x),
+            px(y)
+        ));
+    }
     out.push_str("</svg>\n");
+}
+
+/// What lies between neighbours in a family, nowhere darker where it lies on itself.
+fn band(out: &mut String, runs: &[Vec<Place>], extent: Extent) {
+    let Extent { width: w, height: h } = extent;
+    for Stroke { colour, opacity, .. } in Style::Family.strokes() {
+        out.push_str(&format!("<g fill=\"{colour}\" stroke=\"{colour}\" opacity=\"{opacity}\">\n"));
+    }
+    for pair in runs.windows(2) {
+        let around = pair[0].iter().chain(pair[1].iter().rev());
+        let outline = around.map(|&(x, y)| (x.clamp(-w, 2.0 * w), y.clamp(-h, 2.0 * h))).collect();
+        out.push_str(&format!("<path d=\"{}z\"/>\n", Trace::new(&[outline], extent, Coarseness::steps()[3]).path()));
+    }
+    out.push_str("</g>\n");
+}
+
+/// An arrowhead where a runaway leaves for good, with the value that it gets to.
+fn leaving(out: &mut String, plot: &Framed, style: Style, measured: &Measured) {
+    let beyond_y = |(x, y): (f64, f64)| plot.plot.y.range.is_none() && plot.x.contains(x) && !plot.y.contains(y);
+    let beyond = |(x, y): (f64, f64)| (plot.open && !plot.x.contains(x)) || beyond_y((x, y));
+    let mut pairs = measured.runs.iter().flat_map(|run| run.windows(2));
+    let Some(pair) = pairs.rfind(|pair| !beyond(pair[0]) && beyond(pair[1])) else { return };
+    let (mut within, mut outside) = (pair[0], pair[1]);
+    for _ in 0..30 {
+        let middle = ((within.0 + outside.0) / 2.0, (within.1 + outside.1) / 2.0);
+        *(if beyond(middle) { &mut outside } else { &mut within }) = middle;
+    }
+    let (x, y) = (plot.across(within.0), plot.down(within.1));
+    let angle = (plot.down(pair[1].1) - plot.down(pair[0].1)).atan2(plot.across(pair[1].0) - plot.across(pair[0].0));
+    let (range, read): (_, fn((f64, f64)) -> f64) =
+        if beyond_y(outside) { (plot.y, |p| p.1) } else { (plot.x, |p| p.0) };
+    let middle = range.low / 2.0 + range.high / 2.0;
+    let far = |a: &f64, b: &f64| (a - middle).abs().total_cmp(&(b - middle).abs());
+    let farthest = measured.points().map(read).max_by(far).unwrap_or(middle);
+    let decimals = (2.0 - farthest.abs().log10().floor()).clamp(0.0, 3.0) as usize;
+    let Extent { width: w, height: h } = plot.extent;
+    let (anchor, beside) = if x > w / 2.0 { ("end", -14.0) } else { ("start", 14.0) };
+    out.push_str(&format!(
+        "<path transform=\"translate({} {}) rotate({})\" d=\"M0 0l-14-7v14z\" fill=\"{}\"/>\n\
+         <g font-size=\"{TICK_SIZE}\" fill=\"{INK}\">",
+        px(x),
+        px(y),
+        px(angle.to_degrees()),
+        style.strokes()[0].colour
+    ));
+    text(out, (x + beside, (y - 10.0).clamp(14.0, h - 6.0)), anchor, &format!("to {}", decimal(farthest, decimals)));
+    out.push_str("</g>\n");
 }
 
 fn strokes(out: &mut String, style: Style, trace: &Trace) {
     let path = trace.path();
-    for Stroke { colour, width, dash, round } in style.strokes() {
+    for Stroke { colour, width, dash, round, opacity } in style.strokes() {
         if !path.is_empty() {
             out.push_str(&format!("<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\""));
             if !dash.is_empty() {
                 out.push_str(&format!(" stroke-dasharray=\"{dash}\""));
+            }
+            if opacity < 1.0 {
+                out.push_str(&format!(" stroke-opacity=\"{opacity}\""));
             }
             if round {
                 out.push_str(" stroke-linecap=\"round\"");

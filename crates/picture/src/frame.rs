@@ -40,6 +40,9 @@ pub(super) struct Framed<'a> {
     pub(super) y_ticks: Ticks,
     /// Label of the horizontal axis, where it is written.
     pub(super) x_label: Option<&'a str>,
+    /// Whether the range of the horizontal axis is that of what is compared.
+    pub(super) open: bool,
+    pub(super) every: usize,
     pub(super) legend: &'a [Entry],
 }
 
@@ -78,7 +81,8 @@ impl Frame {
             let ticks = axis::ticks(panel.y.scale, y, height, Direction::Vertical);
             ticks.factor.is_some()
         };
-        let over = if y.iter().zip(&plots.panels).any(has_factor) { 24.0 } else { 14.0 };
+        let headed = plots.panels.iter().any(|panel| !panel.title.is_empty());
+        let over = if headed || y.iter().zip(&plots.panels).any(has_factor) { 24.0 } else { 14.0 };
         let top = legend_top + f64::from(legend_rows) * LEGEND_ROW + over;
         let row = height + over;
         let rows = plots.panels.len().div_ceil(plots.columns) as f64;
@@ -121,6 +125,8 @@ impl Frame {
                     x_ticks: x_ticks.clone(),
                     y_ticks: axis::ticks(plot.y.scale, y, self.extent.height, Direction::Vertical),
                     x_label: (i + plots.columns >= plots.panels.len()).then_some(plots.x.label.as_str()),
+                    open: plots.x.range.is_none(),
+                    every: plots.every,
                     legend,
                 }
             })

@@ -1,8 +1,9 @@
 //! A number over two others, by colour.
 
 use super::axis::{Direction, Interval, TICK_SIZE, measure, ticks};
-use super::frame::TITLE_SIZE;
-use super::style::{INK, INKS};
+use super::draw::{headline, opening, text};
+use super::frame::{BOLD, TITLE_SIZE};
+use super::style::INK;
 use super::text::{escape, px, wrap};
 use super::{Axis, Scale};
 
@@ -56,32 +57,14 @@ pub struct HeatMap {
 impl HeatMap {
     /// The picture.
     pub fn to_svg(&self) -> String {
-        let title = wrap(&self.title, TITLE_SIZE, WIDTH - LEFT - 10.0);
+        let title = wrap(&self.title, BOLD * TITLE_SIZE, WIDTH - LEFT - 10.0);
         let marks = self.marked.iter().any(|marked| *marked);
         let top = 20.0 * title.len() as f64 + if marks { 34.0 } else { 14.0 };
         let height = top + SIDE + 52.0;
-        let name = escape(&self.title);
-        let mut out = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
-             aria-label=\"{name}\" class=\"picture\" color=\"{}\" \
-             font-family=\"system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif\">\n<title>{name}</title>\n\
-             <style>@media (prefers-color-scheme:light){{.picture{{color:{}}}}}\
-             @media (prefers-color-scheme:dark){{.picture{{color:{}}}}}</style>\n",
-            INKS[0],
-            INKS[1],
-            INKS[2],
-            w = px(WIDTH),
-            h = px(height),
-        );
-        for (line, row) in title.iter().zip(1..) {
-            let y = 20.0 * f64::from(row);
-            out += &format!(
-                "<text x=\"{}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" font-weight=\"600\" fill=\"{INK}\">{}</text>\n",
-                px(LEFT),
-                px(y),
-                escape(line)
-            );
-        }
+        let described = format!("{} by colour, over {} and {}.", self.value.label, self.x.label, self.y.label);
+        let mut out = opening(&self.title, &described, (WIDTH, height));
+        headline(&mut out, &title, LEFT);
+        out += &format!("<g font-size=\"{TICK_SIZE}\" fill=\"{INK}\">\n");
         if marks {
             let y = top - 14.0;
             out += &format!("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{INK}\"/>\n", px(LEFT + 5.0), px(y - 4.0));
@@ -113,7 +96,7 @@ impl HeatMap {
         if finite().next().is_some() {
             self.bar(&mut out, scale, top);
         }
-        out + "</svg>\n"
+        out + "</g>\n</svg>\n"
     }
 
     /// Ticks in the middle of the cells; `cell` is the length of one.
@@ -134,11 +117,9 @@ impl HeatMap {
         match across {
             true => text(out, (middle, top + SIDE + 38.0), "middle", &axis.label),
             false => {
-                let (x, y) = (px(16.0), px(top + SIDE / 2.0));
-                let label = escape(&axis.label);
+                let (y, label) = (px(top + SIDE / 2.0), escape(&axis.label));
                 *out += &format!(
-                    "<text x=\"{x}\" y=\"{y}\" font-size=\"{TICK_SIZE}\" fill=\"{INK}\" text-anchor=\"middle\" \
-                     transform=\"rotate(-90 {x} {y})\">{label}</text>\n"
+                    "<text transform=\"translate(16 {y}) rotate(-90)\" text-anchor=\"middle\">{label}</text>\n"
                 );
             }
         }
@@ -179,11 +160,4 @@ fn colour(fraction: f64) -> String {
 fn rectangle(out: &mut String, (x, y, w, h): (f64, f64, f64, f64), fill: &str) {
     let [x, y, w, h] = [x, y, w, h].map(px);
     *out += &format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"{fill}\"/>\n");
-}
-
-fn text(out: &mut String, (x, y): (f64, f64), anchor: &str, words: &str) {
-    let (x, y, words) = (px(x), px(y), escape(words));
-    *out += &format!(
-        "<text x=\"{x}\" y=\"{y}\" font-size=\"{TICK_SIZE}\" fill=\"{INK}\" text-anchor=\"{anchor}\">{words}</text>\n"
-    );
 }

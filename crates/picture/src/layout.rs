@@ -3,7 +3,7 @@
 use super::axis::{self, Interval, LeftOut};
 use super::style::{MARKS, Style};
 use super::text::{fit, width};
-use super::{Axis, Curve, Picture, PictureError};
+use super::{Axis, Curve, Panel, Picture, PictureError};
 
 /// Width of every picture in pixels.
 pub(super) const WIDTH: f64 = 720.0;
@@ -40,7 +40,7 @@ impl Measured {
         measured
     }
 
-    fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub(super) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         self.runs.iter().flatten().copied()
     }
 }
@@ -65,9 +65,16 @@ pub(super) fn ranges(plots: &Picture, measured: &[Vec<Measured>]) -> Result<Rang
     }
     let seen = |limit: Option<Interval>, at: f64| limit.is_none_or(|limit| limit.contains(at));
     let margin = if plots.equal { 0.05 } else { 0.02 };
-    let all_x = measured.iter().zip(&given_y).flat_map(|(curves, &limit)| {
-        curves.iter().flat_map(Measured::points).filter_map(move |(x, y)| seen(limit, y).then_some(x))
-    });
+    let set = |panel: &Panel, measured: &Vec<Measured>, seen: &dyn Fn((f64, f64)) -> Option<f64>| {
+        let curves = panel.curves.iter().zip(measured).filter(|(curve, _)| curve.style != Style::Family);
+        curves.map(|(_, measured)| measured.points().filter_map(seen).collect()).collect::<Vec<Vec<f64>>>()
+    };
+    let all_x = plots
+        .panels
+        .iter()
+        .zip(measured)
+        .zip(&given_y)
+        .flat_map(|((panel, curves), &limit)| set(panel, curves, &|(x, y)| seen(limit, y).then_some(x)));
     let x = given_x
         .or_else(|| axis::around(plots.x.scale, all_x, margin))
         .ok_or_else(|| nothing(&plots.x, &mut measured.iter().flatten()))?;
@@ -77,10 +84,9 @@ pub(super) fn ranges(plots: &Picture, measured: &[Vec<Measured>]) -> Result<Rang
         .zip(measured)
         .zip(given_y)
         .map(|((panel, curves), given)| {
-            let points = curves.iter().flat_map(Measured::points);
-            let all_y = points.filter_map(|(x, y)| seen(given_x, x).then_some(y));
+            let all_y = set(panel, curves, &|(x, y)| seen(given_x, x).then_some(y));
             given
-                .or_else(|| axis::around(panel.y.scale, all_y, 0.05))
+                .or_else(|| axis::around(panel.y.scale, all_y.into_iter(), 0.05))
                 .ok_or_else(|| nothing(&panel.y, &mut curves.iter()))
         })
         .collect::<Result<Vec<_>, _>>()?;
@@ -109,7 +115,7 @@ impl Entry {
 
     /// The label, and what is not drawn.
     pub(super) fn text(&self) -> String {
-        let notes: Vec<String> = [(self.not_positive, "≤ 0"), (self.not_finite, "without a finite value")]
+        let notes: Vec<String> = [(self.not_positive, "≤ 0"), (self.not_finite, "not finite")]
             .iter()
             .filter(|(count, _)| *count > 0)
             .map(|(count, what)| format!("{count} {what}"))

@@ -2,12 +2,14 @@
 //! in characters.
 //!
 //! A [`Picture`] is one plot: a gap over time on two logarithmic axes with its certainty limit, or plane
-//! motions over one another ([`Picture::plane`]); or several over one shared horizontal axis
-//! ([`Picture::panels`]): positions over time, one panel a coordinate.
+//! motions over one another with dots at equal times ([`Picture::plane`]); or several over one shared
+//! horizontal axis ([`Picture::panels`]): positions over time, one panel a coordinate.
 //!
 //! What every picture keeps:
 //! - A [`Style`] has one colour, one dash and one width, the same everywhere. Styles are nested (wide solid
 //!   below, narrow broken above), so that identical motions show all of themselves.
+//! - A linear axis is as long as what is compared needs: a curve but the first that alone would make it over five
+//!   times as long is cut, with an arrowhead where it leaves and the value that it gets to.
 //! - The same input gives the same bytes. Coordinates are rounded to 0.1 px, and points that do not move the
 //!   drawn line by more than that are left out. A file that would pass 60 kB is thinned further, to 1.6 px at
 //!   the coarsest; a long curve that fills the plane may pass it all the same.
@@ -66,8 +68,9 @@ pub struct Axis {
     pub label: String,
     /// How values are laid along the axis.
     pub scale: Scale,
-    /// Lowest and highest value shown; `None` takes them from the points, with a small margin. Points that
-    /// all agree within 1e-6 of their magnitude are shown as one value in the middle of a range of ±5 %.
+    /// Lowest and highest value shown; `None` takes them from the points, with a small margin, but not from
+    /// those of a [`Style::Family`], nor on a linear axis from those of a runaway. Points that all agree within
+    /// 1e-6 of their magnitude are shown as one value in the middle of a range of ±5 %.
     pub range: Option<(f64, f64)>,
 }
 
@@ -90,7 +93,7 @@ impl Axis {
 ///
 /// let circle = (0..=200).map(|i| (f64::from(i) / 200.0 * std::f64::consts::TAU).sin_cos());
 /// let curve = Curve { label: "Chetaev".into(), style: Style::Chetaev, points: circle.collect() };
-/// let svg = Picture::plane("Knife edge on a level plane", ["x (m)", "y (m)"], vec![curve]).to_svg()?;
+/// let svg = Picture::plane("Knife edge on a level plane", ["x (m)", "y (m)"], vec![curve], 40).to_svg()?;
 /// assert!(svg.starts_with("<svg") && svg.contains("<title>Knife edge on a level plane</title>"));
 /// assert!(svg.len() < 10_000);
 /// # Ok::<(), picture::PictureError>(())
@@ -109,15 +112,26 @@ pub struct Picture {
     height: f64,
     /// Whether one unit is equally long on both axes; the shorter range is widened.
     equal: bool,
+    /// Every so many-th point of each curve has a dot, and the first point of the first one a ring; 0: none.
+    every: usize,
 }
 
 /// One plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
+    /// What stands above it, if anything.
+    pub title: String,
     /// Vertical axis.
     pub y: Axis,
     /// Lines, in the order of the legend.
     pub curves: Vec<Curve>,
+}
+
+impl Panel {
+    /// Without a title.
+    pub fn new(y: Axis, curves: Vec<Curve>) -> Self {
+        Panel { title: String::new(), y, curves }
+    }
 }
 
 /// Why a picture cannot be drawn.
@@ -156,19 +170,20 @@ pub enum PictureError {
 impl Picture {
     /// One panel.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
-        Picture { height: 340.0, ..Picture::panels(title, x, vec![Panel { y, curves }], 1) }
+        Picture { height: 340.0, ..Picture::panels(title, x, vec![Panel::new(y, curves)], 1) }
     }
 
-    /// One panel on whose axes, both linear, a unit is equally long.
-    pub fn plane(title: impl Into<String>, axes: [&str; 2], curves: Vec<Curve>) -> Self {
+    /// One panel on whose axes, both linear, a unit is equally long. Where points are at equal times, `every`
+    /// shows times and their direction: a dot on every so many-th one, a ring where all begin; 0 for none.
+    pub fn plane(title: impl Into<String>, axes: [&str; 2], curves: Vec<Curve>, every: usize) -> Self {
         let [x, y] = axes.map(Axis::linear);
-        Picture { equal: true, ..Picture::new(title, x, y, curves) }
+        Picture { equal: true, every, ..Picture::new(title, x, y, curves) }
     }
 
     /// Panels over one horizontal axis, so many side by side.
     pub fn panels(title: impl Into<String>, x: Axis, panels: Vec<Panel>, columns: usize) -> Self {
         let columns = columns.min(panels.len()).max(1);
-        Picture { title: title.into(), x, panels, columns, height: 150.0, equal: false }
+        Picture { title: title.into(), x, panels, columns, height: 150.0, equal: false, every: 0 }
     }
 
     /// The picture as a complete SVG document.

@@ -72,7 +72,7 @@ fn range(picture: &Picture, axis: &Axis, values: impl Iterator<Item = f64> + Clo
         return Ok(interval);
     }
     let measures = values.clone().filter_map(|value| measure(axis.scale, value).ok());
-    around(axis.scale, measures, 0.0).ok_or_else(|| {
+    around(axis.scale, std::iter::once(measures.collect()), 0.0).ok_or_else(|| {
         let left_out = |wanted| values.clone().filter(|&value| measure(axis.scale, value) == Err(wanted)).count();
         PictureError::NothingToDraw {
             title: picture.title.clone(),

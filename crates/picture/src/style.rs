@@ -6,6 +6,8 @@
 /// colour. Narrow lines stand on wide ones. A gap between two formulations alternates their colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
+    /// One of a row of motions of the vakonomic family: what lies between neighbours is a pale band (vermilion).
+    Family,
     /// What is to be passed or kept (grey, thin, dashed; named at its right end).
     Threshold,
     /// Motion of the d'Alembert–Lagrange equations (blue, wide, solid).
@@ -35,6 +37,7 @@ pub(super) struct Stroke {
     pub(super) dash: &'static str,
     /// Whether the ends of the line and of its dashes are round.
     pub(super) round: bool,
+    pub(super) opacity: f64,
 }
 
 /// Shapes along a curve whose style is taken, as paths about the origin: circle, square, triangle, diamond.
@@ -55,7 +58,7 @@ pub(super) const PURPLE: &str = "#CC79A7";
 pub(super) const INKS: [&str; 3] = ["#7a7f86", "#505860", "#a9b1ba"];
 
 const fn stroke(colour: &'static str, width: f64, dash: &'static str) -> Stroke {
-    Stroke { colour, width, dash, round: false }
+    Stroke { colour, width, dash, round: false, opacity: 1.0 }
 }
 
 impl Style {
@@ -89,6 +92,7 @@ impl Style {
     /// The passes of the pen, lowest first.
     pub(super) fn strokes(self) -> Vec<Stroke> {
         match self {
+            Self::Family => vec![Stroke { opacity: 0.2, ..stroke(VERMILION, 9.0, "") }],
             Self::Chetaev => vec![stroke(BLUE, 5.4, "")],
             Self::Vakonomic => vec![stroke(VERMILION, 3.0, "12 7")],
             Self::Substituted => vec![stroke(PURPLE, 2.2, "9 4 2 4")],

@@ -80,10 +80,8 @@ fn every_style_is_drawn_and_told_apart() {
 #[test]
 fn files_stay_small() {
     let fast = |style| curve(style, sine(3000.0));
-    let panel = || Panel {
-        y: Axis::linear("x (m)"),
-        curves: vec![fast(Style::Chetaev), fast(Style::Vakonomic), fast(Style::RemovedConstraint)],
-    };
+    let fast = || [Style::Chetaev, Style::Vakonomic, Style::RemovedConstraint].map(fast).to_vec();
+    let panel = || Panel::new(Axis::linear("x (m)"), fast());
     let panels = Picture::panels("Fast", Axis::linear("t (s)"), vec![panel(), panel(), panel(), panel()], 1);
     let size = panels.to_svg().unwrap().len();
     assert!(size <= 60_000, "{size} bytes");
@@ -94,7 +92,7 @@ fn files_stay_small() {
 #[test]
 fn equal_aspect_makes_circles_round() {
     let circle = sine(1.0).map(|(t, _)| (3.0 + t.cos(), 1e3 + t.sin()));
-    let svg = Picture::plane("Circle", ["x (m)", "y (m)"], vec![curve(Style::Chetaev, circle)]).to_svg().unwrap();
+    let svg = Picture::plane("Circle", ["x (m)", "y (m)"], vec![curve(Style::Chetaev, circle)], 0).to_svg().unwrap();
     let document = roxmltree::Document::parse(&svg).unwrap();
     let line = document.descendants().rfind(|node| node.attribute("stroke-width") == Some("5.4")).unwrap();
     let data = line.attribute("d").unwrap().replace('-', " -").replace(['M', 'l'], " ");
@@ -109,6 +107,30 @@ fn equal_aspect_makes_circles_round() {
     }
     let [wide, tall] = [high[0] - low[0], high[1] - low[1]];
     assert!(wide > 100.0 && (wide - tall).abs() < 1.0, "{wide} by {tall}");
+}
+
+#[test]
+fn a_runaway_is_cut_and_marked() {
+    let line = |style, end: f64| curve(style, (0..=40).map(|i| f64::from(i) / 40.0).map(|s| (end * s, s)));
+    let near = [line(Style::Chetaev, 1.0), line(Style::Vakonomic, -2.0)];
+    let with =
+        |end| Picture::plane("Plane", ["x (m)", "y (m)"], [&near[..], &[line(Style::Substituted, end)]].concat(), 10);
+    let svg = with(178.25).to_svg().unwrap();
+    assert!(has(&texts(&svg), "to 178") && !has(&texts(&svg), "50"), "{:?}", texts(&svg));
+    // five dots on each of the near ones, that of the start on the runaway, and the ring
+    assert_eq!(svg.matches("<circle").count(), 12);
+    assert!(!texts(&with(10.0).to_svg().unwrap()).iter().any(|text| text.starts_with("to ")));
+}
+
+#[test]
+fn a_family_is_a_band_and_sets_no_range() {
+    let member = |i: u32| curve(Style::Family, [(0.0, 0.0), (f64::from(i), 50.0)]);
+    let near = curve(Style::Chetaev, [(0.0, 0.0), (1.0, 1.0)]);
+    let svg = picture((0..30).map(member).chain([near]).collect()).to_svg().unwrap();
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let band = document.descendants().find(|node| node.attribute("opacity") == Some("0.2")).unwrap();
+    assert_eq!(band.children().filter(|node| node.has_tag_name("path")).count(), 29, "between 30 members");
+    assert!(has(&texts(&svg), "1.0") && !has(&texts(&svg), "50"), "{:?}", texts(&svg));
 }
 
 #[test]
@@ -127,7 +149,7 @@ fn what_cannot_be_drawn_is_counted() {
     let curves = vec![curve(Style::Chetaev, points), curve(Style::Vakonomic, [])];
     let svg = Picture::new("Gap", Axis::linear("t (s)"), Axis::log("gap (m)"), curves).to_svg().unwrap();
     let texts = texts(&svg);
-    assert!(has(&texts, "Chetaev (left out: 2 ≤ 0, 2 without a finite value)"), "{texts:?}");
+    assert!(has(&texts, "Chetaev (left out: 2 ≤ 0, 2 not finite)"), "{texts:?}");
     assert!(has(&texts, "Vakonomic (no points)"), "{texts:?}");
     assert_eq!(svg.matches("<circle").count(), 1, "the point that stands alone");
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
@@ -188,10 +210,12 @@ fn hard_numbers_make_sound_documents() {
 
 #[test]
 fn panels_share_the_legend_and_the_horizontal_axis() {
-    let panel = |label: &str| Panel { y: Axis::linear(label), curves: vec![curve(Style::Chetaev, sine(1.0))] };
+    let curves = || vec![curve(Style::Chetaev, sine(1.0))];
+    let panel = |label: &str| Panel { title: format!("of {label}"), ..Panel::new(Axis::linear(label), curves()) };
     let panels = vec![panel("x (m)"), panel("y (m)"), panel("θ (rad)")];
     let panels = Picture::panels("Disk", Axis::linear("t (s)"), panels, 2);
     let texts = texts(&panels.to_svg().unwrap());
+    assert!(has(&texts, "of y (m)"), "{texts:?}");
     assert_eq!(texts.iter().filter(|text| *text == "Chetaev").count(), 1);
     assert_eq!(texts.iter().filter(|text| *text == "t (s)").count(), 2, "one a column");
 }

@@ -6,7 +6,7 @@ use picture::{Axis, Curve, Picture, PictureError, Style};
 use rapier3d_f64::VERSION;
 use validation::report::{File, Table, fill};
 
-use crate::study::{FAR, Level, NEAR, ORDER, SAMPLES, Study};
+use crate::study::{FAR, Level, NEAR, ORDER, SAMPLES, Study, Target};
 
 /// The page `engine.md` and one picture for each study.
 ///
@@ -130,11 +130,16 @@ fn picture(study: &Study) -> Result<String, PictureError> {
         style,
         points: levels.iter().filter_map(|level| Some((level.dt, read(level)?))).collect(),
     };
+    // of a formulation with several motions the first: they lie on one another, and the table has them all
+    let first = |(at, target): &(usize, &Target)| {
+        let same = |other: &&Target| other.formulation == target.formulation && !other.poses.is_empty();
+        *at == 0 || study.targets.iter().position(|other| same(&other)) == Some(*at)
+    };
     let mut curves: Vec<Curve> = study
         .targets
         .iter()
         .enumerate()
-        .filter(|(at, target)| *at == 0 || !target.poses.is_empty())
+        .filter(first)
         .map(|(at, target)| {
             let label = format!("to {}", target.label);
             curve(label, style(&target.formulation), &study.hard, &|level: &Level| Some(level.distances[at]))
@@ -144,8 +149,9 @@ fn picture(study: &Study) -> Result<String, PictureError> {
     let extrapolated = |level: &Level| level.extrapolated.as_ref().map(|distances| distances[0]);
     let as_shipped = |level: &Level| Some(level.distances[0]);
     curves.push(curve(format!("to {first}, extrapolated"), Style::Chetaev, &study.hard, &extrapolated));
-    curves.push(curve(format!("to {first}, extrapolated, 1 MHz"), Style::Chetaev, &study.yielding, &extrapolated));
-    curves.push(curve(format!("to {first}, contacts as shipped"), Style::Chetaev, &study.shipped, &as_shipped));
+    // narrow lines, which do not hide what is below them
+    curves.push(curve(format!("to {first}, extrapolated, 1 MHz"), Style::Member(3), &study.yielding, &extrapolated));
+    curves.push(curve(format!("to {first}, contacts as shipped"), Style::Member(2), &study.shipped, &as_shipped));
     let title = format!("{}: the engine's distance from each formulation", study.title);
     Picture::new(title, Axis::log("dt (s)"), Axis::log("relative distance"), curves).to_svg()
 }

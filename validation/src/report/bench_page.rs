@@ -255,16 +255,11 @@ fn picture(bench: &Bench) -> Result<String, PictureError> {
         let m = entry.outcome.as_ref().ok()?;
         let curves: Vec<Curve> = m.series.iter().enumerate().map(|(i, series)| curve(i, series)).collect();
         let drawn = curves.iter().any(|curve| !curve.points.is_empty());
-        drawn.then(|| Panel { y: Axis::log(shortened(&entry.label)), curves })
+        let panel = Panel::new(Axis::log("error (m √kg)"), curves);
+        drawn.then(|| Panel { title: entry.label.clone(), ..panel })
     };
     let panels = bench.entries.iter().filter_map(panel).collect();
     Picture::panels(format!("{}: error over run time", bench.title), Axis::log("run time (ms)"), panels, 2).to_svg()
-}
-
-/// What fits beside a panel.
-fn shortened(label: &str) -> String {
-    let words = [("removed constraint", "removed"), ("quasi-velocities", "quasi-vel."), ("costate form", "costate")];
-    words.into_iter().fold(label.into(), |label: String, (long, short)| label.replace(long, short))
 }
 
 fn curve(index: usize, series: &Series) -> Curve {

@@ -95,7 +95,7 @@ pub fn sweep_picture(title: &str, sweep: &Sweep) -> Result<String> {
         let changes: Vec<f64> = sweep.changes.iter().map(|change| change.value).collect();
         let changes: Vec<Curve> = changes.iter().map(change).collect();
         let curves = tracks.iter().map(curve).chain(changes).chain([zero]).collect();
-        Panel { y: Axis::linear(label), curves }
+        Panel::new(Axis::linear(label), curves)
     };
     let panels = vec![panel("real part (1/s)", |z| z.re), panel("imaginary part (1/s)", |z| z.im)];
     Ok(Picture::panels(title, Axis::linear(&sweep.name), panels, 1).to_svg()?)

@@ -5,6 +5,7 @@ mod bench_page;
 mod bicycle_page;
 mod bodies;
 mod equivalence;
+mod family;
 mod files;
 mod fill;
 mod headline;

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use crate::report::numbers::{enumerate, or_dash, short};
 use crate::report::{File, Table, fill};
-use picture::{Axis, Curve, Panel, Picture, Scale, Style};
+use picture::{Axis, Curve, Panel, Picture, Style};
 use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.
@@ -249,10 +249,9 @@ fn exponents(summary: &Summary) -> Result<String> {
         }
         points.push((LOWEST + WIDTH * BINS as f64, 0.0));
         let highest = bins.iter().copied().max().unwrap_or(0).max(1);
-        Panel {
-            y: Axis { label: "systems".into(), scale: Scale::Linear, range: Some((0.0, 1.05 * f64::from(highest))) },
-            curves: vec![Curve { label: names.grows.trim_start_matches("growth exponent, ").into(), style, points }],
-        }
+        let y = Axis { range: Some((0.0, 1.05 * f64::from(highest))), ..Axis::linear("systems") };
+        let label = names.grows.trim_start_matches("growth exponent, ").into();
+        Panel::new(y, vec![Curve { label, style, points }])
     });
     let x = Axis { range: Some((LOWEST, LOWEST + WIDTH * BINS as f64)), ..Axis::linear("exponent of t") };
     let title = "Nonintegrable random systems: how the gap begins";

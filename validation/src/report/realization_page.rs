@@ -250,7 +250,7 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
         style: a.style,
         points: STRENGTHS.iter().copied().zip(a.distances.iter().copied()).collect(),
     };
-    let (x, y) = (Axis::log("strength N"), Axis::log("distance in the kinetic metric"));
+    let (x, y) = (Axis::log("strength N"), Axis::log("distance in the kinetic metric (m √kg)"));
     let curves = approaches.iter().map(curve).collect();
     Ok(Picture::new(format!("{name}: realizations"), x, y, curves).to_svg()?)
 }

@@ -55,7 +55,7 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
         let _ = writeln!(page, "\n!{}", link(path, path));
     }
     let _ = writeln!(page, "\n## Where the motions part\n\n{}", tables::pairs(comparison));
-    page += "Gaps are lengths in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$; times in s. Two motions are *different* only where the gap is over \
+    page += "Gaps are lengths in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$, in m √kg where $L$ is in J; times in s. Two motions are *different* only where the gap is over \
              ten times the sum of both error estimates, *the same* where it never is and the estimates are below 1e-8 of the way.\n";
     let growth = tables::growth(comparison);
     if !growth.is_empty() {

@@ -15,9 +15,6 @@ use crate::stability::{
 };
 use picture::{Axis, Curve, Picture, Style};
 
-/// Lines of the pictures, method by method.
-const STYLES: [Style; 4] = [Style::Chetaev, Style::Vakonomic, Style::RemovedConstraint, Style::Substituted];
-
 /// Cases that are drawn, with the formulation that is.
 const DRAWN: [(&str, &str); 2] = [("viscous", "Newton, with friction"), ("added-mass", "Newton, with added mass")];
 
@@ -196,21 +193,28 @@ impl StabilityReport {
     }
 
     fn picture(&self, name: &str, formulation: &str) -> Result<String> {
-        let curve = |(i, method): (usize, &Method)| {
+        let of = |(i, method): (usize, &Method)| {
             let cells = self.cells.iter().filter(|c| {
                 c.case == name && c.formulation == formulation && c.method == Answering::Method(Some(*method))
             });
             let points = cells.map(|cell| match cell.verdict {
                 Verdict::Accurate { error, .. } | Verdict::Admitted { error, .. } | Verdict::Wrong { error, .. } => {
-                    (cell.point, error)
+                    Some((cell.point, error))
                 }
-                Verdict::Refused { .. } => (cell.point, f64::NAN),
+                Verdict::Refused { .. } => None,
             });
-            Curve { label: method.name().into(), style: STYLES[i % STYLES.len()], points: points.collect() }
+            // a line breaks where an answer is refused
+            let points: Vec<Option<(f64, f64)>> = points.collect();
+            let curve = |points: &[Option<(f64, f64)>]| Curve {
+                label: method.name().into(),
+                style: Style::Member(i as u8),
+                points: points.iter().copied().flatten().collect(),
+            };
+            points.split(Option::is_none).map(curve).collect::<Vec<Curve>>()
         };
-        let title = format!("{name}: true error of what is not refused");
+        let title = format!("{name}: true error, lines where nothing is refused");
         let (x, y) = (Axis::log(variable(name)), Axis::log("error over distance"));
-        let curves = Method::ALL.iter().enumerate().map(curve).collect();
+        let curves = Method::ALL.iter().enumerate().flat_map(of).collect();
         Ok(Picture::new(title, x, y, curves).to_svg()?)
     }
 }

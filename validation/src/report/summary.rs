@@ -88,7 +88,7 @@ fn plotted(comparison: &Comparison) -> Vec<&Pair> {
     differ.filter(|p| Some(p.first) == first).take(CURVES).collect()
 }
 
-/// Their gaps over time.
+/// Their gaps over time, where they are certain.
 fn plot(comparison: &Comparison, width: usize) -> Result<String> {
     let start = comparison.scene.start.t;
     let label = |i: usize| short_label(comparison, i);
@@ -98,13 +98,13 @@ fn plot(comparison: &Comparison, width: usize) -> Result<String> {
         .map(|p| Curve {
             label: format!("{} – {}", label(p.first), label(p.second)),
             style: Style::Vakonomic,
-            points: p.gap.points.iter().map(|p| (p.t - start, p.gap)).collect(),
+            points: p.gap.points.iter().filter(|p| p.gap > p.limit).map(|p| (p.t - start, p.gap)).collect(),
         })
         .collect();
     let Some(first) = plotted.first() else { return Ok(String::new()) };
     let limit = first.gap.points.iter().map(|p| (p.t - start, p.limit)).collect();
     curves.push(Curve { label: "what a gap has to pass".into(), style: Style::Threshold, points: limit });
-    let (x, y) = (Axis::linear("t − t₀ (s)"), Axis::log("gap, kinetic metric"));
+    let (x, y) = (Axis::linear("t − t₀ (s)"), Axis::log("gap in the kinetic metric (m √kg)"));
     let x = Axis { range: Some((0.0, comparison.scene.duration)), ..x };
     Ok("\n".to_owned() + &Picture::new("gaps", x, y, curves).to_text(width, HEIGHT)?)
 }
