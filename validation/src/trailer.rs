@@ -9,7 +9,7 @@
 //! Two degrees of freedom however long the train: the speed of the car along its heading, and its turning.
 //! With n = 3 and minimal coordinates it is the scene `trailer`.
 
-use mechanics::{Completion, Parameter, State, System};
+use mechanics::{Completion, Parameter, State, System, View};
 use scene::Scene;
 use symbolic::{Expr, ParseError};
 
@@ -111,6 +111,7 @@ pub fn scene(trailers: usize, coordinates: Coordinates) -> Result<Scene, ParseEr
         completion: Completion::default(),
         removals: Vec::new(),
         duration: DURATION,
+        view: View::default(),
     })
 }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use scene::format::{COORDINATE, REMOVAL, RUN, SCENE, START, SYSTEM, VAKONOMIC};
+use scene::format::{BODY, COORDINATE, REMOVAL, RUN, SCENE, START, SYSTEM, VAKONOMIC};
 
 use crate::support::deltaq;
 
@@ -37,7 +37,7 @@ fn the_page_of_the_scene_format_is_true() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let read = |path: &str| fs::read_to_string(root.join(path)).expect("a file");
     let page = read("docs/scenes.md");
-    let keys = [SCENE, COORDINATE, SYSTEM, START, VAKONOMIC, RUN, REMOVAL].concat();
+    let keys = [SCENE, COORDINATE, SYSTEM, START, VAKONOMIC, RUN, REMOVAL, BODY].concat();
     for key in keys {
         let name = key.name;
         let written = [format!("`{name}`"), format!("`[{name}]`"), format!("`[{name}.NAME]`"), format!(" {name} = ")];
@@ -47,7 +47,7 @@ fn the_page_of_the_scene_format_is_true() {
     let flat = |line: &str| line.split(" #").next().unwrap_or(line).split_whitespace().collect::<String>();
     let known: Vec<String> = whole.iter().flat_map(|text| text.lines()).map(flat).collect();
     let blocks: Vec<&str> = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(blocks.len(), 2);
+    assert_eq!(blocks.len(), 3);
     for line in blocks.iter().flat_map(|block| block.lines()).filter(|line| !line.is_empty()) {
         assert!(known.contains(&flat(line)), "{line}");
     }

@@ -21,6 +21,9 @@
 //! A removal is written by hand and verified, or found where `f = A v + b` by elimination of the dependent
 //! velocities, `v_d = K v_i + c` ([`Removal::by_coordinates`], [`Removal::by_quasi_velocities`]).
 //!
+//! **What is drawn** ([`View`]). Bodies, each a [`Shape`] in its own axes, whose point `p` is at
+//! `c(q, t) + R(q, t) p`, and where they touch. No equation depends on them.
+//!
 //! **Integrability** ([`integrability()`]). The fields that span the kernel of `A`, in the space of `(q, t)`,
 //! are closed under brackets just where the constraints can be integrated (Frobenius). Then Chetaev's and the
 //! vakonomic motion agree.
@@ -58,19 +61,23 @@ mod observables;
 mod rank;
 mod removal;
 mod removal_error;
+mod shape;
 mod singular_values;
 mod solved_constraints;
 mod start;
 mod system;
+mod view;
 
 pub use integrability::{Integrability, integrability};
 pub use observables::Observables;
 pub use rank::generic_rank;
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use removal_error::RemovalError;
+pub use shape::{Kind, Place, Shape};
 pub use singular_values::SingularValues;
 pub use start::{
     Completion, Quantity, Recombination, RemovalProgram, RemovalStart, StartData, StartError, StartNumbers,
     StartProgram, StartShape, check_regularity, complete_removal_start, complete_start, project_velocity,
 };
 pub use system::{Coordinate, Parameter, State, System, Watched, fresh_symbol};
+pub use view::{Body, Pose, Poses, Touch, View};

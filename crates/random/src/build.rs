@@ -15,7 +15,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable, Removal, State, System};
+use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable, Removal, State, System, View};
 use scene::Scene;
 use symbolic::{Expr, Function, Graph, Symbol};
 
@@ -371,6 +371,7 @@ impl<'a> Builder<'a> {
             removals: vec![removal],
             multipliers: self.recipe.multipliers[..self.dependent.len()].iter().map(|&x| x as f64 / 8.0).collect(),
             duration: DURATION,
+            view: View::default(),
             system: self.system,
         }
     }

@@ -129,6 +129,36 @@ pub enum SceneErrorKind {
         /// Number needed.
         expected: usize,
     },
+    /// A number, vector or matrix of the wrong shape.
+    #[error("expected {expected}, found {found}")]
+    WrongShape {
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// Too few or too many sizes of a body.
+    #[error("the size of a {word} is [{sizes}], found {found} number{}", if *.found == 1 { "" } else { "s" })]
+    WrongSizes {
+        /// What it looks like.
+        word: &'static str,
+        /// Its sizes.
+        sizes: String,
+        /// How many there are.
+        found: usize,
+    },
+    /// A matrix that does not rotate.
+    #[error(
+        "no rotation at the start: R Rᵀ differs from the unit matrix by {residual:.3e}, limit {limit:.0e}, and det R is {determinant:.3}"
+    )]
+    NoRotation {
+        /// Largest entry of `R Rᵀ − 1` in magnitude.
+        residual: f64,
+        /// Largest value that is accepted.
+        limit: f64,
+        /// `det R`, which has to be positive.
+        determinant: f64,
+    },
     /// A number that is not finite.
     #[error("{what} must be finite, found {value}")]
     NotFinite {
@@ -278,6 +308,9 @@ pub enum Unavailable {
     /// A coordinate that is given directly.
     #[error("this coordinate is given directly by the parametrization; use parameters and memory variables")]
     DirectCoordinate,
+    /// A velocity in what is drawn.
+    #[error("it is a velocity, and what is drawn depends on coordinates, t and parameters only")]
+    Velocity,
     /// `ü` in a coordinate.
     #[error("a coordinate given directly may contain parameters and their first rates only")]
     SecondRate,

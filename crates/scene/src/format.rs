@@ -63,6 +63,7 @@ pub const SCENE: &[Key] = &[
     may("removal", Removals, "parametrizations written by hand"),
     may("vakonomic", Table(VAKONOMIC), "free constants of the vakonomic motion"),
     must("run", Table(RUN), "how long"),
+    may("view", Named(&Table(BODY)), "bodies that are drawn, by name"),
 ];
 
 /// A coordinate.
@@ -80,6 +81,18 @@ pub const SYSTEM: &[Key] = &[
         "f(q, q', t), zero along every motion; a vector is one a component; one without velocities is kept by its rate",
     ),
     may("forces", Named(&Expression), "Q along a coordinate; for chetaev and kappa"),
+];
+
+/// The words for what a body looks like.
+pub const SHAPES: &str = "one of point, rod, blade, box, cart, disc, ball, cylinder, cone, bowl, plane, table";
+
+/// `[view.NAME]`.
+pub const BODY: &[Key] = &[
+    must("shape", Text, SHAPES),
+    must("size", List(&Number), "its sizes, in the unit of length"),
+    may("at", Quantity, "where its origin is, along the axes of space; 0 if left out"),
+    may("rotation", Quantity, "from its axes to those of space, a matrix or an angle about z; none if left out"),
+    may("touches", Named(&Quantity), "by name of another body, where it touches it"),
 ];
 
 /// `[start]`.

@@ -59,6 +59,7 @@ mod section;
 mod start;
 mod starts;
 mod system;
+mod view;
 mod write;
 
 pub use error::{NameFault, SceneError, SceneErrorKind, Unavailable};

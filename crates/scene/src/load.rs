@@ -9,7 +9,7 @@ use toml::de::DeTable;
 use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
-use super::{constants, removal, start, system};
+use super::{constants, removal, start, system, view};
 use crate::{Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
@@ -161,6 +161,7 @@ fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene
         }
         source.note(duration(&context, &run))
     });
+    let view = source.note(view::read(&context)).unwrap_or_default();
     // constraints that could not be read would be missed
     let multipliers =
         if faults_so_far(source) { Some(Vec::new()) } else { source.note(constants::multipliers(&context)) };
@@ -168,6 +169,7 @@ fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene
     start::check_positions(&context)?;
     let removals = removal::read_all(&context)?;
     let (state, completion) = start::complete(&context, &removals)?;
+    source.note(view::check(&context, &view, &state));
     context.overrides.check_used(source)?;
     let (Some(title), Some(duration), Some(multipliers)) = (title, duration, multipliers) else {
         unreachable!("what could not be read was noted")
@@ -184,6 +186,7 @@ fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene
         removals,
         multipliers,
         duration,
+        view,
     })
 }
 

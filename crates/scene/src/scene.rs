@@ -1,6 +1,6 @@
 //! What a scene is.
 
-use mechanics::{Completion, Removal, State, System};
+use mechanics::{Completion, Removal, State, System, View};
 
 /// A system together with a consistent start and everything else a scene file says.
 #[derive(Clone)]
@@ -25,4 +25,6 @@ pub struct Scene {
     pub multipliers: Vec<f64>,
     /// Length of the run, in units of `t`; positive.
     pub duration: f64,
+    /// What is drawn; without bodies where the file does not say.
+    pub view: View,
 }

@@ -3,7 +3,8 @@
 use std::fmt::{self, Write};
 
 use crate::Scene;
-use mechanics::{ConstantsRule, Removal, System};
+use mechanics::{Body, ConstantsRule, Removal, System, Touch, View};
+use symbolic::Expr;
 
 impl Scene {
     /// The scene as a file, start values numbers: [`Scene::parse`] gives the same system, start, removals.
@@ -49,6 +50,9 @@ fn written(scene: &Scene) -> String {
             text.line(&watched.name, &quoted(&g.plain(watched.expression)));
         }
     }
+    for body in &scene.view.bodies {
+        write_body(&mut text, &scene.view, body);
+    }
     text.header("start");
     text.line("time", &number(start.t));
     text.header("start.velocities");
@@ -58,7 +62,6 @@ fn written(scene: &Scene) -> String {
     for r in &scene.removals {
         removal(&mut text, system, r);
     }
-    let list = |numbers: &[f64]| format!("[{}]", numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "));
     if !scene.multipliers.is_empty() {
         text.header("vakonomic");
         text.line("multipliers", &list(&scene.multipliers));
@@ -87,6 +90,21 @@ fn write_system(text: &mut Table, system: &System) {
                 text.line(&c.name, &quoted(&g.plain(force)));
             }
         }
+    }
+}
+
+fn write_body(text: &mut Table, View { graph, bodies }: &View, body: &Body) {
+    let vector =
+        |entries: &[Expr]| format!("[{}]", entries.iter().map(|&e| graph.plain(e)).collect::<Vec<_>>().join(", "));
+    text.header(&format!("view.{}", key(&body.name)));
+    text.line("shape", &quoted(body.shape.kind.word()));
+    text.line("size", &list(&body.shape.size));
+    text.line("at", &quoted(&vector(&body.at)));
+    let rows: Vec<String> = (0..3).map(|i| vector(body.rotation.row(i))).collect();
+    text.line("rotation", &quoted(&format!("[{}]", rows.join(", "))));
+    let touch = |touch: &Touch| format!("{} = {}", key(&bodies[touch.body].name), quoted(&vector(&touch.at)));
+    if !body.touches.is_empty() {
+        text.line("touches", &format!("{{ {} }}", body.touches.iter().map(touch).collect::<Vec<_>>().join(", ")));
     }
 }
 
@@ -147,6 +165,10 @@ impl Table {
 fn key(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if !name.is_empty() && name.chars().all(bare) { name.into() } else { quoted(name) }
+}
+
+fn list(numbers: &[f64]) -> String {
+    format!("[{}]", numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "))
 }
 
 /// The shortest number that reads back as the same one.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
+use mechanics::{ConstantsRule, Kind, Pose, Removal, State, System, complete_removal_start};
 use scene::Scene;
 use symbolic::{Expr, Symbol};
 
@@ -40,6 +40,17 @@ fn written_scenes_read_back_the_same() {
         for (a, b) in expressions(&again).into_iter().zip(expressions(&scene)) {
             assert!(same(&again, a, &scene, b), "{}: {}", scene.name, again.system.graph.plain(a));
         }
+        let view = |s: &Scene| {
+            let shapes: Vec<_> = s.view.bodies.iter().map(|b| (b.name.clone(), b.shape.clone())).collect();
+            (shapes, s.view.poses(&s.system).unwrap().at(s.start.t, &s.start.q))
+        };
+        let ((shapes, poses), (same_shapes, poses_again)) = (view(&scene), view(&again));
+        assert!(!shapes.is_empty() && shapes == same_shapes, "{}", scene.name);
+        for (a, b) in poses.iter().zip(&poses_again) {
+            let numbers = |p: &Pose| [&[p.at], &p.rotation[..], &p.touches].concat().concat();
+            let apart = numbers(a).iter().zip(&numbers(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(numbers(a).len() == numbers(b).len() && apart < 1e-15, "{}: {apart:e}", scene.name);
+        }
         let constants = |s: &Scene| s.removals.iter().map(|r| r.constants.clone()).collect::<Vec<_>>();
         assert_eq!(constants(&again), constants(&scene));
     }
@@ -49,6 +60,12 @@ fn expressions(scene: &Scene) -> Vec<Expr> {
     let System { lagrangian, constraints, forces, .. } = &scene.system;
     let rates = scene.removals.iter().flat_map(|r| r.memory.iter().map(|w| w.rate).chain(r.coordinates.clone()));
     [&[*lagrangian], &constraints[..], forces].concat().into_iter().chain(rates).collect()
+}
+
+#[test]
+fn the_words_for_shapes_are_those_of_the_table() {
+    let words: Vec<&str> = Kind::ALL.iter().map(|(_, word, _)| *word).collect();
+    assert_eq!(scene::format::SHAPES, format!("one of {}", words.join(", ")));
 }
 
 /// Whether two expressions from different graphs are identical.

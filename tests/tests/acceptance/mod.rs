@@ -1,5 +1,6 @@
 //! What the formulations must do, scene by scene: each test can fail, and prints the figure that it measured.
 
+mod bodies;
 mod chains;
 mod charts;
 mod closed_forms;
