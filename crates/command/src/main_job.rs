@@ -20,7 +20,7 @@ use validation::casadi_job::{self, Outcome};
 use validation::catalogue;
 use validation::report::{
     AuditReport, BicycleReport, EquivalenceReport, File, Headline, LiteratureReport, RealizationReport,
-    StabilityReport, bench_files, bench_headline, difference_of_verdicts, overview, pictures, random_files,
+    StabilityReport, bench_files, bench_headline, bodies, difference_of_verdicts, overview, pictures, random_files,
     random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all,
 };
 
@@ -43,7 +43,9 @@ fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
 /// The page of a scene and its pictures.
 pub(crate) fn scene_files(comparison: &mut Comparison) -> Result<Vec<File>> {
     let name = comparison.scene.name.clone();
-    let mut files = pictures(comparison).with_context(|| format!("pictures of scene `{name}`"))?;
+    let moving = bodies(comparison).with_context(|| format!("bodies of scene `{name}`"))?;
+    let still = pictures(comparison).with_context(|| format!("pictures of scene `{name}`"))?;
+    let mut files: Vec<File> = moving.into_iter().chain(still).collect();
     let links: Vec<String> =
         files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();
     files.push(File { path: format!("scenes/{name}.md").into(), text: scene_page(comparison, &links)? });

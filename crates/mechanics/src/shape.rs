@@ -71,7 +71,7 @@ const ROUND: usize = 20;
 const LARGE: usize = 48;
 
 impl Shape {
-    /// The radius, if it is a sphere: its outline is a circle from every side, and it hides half of its lines.
+    /// The radius, if it is a sphere: its outline is a circle from every side, and hides half of its lines.
     pub fn sphere(&self) -> Option<f64> {
         matches!(self.kind, Kind::Point | Kind::Ball).then_some(self.size[0])
     }
@@ -144,7 +144,7 @@ fn cart(length: f64, w: f64, bar: f64) -> Vec<Vec<Place>> {
 }
 
 fn cylinder(r: f64, l: f64) -> Vec<Vec<Place>> {
-    let end = |x: f64| circle(ROUND * 3 / 5, |c, d| [x, r * d, r * c]);
+    let end = |x: f64| circle(ROUND * 4 / 5, |c, d| [x, r * d, r * c]);
     let along = |(y, z): (f64, f64)| vec![[-l, y, z], [l, y, z]];
     let sides = [(0.0, r), (r, 0.0), (0.0, -r), (-r, 0.0)].map(along);
     let spoke = vec![[l, 0.0, 0.0], [l, 0.0, r]];

@@ -9,7 +9,7 @@ use super::trace::{Coarseness, Extent, Place, Trace};
 use super::{Curve, Picture, PictureError};
 
 /// What a file should not pass, in bytes.
-const BUDGET: usize = 60_000;
+pub(super) const BUDGET: usize = 60_000;
 
 pub(super) fn document(plots: &Picture) -> Result<String, PictureError> {
     let measured: Vec<Vec<Measured>> = plots
@@ -42,34 +42,11 @@ fn sheet(
 ) -> String {
     let frame = Frame::new(plots, ranges, legend);
     let framed = frame.plots(plots, measured, legend);
-    let mut out = String::new();
-    let title = escape(&plots.title);
-    out.push_str(&format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
-         aria-label=\"{title}\" class=\"picture\" color=\"{}\" \
-         font-family=\"system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif\">\n\
-         <title>{title}</title>\n<desc>{}</desc>\n\
-         <style>@media (prefers-color-scheme:light){{.picture{{color:{}}}}}\
-         @media (prefers-color-scheme:dark){{.picture{{color:{}}}}}</style>\n",
-        INKS[0],
-        escape(&description(plots, legend)),
-        INKS[1],
-        INKS[2],
-        w = px(WIDTH),
-        h = px(frame.height),
-    ));
-    for (row, line) in (1u32..).zip(&frame.title) {
-        let y = f64::from(row) * 20.0;
-        out.push_str(&format!(
-            "<text x=\"{}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" font-weight=\"600\" fill=\"{INK}\">{}</text>\n",
-            px(frame.left),
-            px(y),
-            escape(line)
-        ));
-    }
+    let mut out = opening(&plots.title, &description(plots, legend), frame.height);
+    headline(&mut out, &frame.title, frame.left);
     let (placed, _) = layout::place_legend(legend, WIDTH - frame.left - 8.0);
     for place in &placed {
-        swatch(&mut out, place, &frame);
+        swatch(&mut out, place, (frame.left, frame.legend_top));
     }
     for plot in &framed {
         axes(&mut out, plot);
@@ -79,6 +56,38 @@ fn sheet(
     out
 }
 
+/// The beginning of a document, with its inks.
+pub(super) fn opening(title: &str, description: &str, height: f64) -> String {
+    let title = escape(title);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
+         aria-label=\"{title}\" class=\"picture\" color=\"{}\" \
+         font-family=\"system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif\">\n\
+         <title>{title}</title>\n<desc>{}</desc>\n\
+         <style>@media (prefers-color-scheme:light){{.picture{{color:{}}}}}\
+         @media (prefers-color-scheme:dark){{.picture{{color:{}}}}}</style>\n",
+        INKS[0],
+        escape(description),
+        INKS[1],
+        INKS[2],
+        w = px(WIDTH),
+        h = px(height),
+    )
+}
+
+/// The title, in lines.
+pub(super) fn headline(out: &mut String, lines: &[String], left: f64) {
+    for (row, line) in (1u32..).zip(lines) {
+        let y = f64::from(row) * 20.0;
+        out.push_str(&format!(
+            "<text x=\"{}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" font-weight=\"600\" fill=\"{INK}\">{}</text>\n",
+            px(left),
+            px(y),
+            escape(line)
+        ));
+    }
+}
+
 /// What the picture shows, for readers who do not see it.
 fn description(plots: &Picture, legend: &[Entry]) -> String {
     let vertical: Vec<&str> = plots.panels.iter().map(|panel| panel.y.label.as_str()).collect();
@@ -86,8 +95,9 @@ fn description(plots: &Picture, legend: &[Entry]) -> String {
     format!("{} over {}. Curves: {}.", vertical.join(", "), plots.x.label, curves.join("; "))
 }
 
-fn swatch(out: &mut String, place: &layout::Placed, frame: &Frame) {
-    let (x, y) = (frame.left + place.x, frame.legend_top + (f64::from(place.row) + 0.5) * LEGEND_ROW);
+/// An entry of the legend, whose top left corner is at `(left, top)`.
+pub(super) fn swatch(out: &mut String, place: &layout::Placed, (left, top): Place) {
+    let (x, y) = (left + place.x, top + (f64::from(place.row) + 0.5) * LEGEND_ROW);
     out.push_str(&format!("<g transform=\"translate({} {})\">", px(x), px(y)));
     let entry = place.entry;
     let trace = Trace { lines: vec![vec![(0.0, 0.0), (SWATCH, 0.0)]], dots: Vec::new() };

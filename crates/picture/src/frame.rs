@@ -10,7 +10,7 @@ use super::{Curve, Panel, Picture};
 /// Font size of the headline, in pixels.
 pub(super) const TITLE_SIZE: f64 = 15.0;
 /// How much wider bold text is.
-const BOLD: f64 = 1.12;
+pub(super) const BOLD: f64 = 1.12;
 /// Height of one row of the legend, in pixels.
 pub(super) const LEGEND_ROW: f64 = 20.0;
 

@@ -102,6 +102,11 @@ pub(super) struct Entry {
 }
 
 impl Entry {
+    /// An entry without marks, all of whose points are drawn.
+    pub(super) fn plain(label: String, style: Style) -> Self {
+        Entry { label, style, mark: None, rank: 0, points: 1, not_finite: 0, not_positive: 0 }
+    }
+
     /// The label, and what is not drawn.
     pub(super) fn text(&self) -> String {
         let notes: Vec<String> = [(self.not_positive, "≤ 0"), (self.not_finite, "without a finite value")]

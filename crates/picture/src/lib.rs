@@ -1,4 +1,5 @@
-//! Pictures for the reports: curves over two axes, written as SVG; for terminals in characters.
+//! Pictures for the reports: curves over two axes, and solids that move, written as SVG; curves for terminals
+//! in characters.
 //!
 //! A [`Picture`] is one plot: a gap over time on two logarithmic axes with its certainty limit, or plane
 //! motions over one another ([`Picture::plane`]); or several over one shared horizontal axis
@@ -20,18 +21,22 @@
 //! lies within the plot. It would only choose ticks.
 
 mod axis;
+mod bodies;
 mod draw;
 mod frame;
 mod heat;
 mod layout;
 mod plain;
+mod solid;
 mod style;
 #[cfg(test)]
 mod tests;
 mod text;
 mod trace;
 
+pub use bodies::{Bodies, MovingPicture};
 pub use heat::HeatMap;
+pub use solid::{Camera, Placement, Seen, Solid, Space};
 pub use style::Style;
 
 /// One line of a picture.

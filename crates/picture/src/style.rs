@@ -76,6 +76,16 @@ impl Style {
         styles.into_iter().find(|(start, _)| name.starts_with(start)).map(|(_, style)| style)
     }
 
+    /// Colour and width of the outlines of bodies; narrow ones lie on wide ones.
+    pub(super) fn outline(self) -> (&'static str, f64) {
+        let colour = self.strokes()[0].colour;
+        match self {
+            Self::Chetaev => (colour, 5.0),
+            Self::Vakonomic => (colour, 2.8),
+            _ => (colour, 1.2),
+        }
+    }
+
     /// The passes of the pen, lowest first.
     pub(super) fn strokes(self) -> Vec<Stroke> {
         match self {

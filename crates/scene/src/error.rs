@@ -7,6 +7,8 @@ use symbolic::{ParseErrorKind, excerpt};
 
 use mechanics::{RemovalError, StartError};
 
+use crate::{NameFault, Unavailable};
+
 /// A fault in a scene file: the place and what was expected there.
 ///
 /// Displayed as `file:line:column: message`, the line, and carets under the place.
@@ -258,62 +260,6 @@ pub enum SceneErrorKind {
     /// Start data from which no motion starts.
     #[error(transparent)]
     Start(StartError),
-}
-
-/// Why something cannot be a name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NameFault {
-    /// Not a letter followed by letters, digits and underscores.
-    #[error("a name is a letter followed by letters, digits and underscores")]
-    NotIdentifier,
-    /// With primes.
-    #[error("primes are time derivatives and are not part of a name")]
-    Primed,
-    /// Time, a constant or a function.
-    #[error("it is {0}")]
-    Reserved(&'static str),
-    /// What `--set` calls something else.
-    #[error("`--set` means {0} by it")]
-    Overriding(&'static str),
-    /// Used twice.
-    #[error("it is already {by}")]
-    Taken {
-        /// What uses it.
-        by: String,
-    },
-}
-
-/// Why a defined name cannot be used at some place.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Unavailable {
-    /// A start value that is not known yet.
-    #[error("it has no value yet; known are {known}")]
-    NotYetKnown {
-        /// What can be used.
-        known: &'static str,
-    },
-    /// A derivative of something that is not a coordinate.
-    #[error("{0} does not change with time")]
-    NoDerivative(&'static str),
-    /// A derivative of too high an order.
-    #[error(
-        "derivatives of this order do not enter: a system contains coordinates and velocities, a parametrization the first two rates of its parameters"
-    )]
-    Acceleration,
-    /// The velocity of a removed coordinate, in the parametrization that is to give it.
-    #[error(
-        "it is the velocity of a removed coordinate, which the parametrization is to give; use parameters and their rates"
-    )]
-    RemovedVelocity,
-    /// A coordinate that is given directly.
-    #[error("this coordinate is given directly by the parametrization; use parameters and memory variables")]
-    DirectCoordinate,
-    /// A velocity in what is drawn.
-    #[error("it is a velocity, and what is drawn depends on coordinates, t and parameters only")]
-    Velocity,
-    /// `ü` in a coordinate.
-    #[error("a coordinate given directly may contain parameters and their first rates only")]
-    SecondRate,
 }
 
 fn meant(suggestion: &Option<String>) -> String {

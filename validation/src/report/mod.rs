@@ -3,6 +3,7 @@
 mod audit_page;
 mod bench_page;
 mod bicycle_page;
+mod bodies;
 mod equivalence;
 mod files;
 mod fill;
@@ -28,6 +29,7 @@ mod verdicts;
 pub use audit_page::AuditReport;
 pub use bench_page::{bench_files, bench_headline, bench_json, bench_table, ensemble_text};
 pub use bicycle_page::BicycleReport;
+pub use bodies::bodies;
 pub use equivalence::EquivalenceReport;
 pub use files::{File, write_all};
 pub use fill::fill;

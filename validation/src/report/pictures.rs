@@ -15,7 +15,7 @@ use random::substitution;
 const INSTANTS: usize = 400;
 
 /// The colour and dash of a formulation, the same in every picture.
-fn style(run: &Run) -> Style {
+pub(crate) fn style(run: &Run) -> Style {
     Style::of_formulation(run.choice.formulation).unwrap_or(Style::Vakonomic)
 }
 

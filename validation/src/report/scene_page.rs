@@ -19,6 +19,11 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
     let scene = &comparison.scene;
     let Headline { verdict, why, sure } = Headline::of(comparison);
     let _ = writeln!(page, "# {}\n\n**{verdict}**\n\n{why}\n\n{sure}", scene.title);
+    let (bodies, pictures): (Vec<&String>, Vec<&String>) = pictures.iter().partition(|p| p.ends_with("-bodies.svg"));
+    for path in bodies {
+        let _ =
+            writeln!(page, "\n!{}\n\nThe bodies under each formulation, from one start, in a loop.", link(path, path));
+    }
     if !scene.source.is_empty() {
         let _ = writeln!(page, "\nSource: {}.", scene.source.trim_end_matches('.'));
     }

@@ -1,0 +1,356 @@
+//! Bodies that move: an SVG that plays by itself, and is legible where it does not.
+
+use super::draw::{BUDGET, headline, opening, swatch};
+use super::frame::{BOLD, LEGEND_ROW, TITLE_SIZE};
+use super::layout::{self, Entry, LABEL_SIZE, WIDTH};
+use super::solid::{Camera, Solid, Space};
+use super::style::{INK, Style};
+use super::text::{px, width, wrap};
+use super::trace::{Coarseness, Extent, Place, Trace};
+
+/// What belongs to one motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bodies {
+    /// What the legend says.
+    pub label: String,
+    /// Colour, and how the path is dashed.
+    pub style: Style,
+    /// What moves; the first lies on top.
+    pub solids: Vec<Solid>,
+    /// A path in space, drawn as a thin line.
+    pub path: Vec<Space>,
+}
+
+/// Several motions of the same bodies over one another, in a loop of 6 s and a pause. Between poses points
+/// run straight. Of the poses every second is kept, or fewer, down to every 20th, as 60 kB allow.
+///
+/// Seen from above where everything lies in the plane z = 0, else from an oblique direction. The frame shows
+/// the ground and all of the first motion; another one that runs far away leaves it, and the legend says
+/// when. Who asks for reduced motion, or does not animate, sees bodies at half time on their paths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingPicture {
+    /// Headline of the picture.
+    pub title: String,
+    /// Times of the first and the last step, and their unit.
+    pub time: (f64, f64, String),
+    /// What belongs to all motions, below them.
+    pub ground: Vec<Solid>,
+    /// The motions: their solids have as many poses each.
+    pub motions: Vec<Bodies>,
+}
+
+/// Seconds that a loop takes.
+const PLAY: f64 = 6.0;
+/// All begin at once, and anew after a pause; `t` is the clock.
+const BEGIN: &str = "0s;t.end+1.5s";
+
+/// A motion widens the frame at most this many times.
+const WIDENED: f64 = 2.0;
+
+/// Azimuth and elevation of the eye where bodies are not in a plane, in radians.
+const OBLIQUE: [f64; 2] = [0.4, 0.5];
+
+const MARGIN: f64 = 16.0;
+/// Within the frame, for the widths of lines.
+const EDGE: f64 = 4.0;
+const TALLEST: f64 = 440.0;
+
+/// The lowest and the highest of what is seen.
+#[derive(Clone, Copy)]
+struct Window {
+    low: Place,
+    high: Place,
+}
+
+impl Window {
+    const EMPTY: Window = Window { low: (f64::INFINITY, f64::INFINITY), high: (f64::NEG_INFINITY, f64::NEG_INFINITY) };
+
+    fn with(self, place: Place) -> Window {
+        self.and(Window { low: place, high: place })
+    }
+
+    fn and(self, Window { low, high }: Window) -> Window {
+        let (lowest, highest) = (self.low, self.high);
+        Window { low: (lowest.0.min(low.0), lowest.1.min(low.1)), high: (highest.0.max(high.0), highest.1.max(high.1)) }
+    }
+
+    fn size(self) -> Place {
+        (self.high.0 - self.low.0, self.high.1 - self.low.1)
+    }
+
+    fn diagonal(self) -> f64 {
+        self.size().0.hypot(self.size().1)
+    }
+
+    /// Widened to all of a frame, at so many pixels a unit.
+    fn filling(self, extent: Extent, scale: f64) -> Window {
+        let (w, h) = self.size();
+        let (x, y) = ((extent.width / scale - w) / 2.0, (extent.height / scale - h) / 2.0);
+        self.with((self.low.0 - x, self.low.1 - y)).with((self.high.0 + x, self.high.1 + y))
+    }
+
+    fn meets(self, other: Window) -> bool {
+        let apart = |low: Place, high: Place| low.0 > high.0 || low.1 > high.1;
+        !apart(self.low, other.high) && !apart(other.low, self.high)
+    }
+
+    /// Of a solid at a step.
+    fn of(solid: &Solid, camera: &Camera, step: usize) -> Window {
+        let seen = solid.seen(camera, step);
+        let window = seen.lines.into_iter().flatten().fold(Window::EMPTY, Window::with);
+        seen.circle.map_or(window, |((x, y), r)| window.with((x - r, y - r)).with((x + r, y + r)))
+    }
+}
+
+/// From units of length to pixels.
+struct Sheet {
+    camera: Camera,
+    window: Window,
+    scale: f64,
+    extent: Extent,
+}
+
+impl MovingPicture {
+    /// The picture as a complete SVG document; none where nothing moves.
+    pub fn to_svg(&self) -> Option<String> {
+        let steps = self.motions.iter().flat_map(|m| &m.solids).map(|s| s.poses.len()).max()?;
+        let sheet = self.sheet(steps)?;
+        let entries = self.legend(&sheet, steps);
+        let mut svg = String::new();
+        for stride in [2, 3, 4, 5, 6, 8, 10, 12, 15, 20] {
+            svg = self.document(&sheet, &entries, steps, stride);
+            if svg.len() <= BUDGET {
+                break;
+            }
+        }
+        Some(svg)
+    }
+
+    fn sheet(&self, steps: usize) -> Option<Sheet> {
+        let solids = || self.ground.iter().chain(self.motions.iter().flat_map(|m| &m.solids));
+        let flat = |s: &Solid| {
+            let heights = s.poses.iter().flat_map(|pose| s.lines.iter().flatten().map(|&p| pose.place(p)[2]));
+            heights.chain(s.poses.iter().map(|pose| pose.at[2])).all(|z| z.abs() < 1e-9)
+        };
+        let [azimuth, elevation] = OBLIQUE;
+        let camera = if solids().all(flat) { Camera::ABOVE } else { Camera::oblique(azimuth, elevation) };
+        let of = |solids: &[Solid]| {
+            let each = solids.iter().flat_map(|s| (0..s.poses.len()).map(move |step| Window::of(s, &camera, step)));
+            each.fold(Window::EMPTY, Window::and)
+        };
+        let windows: Vec<Window> = self.motions.iter().map(|m| of(&m.solids)).collect();
+        let first = windows.first()?.and(of(&self.ground));
+        let widened = windows.iter().map(|w| w.and(first)).filter(|w| w.diagonal() <= WIDENED * first.diagonal());
+        let window = widened.fold(first, Window::and);
+        let (w, h) = window.size();
+        let room = WIDTH - 2.0 * MARGIN;
+        let scale = ((room - 2.0 * EDGE) / w).min((TALLEST - 2.0 * EDGE) / h);
+        let extent = Extent { width: room, height: h * scale + 2.0 * EDGE };
+        let enough = scale.is_finite() && scale > 0.0 && steps > 1;
+        enough.then(|| Sheet { camera, window: window.filling(extent, scale), scale, extent })
+    }
+
+    fn legend(&self, sheet: &Sheet, steps: usize) -> Vec<Entry> {
+        let (from, to, unit) = &self.time;
+        let time = |step: usize| from + (to - from) * step as f64 / (steps - 1) as f64;
+        let leaves = |motion: &Bodies| {
+            let seen = |s: &Solid, step| sheet.window.meets(Window::of(s, &sheet.camera, step));
+            (0..steps).find(|&step| !motion.solids.iter().any(|s| seen(s, step)))
+        };
+        let label = |motion: &Bodies| match leaves(motion) {
+            Some(step) => format!("{}; leaves the picture at {:.1} {unit}", motion.label, time(step)),
+            None => motion.label.clone(),
+        };
+        self.motions.iter().map(|motion| Entry::plain(label(motion), motion.style)).collect()
+    }
+
+    fn document(&self, sheet: &Sheet, entries: &[Entry], steps: usize, stride: usize) -> String {
+        let title = wrap(&self.title, BOLD * TITLE_SIZE, WIDTH - 2.0 * MARGIN);
+        let (placed, rows) = layout::place_legend(entries, WIDTH - 2.0 * MARGIN);
+        let legend_top = 8.0 + 20.0 * title.len() as f64;
+        let top = legend_top + f64::from(rows) * LEGEND_ROW + 8.0;
+        let bottom = top + sheet.extent.height;
+        let labels: Vec<String> = placed.iter().map(|place| place.text.clone()).collect();
+        let mut out = opening(&self.title, &format!("Bodies in motion: {}.", labels.join("; ")), bottom + 34.0);
+        // who animates and is not asked to be still sees the moving ones
+        out += "<style>.still{display:none}@media (prefers-reduced-motion:reduce){.moving{display:none}.still{display:inline}}</style>\n";
+        headline(&mut out, &title, MARGIN);
+        placed.iter().for_each(|place| swatch(&mut out, place, (MARGIN, legend_top)));
+        out += &format!(
+            "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\" fill=\"none\" stroke-linejoin=\"round\">\n",
+            px(MARGIN),
+            px(top),
+            px(sheet.extent.width),
+            px(sheet.extent.height)
+        );
+        let shown: Vec<usize> = (0..steps).step_by(stride).collect();
+        let (fixed, turning): (Vec<&Solid>, Vec<&Solid>) = self.ground.iter().partition(|s| s.poses.len() == 1);
+        out += &format!("<g stroke=\"{INK}\" stroke-opacity=\".6\">\n");
+        sheet.draw(&mut out, &fixed, &[0]);
+        sheet.draw(&mut out, &turning, &shown);
+        out += "</g>\n";
+        for motion in &self.motions {
+            let (colour, _) = motion.style.outline();
+            let run = motion.path.iter().map(|&p| sheet.pixels(sheet.camera.project(p))).collect::<Vec<Place>>();
+            let path = Trace::new(&[run], sheet.extent, Coarseness::steps()[2]).path();
+            let dash = motion.style.strokes().last().map_or("", |stroke| stroke.dash);
+            out += &format!(
+                "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"1.6\" stroke-linecap=\"round\" stroke-dasharray=\"{dash}\"/>\n"
+            );
+        }
+        for motion in &self.motions {
+            let (colour, wide) = motion.style.outline();
+            out += &format!("<g stroke=\"{colour}\" stroke-width=\"{wide}\">\n");
+            sheet.draw(&mut out, &motion.solids.iter().rev().collect::<Vec<_>>(), &shown);
+            out += "</g>\n";
+        }
+        out += "</svg>\n";
+        self.clock(&mut out, bottom + 20.0);
+        out + "</svg>\n"
+    }
+
+    /// A point that runs along a line: the time of the motion. All else begins with it.
+    fn clock(&self, out: &mut String, y: f64) {
+        let (from, to, unit) = &self.time;
+        let [from, to] = [from, to].map(|t| format!("{t} {unit}"));
+        let left = MARGIN + width(&from, LABEL_SIZE) + 8.0;
+        let right = WIDTH - MARGIN - width(&to, LABEL_SIZE) - 8.0;
+        let (y, below) = (px(y), px(y + 4.5));
+        *out += &format!(
+            "<g font-size=\"{LABEL_SIZE}\" fill=\"{INK}\"><text x=\"{}\" y=\"{below}\">{from}</text>\
+             <text x=\"{}\" y=\"{below}\" text-anchor=\"end\">{to}</text>\
+             <path d=\"M{l} {y}H{r}\" stroke=\"{INK}\"/><circle class=\"moving\" cx=\"{m}\" cy=\"{y}\" r=\"4\">\
+             <animate id=\"t\" attributeName=\"cx\" values=\"{l};{r}\" dur=\"{PLAY}s\" begin=\"{BEGIN}\" fill=\"freeze\"/></circle>\
+             <circle class=\"still\" cx=\"{m}\" cy=\"{y}\" r=\"4\"/></g>\n",
+            px(MARGIN),
+            px(WIDTH - MARGIN),
+            l = px(left),
+            r = px(right),
+            m = px((left + right) / 2.0)
+        );
+    }
+}
+
+impl Sheet {
+    /// Pixels from the top left corner of the frame.
+    fn pixels(&self, (x, y): Place) -> Place {
+        ((x - self.window.low.0) * self.scale, (self.window.high.1 - y) * self.scale)
+    }
+
+    /// What is seen of solids at a step, as path data of the same commands at every step.
+    fn path(&self, solids: &[&Solid], step: usize) -> String {
+        // what is far outside may lie anywhere outside
+        let near = |(x, y): Place| {
+            let Extent { width: w, height: h } = self.extent;
+            (x.clamp(-w, 2.0 * w), y.clamp(-h, 2.0 * h))
+        };
+        let seen: Vec<_> = solids.iter().map(|s| s.seen(&self.camera, step)).collect();
+        let lines = seen.iter().flat_map(|s| &s.lines);
+        let lines = lines.map(|line| line.iter().map(|&p| near(self.pixels(p))).collect()).collect();
+        let circle = |&((x, y), r): &(Place, f64)| {
+            let ((x, y), r) = (near(self.pixels((x, y))), r * self.scale);
+            let (left, y, r, d) = (px(x - r), px(y), px(r), px(2.0 * r));
+            format!("M{left} {y}a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0-{d} 0")
+        };
+        let circles: String = seen.iter().filter_map(|s| s.circle.as_ref()).map(circle).collect();
+        Trace { lines, dots: Vec::new() }.path() + &circles
+    }
+
+    /// The solids at the steps, or still if there is one only.
+    fn draw(&self, out: &mut String, solids: &[&Solid], steps: &[usize]) {
+        if solids.is_empty() {
+            return;
+        }
+        let still = self.path(solids, steps[steps.len() / 2]);
+        if steps.len() == 1 {
+            *out += &format!("<path d=\"{still}\"/>\n");
+            return;
+        }
+        let values: Vec<String> = steps.iter().map(|&step| self.path(solids, step)).collect();
+        *out += &format!(
+            "<path class=\"still\" d=\"{still}\"/>\n<path class=\"moving\" d=\"{still}\">\
+             <animate attributeName=\"d\" values=\"{}\" dur=\"{PLAY}s\" begin=\"{BEGIN}\" fill=\"freeze\"/></path>\n",
+            values.join(";")
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::solid::Placement;
+    use super::*;
+
+    /// A wheel that rolls along x at some pace, upright or lying.
+    fn wheel(style: Style, pace: f64, upright: bool) -> Bodies {
+        let rim: Vec<Space> = (0..=24)
+            .map(|i| (f64::from(i) / 24.0 * std::f64::consts::TAU).sin_cos())
+            .map(|(s, c)| if upright { [s, 0.0, c] } else { [s, c, 0.0] })
+            .collect();
+        let at = |i: i32| [pace * f64::from(i) / 240.0, 0.0, if upright { 1.0 } else { 0.0 }];
+        let turned = |angle: f64| {
+            let (s, c) = angle.sin_cos();
+            [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]
+        };
+        let pose = |i: i32| Placement { at: at(i), rotation: turned(if upright { at(i)[0] } else { 0.0 }) };
+        let solid = Solid { lines: vec![rim], sphere: None, poses: (0..=240).map(pose).collect() };
+        let ball = Solid { sphere: Some(0.3), ..solid.clone() };
+        Bodies { label: format!("{style:?}"), style, solids: vec![solid, ball], path: (0..=240).map(at).collect() }
+    }
+
+    fn picture(motions: Vec<Bodies>) -> MovingPicture {
+        MovingPicture { title: "Wheels".into(), time: (0.0, 10.0, "s".into()), ground: Vec::new(), motions }
+    }
+
+    /// Values of every animated path.
+    fn animated(svg: &str) -> Vec<Vec<String>> {
+        let document = roxmltree::Document::parse(svg).unwrap();
+        let paths = document.descendants().filter(|node| node.attribute("attributeName") == Some("d"));
+        paths.map(|node| node.attribute("values").unwrap().split(';').map(String::from).collect()).collect()
+    }
+
+    #[test]
+    fn every_pose_has_the_same_commands_within_the_budget() {
+        let styles = [Style::Chetaev, Style::Vakonomic, Style::RemovedConstraint];
+        let motions: Vec<Bodies> = styles.into_iter().map(|style| wheel(style, 5.0, true)).collect();
+        let svg = picture(motions.clone()).to_svg().unwrap();
+        assert!(svg.len() <= BUDGET && !svg.contains("script"), "{} bytes", svg.len());
+        let animated = animated(&svg);
+        assert_eq!(animated.len(), 3);
+        for values in &animated {
+            // lines between poses are straight, which is to be seen where there are few
+            assert!(values.len() > 40, "{} poses", values.len());
+            let commands = |value: &String| value.chars().filter(|c| c.is_alphabetic()).collect::<String>();
+            let numbers = |value: &String| {
+                let separate = value.replace(|c: char| c.is_alphabetic(), " ").replace('-', " -");
+                separate.split_whitespace().count()
+            };
+            assert!(values.iter().all(|v| commands(v) == commands(&values[0]) && numbers(v) == numbers(&values[0])));
+        }
+        // more than fits leaves fewer poses
+        let many = picture(motions.iter().flat_map(|m| vec![m.clone(); 2]).collect()).to_svg().unwrap();
+        assert!(many.len() <= BUDGET, "{} bytes", many.len());
+    }
+
+    #[test]
+    fn who_runs_away_leaves_the_picture_and_the_legend_says_when() {
+        let slow = wheel(Style::Chetaev, 10.0, false);
+        let fast = wheel(Style::Vakonomic, 100.0, false);
+        let svg = picture(vec![slow.clone(), fast]).to_svg().unwrap();
+        // seen from above the frame is from -1 to 11; the centre is at 12 after 1.2 s
+        assert!(svg.contains("Vakonomic; leaves the picture at 1.2 s"), "{:?}", &svg[..1200]);
+        assert!(svg.contains(">Chetaev<"));
+        let near = picture(vec![slow, wheel(Style::Vakonomic, 15.0, false)]).to_svg().unwrap();
+        assert!(!near.contains("leaves"));
+    }
+
+    #[test]
+    fn still_where_nothing_is_to_move() {
+        let svg = picture(vec![wheel(Style::Chetaev, 5.0, true)]).to_svg().unwrap();
+        assert!(svg.contains("prefers-reduced-motion:reduce"));
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let of = |class| document.descendants().filter(|node| node.attribute("class") == Some(class)).count();
+        // the wheel and the clock
+        assert_eq!((of("still"), of("moving")), (2, 2));
+        assert_eq!(picture(Vec::new()).to_svg(), None);
+    }
+}
