@@ -59,6 +59,7 @@
 
 mod charts;
 mod choice;
+mod clock;
 mod comparison;
 mod constants;
 mod discrete_run;
@@ -89,6 +90,7 @@ mod sweep;
 mod table;
 mod trajectory;
 mod trial;
+pub mod words;
 
 pub use decision::{Finding, Section};
 

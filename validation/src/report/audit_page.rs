@@ -9,7 +9,7 @@ use symbolic::Vanishing;
 use crate::audit::{
     Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
-use crate::report::numbers::{enumerate, short};
+use deltaq::words::{enumerate, short};
 use crate::report::{File, Table, fill};
 
 /// Below this `dI/dε` counts as zero: differences of the perturbed action are good to about 1e-9.

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
 use crate::report::files::link;
-use crate::report::numbers::{enumerate, short};
+use deltaq::words::{enumerate, short};
 use crate::report::{File, Table};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
 

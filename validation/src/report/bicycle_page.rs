@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::catalogue;
 use crate::report::linear_page::{pairs, sweep_picture};
-use crate::report::numbers::short;
+use deltaq::words::short;
 use crate::report::{File, Table, fill};
 
 /// Speed or name, real and imaginary part, in 25 digits.

@@ -8,7 +8,7 @@ use mechanics::{Body, Place, Pose, Poses};
 use picture::{Bodies, MovingPicture, Placement, Solid};
 
 use crate::report::File;
-use crate::report::numbers::short;
+use deltaq::words::short;
 use crate::report::pictures::{drawn, style};
 use random::substitution;
 

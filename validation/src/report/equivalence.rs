@@ -12,7 +12,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::catalogue::{self, CLASSICS};
-use crate::report::numbers::short;
+use deltaq::words::short;
 use crate::report::{File, Table};
 
 const DATA: &str = include_str!("../../equivalence/pages/systems.toml");

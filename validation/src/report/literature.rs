@@ -10,7 +10,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::report::equivalence::{Asked, Found};
-use crate::report::numbers::short;
+use deltaq::words::short;
 use crate::report::{File, Table};
 
 const DATA: &str = include_str!("../../equivalence/pages/claims.toml");

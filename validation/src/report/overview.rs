@@ -2,7 +2,7 @@
 
 use deltaq::{Answer, Comparison, Fit, Membership, Verdict};
 
-use crate::report::numbers::{enumerate, precise, short};
+use deltaq::words::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
 use crate::report::{Table, fill, membership};
 use random::substitution;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
-use crate::report::numbers::{enumerate, or_dash, short};
+use deltaq::words::{enumerate, or_dash, short};
 use crate::report::{File, Table, fill};
 use picture::{Axis, Curve, Panel, Picture, Scale, Style};
 use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};

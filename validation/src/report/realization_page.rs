@@ -7,7 +7,7 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
-use crate::report::numbers::short;
+use deltaq::words::short;
 use crate::report::{File, Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use random::parallel;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anyhow::Result;
 
-use crate::report::numbers::{or_dash, short};
+use deltaq::words::{or_dash, short};
 use crate::report::{File, Table};
 use crate::scaling::{Exponent, FROM, Line, Point};
 use picture::{Axis, Curve, Picture, Style};

@@ -6,7 +6,7 @@ use anyhow::Result;
 use deltaq::{Comparison, EquationStyle, derive_at, equations_text};
 
 use crate::report::files::link;
-use crate::report::numbers::{precise, short};
+use deltaq::words::{precise, short};
 use crate::report::{Headline, Table, membership, tables};
 use random::substitution;
 

@@ -8,7 +8,7 @@ use discrete::Composition;
 use integrate::Method;
 use serde_json::{Map, Value, json};
 
-use crate::report::numbers::short;
+use deltaq::words::short;
 use crate::report::{File, Table, fill};
 use crate::stability::{
     Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
