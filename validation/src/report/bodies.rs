@@ -8,8 +8,8 @@ use mechanics::{Body, Place, Pose, Poses};
 use picture::{Bodies, MovingPicture, Placement, Solid};
 
 use crate::report::File;
-use deltaq::words::short;
 use crate::report::pictures::{drawn, style};
+use deltaq::words::short;
 use random::substitution;
 
 /// Steps of a motion: a number with many divisors, as pictures take every second, third, … of them.

@@ -75,4 +75,3 @@ fn which(membership: &Membership) -> String {
         d => format!("dimension {d}"),
     }
 }
-
