@@ -1,0 +1,32 @@
+// Colours, dashes and widths: those of the pictures in the reports (crates/picture/src/style.rs).
+
+const BLUE = "#0072B2";
+const VERMILION = "#D55E00";
+const GREEN = "#009E73";
+const PURPLE = "#CC79A7";
+
+const STYLES = {
+  chetaev: [BLUE, []],
+  vakonomic: [VERMILION, [12, 6]],
+  "vakonomic-costate": [VERMILION, [3, 4]],
+  "removed-constraint": [GREEN, [2, 5]],
+  kappa: [PURPLE, [9, 4, 2, 4]],
+};
+const WIDTHS = { chetaev: 3.2, vakonomic: 2.4, "removed-constraint": 2.6 };
+// Further removals: green in other dashes.
+const FURTHER = [[2, 5], [8, 3, 2, 3], [5, 5], [12, 3]];
+
+// The look of a motion; `further` counts the motions of its formulation before it.
+export function look(formulation, further = 0) {
+  const [colour, dash] = STYLES[formulation] ?? [PURPLE, []];
+  return { colour, dash: further ? FURTHER[further % FURTHER.length] : dash, width: WIDTHS[formulation] ?? 2 };
+}
+
+// A colour of the page's own style.
+export const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+// The swatch of a motion, as SVG.
+export function swatch({ colour, dash, width }) {
+  return `<svg class="swatch" viewBox="0 0 34 10" aria-hidden="true"><path d="M2 5H32" stroke="${colour}"
+    stroke-width="${width}" stroke-dasharray="${dash.join(" ")}" stroke-linecap="${dash[0] === 2 ? "round" : "butt"}"/></svg>`;
+}
