@@ -43,17 +43,18 @@ export class Curves {
     const [group, name] = key.split(/:(.*)/s);
     const { motions, gaps } = this.samples;
     const [tables, series] = [[], []];
+    const reading = key === "gap" ? (x) => 10 ** x : (x) => x;
     const add = (t, values, label, look) => {
       tables.push([t, values]);
       series.push({ label, stroke: look.colour, width: look.width * 0.6, dash: look.dash, points: { show: false },
-        value: (_, x) => (x == null ? "–" : Number(x).toPrecision(5)) });
+        value: (_, x) => (x == null ? "–" : reading(x).toPrecision(4)) });
     };
     if (key === "gap") {
       for (const { t, gap, limit, second } of gaps) {
         const { look } = motions.find((motion) => motion.label === second);
-        add(t, gap.map((x) => (x > 0 ? x : null)), second, look);
+        add(t, gap.map(logarithm), second, look);
         if (limit.every((x) => !Number.isFinite(x))) continue;
-        add(t, limit.map((x) => (x > 0 && Number.isFinite(x) ? x : null)), "has to pass", { colour: look.colour + "77", dash: [2, 3], width: 1.6 });
+        add(t, limit.map(logarithm), "has to pass", { colour: `${look.colour}99`, dash: [2, 3], width: 1.6 });
       }
       return { tables, series };
     }
@@ -78,40 +79,36 @@ export class Curves {
     const options = {
       width: this.place.clientWidth, height: this.height(), padding: [10, 12, 0, 0],
       cursor: { drag: { setScale: false, x: false, y: false }, y: false, points: { size: 6 } },
-      scales: { x: { time: false, range: [this.samples.start, this.samples.end] }, y: log ? { distr: 3 } : {} },
-      axes: [{ ...axis, size: 34 }, { ...axis, size: 62, values: (_, ticks) => ticks.map((x) => (x == null ? "" : label(x))) }],
+      scales: { x: { time: false, range: [this.samples.start, this.samples.end] } },
+      axes: [{ ...axis, size: 28 }, { ...axis, size: 56, space: 22, incrs: log ? [1, 2, 3, 5, 10, 20] : undefined,
+        values: (_, ticks) => ticks.map((x) => (log ? `1e${x}` : label(x))) }],
       series: [{ label: "t", value: (_, x) => (x == null ? "–" : `${x.toFixed(3)} s`) }, ...series],
       legend: { live: true },
-      hooks: { draw: [(plot) => this.line(plot)], ready: [(plot) => this.listen(plot)] },
+      hooks: { ready: [(plot) => this.ready(plot)] },
     };
     this.plot = new uPlot(options, uPlot.join(tables), this.place);
   }
 
   height() {
-    return Math.max(140, this.place.clientHeight - 30 || 0);
+    const legend = this.place.querySelector(".u-legend")?.offsetHeight ?? 30;
+    return Math.max(110, this.place.clientHeight - legend);
   }
 
   resize() {
-    this.plot?.setSize({ width: this.place.clientWidth, height: this.height() });
+    if (this.plot && this.place.clientWidth) this.plot.setSize({ width: this.place.clientWidth, height: this.height() });
   }
 
   at(t) {
     this.t = t;
-    this.plot?.redraw(false, false);
+    // the cursor of the plot, under which its legend has the values
+    this.plot?.setCursor({ left: this.plot.valToPos(t, "x"), top: 0 });
   }
 
-  line(plot) {
-    if (this.t === undefined) return;
-    const x = plot.valToPos(this.t, "x", true);
-    const { top, height } = plot.bbox;
-    plot.ctx.save();
-    plot.ctx.strokeStyle = ink("ink");
-    plot.ctx.lineWidth = devicePixelRatio;
-    plot.ctx.beginPath();
-    plot.ctx.moveTo(x, top);
-    plot.ctx.lineTo(x, top + height);
-    plot.ctx.stroke();
-    plot.ctx.restore();
+  ready(plot) {
+    this.plot = plot;
+    this.listen(plot);
+    this.resize();
+    if (this.t !== undefined) this.at(this.t);
   }
 
   listen(plot) {
@@ -127,6 +124,8 @@ export class Curves {
     plot.over.addEventListener("pointerup", () => (plot.over.onpointermove = null));
   }
 }
+
+const logarithm = (x) => (x > 0 && Number.isFinite(x) ? Math.log10(x) : null);
 
 function label(x) {
   const size = Math.abs(x);

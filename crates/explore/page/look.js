@@ -22,8 +22,15 @@ export function look(formulation, further = 0) {
   return { colour, dash: further ? FURTHER[further % FURTHER.length] : dash, width: WIDTHS[formulation] ?? 2 };
 }
 
-// A colour of the page's own style.
-export const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const probe = document.createElement("i");
+probe.hidden = true;
+document.body.append(probe);
+
+// A colour of the page's own style, as a canvas takes it: one that depends on light and dark is resolved.
+export function ink(name) {
+  probe.style.color = `var(--${name})`;
+  return getComputedStyle(probe).color;
+}
 
 // The swatch of a motion, as SVG.
 export function swatch({ colour, dash, width }) {

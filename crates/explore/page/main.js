@@ -144,7 +144,8 @@ async function motions(glance, anew) {
   }
 }
 
-let drawn = 0; // answers shown, for who measures
+let drawn = 0;
+let first;
 
 function show(reply, anew) {
   const { answer } = reply;
@@ -165,7 +166,8 @@ function show(reply, anew) {
     say(answer.motions.map(({ label, refused }) => `${label}: ${refused}`).join(" "), true);
   }
   if (anew || !element("legend").matches(":focus-within")) legend(answer.motions);
-  window.explored = { answer, milliseconds: reply.milliseconds, drawn: ++drawn, samples };
+  // for tests and for who looks behind the page
+  window.explored = { answer, milliseconds: reply.milliseconds, drawn: ++drawn, samples, first: (first ??= performance.now()) };
 }
 
 // What takes longer, in the other worker.

@@ -128,8 +128,8 @@ export class Stage {
     context.lineJoin = "round";
     const view = this.projection();
     const pen = { context, view, ratio };
-    const groundRow = this.samples.rowAt(t);
-    for (const [pose, body] of this.samples.ground(groundRow)) draw(pen, pose, body, ink("ground"), 1, ink("floor"));
+    const [line, floor] = [ink("ground"), ink("floor")];
+    for (const [pose, body] of this.samples.ground(this.samples.rowAt(t))) draw(pen, pose, body, line, 1, floor);
     for (const motion of this.samples.motions) this.trail(pen, motion, t);
     for (const motion of this.samples.motions) {
       const { colour, width: wide } = motion.look;

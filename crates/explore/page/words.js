@@ -4,7 +4,12 @@ import katex from "katex";
 
 const escape = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
-const math = (latex, displayMode) => katex.renderToString(latex, { output: "mathml", displayMode, throwOnError: false });
+// Functions stand apart from what is before and behind them also where no font for mathematics is there to say so.
+const spaced = (mathml) =>
+  mathml.replace(/<mi>([a-z]{2,})<\/mi><mo>\u2061<\/mo>/g, '<mspace width=".17em"/>$&<mspace width=".17em"/>');
+
+const math = (latex, displayMode) =>
+  spaced(katex.renderToString(latex, { output: "mathml", displayMode, throwOnError: false }));
 
 function inline(text) {
   const parts = text.split(/(\$[^$]+\$|\*\*[^*]+\*\*)/);
