@@ -12,6 +12,7 @@ const GREEK = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", theta: "θ", 
 
 // A name as it is read: Greek letters, primes, an index below.
 export function readable(name) {
+  if (name.startsWith("P0_")) return `P<sub>${readable(name.slice(3))}</sub>`;
   const [, stem, index, primes] = /^(.*?)_?(\d*)('*)$/.exec(name);
   const [head, ...rest] = stem.split("_");
   const [, word, digits] = /^(\D*)(\d*)$/.exec(head) ?? [null, head, ""];

@@ -69,17 +69,23 @@ export class Curves {
   }
 
   draw(key) {
+    const { tables, series } = key ? this.data(key) : { tables: [], series: [] };
+    const { start, end } = this.samples;
+    const looks = JSON.stringify([key, start, end, series.map(({ label, stroke }) => [label, stroke]), ink("ink")]);
+    if (this.plot && looks === this.looks) {
+      this.plot.setData(uPlot.join(tables));
+      return this.at(this.t);
+    }
+    this.looks = looks;
     this.plot?.destroy();
     this.plot = null;
-    if (!key) return;
-    const { tables, series } = this.data(key);
     if (!tables.length) return;
     const axis = { stroke: ink("ink"), grid: { stroke: ink("line"), width: 1 }, ticks: { stroke: ink("line") }, font: "12px system-ui" };
     const log = key === "gap";
     const options = {
       width: this.place.clientWidth, height: this.height(), padding: [10, 12, 0, 0],
       cursor: { drag: { setScale: false, x: false, y: false }, y: false, points: { size: 6 } },
-      scales: { x: { time: false, range: [this.samples.start, this.samples.end] } },
+      scales: { x: { time: false, range: [start, end] } },
       axes: [{ ...axis, size: 28 }, { ...axis, size: 56, space: 22, incrs: log ? [1, 2, 3, 5, 10, 20] : undefined,
         values: (_, ticks) => ticks.map((x) => (log ? `1e${x}` : label(x))) }],
       series: [{ label: "t", value: (_, x) => (x == null ? "–" : `${x.toFixed(3)} s`) }, ...series],
@@ -90,8 +96,8 @@ export class Curves {
   }
 
   height() {
-    const legend = this.place.querySelector(".u-legend")?.offsetHeight ?? 30;
-    return Math.max(110, this.place.clientHeight - legend);
+    // two lines for the legend, whose values are of changing length
+    return Math.max(110, this.place.clientHeight - 44);
   }
 
   resize() {

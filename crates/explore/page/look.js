@@ -12,14 +12,16 @@ const STYLES = {
   "removed-constraint": [GREEN, [2, 5]],
   kappa: [PURPLE, [9, 4, 2, 4]],
 };
-const WIDTHS = { chetaev: 3.2, vakonomic: 2.4, "removed-constraint": 2.6 };
+// Of paths and of outlines: narrow ones lie on wide ones, so that motions which agree are all seen.
+const WIDTHS = { chetaev: [4.4, 4], vakonomic: [2.6, 2.4], "removed-constraint": [2.6, 1.2] };
 // Further removals: green in other dashes.
 const FURTHER = [[2, 5], [8, 3, 2, 3], [5, 5], [12, 3]];
 
 // The look of a motion; `further` counts the motions of its formulation before it.
 export function look(formulation, further = 0) {
   const [colour, dash] = STYLES[formulation] ?? [PURPLE, []];
-  return { colour, dash: further ? FURTHER[further % FURTHER.length] : dash, width: WIDTHS[formulation] ?? 2 };
+  const [width, outline] = WIDTHS[formulation] ?? [2, 1.2];
+  return { colour, dash: further ? FURTHER[further % FURTHER.length] : dash, width, outline };
 }
 
 const probe = document.createElement("i");

@@ -113,12 +113,15 @@ function legend(answers = []) {
       state.on = state.on.filter((other) => other !== label).concat(box.checked ? [label] : []);
       state.off = state.off.filter((other) => other !== label).concat(box.checked ? [] : [label]);
       remember();
-      legend();
+      row.classList.toggle("off", !box.checked);
       motions(false, false);
     });
     return row;
   });
+  // whoever has the focus on one of them keeps it
+  const focused = [...element("legend").querySelectorAll("input")].indexOf(document.activeElement);
   element("legend").replaceChildren(...labels);
+  labels[focused]?.querySelector("input").focus();
 }
 
 let resting;
@@ -165,7 +168,7 @@ function show(reply, anew) {
   if (!answer.motions.some(({ refused }) => !refused)) {
     say(answer.motions.map(({ label, refused }) => `${label}: ${refused}`).join(" "), true);
   }
-  if (anew || !element("legend").matches(":focus-within")) legend(answer.motions);
+  if (anew || answer.motions.some(({ error }) => error !== null)) legend(answer.motions);
   // for tests and for who looks behind the page
   window.explored = { answer, milliseconds: reply.milliseconds, drawn: ++drawn, samples, first: (first ??= performance.now()) };
 }

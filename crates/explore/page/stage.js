@@ -77,7 +77,7 @@ export class Stage {
     for (const [pose, body] of this.samples.ground(0)) put(ground, pose, body);
     const windows = this.samples.motions.map((motion) => {
       const w = empty();
-      const stride = Math.max(1, Math.floor(motion.rows / 60));
+      const stride = Math.max(1, Math.floor(motion.rows / 24));
       for (let row = 0; row < motion.rows; row += stride) {
         for (const [pose, body] of motion.poses(row)) put(w, pose, body);
       }
@@ -132,8 +132,8 @@ export class Stage {
     for (const [pose, body] of this.samples.ground(this.samples.rowAt(t))) draw(pen, pose, body, line, 1, floor);
     for (const motion of this.samples.motions) this.trail(pen, motion, t);
     for (const motion of this.samples.motions) {
-      const { colour, width: wide } = motion.look;
-      for (const [pose, body] of [...motion.posesAt(t)].reverse()) draw(pen, pose, body, colour, wide * 0.75, `${colour}2e`);
+      const { colour, outline } = motion.look;
+      for (const [pose, body] of [...motion.posesAt(t)].reverse()) draw(pen, pose, body, colour, outline, `${colour}2e`);
     }
     if (eased) requestAnimationFrame(() => this.draw());
   }

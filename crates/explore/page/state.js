@@ -14,11 +14,14 @@ export function encode() {
   return base64.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-// Takes over what a fragment says; one that says nothing readable changes nothing and gives false.
+// Takes over what a fragment says, which may be the name of a scene only, scene=NAME; one that says nothing
+// readable changes nothing and gives false.
 export function decode(fragment, otherwise = {}) {
-  let said = {};
+  const named = /^#scene=([\w-]+)$/.exec(fragment);
+  let said = named ? { scene: named[1] } : {};
   let readable = true;
   try {
+    if (named) fragment = "";
     const base64 = fragment.replace(/^#/, "").replaceAll("-", "+").replaceAll("_", "/");
     const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
     if (bytes.length) said = JSON.parse(new TextDecoder().decode(bytes));

@@ -40,7 +40,7 @@ onmessage = ({ data: { module, id, question } }) => {
   try {
     reply = ask(question);
   } catch (error) {
-    // what it said last, if it came to that; it is started anew, as its memory is not to be trusted
+    // what it says of that, if anything; it is started anew, as its memory is not to be trusted
     let said = "";
     try {
       said = text();

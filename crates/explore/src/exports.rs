@@ -24,9 +24,11 @@ pub fn question_at(length: usize) -> usize {
     })
 }
 
-/// Answers the question.
+/// Answers the question. Where it breaks off, the message is left as the text.
 #[wasm_bindgen]
 pub fn ask() {
+    ANSWER.set(Answer::default());
+    std::panic::set_hook(Box::new(|panic| ANSWER.set(Answer { text: panic.to_string(), numbers: Vec::new() })));
     let question = QUESTION.with_borrow(|bytes| String::from_utf8_lossy(bytes).into_owned());
     ANSWER.set(answer(&question));
 }
