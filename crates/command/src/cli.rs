@@ -102,6 +102,8 @@ pub enum Command {
     Linearize(LinearizeArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
+    /// Write a page that explores scenes in a browser: sliders, bodies in motion, verdicts; without a server.
+    Explore(ExploreArguments),
     /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
     /// Put the claims T1 to T14 to the test on random systems.
@@ -231,6 +233,16 @@ pub enum Searched {
 
 fn formulations() -> PossibleValuesParser {
     PossibleValuesParser::new(deltaq::FORMULATIONS.iter().map(|formulation| formulation.name))
+}
+
+/// `deltaq explore`.
+#[derive(Args, Debug)]
+pub struct ExploreArguments {
+    /// The scene that it opens with: a built-in name, the path of a scene file, or `-` for standard input.
+    pub scene: Option<String>,
+    /// File for the page.
+    #[arg(long, value_name = "FILE", default_value = "explore.html")]
+    pub out: PathBuf,
 }
 
 /// `deltaq prove`.

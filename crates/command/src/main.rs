@@ -8,6 +8,7 @@ mod cli;
 mod columns;
 mod compare_command;
 mod ensemble_command;
+mod explore_command;
 mod linearize_command;
 mod main_job;
 mod prove_command;
@@ -90,6 +91,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Show(arguments)) => show_command::run(&arguments)?,
         Some(Command::Linearize(arguments)) => linearize_command::run(&arguments)?,
         Some(Command::Compare(arguments)) => compare_command::run(&arguments, quiet)?,
+        Some(Command::Explore(arguments)) => explore_command::run(&arguments)?,
         Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet)?,
         Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments, quiet)?,

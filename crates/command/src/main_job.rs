@@ -145,6 +145,8 @@ impl Results {
             let section = referees_section(&mut report.comparison, casadi.as_ref())?;
             if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
                 page.text += &section;
+                let name = &report.comparison.scene.name;
+                page.text += &format!("\nWith sliders, in a browser: [this scene](../explore.html#scene={name}).\n");
                 if asked(Section::ErrorVsTime) {
                     page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
                 }

@@ -5,6 +5,7 @@ mod commands;
 mod compare_command;
 mod documents;
 mod ensemble_command;
+mod explore_command;
 mod linearize_command;
 mod output;
 mod prove_command;

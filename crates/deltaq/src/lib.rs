@@ -59,6 +59,7 @@
 
 mod charts;
 mod choice;
+mod clock;
 mod code;
 mod comparison;
 mod constants;
@@ -90,6 +91,7 @@ mod sweep;
 mod table;
 mod trajectory;
 mod trial;
+pub mod words;
 
 pub use decision::{Finding, Section};
 pub use symbolic::Language;

@@ -1,7 +1,5 @@
 //! One motion: equations and start data in, a trajectory with its error estimate out.
 
-use std::time::Instant;
-
 use equations::{Compiled, Equations, Outputs};
 use integrate::{Method, ProjectionReport, Work};
 use mechanics::ConstantsRule;
@@ -9,6 +7,7 @@ use scene::Scene;
 
 use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::removals;
+use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::method::Chosen;
@@ -168,14 +167,14 @@ pub fn solve(
     constants: &ConstantsRule,
     settings: &Settings,
 ) -> Result<Motion, SolveError> {
-    let clock = Instant::now();
+    let clock = Clock::start();
     let mut prepared = Prepared::new(setting, equations, settings)?;
-    let compile = clock.elapsed().as_secs_f64();
-    let clock = Instant::now();
+    let compile = clock.seconds();
+    let clock = Clock::start();
     resolve(&mut prepared, constants, settings)?;
     let (runs, chosen) = run(setting, &mut prepared, settings)?;
     let Runs { trajectories, changes, ending, work, projection, fallbacks } = runs;
-    let seconds = Seconds { derive: 0.0, compile, integrate: clock.elapsed().as_secs_f64() };
+    let seconds = Seconds { derive: 0.0, compile, integrate: clock.seconds() };
     let motion = Motion::of(prepared, ending, trajectories, seconds);
     let mut motion = Motion { work, projection, charts: changes, method: Some(chosen), ..motion };
     motion.form.fallbacks = fallbacks;
@@ -242,9 +241,9 @@ pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Resu
 /// # Errors
 /// As [`solve_choice`].
 pub fn solve_from(setting: Setting, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
-    let clock = Instant::now();
+    let clock = Clock::start();
     let (equations, chosen) = derive_in_form(setting.system, setting.start, choice, settings.form)?;
-    let derive = clock.elapsed().as_secs_f64();
+    let derive = clock.seconds();
     let mut motion = solve(setting, equations, &choice.constants, settings)?;
     (motion.seconds.derive, motion.form.chosen) = (derive, chosen);
     Ok(motion)

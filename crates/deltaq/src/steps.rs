@@ -1,11 +1,10 @@
 //! One motion by a discrete principle, in equal steps.
 
-use std::time::Instant;
-
 use discrete::{Composition, Discrete, RemovedStart};
 use integrate::{StopCause, Work};
 use scene::Scene;
 
+use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::discrete_run::{DiscreteRun, PassedOver};
 use crate::trajectory::Trajectory;
@@ -92,13 +91,13 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
             return Err(SolveError::Breakpoint { t, step: scene.duration / count as f64 });
         }
     }
-    let clock = Instant::now();
+    let clock = Clock::start();
     let equations = derive(&scene.system, choice)?;
-    let derive = clock.elapsed().as_secs_f64();
-    let clock = Instant::now();
+    let derive = clock.seconds();
+    let clock = Clock::start();
     let mut prepared = Prepared::new(setting(scene), equations, settings)?;
-    let compile = clock.elapsed().as_secs_f64();
-    let clock = Instant::now();
+    let compile = clock.seconds();
+    let clock = Clock::start();
     resolve(&mut prepared, &choice.constants, settings)?;
     let discrete = discrete_of(scene, choice, &prepared.constants)?.composed(steps.composition);
     let run = |count: usize| {
@@ -110,7 +109,7 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
         })
     };
     let (kept, looser) = (run(count)?, run(count.div_ceil(2))?);
-    let integrate = clock.elapsed().as_secs_f64();
+    let integrate = clock.seconds();
     // a motion ends where the first of its runs ends, for that run's reason
     let before = (kept.end() - looser.end()) * direction > 0.0;
     let ending = match (&kept.stop, &looser.stop) {

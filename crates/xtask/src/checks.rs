@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{dependencies, lint, python, sources};
+use crate::{dependencies, explore, lint, python, sources};
 
 /// One thing that must hold.
 pub(crate) struct Check {
@@ -82,6 +82,12 @@ pub(crate) fn all() -> Vec<Check> {
             "the Python module does what its tests say",
             "pip install ./crates/python, then pytest in that folder; it needs Python 3.11 or newer with venv",
             python::check,
+        ),
+        check(
+            "page",
+            "the page to explore scenes works in a browser and says what the native program says",
+            "cargo xtask explore, then commit reports/explore.html; pictures are in target/explore/pictures",
+            explore::check,
         ),
         check(
             "reports",

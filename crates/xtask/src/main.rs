@@ -2,6 +2,7 @@
 
 mod checks;
 mod dependencies;
+mod explore;
 mod lint;
 mod python;
 mod sources;
@@ -22,6 +23,9 @@ fn main() -> ExitCode {
     let checks = checks::all();
     if arguments == ["engine"] {
         return checks::chore(checks::engine());
+    }
+    if arguments == ["explore"] {
+        return checks::chore(explore::write());
     }
     if arguments == ["wheel"] {
         return checks::chore(python::wheel());
@@ -57,6 +61,7 @@ fn list(checks: &[checks::Check]) {
         println!("  {:<10} {}", check.name, check.about);
     }
     println!("\n  {:<10} no check: builds wheel and source distribution of the Python module", "wheel");
+    println!("\n  {:<10} no check: builds the page to explore scenes, writes reports/explore.html", "explore");
     println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
     println!(
         "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look",

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
 use crate::report::files::link;
-use crate::report::numbers::{enumerate, short};
 use crate::report::{File, Table};
+use deltaq::words::{enumerate, short};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
 
 /// The error at which formulations are compared in the headline.

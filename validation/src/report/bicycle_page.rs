@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use crate::catalogue;
 use crate::report::linear_page::{pairs, sweep_picture};
-use crate::report::numbers::short;
 use crate::report::{File, Table, fill};
+use deltaq::words::short;
 
 /// Speed or name, real and imaginary part, in 25 digits.
 const REFERENCE: &str = include_str!("../../linear/bicycle.csv");

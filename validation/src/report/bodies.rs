@@ -7,8 +7,8 @@ use deltaq::{Comparison, Ending};
 use scenery::Drawn;
 
 use crate::report::File;
-use crate::report::numbers::short;
 use crate::report::pictures::{drawn, style};
+use deltaq::words::short;
 use random::substitution;
 
 /// The bodies of `[view]` under the formulations, but not under the control; none for a scene without bodies.

@@ -12,8 +12,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::catalogue::{self, CLASSICS};
-use crate::report::numbers::short;
 use crate::report::{File, Table};
+use deltaq::words::short;
 
 const DATA: &str = include_str!("../../equivalence/pages/systems.toml");
 

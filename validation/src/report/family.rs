@@ -4,7 +4,7 @@ use anyhow::Result;
 use deltaq::{Answer, Comparison, Ensemble, EnsembleOptions, MemberMotion, Settings, Verdict};
 use picture::{Curve, Style};
 
-use crate::report::numbers::short;
+use deltaq::words::short;
 
 /// The last `s`, and members up to there after the first.
 const END: f64 = 1.5;

@@ -7,7 +7,7 @@ use linear::{Eigenvalue, Sweep, SweepPoint};
 use nalgebra::Complex;
 
 use crate::report::Table;
-use crate::report::numbers::{enumerate, precise, short};
+use deltaq::words::{enumerate, precise, short};
 use picture::{Axis, Curve, Panel, Picture, Style};
 
 /// What was linearized, a table with one line a value, and where stability changes.

@@ -10,8 +10,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::report::equivalence::{Asked, Found};
-use crate::report::numbers::short;
 use crate::report::{File, Table};
+use deltaq::words::short;
 
 const DATA: &str = include_str!("../../equivalence/pages/claims.toml");
 

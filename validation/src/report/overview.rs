@@ -2,9 +2,9 @@
 
 use deltaq::{Answer, Comparison, Fit, Membership, Verdict};
 
-use crate::report::numbers::{enumerate, precise, short};
 use crate::report::tables::verdict_words;
 use crate::report::{Table, fill, membership};
+use deltaq::words::{enumerate, precise, short};
 use random::substitution;
 
 /// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.

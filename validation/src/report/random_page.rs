@@ -5,8 +5,8 @@ use std::fmt::Write;
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
-use crate::report::numbers::{enumerate, or_dash, short};
 use crate::report::{File, Table, fill};
+use deltaq::words::{enumerate, or_dash, short};
 use picture::{Axis, Curve, Panel, Picture, Style};
 use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
 

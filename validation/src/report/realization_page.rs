@@ -7,8 +7,8 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::catalogue;
-use crate::report::numbers::short;
 use crate::report::{File, Table, fill};
+use deltaq::words::short;
 use picture::{Axis, Curve, Picture, Style};
 use random::parallel;
 use random::realization::{Realization, distance, realize, realize_removal, with_kappa};

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use anyhow::Result;
 
-use crate::report::numbers::{or_dash, short};
 use crate::report::{File, Table};
 use crate::scaling::{Exponent, FROM, Line, Point};
+use deltaq::words::{or_dash, short};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Largest exponents that are asked for: of one right-hand side, and of the derivation.

@@ -6,8 +6,8 @@ use anyhow::Result;
 use deltaq::{Comparison, EquationStyle, derive_at, equations_text};
 
 use crate::report::files::link;
-use crate::report::numbers::{precise, short};
 use crate::report::{Headline, Table, membership, tables};
+use deltaq::words::{precise, short};
 use random::substitution;
 
 /// The whole page, in Markdown.

@@ -8,11 +8,11 @@ use discrete::Composition;
 use integrate::Method;
 use serde_json::{Map, Value, json};
 
-use crate::report::numbers::short;
 use crate::report::{File, Table, fill};
 use crate::stability::{
     Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
 };
+use deltaq::words::short;
 use picture::{Axis, Curve, Picture, Style};
 
 /// Cases that are drawn, with the formulation that is.

@@ -3,8 +3,8 @@
 use anyhow::Result;
 use deltaq::{Comparison, Ending, Pair, Verdict, error_estimate, setting};
 
-use crate::report::headline::{Headline, rows};
-use crate::report::numbers::{or_dash, short};
+use deltaq::words::{Headline, rows};
+use deltaq::words::{or_dash, short};
 use picture::{Axis, Curve, Picture, Style};
 
 /// Rows of the plot.

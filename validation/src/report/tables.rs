@@ -4,7 +4,7 @@ use anyhow::Result;
 use deltaq::{ChartChange, Comparison, Ending, Pair, Verdict};
 
 use crate::report::Table;
-use crate::report::numbers::{enumerate, or_dash, precise, short};
+use deltaq::words::{enumerate, or_dash, precise, short};
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;

@@ -1,12 +1,11 @@
 //! Members integrated and read off.
 
-use std::time::Instant;
-
 use equations::{Compiled, Outputs};
 
 use super::run::Outcome;
 use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
+use crate::clock::Clock;
 use crate::error_estimate::Differences;
 use crate::metric::subtract;
 use crate::single_run::outputs;
@@ -51,9 +50,9 @@ impl Ensemble {
         times: &[f64],
         options: &EnsembleOptions,
     ) -> (Vec<Result<MemberMotion, SolveError>>, f64) {
-        let begin = Instant::now();
+        let begin = Clock::start();
         let runs = self.run(members, times, options);
-        let seconds = begin.elapsed().as_secs_f64();
+        let seconds = begin.seconds();
         let (compiled, metric) = (&self.prepared.compiled, &self.metric);
         let names: Vec<String> = self.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let read = shared(options.threads, members.len(), 1, |take| {

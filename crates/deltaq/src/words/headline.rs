@@ -3,11 +3,11 @@
 //! Everything follows from the rows of the table of pairs, those of the control left out: no sentence is
 //! about more motions than its rows are.
 
-use deltaq::{Comparison, Pair, Verdict, formulation};
 use equations::Role;
 
-use crate::report::membership;
-use crate::report::numbers::{enumerate, precise, short};
+use super::decision;
+use super::numbers::{enumerate, precise, short};
+use crate::{CERTAINTY, Comparison, Pair, Verdict, formulation};
 
 /// Three answers, each in a few sentences.
 pub struct Headline {
@@ -23,7 +23,7 @@ impl Headline {
     /// Of what has been compared so far.
     pub fn of(comparison: &Comparison) -> Headline {
         let verdict = [verdicts(comparison), without_motion(comparison)].concat().join(" ");
-        let sure: Vec<String> = membership::sentences(comparison).into_iter().chain(errors(comparison)).collect();
+        let sure: Vec<String> = decision::sentences(comparison).into_iter().chain(errors(comparison)).collect();
         Headline { verdict, why: why(comparison).join(" "), sure: sure.join(" ") }
     }
 }
@@ -38,7 +38,7 @@ fn is_in_table(comparison: &Comparison, run: usize) -> bool {
 }
 
 /// The pairs without the control.
-pub(crate) fn rows(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
+pub fn rows(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
     comparison.pairs.iter().filter(|p| is_in_table(comparison, p.first) && is_in_table(comparison, p.second))
 }
 
@@ -181,6 +181,5 @@ fn errors(comparison: &Comparison) -> Option<String> {
     let estimates = rows(comparison).flat_map(|p| p.gap.estimates);
     let largest =
         estimates.fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| if b > a || b.is_nan() { b } else { a })))?;
-    let certainty = deltaq::CERTAINTY;
-    Some(format!("Error estimates: at most {}; a gap counts from {certainty} times the sum of two.", short(largest)))
+    Some(format!("Error estimates: at most {}; a gap counts from {CERTAINTY} times the sum of two.", short(largest)))
 }

@@ -1,7 +1,7 @@
 //! Numbers as readers like them.
 
 /// Few digits: `0.123`, `12.3`, `1.2e-7`; `0` for zero.
-pub(crate) fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     if x == 0.0 {
         "0".into()
     } else if !x.is_finite() {
@@ -16,7 +16,7 @@ pub(crate) fn short(x: f64) -> String {
 }
 
 /// Five significant digits.
-pub(crate) fn precise(x: f64) -> String {
+pub fn precise(x: f64) -> String {
     if x == 0.0 {
         "0".into()
     } else if (0.001..10_000.0).contains(&x.abs()) {
@@ -28,12 +28,12 @@ pub(crate) fn precise(x: f64) -> String {
 }
 
 /// A number or a dash.
-pub(crate) fn or_dash(x: Option<f64>) -> String {
+pub fn or_dash(x: Option<f64>) -> String {
     x.map_or("–".into(), short)
 }
 
 /// `a`, `a and b`, `a, b and c`.
-pub(crate) fn enumerate(items: &[String]) -> String {
+pub fn enumerate(items: &[String]) -> String {
     match items {
         [] => "none".into(),
         [one] => one.clone(),

@@ -1,0 +1,105 @@
+//! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
+
+use super::numbers::{precise, short};
+use crate::{Answer, Comparison, Decided, Membership};
+
+/// Sentences for the head of the page of a scene, about multipliers and Chetaev's motion.
+pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
+    let Some(outcome) = comparison.membership() else { return Vec::new() };
+    let membership = match outcome {
+        Err(error) => return vec![format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}.")],
+        Ok(membership) => membership,
+    };
+    let mut sentences = vec![sentence(membership)];
+    sentences.extend(least_gap(comparison, &membership.answer()));
+    sentences
+}
+
+/// The answer for Chetaev's motion and the vakonomic family, in a sentence.
+pub fn sentence(membership: &Membership) -> String {
+    let reason = reason(membership);
+    match membership.answer() {
+        Answer::NoneProved { .. } | Answer::None { .. } => {
+            format!("No μ₀ makes the vakonomic motion Chetaev's: {reason}.")
+        }
+        Answer::Undecided => format!("Whether some μ₀ gives Chetaev's motion is undecided: {reason}."),
+        Answer::SomeProved | Answer::Some { .. } => {
+            format!("With {} the vakonomic motion is the Chetaev motion: {reason}.", constants(membership, "μ₀"))
+        }
+    }
+}
+
+/// Which families have which motions: family, motion, constants and why, in Markdown.
+pub fn decisions(comparison: &Comparison) -> Vec<[String; 4]> {
+    let row = |decided: &Decided| {
+        let [family, curve] = [decided.family, decided.curve].map(|i| &comparison.runs[i].choice);
+        let c = if family.removal.is_some() { "P(t₀)" } else { "μ₀" };
+        let (which, reason) = match &decided.outcome {
+            Err(error) => ("undecided".into(), error.to_string()),
+            Ok(membership) => match membership.answer() {
+                Answer::NoneProved { .. } | Answer::None { .. } => (format!("**no** {c}"), reason(membership)),
+                Answer::SomeProved | Answer::Some { .. } => (constants(membership, c), reason(membership)),
+                Answer::Undecided => ("undecided".into(), reason(membership)),
+            },
+        };
+        [family.label.clone(), curve.label.clone(), which, reason]
+    };
+    comparison.decided.iter().map(row).collect()
+}
+
+/// The set of values of the constants `c` that was found.
+fn constants(membership: &Membership, c: &str) -> String {
+    let set = &membership.decision.set;
+    let point: Vec<String> = set.point.iter().map(|c| precise(*c)).collect();
+    match set.dimension() {
+        0 => format!("{c} = ({})", point.join(", ")),
+        d if d == membership.decision.constants.len() => format!("every {c}"),
+        d => format!("every {c} of a set of dimension {d} around ({})", point.join(", ")),
+    }
+}
+
+/// Why the answer is what it is.
+fn reason(membership: &Membership) -> String {
+    let decision = &membership.decision;
+    let part = short(decision.least / decision.acceleration);
+    let mismatch = format!("the least mismatch of accelerations is {part} of the motion's own");
+    match membership.answer() {
+        Answer::NoneProved { order } => format!("proved (order {order}); {mismatch}"),
+        Answer::None { unproved } => {
+            format!("{mismatch}{}; there is no proof, since {unproved}", up_to(decision.until))
+        }
+        Answer::SomeProved => {
+            membership.section.as_ref().map_or("proved by ranks that grow no more".into(), |section| {
+                format!("an identity, ({}), for all starts", section.expressions.join(", "))
+            })
+        }
+        Answer::Some { order } => how_far(membership, order),
+        Answer::Undecided => format!("round-off hides it, {mismatch}{}", up_to(decision.until)),
+    }
+}
+
+/// Up to when the numbers were judged, where that is not the end.
+fn up_to(until: Option<f64>) -> String {
+    until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too loud", precise(t)))
+}
+
+/// What a search over `μ₀` leaves of the gap, where there is none that leaves nothing.
+fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
+    if matches!(answer, Answer::SomeProved | Answer::Some { .. }) {
+        return None;
+    }
+    let (run, target) = (comparison.run("vakonomic")?, comparison.run("chetaev")?);
+    let fitted = comparison.fits.iter().find(|f| f.run == run && f.target == target)?.fitted.as_ref()?;
+    let constants: Vec<String> = fitted.constants.iter().map(|(_, c)| precise(*c)).collect();
+    let (constants, gap) = (constants.join(", "), short(fitted.gap.largest));
+    Some(format!("The least gap that a search found is {gap}, at μ₀ = ({constants})."))
+}
+
+/// How far it was looked, for a yes that is not proved.
+pub fn how_far(membership: &Membership, order: Option<usize>) -> String {
+    let decision = &membership.decision;
+    let part = decision.least.max(decision.noise) / decision.acceleration;
+    let part =
+        if part < 1.0 { format!("to 1e{:.0}{}", part.log10().ceil(), up_to(decision.until)) } else { "at rest".into() };
+    order.map_or(part.clone(), |order| format!("through order {order} and {part}"))
+}

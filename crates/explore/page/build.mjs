@@ -1,0 +1,46 @@
+// node build.mjs PROGRAM.wasm DELTAQ OUT.html DIGEST: one page of everything.
+
+import { execFileSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+
+import { build } from "esbuild";
+
+const [program, deltaq, out, digest] = process.argv.slice(2);
+const here = dirname(fileURLToPath(import.meta.url));
+const read = (name) => readFileSync(join(here, name), "utf8");
+
+async function bundled(entry, more = {}) {
+  const options = { entryPoints: [join(here, entry)], bundle: true, minify: true, write: false, charset: "utf8", legalComments: "none" };
+  const { outputFiles } = await build({ format: "iife", target: "es2022", ...options, ...more });
+  return outputFiles[0].text;
+}
+
+// What stands within an element of the page cannot end that element.
+const script = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+const data = (value) => JSON.stringify(value).replaceAll("<", "\\u003c");
+const markup = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+
+const said = (...words) => execFileSync(deltaq, words, { encoding: "utf8", maxBuffer: 1 << 26 });
+const { scenes } = JSON.parse(said("list", "--format", "json"));
+const texts = scenes.map(({ name, title, source }) => ({ name, title, source, text: said("show", name, "--source") }));
+
+const parts = ["uplot", "katex"].map((name) => {
+  const { version, license } = JSON.parse(read(`node_modules/${name}/package.json`));
+  return `${name} ${version} (${license})\n\n${read(`node_modules/${name}/LICENSE`)}`;
+});
+
+const pieces = {
+  digest,
+  style: await bundled("style.css", { format: undefined, external: [] }),
+  licences: markup(parts.join("\n\n")),
+  scenes: data(texts),
+  worker: script(await bundled("worker.js")),
+  program: gzipSync(readFileSync(program), { level: 9 }).toString("base64"),
+  script: script(await bundled("main.js")),
+};
+const page = read("index.html").replace(/\{\{(\w+)\}\}/g, (_, name) => pieces[name]);
+writeFileSync(out, page);
+console.log(`${(page.length / 1e6).toFixed(2)} MB, of which ${(pieces.program.length / 1e6).toFixed(2)} MB program`);

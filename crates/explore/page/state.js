@@ -1,0 +1,44 @@
+// What a link carries: everything that was chosen, in the fragment of the address.
+
+const EMPTY = { scene: "sledge", text: null, set: {}, off: [], on: [], time: 0, tab: "numbers", curve: "gap" };
+
+export const state = { ...EMPTY };
+
+const bytesOf = (text) => new TextEncoder().encode(text);
+
+// JSON without what is as at the beginning, in base64 for addresses.
+export function encode() {
+  const kept = Object.entries(state).filter(([key, value]) => JSON.stringify(value) !== JSON.stringify(EMPTY[key]));
+  const bytes = bytesOf(JSON.stringify(Object.fromEntries(kept)));
+  const base64 = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  return base64.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+// Takes over what a fragment says, which may be the name of a scene only, scene=NAME; one that says nothing
+// readable changes nothing and gives false.
+export function decode(fragment, otherwise = {}) {
+  const named = /^#scene=([\w-]+)$/.exec(fragment);
+  let said = named ? { scene: named[1] } : {};
+  let readable = true;
+  try {
+    if (named) fragment = "";
+    const base64 = fragment.replace(/^#/, "").replaceAll("-", "+").replaceAll("_", "/");
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    if (bytes.length) said = JSON.parse(new TextDecoder().decode(bytes));
+  } catch {
+    readable = false;
+  }
+  Object.assign(state, structuredClone(EMPTY), otherwise);
+  for (const key of Object.keys(EMPTY)) {
+    if (said && key in said && (EMPTY[key] === null || typeof said[key] === typeof EMPTY[key])) state[key] = said[key];
+  }
+  return readable;
+}
+
+let timer;
+
+// Writes the state into the address, a little later.
+export function remember() {
+  clearTimeout(timer);
+  timer = setTimeout(() => history.replaceState(null, "", `#${encode()}`), 250);
+}

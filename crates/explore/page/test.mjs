@@ -1,0 +1,249 @@
+// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers: the page in a browser without network, against the native
+// program; or its numbers only.
+
+import { execFileSync, spawnSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+import puppeteer from "puppeteer-core";
+
+const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
+// Milliseconds may be BUSY times as many, as other things may run beside; the figures are told.
+const BUSY = 5;
+const LIMITS = { megabytes: 4, first: 1000, sledge: 10, cone: 50, difference: 1e-12 };
+const OWN = `title = "Skate"
+[coordinates]
+x = { unit = "m", start = 0 }
+y = { unit = "m", start = 0 }
+phi = { unit = "rad", start = 0.1 }
+[system]
+lagrangian = "(x'^2 + y'^2 + phi'^2)/2 + 0.3*x"
+constraints = ["y'*cos(phi) - x'*sin(phi)"]
+[start]
+velocities = { "x'" = 1, "phi'" = 0.7 }
+[run]
+duration = 3
+`;
+
+const url = pathToFileURL(resolve(file)).href;
+const userDataDir = mkdtempSync(join(tmpdir(), "explore-"));
+mkdirSync(pictures, { recursive: true });
+const flags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync"];
+const browser = await puppeteer.launch({ executablePath, headless: true, args: flags, userDataDir });
+const complaints = [];
+const said = [];
+
+function must(holds, what) {
+  if (!holds) complaints.push(what);
+}
+
+const link = (state) => `${url}#${Buffer.from(JSON.stringify(state)).toString("base64url")}`;
+
+// A new page at an address, which has shown its motions in full, and what is decided.
+async function open(address, { width = 1280, height = 900, scheme = "light" } = {}) {
+  const page = await browser.newPage();
+  await page.setOfflineMode(true);
+  page.on("console", (message) => ["error", "warn"].includes(message.type()) && complaints.push(`console: ${message.text()}`));
+  page.on("pageerror", (error) => complaints.push(`error: ${error.message}`));
+  page.on("request", (request) => must(/^(file|data|blob):/.test(request.url()), `asks for ${request.url()}`));
+  await page.setViewport({ width, height });
+  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+  await page.goto(address);
+  await page.waitForFunction(() => window.decided, { timeout: 60000 });
+  return page;
+}
+
+const settled = (page) => page.waitForFunction(() => window.explored.answer.motions.every((m) => m.refused || m.error !== null), { timeout: 60000 });
+
+// Chooses a built-in scene, and waits for its motions in full.
+async function choose(page, name) {
+  await page.evaluate(() => { window.explored = { answer: { motions: [{ error: null }] } }; });
+  await page.select("#scene", name);
+  await settled(page);
+}
+
+const rows = (page, label) => page.evaluate((label) => {
+  const motion = window.explored.samples.motions.find((motion) => motion.label === label);
+  const names = Object.values(motion.columns.coordinate);
+  return Array.from({ length: motion.rows }, (_, row) => [motion.time(row), ...names.map((place) => motion.value(row, place))]);
+}, label);
+
+function native(text, formulation, times) {
+  const words = ["solve", "-", "--formulation", formulation, "--format", "csv", "--times", times.join(",")];
+  const lines = execFileSync(deltaq, words, { input: text, encoding: "utf8" }).trim().split("\n").filter((line) => !line.startsWith("#"));
+  const head = lines[0].split(",");
+  return lines.slice(1).map((line) => ["t", "x", "y", "phi"].map((name) => Number(line.split(",")[head.indexOf(name)])));
+}
+
+// Types the text of a scene, in place of what is there.
+const type = (page, text) => page.evaluate((text) => {
+  const area = document.getElementById("area");
+  area.value = text;
+  area.dispatchEvent(new Event("input"));
+}, text);
+
+async function slide(page, name, thousandths, end = true) {
+  await page.evaluate((name, thousandths, end) => {
+    const slider = document.querySelector(`[data-name="${CSS.escape(name)}"] input[type=range]`);
+    slider.value = thousandths;
+    slider.dispatchEvent(new Event("input"));
+    if (end) slider.dispatchEvent(new Event("change"));
+  }, name, thousandths, end);
+}
+
+const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+
+async function opening() {
+  const size = statSync(file).size / 1e6;
+  must(size <= LIMITS.megabytes, `${size.toFixed(2)} MB, at most ${LIMITS.megabytes}`);
+  const firsts = [];
+  for (let i = 0; i < 3; i++) {
+    const page = await open(url);
+    firsts.push(await page.evaluate(() => window.explored.first));
+    await page.close();
+  }
+  must(Math.min(...firsts) <= BUSY * LIMITS.first, `first motion after ${Math.min(...firsts).toFixed(0)} ms, at most ${LIMITS.first}`);
+  said.push(`${size.toFixed(2)} MB; first motion after ${Math.min(...firsts).toFixed(0)} ms`);
+}
+
+// Every built-in scene has a motion, and what is drawn of it changes with time.
+async function everyScene() {
+  const page = await open(url);
+  const names = await page.evaluate(() => [...document.querySelectorAll("#scene option:not([hidden])")].map(({ value }) => value));
+  must(names.length >= 40, `${names.length} scenes`);
+  for (const name of names) {
+    await choose(page, name);
+    const [moves, motions] = await page.evaluate(() => {
+      const [canvas, bar] = ["stage", "bar"].map((id) => document.getElementById(id));
+      if (document.getElementById("play").getAttribute("aria-label") === "pause") document.getElementById("play").click();
+      const at = (part) => {
+        bar.value = part;
+        bar.dispatchEvent(new Event("input"));
+        return canvas.toDataURL();
+      };
+      return [at(0) !== at(0.6), window.explored.samples.motions.length];
+    });
+    must(moves && motions, `${name} does not move`);
+  }
+  await page.close();
+  said.push(`${names.length} scenes move`);
+}
+
+async function sliders() {
+  const page = await open(link({ scene: "sledge" }));
+  const before = await rows(page, "Chetaev");
+  await slide(page, "phi'", 800);
+  await settled(page);
+  const after = await rows(page, "Chetaev");
+  must(Math.abs(after.at(-1)[3] - before.at(-1)[3]) > 1, "a slider changes nothing");
+  // a hand on a slider for two seconds
+  const [updates, took] = await page.evaluate(async () => {
+    const slider = document.querySelector('[data-name="alpha"] input[type=range]');
+    const [took, from, began] = [[], window.explored.drawn, performance.now()];
+    for (let i = 0; performance.now() - began < 2000; i++) {
+      slider.value = 300 + 200 * Math.sin(i / 20);
+      slider.dispatchEvent(new Event("input"));
+      await new Promise(requestAnimationFrame);
+      took.push(window.explored.milliseconds);
+    }
+    return [(window.explored.drawn - from) / ((performance.now() - began) / 1000), took];
+  });
+  must(Math.min(...took) <= BUSY * LIMITS.sledge, `sledge recomputed in ${Math.min(...took).toFixed(1)} ms, at most ${LIMITS.sledge}`);
+  said.push(`sledge ${median(took).toFixed(1)} ms (least ${Math.min(...took).toFixed(1)}), ${updates.toFixed(0)} updates a second`);
+  await page.keyboard.press("Escape");
+  await page.focus("#stage");
+  const label = () => page.$eval("#play", (button) => button.getAttribute("aria-label"));
+  const was = await label();
+  await page.keyboard.press("Space");
+  must((await label()) !== was, "the space bar does nothing");
+  await page.keyboard.press("Home");
+  await page.keyboard.press("ArrowRight");
+  must((await page.$eval("#reading", (reading) => reading.textContent)) === "t = 0.10 s", "the arrow does not step");
+  await page.close();
+
+  const cone = await open(link({ scene: "ball-in-cone" }));
+  const times = [];
+  for (let i = 0; i < 8; i++) {
+    const { drawn } = await cone.evaluate(() => ({ drawn: window.explored.drawn }));
+    await slide(cone, "alpha", 320 + i, false);
+    await cone.waitForFunction((drawn) => window.explored.drawn > drawn, {}, drawn);
+    times.push(await cone.evaluate(() => window.explored.milliseconds));
+  }
+  must(Math.min(...times) <= BUSY * LIMITS.cone, `cone recomputed in ${Math.min(...times).toFixed(1)} ms, at most ${LIMITS.cone}`);
+  said.push(`cone ${median(times).toFixed(1)} ms (least ${Math.min(...times).toFixed(1)})`);
+  // κ brings its motion
+  await slide(cone, "kappa", 500);
+  await cone.waitForFunction(() => window.explored.answer.motions.some(({ formulation }) => formulation === "kappa"));
+  await cone.close();
+}
+
+// A text of one's own has the numbers of the native program, a faulty one its message, a link all of it.
+async function ownText() {
+  const page = await open(link({ scene: "disc", tab: "text" }));
+  await type(page, OWN);
+  await page.waitForFunction(() => document.title.startsWith("Skate"));
+  await settled(page);
+  let largest = 0;
+  for (const [label, formulation] of [["Chetaev", "chetaev"], ["vakonomic", "vakonomic"]]) {
+    const ours = (await rows(page, label)).filter((_, i) => i % 16 === 0);
+    const theirs = native(OWN, formulation, ours.map(([t]) => t));
+    const differences = ours.map((row, i) => Math.max(...row.map((x, j) => Math.abs(x - theirs[i][j]))));
+    must(theirs.length === ours.length && ours.length > 20, `${theirs.length} native rows`);
+    largest = Math.max(largest, ...differences);
+  }
+  must(largest <= LIMITS.difference, `native numbers differ by ${largest}, at most ${LIMITS.difference}`);
+  said.push(`numbers as native to ${largest.toExponential(1)}`);
+
+  await slide(page, "phi", 700);
+  await settled(page);
+  await page.waitForFunction(() => location.hash.length > 300);
+  await new Promise((resolve) => setTimeout(resolve, 400));
+  const twin = await open(await page.evaluate(() => location.href));
+  await settled(twin);
+  const [here, there] = [await rows(page, "vakonomic"), await rows(twin, "vakonomic")];
+  must(JSON.stringify(here) === JSON.stringify(there) && here[0][3] !== 0.1, "a link does not bring the motion back");
+  must(await twin.$eval("#text", (panel) => !panel.hidden), "a link does not bring the panel back");
+  await twin.close();
+
+  const broken = OWN.replace("y'*cos(phi)", "y'*cos(phj)").replace("duration = 3", "duratoin = 3");
+  await type(page, broken);
+  await page.waitForSelector("#faults:not([hidden])");
+  const message = await page.$eval("#faults", (faults) => faults.dataset.message);
+  const { stderr } = spawnSync(deltaq, ["solve", "-", "--formulation", "chetaev"], { input: broken, encoding: "utf8" });
+  must(stderr.trim().replaceAll("stdin:", "own:") === `deltaq: ${message}`, `message:\n${message}\nnative:\n${stderr}`);
+  must((await page.$$("#marks .bad")).length > 0, "no line is marked");
+  await page.screenshot({ path: join(pictures, "broken.png") });
+  await page.close();
+}
+
+async function looks() {
+  const sizes = [["light", { scheme: "light" }], ["dark", { scheme: "dark" }], ["phone", { width: 400, height: 860 }]];
+  const tabs = { sledge: "numbers", disc: "verdict", "ball-in-cone": "equations", turntable: "text", trailer: "numbers" };
+  for (const [look, options] of sizes) {
+    for (const [scene, tab] of Object.entries(tabs)) {
+      const page = await open(link({ scene, tab, time: 3 }), options);
+      const width = await page.evaluate(() => document.documentElement.scrollWidth);
+      must(width <= (options.width ?? 1280), `${scene} is ${width} px wide on ${look}`);
+      await page.screenshot({ path: join(pictures, `${scene}-${look}.png`) });
+      await page.close();
+    }
+  }
+}
+
+try {
+  const all = [opening, everyScene, sliders, ownText, looks];
+  for (const part of what === "numbers" ? [ownText] : all) await part();
+} catch (error) {
+  complaints.push(error.stack);
+} finally {
+  await browser.close();
+  rmSync(userDataDir, { recursive: true, force: true, maxRetries: 5 });
+}
+console.log(said.join("; "));
+if (complaints.length) {
+  console.error([...new Set(complaints)].join("\n"));
+  process.exit(1);
+}

@@ -1,0 +1,89 @@
+//! What can be varied, and within which bounds a slider does.
+
+use std::f64::consts::PI;
+
+use deltaq::{Choice, costate_names};
+use mechanics::ConstantsRule;
+use scene::Scene;
+use serde_json::{Value, json};
+
+use crate::subject::Subject;
+
+/// The parameter of the family between Chetaev's and the vakonomic motion.
+const KAPPA: &str = "kappa";
+/// A slider for it goes up to this, in 1/s.
+const MOST_KAPPA: f64 = 20.0;
+
+/// All numbers that can be set, each an object: parameters, the start, multipliers, costates, κ, the duration.
+pub(crate) fn of(subject: &Subject) -> Vec<Value> {
+    let Subject { scene, choices } = subject;
+    let (system, start, g) = (&scene.system, &scene.start, &scene.system.graph);
+    let mut controls = Vec::new();
+    let mut kappa = 0.0;
+    for parameter in &system.parameters {
+        let (name, value) = (g.name(parameter.symbol), parameter.value);
+        if name == KAPPA {
+            kappa = value;
+            continue;
+        }
+        let bounds = if value == 0.0 { [-1.0, 1.0] } else { [value / 10.0, value * 3.0] };
+        controls.push(control(&name, "parameter", "", value, bounds));
+    }
+    for (coordinate, &q) in system.coordinates.iter().zip(&start.q) {
+        let reach = if coordinate.unit == "rad" { PI } else { q.abs().max(1.0) };
+        controls.push(control(&coordinate.name, "start", &coordinate.unit, q, around(q, reach)));
+    }
+    for (name, v) in velocities(scene) {
+        let coordinate = system.coordinates.iter().find(|c| format!("{}'", c.name) == name);
+        let unit = coordinate.filter(|c| !c.unit.is_empty()).map_or(String::new(), |c| format!("{}/s", c.unit));
+        controls.push(control(&name, "velocity", &unit, v, around(v, 2.0 * v.abs().max(0.5))));
+    }
+    for (i, &mu) in scene.multipliers.iter().enumerate() {
+        controls.push(control(&format!("mu{}", i + 1), "multiplier", "", mu, around(mu, mu.abs().max(2.0))));
+    }
+    for (name, p) in choices.iter().flat_map(|choice| costates(scene, choice)) {
+        let known = controls.iter().any(|known: &Value| known["name"] == *name);
+        if !known {
+            controls.push(control(&name, "costate", "", p, around(p, p.abs().max(10.0))));
+        }
+    }
+    if !system.constraints.is_empty() && system.coordinates.iter().all(|c| c.name != KAPPA) {
+        controls.push(control(KAPPA, "kappa", "1/s", kappa, [0.0, MOST_KAPPA.max(2.0 * kappa)]));
+    }
+    let duration = scene.duration;
+    controls.push(control("duration", "run", "s", duration, [duration / 10.0, duration * 3.0]));
+    controls
+}
+
+fn control(name: &str, kind: &str, unit: &str, value: f64, bounds: [f64; 2]) -> Value {
+    let [low, high] = if bounds[0] <= bounds[1] { bounds } else { [bounds[1], bounds[0]] };
+    json!({ "name": name, "kind": kind, "unit": unit, "value": value, "low": low, "high": high })
+}
+
+fn around(value: f64, reach: f64) -> [f64; 2] {
+    [value - reach, value + reach]
+}
+
+/// The velocities and rates that are given at the start; the constraints supply the others.
+fn velocities(scene: &Scene) -> Vec<(String, f64)> {
+    let g = &scene.system.graph;
+    let values = [scene.system.parameter_values(), scene.system.values_at(&scene.start)];
+    let values = values.into_iter().flatten().collect();
+    let given = |name: &String| {
+        let symbol = g.find_symbol(name)?;
+        let (_, written) = scene.completion.written.iter().find(|(of, _)| *of == symbol)?;
+        Some((name.clone(), g.evaluate(*written, &values).ok()?))
+    };
+    scene.completion.given.iter().filter_map(given).collect()
+}
+
+/// Costates at the start, as far as they are known without integration: zero until a search finds them.
+fn costates(scene: &Scene, choice: &Choice) -> Vec<(String, f64)> {
+    let Some(removal) = &choice.removal else { return Vec::new() };
+    let names = costate_names(scene, removal);
+    let values = match &choice.constants {
+        ConstantsRule::Given(values) if values.len() == names.len() => values.clone(),
+        _ => vec![0.0; names.len()],
+    };
+    names.into_iter().zip(values).collect()
+}

@@ -1,0 +1,43 @@
+//! # A scene explored
+//!
+//! What the page `reports/explore.html` asks, and what it is answered: text in, text and numbers out, so that
+//! it can run as WebAssembly in a browser, without files, threads and a clock. Nothing is derived, integrated
+//! or decided here; that is `deltaq`'s.
+//!
+//! A [`Question`] is about the text of a scene, with numbers `set` in the place of those of the text:
+//! whatever `--set` takes, `P0_w` (the costate of the memory variable `w` at the start) and `kappa`, which a
+//! scene need not have. There are four:
+//!
+//! - `scene`: what can be varied, and which motions there are;
+//! - `motions`: these, sampled at equal times, with the bodies that are drawn, and the gaps between them;
+//! - `equations`: in LaTeX;
+//! - `decision`: the comparison in words, as `deltaq compare` says it.
+//!
+//! ```
+//! let text = include_str!("../../scene/sledge.toml");
+//! let question = serde_json::json!({
+//!     "ask": "motions", "name": "sledge", "text": text, "motions": ["Chetaev"], "steps": 10,
+//! });
+//! let explore::Answer { text, numbers } = explore::answer(&question.to_string());
+//! let answer: serde_json::Value = serde_json::from_str(&text)?;
+//! let motion = &answer["motions"][0];
+//! let (from, width) = (motion["from"].as_u64().unwrap() as usize, motion["width"].as_u64().unwrap() as usize);
+//! // the sledge turns at a constant rate: phi = 0.3 + t; the last of eleven rows is at t = 1
+//! assert!((numbers[from + 10 * width + 3] - 1.3).abs() < 1e-12);
+//! # Ok::<(), serde_json::Error>(())
+//! ```
+//!
+//! **What it refuses.** A faulty text is answered with all its faults and their places, a motion that cannot
+//! be started with the reason.
+
+mod bodies;
+mod controls;
+#[cfg(target_family = "wasm")]
+mod exports;
+mod motions;
+mod question;
+mod run;
+mod subject;
+mod words;
+
+pub use question::{Answer, Ask, Question, answer};

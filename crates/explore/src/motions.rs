@@ -1,0 +1,150 @@
+//! Motions, sampled, and the gaps between them.
+
+use deltaq::{Metric, SolveError, compare_motions, constant_names};
+use mechanics::{Observables, System, Watched};
+use scene::Scene;
+use serde_json::{Value, json};
+
+use crate::Question;
+use crate::bodies::Bodies;
+use crate::question::Refused;
+use crate::run::{Run, settings};
+use crate::subject::Subject;
+
+/// The motions of a question, and the gaps of the first to the others.
+///
+/// Of each motion `from` is the place of its first row in the numbers, `width` the length of a row, `rows` how
+/// many there are. A row is `t`, coordinates, velocities, multipliers, invariants, energy and observables, the
+/// place whose path is drawn, and twelve numbers a body that moves: its place, and its rotation row by row.
+/// Rows of the ground are of twelve numbers a body, at every time or one for all; those of a gap are `t`, the
+/// gap, and what it has to pass (infinite in doubt, or at a glance).
+pub(crate) fn sampled(subject: &Subject, question: &Question, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
+    let Subject { scene, choices } = subject;
+    let settings = settings(question);
+    let steps = question.steps.max(1);
+    let time = |i: usize| scene.start.t + scene.duration * i as f64 / steps as f64;
+    let mut sampler = Sampler {
+        times: (0..=steps).map(time).collect(),
+        bodies: Bodies::of(scene).map_err(SolveError::from)?,
+        observables: observables(&scene.system)?,
+    };
+    let ground = sampler.ground(scene, numbers);
+    let (mut answers, mut runs) = (Vec::new(), Vec::new());
+    for (i, choice) in choices.iter().enumerate() {
+        let mut answer = json!({ "label": choice.label, "formulation": choice.formulation });
+        match Run::of(scene, choice, question.glance, &settings) {
+            Err(error) => answer["refused"] = error.to_string().into(),
+            Ok(mut run) => {
+                sampler.describe(&mut answer, scene, &mut run)?;
+                sampler.rows(&mut answer, &mut run, numbers)?;
+                runs.push((i, run));
+            }
+        }
+        answers.push(answer);
+    }
+    let gaps = gaps(scene, &answers, &mut runs, numbers)?;
+    Ok(json!({
+        "start": scene.start.t, "end": scene.start.t + scene.duration, "times": sampler.times.len(),
+        "bodies": sampler.bodies.described(), "ground": ground, "motions": answers, "gaps": gaps,
+    }))
+}
+
+/// The energy `v·∂L/∂v − L` and the observables of a system.
+fn observables(system: &System) -> Result<Observables, SolveError> {
+    let mut system = system.clone();
+    let (g, v) = (&system.graph, system.velocities());
+    let momenta = g.gradient(system.lagrangian, &v);
+    let power: Vec<_> = v.iter().zip(momenta).map(|(v, p)| g.mul(g.variable(*v), p)).collect();
+    let expression = g.sub(g.sum(&power), system.lagrangian);
+    system.watched.insert(0, Watched { name: "energy".into(), expression, constant: false });
+    Ok(Observables::of(&system)?)
+}
+
+/// The gaps of the first run to the others; those of single runs at the times of their rows.
+fn gaps(
+    scene: &Scene,
+    answers: &[Value],
+    runs: &mut [(usize, Run)],
+    numbers: &mut Vec<f64>,
+) -> Result<Vec<Value>, SolveError> {
+    let mut gaps = Vec::new();
+    let [(first, one), others @ ..] = runs else { return Ok(gaps) };
+    let mut metric = Metric::new(&scene.system)?;
+    let n = scene.system.dimension();
+    for (second, other) in others {
+        let from = numbers.len();
+        let mut answer = json!({ "first": *first, "second": *second, "from": from });
+        if let (Run::Motion(one), Run::Motion(other)) = (&mut *one, other) {
+            let gap = compare_motions(one, other, &mut metric)?;
+            answer["verdict"] = gap.verdict.word().into();
+            answer["largest"] = gap.largest.into();
+            answer["certain"] = gap.certain_from.into();
+            numbers.extend(gap.points.iter().flat_map(|p| [p.t, p.gap, p.limit]));
+        } else {
+            let place = |i: usize, name: &str| answers[i][name].as_u64().unwrap_or_default() as usize;
+            // the last row of a motion that ends early is between the times of the others
+            for row in 0..place(*first, "rows").min(place(*second, "rows")).saturating_sub(1) {
+                let at = |i: usize| place(i, "from") + row * place(i, "width");
+                let (a, b) = (at(*first), at(*second));
+                let [q, v, other] = [a + 1, a + 1 + n, b + 1].map(|from| &numbers[from..from + n]);
+                let gap = [numbers[a], metric.distance(numbers[a], q, v, other), f64::INFINITY];
+                numbers.extend(gap);
+            }
+        }
+        answer["rows"] = ((numbers.len() - from) / 3).into();
+        gaps.push(answer);
+    }
+    Ok(gaps)
+}
+
+/// What reads rows off motions.
+struct Sampler {
+    times: Vec<f64>,
+    bodies: Bodies,
+    observables: Observables,
+}
+
+impl Sampler {
+    /// How a motion went, and what stands in its rows.
+    fn describe(&self, answer: &mut Value, scene: &Scene, run: &mut Run) -> Result<(), SolveError> {
+        let (status, cause, error) = run.status(scene)?;
+        let (equations, constants) = run.equations();
+        let names = |named: &[equations::Named]| named.iter().map(|n| n.name.clone()).collect::<Vec<_>>();
+        let constants = constant_names(equations).into_iter().zip(constants);
+        let constants: Vec<Value> = constants.map(|(name, value)| json!({ "name": name, "value": value })).collect();
+        (answer["status"], answer["cause"], answer["error"]) = (status.into(), cause.into(), error.into());
+        answer["end"] = run.end().into();
+        answer["constants"] = constants.into();
+        answer["multipliers"] = names(&equations.multipliers).into();
+        answer["invariants"] = names(&equations.invariants).into();
+        answer["observables"] = self.observables.names().into();
+        Ok(())
+    }
+
+    /// The bodies that do not move with the coordinates; one row where they do not move at all.
+    fn ground(&mut self, scene: &Scene, numbers: &mut Vec<f64>) -> Value {
+        let from = numbers.len();
+        let rows = if self.bodies.is_still(scene) { 1 } else { self.times.len() };
+        for t in &self.times[..rows] {
+            self.bodies.put_ground(*t, &scene.start.q, numbers);
+        }
+        json!({ "from": from, "rows": rows, "width": (numbers.len() - from) / rows })
+    }
+
+    /// Rows at all times up to the end of the motion, the last one at its end.
+    fn rows(&mut self, answer: &mut Value, run: &mut Run, numbers: &mut Vec<f64>) -> Result<(), SolveError> {
+        let (from, end) = (numbers.len(), run.end());
+        let before = self.times.iter().take_while(|t| **t < end).count();
+        for t in self.times[..before].iter().copied().chain([end]) {
+            let now = run.at(t)?;
+            numbers.push(t);
+            numbers.extend(now.coordinates.iter().chain(&now.velocities).chain(&now.multipliers));
+            numbers.extend(&now.invariants);
+            numbers.extend(self.observables.at(t, &now.coordinates, &now.velocities));
+            self.bodies.put_moved(t, &now.coordinates, numbers);
+        }
+        (answer["from"], answer["rows"]) = (from.into(), (before + 1).into());
+        answer["width"] = ((numbers.len() - from) / (before + 1)).into();
+        Ok(())
+    }
+}

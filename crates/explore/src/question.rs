@@ -1,0 +1,115 @@
+//! Questions and answers.
+
+use std::collections::BTreeMap;
+
+use scene::SceneError;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use crate::subject::Subject;
+use crate::{controls, motions, words};
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ask {
+    /// What can be varied, and which motions there are.
+    Scene,
+    /// Motions and gaps between them.
+    Motions,
+    /// The equations of the motions in LaTeX.
+    Equations,
+    /// The comparison in words.
+    Decision,
+}
+
+/// A question about the text of a scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Question {
+    /// What is asked.
+    pub ask: Ask,
+    /// Name of the scene; stands for the file in faults.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// Numbers in the place of those of the text.
+    #[serde(default)]
+    pub set: BTreeMap<String, f64>,
+    /// Labels of the motions that are asked about ([`deltaq::Choice::label`]); the first is what gaps are to.
+    #[serde(default)]
+    pub motions: Vec<String>,
+    /// Equal steps in which motions are sampled, of the whole duration.
+    #[serde(default)]
+    pub steps: usize,
+    /// Tolerance of the looser run of every motion; 0 for that of a comparison.
+    #[serde(default)]
+    pub tolerance: f64,
+    /// One run of every motion only, coarser and without an error estimate: to follow a hand on a slider.
+    #[serde(default)]
+    pub glance: bool,
+}
+
+/// An answer: an object of JSON, and the numbers to which it points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Answer {
+    /// The object; of a text that is no scene `faults`, of a question that cannot be answered `refused`.
+    pub text: String,
+    /// Samples, row by row.
+    pub numbers: Vec<f64>,
+}
+
+/// Why there is no answer.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Refused {
+    /// The text is no scene.
+    #[error(transparent)]
+    Faulty(#[from] SceneError),
+    /// A motion cannot be had or read off.
+    #[error(transparent)]
+    Motion(#[from] deltaq::SolveError),
+    /// The question is none.
+    #[error("the question cannot be read: {0}")]
+    Question(#[from] serde_json::Error),
+}
+
+/// Answers a [`Question`] in JSON.
+pub fn answer(question: &str) -> Answer {
+    let mut numbers = Vec::new();
+    let value = match answered(question, &mut numbers) {
+        Ok(value) => value,
+        Err(Refused::Faulty(error)) => json!({ "faults": faults(&error), "message": error.to_string() }),
+        Err(error) => json!({ "refused": error.to_string() }),
+    };
+    Answer { text: value.to_string(), numbers }
+}
+
+fn answered(question: &str, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
+    let question: Question = serde_json::from_str(question)?;
+    let subject = Subject::of(&question)?;
+    match question.ask {
+        Ask::Scene => Ok(scene(&subject)),
+        Ask::Motions => motions::sampled(&subject, &question, numbers),
+        Ask::Equations => words::equations(&subject),
+        Ask::Decision => words::decision(subject, &question),
+    }
+}
+
+/// What a page has to know of a scene before there are motions.
+fn scene(subject: &Subject) -> Value {
+    let Subject { scene, choices } = subject;
+    let coordinate = |c: &mechanics::Coordinate| json!({ "name": c.name, "unit": c.unit });
+    let motion = |c: &deltaq::Choice| json!({ "label": c.label, "formulation": c.formulation });
+    json!({
+        "title": scene.title, "source": scene.source, "notes": scene.notes,
+        "start": scene.start.t, "duration": scene.duration,
+        "coordinates": scene.system.coordinates.iter().map(coordinate).collect::<Vec<_>>(),
+        "controls": controls::of(subject),
+        "motions": choices.iter().map(motion).collect::<Vec<_>>(),
+    })
+}
+
+/// All faults of a text, with their places.
+fn faults(error: &SceneError) -> Value {
+    let fault = |e: &SceneError| json!({ "line": e.line, "column": e.column, "length": e.length, "message": e.kind.to_string() });
+    std::iter::once(error).chain(&error.also).map(fault).collect()
+}

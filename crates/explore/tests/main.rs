@@ -1,0 +1,136 @@
+//! The answers, against the library.
+
+use deltaq::words::Headline;
+use deltaq::{Settings, choices, compare_unfitted, solve_choice};
+use explore::{Answer, answer};
+use scene::Scene;
+use serde_json::{Value, json};
+
+const SLEDGE: &str = include_str!("../../../validation/scenes/sledge.toml");
+
+fn ask(question: Value) -> (Value, Vec<f64>) {
+    let Answer { text, numbers } = answer(&question.to_string());
+    (serde_json::from_str(&text).expect("an answer is JSON"), numbers)
+}
+
+fn place(object: &Value, name: &str) -> usize {
+    object[name].as_u64().unwrap_or_else(|| panic!("{name} in {object}")) as usize
+}
+
+/// The coordinates in a row of a motion.
+fn coordinates<'a>(motion: &Value, numbers: &'a [f64], row: usize, count: usize) -> &'a [f64] {
+    let at = place(motion, "from") + row * place(motion, "width");
+    &numbers[at + 1..at + 1 + count]
+}
+
+#[test]
+fn motions_are_those_of_the_library() {
+    let labels = ["Chetaev", "vakonomic", "removed constraint (arc-length)"];
+    let question = |glance: bool| {
+        json!({ "ask": "motions", "name": "sledge", "text": SLEDGE, "set": { "phi": 0.5, "mu1": 0.25, "P0_y": 1.0 },
+                "motions": labels, "steps": 50, "glance": glance })
+    };
+    let (all, numbers) = ask(question(false));
+    let (glance, coarse) = ask(question(true));
+    let set = [("phi".to_string(), 0.5), ("mu1".to_string(), 0.25)];
+    let scene = Scene::parse_with("sledge", SLEDGE, &set).unwrap();
+    for (i, label) in labels.iter().enumerate() {
+        let mut choice = choices(&scene).into_iter().find(|choice| choice.label == *label).unwrap();
+        if choice.removal.is_some() {
+            choice.constants = mechanics::ConstantsRule::Given(vec![0.0, 1.0]);
+        }
+        let mut motion = solve_choice(&scene, &choice, &Settings::default()).unwrap();
+        assert_eq!(place(&all["motions"][i], "rows"), 51, "{label}");
+        for row in 0..=50 {
+            let q = motion.at(row as f64 / 5.0).unwrap().coordinates;
+            assert_eq!(coordinates(&all["motions"][i], &numbers, row, 3), q, "{label}");
+            let near = coordinates(&glance["motions"][i], &coarse, row, 3);
+            assert!(near.iter().zip(&q).all(|(a, b)| (a - b).abs() < 1e-5), "{label}: {near:?} {q:?}");
+        }
+    }
+    for (name, gaps, numbers) in [("two runs", &all["gaps"], &numbers), ("one run", &glance["gaps"], &coarse)] {
+        let gap = &gaps[0];
+        assert_eq!((place(gap, "first"), place(gap, "second")), (0, 1), "{name}");
+        let rows = numbers[place(gap, "from")..].chunks_exact(3).take(place(gap, "rows"));
+        let largest = rows.map(|row| row[1]).fold(0.0, f64::max);
+        assert!(largest > 1.0, "{name}: {largest}");
+    }
+    assert_eq!(all["gaps"][0]["verdict"], "different");
+}
+
+#[test]
+fn kappa_and_what_can_be_varied() {
+    let (free, _) = ask(json!({ "ask": "scene", "name": "sledge", "text": SLEDGE }));
+    let names = |answer: &Value| -> Vec<String> {
+        answer["controls"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let expected = "g alpha k x y phi x' phi' mu1 P0_x P0_y kappa duration";
+    assert_eq!(names(&free).join(" "), expected);
+    let labels = |answer: &Value| -> Vec<String> {
+        answer["motions"].as_array().unwrap().iter().map(|m| m["label"].as_str().unwrap().to_owned()).collect()
+    };
+    assert!(!labels(&free).contains(&"between, κ".to_string()));
+    for control in free["controls"].as_array().unwrap() {
+        let [low, value, high] = ["low", "value", "high"].map(|name| control[name].as_f64().unwrap());
+        assert!(low <= value && value <= high && low < high, "{control}");
+    }
+    let set = json!({ "kappa": 2.0 });
+    let (with, _) = ask(json!({ "ask": "scene", "name": "sledge", "text": SLEDGE, "set": set }));
+    assert_eq!(names(&with).join(" "), expected);
+    assert!(labels(&with).contains(&"between, κ".to_string()));
+    // the given velocity is that of the text, 0.5 cos(phi)
+    let speed = free["controls"].as_array().unwrap().iter().find(|c| c["name"] == "x'").unwrap();
+    assert_eq!((speed["value"].as_f64(), &speed["unit"]), (Some(0.5 * 0.3_f64.cos()), &json!("m/s")));
+}
+
+#[test]
+fn a_faulty_text_is_answered_as_the_reader_does() {
+    let text = SLEDGE.replace("alpha = 0.4", "").replace("k^2", "k^");
+    let (answer, numbers) = ask(json!({ "ask": "motions", "name": "own", "text": text, "steps": 10 }));
+    let error = Scene::parse("own", &text).err().unwrap();
+    assert_eq!(answer["message"], error.to_string());
+    let faults = answer["faults"].as_array().unwrap();
+    assert!(faults.len() == 1 + error.also.len() && faults.len() > 1 && numbers.is_empty(), "{answer}");
+    assert_eq!((place(&faults[0], "line"), place(&faults[0], "column")), (error.line, error.column));
+    let (answer, _) = ask(json!({ "ask": "everything" }));
+    assert!(answer["refused"].as_str().unwrap().starts_with("the question cannot be read"), "{answer}");
+}
+
+#[test]
+fn words_are_those_of_a_comparison() {
+    let scene = Scene::parse("sledge", SLEDGE).unwrap();
+    // removals are in the graph of the scene
+    let choices = choices(&scene);
+    let comparison = compare_unfitted(scene, choices, Vec::new(), &Settings::default()).unwrap();
+    let (answer, _) = ask(json!({ "ask": "decision", "name": "sledge", "text": SLEDGE }));
+    let Headline { verdict, why, sure } = Headline::of(&comparison);
+    assert_eq!([&answer["verdict"], &answer["why"], &answer["sure"]], [&verdict, &why, &sure]);
+    assert!(sure.contains("No μ₀ makes the vakonomic motion Chetaev's: proved"), "{sure}");
+    let (answer, _) = ask(json!({ "ask": "equations", "name": "sledge", "text": SLEDGE, "motions": ["Chetaev"] }));
+    assert!(answer["motions"][0]["equations"].as_str().unwrap().contains("```math"), "{answer}");
+}
+
+#[test]
+fn bodies_and_a_point_where_a_scene_has_none() {
+    let question =
+        |text: &str| json!({ "ask": "motions", "name": "s", "text": text, "motions": ["Chetaev"], "steps": 4 });
+    let without = SLEDGE.split("[view").next().unwrap();
+    let (answer, numbers) = ask(question(without));
+    let bodies = answer["bodies"].as_array().unwrap();
+    assert_eq!((bodies.len(), &bodies[0]["kind"]), (1, &json!("point")));
+    let motion = &answer["motions"][0];
+    let q = coordinates(motion, &numbers, 4, 3).to_vec();
+    let end = place(motion, "from") + 5 * place(motion, "width");
+    assert_eq!(numbers[end - 12..end - 9], [q[0], q[1], 0.0]);
+    assert_eq!(numbers[end - 9..end], [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+
+    let (answer, numbers) = ask(question(SLEDGE));
+    let (motion, ground) = (&answer["motions"][0], &answer["ground"]);
+    assert_eq!((place(ground, "rows"), place(ground, "width")), (1, 12));
+    assert_eq!([&answer["bodies"][0]["moved"], &answer["bodies"][1]["moved"]], [false, true]);
+    let q = coordinates(motion, &numbers, 4, 3).to_vec();
+    let end = place(motion, "from") + 5 * place(motion, "width");
+    // the blade's y axis is level, the slope 0.4 about y
+    assert_eq!(numbers[end - 6..end - 4], [q[2].sin(), q[2].cos()]);
+    assert!((numbers[end - 12] - 0.4_f64.cos() * q[0]).abs() < 1e-14);
+}

@@ -1,0 +1,171 @@
+//! The page `reports/explore.html`: built, tried in a browser, compared with the committed one.
+//!
+//! What the page shows of itself, its own sources and the scenes, has a digest in the page. The committed page
+//! has to have that of the sources. It has not to be rebuilt for every change of what computes: the numbers of
+//! both, the committed page and one that is built from the sources, are held against the native program.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::checks::{Outcome, build, cargo, outside, succeed, target};
+
+/// The sources of the page, and of what answers it.
+const PAGE: &str = "crates/explore/page";
+const SOURCES: [&str; 4] = [PAGE, "crates/explore/src", "validation/scenes", "validation/equivalence"];
+/// Endings of sources.
+const ENDINGS: [&str; 7] = ["js", "mjs", "css", "html", "json", "rs", "toml"];
+/// The committed page.
+const COMMITTED: &str = "reports/explore.html";
+const WASM: &str = "wasm32-unknown-unknown";
+/// Where a browser is looked for.
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// The committed page is that of the sources, and works; so does a fresh one, where it can be built.
+pub(crate) fn check() -> Result<Outcome> {
+    let digest = digest()?;
+    let committed = std::fs::read_to_string(COMMITTED).context(COMMITTED)?;
+    let named = format!("<meta name=\"sources\" content=\"{digest}\">");
+    ensure!(committed.contains(&named), "{COMMITTED} is not that of its sources, whose digest is {digest}");
+    Ok(match tools()? {
+        Err(lacking) => Outcome(format!(", not tried in a browser: {lacking}")),
+        Ok(browser) => {
+            let (page, size) = fresh(&digest)?;
+            let found = tried(&browser, &page, "all")?;
+            tried(&browser, Path::new(COMMITTED), "numbers")?;
+            Outcome(format!(", {size}; {found}"))
+        }
+    })
+}
+
+/// Builds the page and puts it in its place.
+pub(crate) fn write() -> Result<Outcome> {
+    if let Err(lacking) = tools()? {
+        bail!("the page cannot be built: {lacking}");
+    }
+    let (page, size) = fresh(&digest()?)?;
+    std::fs::copy(page, COMMITTED).context(COMMITTED)?;
+    println!("{COMMITTED}: {size}");
+    Ok(Outcome(String::new()))
+}
+
+/// A digest of the sources (FNV-1a, 64 bits), with their names in order.
+fn digest() -> Result<String> {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut feed =
+        |bytes: &[u8]| bytes.iter().for_each(|b| hash = (hash ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3));
+    for folder in SOURCES {
+        for file in files(Path::new(folder))? {
+            feed(file.to_string_lossy().replace('\\', "/").as_bytes());
+            feed(&std::fs::read(&file).with_context(|| file.display().to_string())?);
+        }
+    }
+    Ok(format!("{hash:016x}"))
+}
+
+/// The sources in a folder, in order.
+fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
+    let mut files = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?;
+    let known = |file: &Path| file.extension().and_then(|e| e.to_str()).is_some_and(|e| ENDINGS.contains(&e));
+    files.retain(|file| file.is_file() && known(file));
+    files.sort();
+    Ok(files)
+}
+
+/// A browser, if everything else is there, too; or what is lacking.
+fn tools() -> Result<Result<PathBuf, String>> {
+    if answer(outside("node").arg("--version")).is_none() || answer(npm().arg("--version")).is_none() {
+        return Ok(Err("there is no node with npm".into()));
+    }
+    let library = |sysroot: &str| Path::new(sysroot.trim()).join("lib/rustlib").join(WASM).exists();
+    let there = || answer(outside("rustc").args(["--print", "sysroot"])).is_some_and(|sysroot| library(&sysroot));
+    if !there() {
+        answer(outside("rustup").args(["target", "add", WASM]));
+    }
+    if !there() {
+        return Ok(Err(format!("rustc has no target {WASM}")));
+    }
+    if let Some(browser) = browser() {
+        return Ok(Ok(browser));
+    }
+    answer(outside("apt-get").args(["install", "--yes", "--no-install-recommends", "chromium"]));
+    Ok(browser().ok_or_else(|| format!("there is no browser, none of {}", BROWSERS.join(", "))))
+}
+
+fn npm() -> Command {
+    outside(if cfg!(windows) { "npm.cmd" } else { "npm" })
+}
+
+/// What a program says, if it succeeds.
+fn answer(command: &mut Command) -> Option<String> {
+    let output = command.stdin(Stdio::null()).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+fn browser() -> Option<PathBuf> {
+    let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();
+    let places = BROWSERS.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
+    { places }.find(|place| place.is_file())
+}
+
+/// Builds a page into the folder of build results; how large it is.
+fn fresh(digest: &str) -> Result<(PathBuf, String)> {
+    build()?;
+    let (target, folder) = (target()?, workshop()?);
+    let mut compile = cargo();
+    compile.args(["build", "--profile", "page", "--target", WASM, "--package", "deltaq-explore"]);
+    succeed(compile.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", flags()))?;
+    let (program, page) = (target.join(WASM).join("page").join("explore.wasm"), target.join("explore/explore.html"));
+    let mut bundle = outside("node");
+    bundle.arg(folder.join("build.mjs")).arg(program).arg(deltaq()?).arg(&page).arg(digest);
+    Ok((page, said(&mut bundle)?))
+}
+
+/// Deep expressions are walked on the stack, of which a program has 8 MB elsewhere, too. No page is to name the
+/// folders of who built it.
+fn flags() -> String {
+    let home = || std::env::home_dir().map(|home| home.join(".cargo"));
+    let packages = std::env::var_os("CARGO_HOME").map(PathBuf::from).or_else(home).unwrap_or_default();
+    format!("-C link-arg=-zstack-size=8388608 --remap-path-prefix={}=cargo", packages.display())
+}
+
+/// The sources of the page with the packages that they ask for.
+fn workshop() -> Result<PathBuf> {
+    let folder = target()?.join("explore").join("page");
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let lock = folder.join("package-lock.json");
+    let before = std::fs::read(&lock).ok();
+    for file in files(Path::new(PAGE))? {
+        std::fs::copy(&file, folder.join(file.file_name().unwrap_or_default()))
+            .with_context(|| file.display().to_string())?;
+    }
+    if before != std::fs::read(&lock).ok() || !folder.join("node_modules").exists() {
+        let options = ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"];
+        succeed(npm().args(options).current_dir(&folder))?;
+    }
+    Ok(folder)
+}
+
+fn deltaq() -> Result<PathBuf> {
+    Ok(target()?.join("release").join("deltaq"))
+}
+
+/// Tries a page in a browser; what was measured.
+fn tried(browser: &Path, page: &Path, what: &str) -> Result<String> {
+    let folder = workshop()?;
+    let pictures = target()?.join("explore").join("pictures");
+    let mut test = outside("node");
+    test.arg(folder.join("test.mjs")).arg(browser).arg(deltaq()?).arg(page).arg(pictures).arg(what);
+    said(&mut test)
+}
+
+/// The last line that a program says; it has to succeed.
+fn said(command: &mut Command) -> Result<String> {
+    let output = command.stderr(Stdio::inherit()).output().context("node")?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    print!("{}", if output.status.success() { "" } else { &text });
+    ensure!(output.status.success(), "the page is not as it has to be: see above");
+    Ok(text.trim().lines().last().unwrap_or_default().to_owned())
+}
