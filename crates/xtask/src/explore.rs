@@ -1,8 +1,8 @@
 //! The page `reports/explore.html`: built, tried in a browser, compared with the committed one.
 //!
-//! What the page shows of itself, its own sources and the scenes, has a digest in the page. The committed page
-//! has to have that of the sources. It has not to be rebuilt for every change of what computes: the numbers of
-//! both, the committed page and one that is built from the sources, are held against the native program.
+//! A page has the digest of its own sources and the scenes in it, and the committed one has to have that of
+//! the sources here. It has not to be built anew for every change of what computes: the numbers of both, the
+//! committed page and one that is built from the sources, are held against the native program.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -123,8 +123,8 @@ fn fresh(digest: &str) -> Result<(PathBuf, String)> {
     Ok((page, said(&mut bundle)?))
 }
 
-/// Deep expressions are walked on the stack, of which a program has 8 MB elsewhere, too. No page is to name the
-/// folders of who built it.
+/// Deep expressions are walked on the stack, of which a program has 8 MB elsewhere, too. No page is to name
+/// the folders of who built it.
 fn flags() -> String {
     let home = || std::env::home_dir().map(|home| home.join(".cargo"));
     let packages = std::env::var_os("CARGO_HOME").map(PathBuf::from).or_else(home).unwrap_or_default();
