@@ -303,10 +303,7 @@ async function restore() {
 
 async function begin() {
   const option = ({ name, title }) => `<option value="${name}">${title}</option>`;
-  const groups = Map.groupBy ? Map.groupBy(scenes, ({ group }) => group) : new Map([["Scenes", scenes]]);
-  element("scene").innerHTML =
-    [...groups].map(([group, list]) => `<optgroup label="${group}">${list.map(option).join("")}</optgroup>`).join("") +
-    `<option value="${OWN}" hidden>own text</option>`;
+  element("scene").innerHTML = `${scenes.map(option).join("")}<option value="${OWN}" hidden>own text</option>`;
   const source = element("worker").textContent;
   const module = await compile(element("program").textContent);
   motionsEngine = new Engine(module, source);

@@ -14,7 +14,7 @@ const KAPPA: &str = "kappa";
 /// A slider for it goes up to this, in 1/s.
 const MOST_KAPPA: f64 = 20.0;
 
-/// All numbers that can be set, each an object: parameters, the start, multipliers, costates, κ, the duration.
+/// All numbers that can be set, each an object: parameters, start, multipliers, costates, κ, duration.
 pub(crate) fn of(subject: &Subject) -> Vec<Value> {
     let Subject { scene, choices } = subject;
     let (system, start, g) = (&scene.system, &scene.start, &scene.system.graph);

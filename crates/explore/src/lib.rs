@@ -21,7 +21,7 @@
 //! let explore::Answer { text, numbers } = explore::answer(&question.to_string());
 //! let answer: serde_json::Value = serde_json::from_str(&text)?;
 //! let motion = &answer["motions"][0];
-//! let (from, width) = (motion["from"].as_u64().unwrap() as usize, motion["width"].as_u64().unwrap() as usize);
+//! let [from, width] = ["from", "width"].map(|name| motion[name].as_u64().unwrap() as usize);
 //! // the sledge turns at a constant rate: phi = 0.3 + t; the last of eleven rows is at t = 1
 //! assert!((numbers[from + 10 * width + 3] - 1.3).abs() < 1e-12);
 //! # Ok::<(), serde_json::Error>(())
@@ -30,6 +30,7 @@
 //! **What it refuses.** A faulty text is answered with all its faults and their places, a motion that cannot
 //! be started with the reason.
 
+mod answering;
 mod bodies;
 mod controls;
 #[cfg(target_family = "wasm")]
@@ -40,4 +41,5 @@ mod run;
 mod subject;
 mod words;
 
-pub use question::{Answer, Ask, Question, answer};
+pub use answering::answer;
+pub use question::{Answer, Ask, Question};

@@ -5,17 +5,16 @@ use mechanics::{Observables, System, Watched};
 use scene::Scene;
 use serde_json::{Value, json};
 
-use crate::Question;
 use crate::bodies::Bodies;
-use crate::question::Refused;
+use crate::question::{Question, Refused};
 use crate::run::{Run, settings};
 use crate::subject::Subject;
 
 /// The motions of a question, and the gaps of the first to the others.
 ///
-/// Of each motion `from` is the place of its first row in the numbers, `width` the length of a row, `rows` how
-/// many there are. A row is `t`, coordinates, velocities, multipliers, invariants, energy and observables, the
-/// place whose path is drawn, and twelve numbers a body that moves: its place, and its rotation row by row.
+/// Of each motion `from` is the place of its first row in the numbers, `width` the length of a row, `rows`
+/// how many there are. A row is `t`, coordinates, velocities, multipliers, invariants, energy, observables,
+/// the place whose path is drawn, and twelve numbers a body that moves: its place, its rotation row by row.
 /// Rows of the ground are of twelve numbers a body, at every time or one for all; those of a gap are `t`, the
 /// gap, and what it has to pass (infinite in doubt, or at a glance).
 pub(crate) fn sampled(subject: &Subject, question: &Question, numbers: &mut Vec<f64>) -> Result<Value, Refused> {

@@ -4,10 +4,6 @@ use std::collections::BTreeMap;
 
 use scene::SceneError;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
-
-use crate::subject::Subject;
-use crate::{controls, motions, words};
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -70,46 +66,4 @@ pub(crate) enum Refused {
     /// The question is none.
     #[error("the question cannot be read: {0}")]
     Question(#[from] serde_json::Error),
-}
-
-/// Answers a [`Question`] in JSON.
-pub fn answer(question: &str) -> Answer {
-    let mut numbers = Vec::new();
-    let value = match answered(question, &mut numbers) {
-        Ok(value) => value,
-        Err(Refused::Faulty(error)) => json!({ "faults": faults(&error), "message": error.to_string() }),
-        Err(error) => json!({ "refused": error.to_string() }),
-    };
-    Answer { text: value.to_string(), numbers }
-}
-
-fn answered(question: &str, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
-    let question: Question = serde_json::from_str(question)?;
-    let subject = Subject::of(&question)?;
-    match question.ask {
-        Ask::Scene => Ok(scene(&subject)),
-        Ask::Motions => motions::sampled(&subject, &question, numbers),
-        Ask::Equations => words::equations(&subject),
-        Ask::Decision => words::decision(subject, &question),
-    }
-}
-
-/// What a page has to know of a scene before there are motions.
-fn scene(subject: &Subject) -> Value {
-    let Subject { scene, choices } = subject;
-    let coordinate = |c: &mechanics::Coordinate| json!({ "name": c.name, "unit": c.unit });
-    let motion = |c: &deltaq::Choice| json!({ "label": c.label, "formulation": c.formulation });
-    json!({
-        "title": scene.title, "source": scene.source, "notes": scene.notes,
-        "start": scene.start.t, "duration": scene.duration,
-        "coordinates": scene.system.coordinates.iter().map(coordinate).collect::<Vec<_>>(),
-        "controls": controls::of(subject),
-        "motions": choices.iter().map(motion).collect::<Vec<_>>(),
-    })
-}
-
-/// All faults of a text, with their places.
-fn faults(error: &SceneError) -> Value {
-    let fault = |e: &SceneError| json!({ "line": e.line, "column": e.column, "length": e.length, "message": e.kind.to_string() });
-    std::iter::once(error).chain(&error.also).map(fault).collect()
 }

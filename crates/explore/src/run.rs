@@ -8,7 +8,7 @@ use equations::{Equations, Outputs};
 use integrate::{Options, Status};
 use scene::Scene;
 
-use crate::Question;
+use crate::question::Question;
 
 /// Steps of one run at most, and of one at a glance.
 const MAX_STEPS: [usize; 2] = [200_000, 5_000];

@@ -4,7 +4,7 @@ use deltaq::{Choice, choices, costate_names};
 use mechanics::ConstantsRule;
 use scene::{Scene, SceneError};
 
-use crate::Question;
+use crate::question::Question;
 
 /// What the names of costates at the start begin with.
 const COSTATE: &str = "P0_";

@@ -4,8 +4,7 @@ use deltaq::words::{Headline, decisions};
 use deltaq::{Comparison, EquationStyle, Extent, derive_at, equations_text, integrability, system_text};
 use serde_json::{Value, json};
 
-use crate::Question;
-use crate::question::Refused;
+use crate::question::{Question, Refused};
 use crate::run::settings;
 use crate::subject::Subject;
 
@@ -18,9 +17,11 @@ pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
         }
         Err(error) => json!({ "label": choice.label, "refused": error.to_string() }),
     };
+    // in a graph of its own: brackets are long
+    let integrability = integrability(&scene.system.clone(), &scene.start)?;
     Ok(json!({
         "system": system_text(&scene.system, EquationStyle::Latex),
-        "integrability": integrability(&scene.system.clone(), &scene.start).map_err(deltaq::SolveError::from)?.to_string(),
+        "integrability": integrability.to_string(),
         "motions": choices.iter().map(motion).collect::<Vec<_>>(),
     }))
 }

@@ -1,8 +1,8 @@
 //! The page `reports/explore.html`: built, tried in a browser, compared with the committed one.
 //!
-//! What the page shows of itself, its own sources and the scenes, has a digest in the page. The committed page
-//! has to have that of the sources. It has not to be rebuilt for every change of what computes: the numbers of
-//! both, the committed page and one that is built from the sources, are held against the native program.
+//! A page has the digest of its own sources and the scenes in it, and the committed one has to have that of
+//! the sources here. It has not to be built anew for every change of what computes: the numbers of both, the
+//! committed page and one that is built from the sources, are held against the native program.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -50,13 +50,16 @@ pub(crate) fn write() -> Result<Outcome> {
     Ok(Outcome(String::new()))
 }
 
+/// What only tries a page is no part of it.
+const TEST: &str = "test.mjs";
+
 /// A digest of the sources (FNV-1a, 64 bits), with their names in order.
 fn digest() -> Result<String> {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut feed =
         |bytes: &[u8]| bytes.iter().for_each(|b| hash = (hash ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3));
     for folder in SOURCES {
-        for file in files(Path::new(folder))? {
+        for file in files(Path::new(folder))?.into_iter().filter(|file| !file.ends_with(TEST)) {
             feed(file.to_string_lossy().replace('\\', "/").as_bytes());
             feed(&std::fs::read(&file).with_context(|| file.display().to_string())?);
         }
@@ -123,8 +126,8 @@ fn fresh(digest: &str) -> Result<(PathBuf, String)> {
     Ok((page, said(&mut bundle)?))
 }
 
-/// Deep expressions are walked on the stack, of which a program has 8 MB elsewhere, too. No page is to name the
-/// folders of who built it.
+/// Deep expressions are walked on the stack, of which a program has 8 MB elsewhere, too. No page is to name
+/// the folders of who built it.
 fn flags() -> String {
     let home = || std::env::home_dir().map(|home| home.join(".cargo"));
     let packages = std::env::var_os("CARGO_HOME").map(PathBuf::from).or_else(home).unwrap_or_default();
@@ -157,7 +160,7 @@ fn tried(browser: &Path, page: &Path, what: &str) -> Result<String> {
     let folder = workshop()?;
     let pictures = target()?.join("explore").join("pictures");
     let mut test = outside("node");
-    test.arg(folder.join("test.mjs")).arg(browser).arg(deltaq()?).arg(page).arg(pictures).arg(what);
+    test.arg(folder.join(TEST)).arg(browser).arg(deltaq()?).arg(page).arg(pictures).arg(what);
     said(&mut test)
 }
 

@@ -1,0 +1,50 @@
+//! From questions to answers.
+
+use scene::SceneError;
+use serde_json::{Value, json};
+
+use crate::question::{Answer, Ask, Question, Refused};
+use crate::subject::Subject;
+use crate::{controls, motions, words};
+
+/// Answers a [`Question`] in JSON.
+pub fn answer(question: &str) -> Answer {
+    let mut numbers = Vec::new();
+    let value = match answered(question, &mut numbers) {
+        Ok(value) => value,
+        Err(Refused::Faulty(error)) => json!({ "faults": faults(&error), "message": error.to_string() }),
+        Err(error) => json!({ "refused": error.to_string() }),
+    };
+    Answer { text: value.to_string(), numbers }
+}
+
+fn answered(question: &str, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
+    let question: Question = serde_json::from_str(question)?;
+    let subject = Subject::of(&question)?;
+    match question.ask {
+        Ask::Scene => Ok(scene(&subject)),
+        Ask::Motions => motions::sampled(&subject, &question, numbers),
+        Ask::Equations => words::equations(&subject),
+        Ask::Decision => words::decision(subject, &question),
+    }
+}
+
+/// What a page has to know of a scene before there are motions.
+fn scene(subject: &Subject) -> Value {
+    let Subject { scene, choices } = subject;
+    let coordinate = |c: &mechanics::Coordinate| json!({ "name": c.name, "unit": c.unit });
+    let motion = |c: &deltaq::Choice| json!({ "label": c.label, "formulation": c.formulation });
+    json!({
+        "title": scene.title, "source": scene.source, "notes": scene.notes,
+        "start": scene.start.t, "duration": scene.duration,
+        "coordinates": scene.system.coordinates.iter().map(coordinate).collect::<Vec<_>>(),
+        "controls": controls::of(subject),
+        "motions": choices.iter().map(motion).collect::<Vec<_>>(),
+    })
+}
+
+/// All faults of a text, with their places.
+fn faults(error: &SceneError) -> Value {
+    let fault = |e: &SceneError| json!({ "line": e.line, "column": e.column, "length": e.length, "message": e.kind.to_string() });
+    std::iter::once(error).chain(&error.also).map(fault).collect()
+}
