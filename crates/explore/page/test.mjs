@@ -58,12 +58,14 @@ async function open(address, { width = 1280, height = 900, scheme = "light" } = 
 
 const settled = (page) => page.waitForFunction(() => window.explored.answer.motions.every((m) => m.refused || m.error !== null), { timeout: 60000 });
 
-// Chooses a built-in scene, and waits for its motions in full.
-async function choose(page, name) {
-  await page.evaluate(() => { window.explored = { answer: { motions: [{ error: null }] } }; });
-  await page.select("#scene", name);
+// Does what asks for other motions, and waits for them in full: those that are there do not count.
+async function renewed(page, ask) {
+  await page.evaluate(() => { window.explored.answer = { motions: [{ error: null }] }; });
+  await ask();
   await settled(page);
 }
+
+const choose = (page, name) => renewed(page, () => page.select("#scene", name));
 
 const rows = (page, label) => page.evaluate((label) => {
   const motion = window.explored.samples.motions.find((motion) => motion.label === label);
@@ -145,8 +147,7 @@ async function everyScene() {
 async function sliders() {
   const page = await open(link({ scene: "sledge" }));
   const before = await rows(page, "Chetaev");
-  await slide(page, "phi'", 800);
-  await settled(page);
+  await renewed(page, () => slide(page, "phi'", 800));
   const after = await rows(page, "Chetaev");
   must(Math.abs(after.at(-1)[3] - before.at(-1)[3]) > 1, "a slider changes nothing");
   // a hand on a slider for two seconds
@@ -194,9 +195,8 @@ async function sliders() {
 // A text of one's own has the numbers of the native program, a faulty one its message, a link all of it.
 async function ownText() {
   const page = await open(link({ scene: "disc", tab: "text" }));
-  await type(page, OWN);
-  await page.waitForFunction(() => document.title.startsWith("Skate"));
-  await settled(page);
+  await renewed(page, () => type(page, OWN));
+  must((await page.title()).startsWith("Skate"), "the page does not say what it shows");
   let largest = 0;
   for (const [label, formulation] of [["Chetaev", "chetaev"], ["vakonomic", "vakonomic"]]) {
     const ours = (await rows(page, label)).filter((_, i) => i % 16 === 0);
@@ -208,8 +208,7 @@ async function ownText() {
   must(largest <= LIMITS.difference, `native numbers differ by ${largest}, at most ${LIMITS.difference}`);
   said.push(`numbers as native to ${largest.toExponential(1)}`);
 
-  await slide(page, "phi", 700);
-  await settled(page);
+  await renewed(page, () => slide(page, "phi", 700));
   await page.waitForFunction(() => location.hash.length > 300);
   await new Promise((resolve) => setTimeout(resolve, 400));
   const twin = await open(await page.evaluate(() => location.href));
