@@ -8,8 +8,8 @@
 //! What every picture keeps:
 //! - A [`Style`] has one colour, one dash and one width, the same everywhere. Styles are nested (wide solid
 //!   below, narrow broken above), so that identical motions show all of themselves.
-//! - A linear axis is as long as what is compared needs: a curve but the first that alone would make it over five
-//!   times as long is cut, with an arrowhead where it leaves and the value that it gets to.
+//! - A linear axis is as long as what is compared needs: a curve but the first that alone would make it over
+//!   five times as long is cut, with an arrowhead where it leaves and the value that it gets to.
 //! - The same input gives the same bytes. Coordinates are rounded to 0.1 px, and points that do not move the
 //!   drawn line by more than that are left out. A file that would pass 60 kB is thinned further, to 1.6 px at
 //!   the coarsest; a long curve that fills the plane may pass it all the same.
@@ -69,8 +69,8 @@ pub struct Axis {
     /// How values are laid along the axis.
     pub scale: Scale,
     /// Lowest and highest value shown; `None` takes them from the points, with a small margin, but not from
-    /// those of a [`Style::Family`], nor on a linear axis from those of a runaway. Points that all agree within
-    /// 1e-6 of their magnitude are shown as one value in the middle of a range of ±5 %.
+    /// those of a [`Style::Family`], nor on a linear axis from those of a runaway. Points that all agree
+    /// within 1e-6 of their magnitude are shown as one value in the middle of a range of ±5 %.
     pub range: Option<(f64, f64)>,
 }
 

@@ -6,7 +6,8 @@
 /// colour. Narrow lines stand on wide ones. A gap between two formulations alternates their colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Style {
-    /// One of a row of motions of the vakonomic family: what lies between neighbours is a pale band (vermilion).
+    /// One of a row of motions of the vakonomic family: what lies between neighbours is a band (pale
+    /// vermilion).
     Family,
     /// What is to be passed or kept (grey, thin, dashed; named at its right end).
     Threshold,

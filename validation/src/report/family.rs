@@ -11,8 +11,8 @@ const END: f64 = 1.5;
 const MEMBERS: u32 = 24;
 
 /// The vakonomic family about Chetaev's motion, read off at these times: motions with `μ₀ = a + s (b − a)`,
-/// `s` from 0 to [`END`], `a` of the run that is drawn and `b` of the motion nearest to Chetaev's; then this one.
-/// None where the two do not differ, or neither a decision nor a fit tells what is nearest.
+/// `s` from 0 to [`END`], `a` of the run that is drawn and `b` of the motion nearest to Chetaev's; then this
+/// one. None where the two do not differ, or neither a decision nor a fit tells what is nearest.
 ///
 /// # Errors
 /// Where the family has no equations.
