@@ -4,4 +4,5 @@ mod audit;
 mod bench;
 mod casadi;
 mod headlines;
+mod pictures;
 mod scaling;

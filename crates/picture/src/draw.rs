@@ -275,12 +275,16 @@ fn leaving(out: &mut String, plot: &Framed, style: Style, measured: &Measured) {
     }
     let (x, y) = (plot.across(within.0), plot.down(within.1));
     let angle = (plot.down(pair[1].1) - plot.down(pair[0].1)).atan2(plot.across(pair[1].0) - plot.across(pair[0].0));
-    let (range, read): (_, fn((f64, f64)) -> f64) =
-        if beyond_y(outside) { (plot.y, |p| p.1) } else { (plot.x, |p| p.0) };
+    let vertical = beyond_y(outside);
+    let range = if vertical { plot.y } else { plot.x };
     let middle = range.low / 2.0 + range.high / 2.0;
     let far = |a: &f64, b: &f64| (a - middle).abs().total_cmp(&(b - middle).abs());
-    let farthest = measured.points().map(read).max_by(far).unwrap_or(middle);
-    let decimals = (2.0 - farthest.abs().log10().floor()).clamp(0.0, 3.0) as usize;
+    let farthest = measured.points().map(|(x, y)| if vertical { y } else { x }).max_by(far).unwrap_or(middle);
+    let exponent = farthest.abs().log10().floor();
+    let far = match exponent {
+        -3.0..5.0 => decimal(farthest, (2.0 - exponent).max(0.0) as usize),
+        _ => format!("{farthest:.1e}"),
+    };
     let Extent { width: w, height: h } = plot.extent;
     let (anchor, beside) = if x > w / 2.0 { ("end", -14.0) } else { ("start", 14.0) };
     out.push_str(&format!(
@@ -291,7 +295,7 @@ fn leaving(out: &mut String, plot: &Framed, style: Style, measured: &Measured) {
         px(angle.to_degrees()),
         style.strokes()[0].colour
     ));
-    text(out, (x + beside, (y - 10.0).clamp(14.0, h - 6.0)), anchor, &format!("to {}", decimal(farthest, decimals)));
+    text(out, (x + beside, (y - 10.0).clamp(14.0, h - 6.0)), anchor, &format!("to {far}"));
     out.push_str("</g>\n");
 }
 
