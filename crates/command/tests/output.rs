@@ -10,7 +10,7 @@ use crate::support::{answer, command, refused, text};
 const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/reports");
 
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
-const ANSWERS: [&[&str]; 18] = [
+const ANSWERS: [&[&str]; 19] = [
     &["new"],
     &["check", "sledge"],
     &["--scenes", "bowl", "--quiet", "--out", REPORTS],
@@ -21,6 +21,7 @@ const ANSWERS: [&[&str]; 18] = [
     &["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"],
     &["linearize", "bicycle"],
     &["random", "--count", "1", "--quiet"],
+    &["explore", "sledge", "--out", concat!(env!("CARGO_TARGET_TMPDIR"), "/explore.html")],
     &["prove", "sledge", "--out", "-"],
     &["bench", "bowl", "--set", "duration=0.01", "--seconds", "0.0001", "--quiet"],
     &["scaling", "--longest", "1", "--repeats", "1", "--quiet"],

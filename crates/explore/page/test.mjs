@@ -56,16 +56,16 @@ async function open(address, { width = 1280, height = 900, scheme = "light" } = 
   return page;
 }
 
-const settled = (page) => page.waitForFunction(() => window.explored.answer.motions.every((m) => m.refused || m.error !== null), { timeout: 60000 });
-
-// Does what asks for other motions, and waits for them in full: those that are there do not count.
-async function renewed(page, ask) {
-  await page.evaluate(() => { window.explored.answer = { motions: [{ error: null }] }; });
-  await ask();
-  await settled(page);
+// Waits for newer motions than there are, in full: those at a glance have no error.
+async function after(page, act) {
+  const before = await page.evaluate(() => window.explored.drawn);
+  await act();
+  const isNewer = (before) => window.explored.drawn > before && window.explored.answer.motions.every((m) => m.refused || m.error !== null);
+  await page.waitForFunction(isNewer, { timeout: 60000 }, before);
 }
 
-const choose = (page, name) => renewed(page, () => page.select("#scene", name));
+// Chooses a built-in scene, and waits for its motions.
+const choose = (page, name) => after(page, () => page.select("#scene", name));
 
 const rows = (page, label) => page.evaluate((label) => {
   const motion = window.explored.samples.motions.find((motion) => motion.label === label);
@@ -147,9 +147,9 @@ async function everyScene() {
 async function sliders() {
   const page = await open(link({ scene: "sledge" }));
   const before = await rows(page, "Chetaev");
-  await renewed(page, () => slide(page, "phi'", 800));
-  const after = await rows(page, "Chetaev");
-  must(Math.abs(after.at(-1)[3] - before.at(-1)[3]) > 1, "a slider changes nothing");
+  await after(page, () => slide(page, "phi'", 800));
+  const moved = await rows(page, "Chetaev");
+  must(Math.abs(moved.at(-1)[3] - before.at(-1)[3]) > 1, "a slider changes nothing");
   // a hand on a slider for two seconds
   const [updates, took] = await page.evaluate(async () => {
     const slider = document.querySelector('[data-name="alpha"] input[type=range]');
@@ -195,8 +195,8 @@ async function sliders() {
 // A text of one's own has the numbers of the native program, a faulty one its message, a link all of it.
 async function ownText() {
   const page = await open(link({ scene: "disc", tab: "text" }));
-  await renewed(page, () => type(page, OWN));
-  must((await page.title()).startsWith("Skate"), "the page does not say what it shows");
+  await after(page, () => type(page, OWN));
+  must((await page.title()).startsWith("Skate"), "a text of one's own is not read");
   let largest = 0;
   for (const [label, formulation] of [["Chetaev", "chetaev"], ["vakonomic", "vakonomic"]]) {
     const ours = (await rows(page, label)).filter((_, i) => i % 16 === 0);
@@ -208,11 +208,10 @@ async function ownText() {
   must(largest <= LIMITS.difference, `native numbers differ by ${largest}, at most ${LIMITS.difference}`);
   said.push(`numbers as native to ${largest.toExponential(1)}`);
 
-  await renewed(page, () => slide(page, "phi", 700));
+  await after(page, () => slide(page, "phi", 700));
   await page.waitForFunction(() => location.hash.length > 300);
   await new Promise((resolve) => setTimeout(resolve, 400));
   const twin = await open(await page.evaluate(() => location.href));
-  await settled(twin);
   const [here, there] = [await rows(page, "vakonomic"), await rows(twin, "vakonomic")];
   must(JSON.stringify(here) === JSON.stringify(there) && here[0][3] !== 0.1, "a link does not bring the motion back");
   must(await twin.$eval("#text", (panel) => !panel.hidden), "a link does not bring the panel back");
