@@ -59,7 +59,7 @@ fn list(checks: &[checks::Check]) {
     println!("\n  {:<10} no check: builds wheel and source distribution of the Python module", "wheel");
     println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
     println!(
-        "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look",
+        "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look, --redraw for pictures",
         "peers"
     );
 }
