@@ -64,7 +64,7 @@ fn list(checks: &[checks::Check]) {
     println!("\n  {:<10} no check: builds the page to explore scenes, writes reports/explore.html", "explore");
     println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
     println!(
-        "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look",
+        "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look, --redraw for pictures",
         "peers"
     );
 }
