@@ -18,8 +18,8 @@ use symbolic::Symbol;
 
 use crate::constants::free_constants;
 use crate::{Choice, Form, Metric, Prepared, Settings, SolveError, derive_in_form, formulation, setting};
-pub(crate) use costates::Costates;
 pub use costates::costate_names;
+pub(crate) use costates::{Costates, is_costate};
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};

@@ -4,7 +4,7 @@ use scene::Scene;
 
 use mechanics::ConstantsRule;
 
-use crate::ensemble::Costates;
+use crate::ensemble::{Costates, is_costate};
 use crate::{
     Answer, Choice, Comparison, Extent, FORMULATIONS, Membership, Settings, SolveError, THRESHOLDS, Verdict, choices,
     choices_among,
@@ -171,11 +171,6 @@ impl Sweep {
         }
         Ok(())
     }
-}
-
-/// Whether a name is that of a costate at the start.
-fn is_costate(name: &str) -> bool {
-    name.starts_with("P0_")
 }
 
 fn refused(reason: String) -> SolveError {

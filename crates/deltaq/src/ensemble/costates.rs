@@ -16,9 +16,17 @@ pub(crate) struct Costates {
     varied: Vec<(usize, usize)>,
 }
 
-/// The name of a costate at the start: `P0_w`.
+/// How the names of costates at the start begin.
+const START: &str = "P0_";
+
+/// The names of the costates at the start: `P0_w`.
 pub fn costate_names(scene: &Scene, removal: &Removal) -> Vec<String> {
-    removal.memory.iter().map(|w| format!("P0_{}", scene.system.graph.name(w.symbol))).collect()
+    removal.memory.iter().map(|w| format!("{START}{}", scene.system.graph.name(w.symbol))).collect()
+}
+
+/// Whether a name is that of a costate at the start.
+pub(crate) fn is_costate(name: &str) -> bool {
+    name.starts_with(START)
 }
 
 impl Costates {
@@ -34,10 +42,10 @@ impl Costates {
         for (place, name) in names.iter().enumerate() {
             match known.iter().position(|known| known == name) {
                 Some(memory) => varied.push((place, memory)),
-                None if name.starts_with("P0_") && known.is_empty() => {
+                None if is_costate(name) && known.is_empty() => {
                     return Err(format!("`{name}` varies, and {} has no memory variables", choice.formulation));
                 }
-                None if name.starts_with("P0_") => {
+                None if is_costate(name) => {
                     return Err(format!("no costate `{name}` that could vary; there are {}", known.join(", ")));
                 }
                 None => others.push(*name),

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ._native import Comparison, Ensemble, Motion, System
+from ._plots import COLOURS
 
 # Points of a motion that are read off.
 _POINTS = 961
@@ -47,7 +48,7 @@ def motion(self: Motion) -> Animation:
 def comparison(self: Comparison) -> Animation:
     """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself."""
     shown = {run.formulation: run for run in reversed(self.runs) if run.motion is not None}
-    order = [name for name in ("chetaev", "vakonomic", "removed-constraint", "kappa") if name in shown]
+    order = [name for name in COLOURS if name in shown]
     return Animation(self.system, [_curve(shown[name].label, shown[name].motion) for name in order])
 
 

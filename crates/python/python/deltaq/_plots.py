@@ -6,14 +6,14 @@ import numpy as np
 
 from ._native import Comparison, Ensemble, Motion
 
-_COLOURS = {"chetaev": "#0072b2", "vakonomic": "#d55e00", "removed-constraint": "#009e73", "kappa": "#cc79a7"}
+COLOURS = {"chetaev": "#0072b2", "vakonomic": "#d55e00", "removed-constraint": "#009e73", "kappa": "#cc79a7"}
 _STYLES = {"chetaev": "-", "vakonomic": "--", "removed-constraint": "-.", "kappa": ":"}
 
 
 def _look(formulation: str) -> dict[str, Any]:
     """Colour and dashes of a formulation; of a form of it likewise."""
-    known = next((name for name in _COLOURS if formulation.startswith(name)), None)
-    return {} if known is None else {"color": _COLOURS[known], "linestyle": _STYLES[known]}
+    known = next((name for name in COLOURS if formulation.startswith(name)), None)
+    return {} if known is None else {"color": COLOURS[known], "linestyle": _STYLES[known]}
 
 
 # Lines of an ensemble that are drawn; more than these are a grey area.
@@ -81,7 +81,7 @@ def comparison(self: Comparison, ax: Any = None) -> Any:
     ax: n + 1 axes to draw into.
     """
     # the costate form is a form of the vakonomic motion
-    runs = [run for run in self.runs if run.motion is not None and run.formulation in _COLOURS]
+    runs = [run for run in self.runs if run.motion is not None and run.formulation in COLOURS]
     names = runs[0].motion.coordinate_names if runs else []
     axes = _columns(len(names) + 1, ax)
     for place, run in enumerate(runs):
@@ -117,7 +117,7 @@ def sweep(self: Any, column: str, ax: Any) -> Any:
     values = table[column].to_numpy()
     contained = np.array([answer.startswith("some") for answer in table["answer"].to_pylist()])
     if len(names) == 1:
-        axis.plot(axes[0], values, color=_COLOURS["vakonomic"])
+        axis.plot(axes[0], values, color=COLOURS["vakonomic"])
         axis.plot(axes[0][contained], values[contained], "o", color="black", label="some constants")
         axis.set_ylabel(column)
     else:

@@ -1,5 +1,6 @@
 """Sweeps and long ensembles: tables over processes and clusters."""
 
+import hashlib
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -190,7 +191,7 @@ def ensemble(
     count = -(-next(iter(lengths.values())) // _size(part))
     listed = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in options.items()}
     listed.pop("threads", None)
-    digests = {name: _parts.identity(values=values[name].tobytes().hex()).decode() for name in values}
+    digests = {name: hashlib.sha256(numbers.tobytes()).hexdigest() for name, numbers in values.items()}
     text = _written(system)
     mark = _parts.identity(ensemble=text, vary=digests, options=listed, part=part, version=__version__)
     work = _EnsemblePart(system, values, part, options)
