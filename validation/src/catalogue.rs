@@ -40,9 +40,16 @@ pub const CLASSICS: &[(&str, &str)] = beside!(
 /// Systems whose steady motions are looked at: in no comparison.
 pub const STEADY: &[(&str, &str)] = &[("bicycle", include_str!("../scenes/bicycle.toml"))];
 
-/// Name and text of every scene that is found by its name and not made for it.
+/// Names and texts of scenes.
+type Group = &'static [(&'static str, &'static str)];
+
+/// The scenes that are found by their names and not made for them, and what each list of them is called.
+pub const GROUPS: [(&str, Group); 3] =
+    [("compared in the reports", SCENES), ("more from the literature", CLASSICS), ("steady motions", STEADY)];
+
+/// Name and text of all of them.
 pub fn built_in() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
-    SCENES.iter().chain(CLASSICS).chain(STEADY)
+    GROUPS.into_iter().flat_map(|(_, group)| group)
 }
 
 /// The built-in scene `name`, `-` for standard input, or the file at that path; `overrides` replace numbers.

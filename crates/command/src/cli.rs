@@ -240,6 +240,8 @@ fn formulations() -> PossibleValuesParser {
 pub struct ExploreArguments {
     /// The scene that it opens with: a built-in name, the path of a scene file, or `-` for standard input.
     pub scene: Option<String>,
+    #[command(flatten)]
+    pub set: Overrides,
     /// File for the page.
     #[arg(long, value_name = "FILE", default_value = "explore.html")]
     pub out: PathBuf,

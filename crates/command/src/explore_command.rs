@@ -1,5 +1,7 @@
 //! `deltaq explore`: the page in which scenes are explored.
 
+use std::collections::BTreeMap;
+
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use validation::catalogue;
@@ -12,16 +14,24 @@ const PAGE: &str = include_str!("../explore.html");
 /// Where the page has the scene that it opens with.
 const CHOSEN: &str = "<script type=\"application/json\" id=\"chosen\">null</script>";
 
-/// Writes the page, with a scene chosen; the text of a file goes into the page.
+/// Writes the page, with a scene chosen and numbers set in it; the text of a file goes into the page.
 ///
 /// # Errors
-/// No such scene; a file that cannot be written. A faulty text is none: the page shows its faults.
+/// No such scene, no such number in it; a file that cannot be written. A faulty text without numbers is none:
+/// the page shows its faults.
 pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
     let mut page = PAGE.to_owned();
+    ensure!(arguments.scene.is_some() || arguments.set.overrides.is_empty(), "--set needs a scene in which to set it");
     if let Some(name) = &arguments.scene {
         let text = catalogue::source(name)?;
         let is_built_in = catalogue::built_in().any(|(known, _)| known == name);
-        let chosen = json!({ "name": name, "text": if is_built_in { None } else { Some(text) } });
+        let set = &arguments.set.overrides;
+        if !set.is_empty() {
+            catalogue::read(name, &text, set)?;
+        }
+        let numbers: BTreeMap<_, _> = set.iter().cloned().collect();
+        let text = if is_built_in { None } else { Some(text) };
+        let chosen = json!({ "name": name, "text": text, "set": numbers });
         // the text of a scene cannot end the element that it is in
         let chosen = chosen.to_string().replace('<', "\\u003c");
         ensure!(page.contains(CHOSEN), "the page has no place for a scene; cargo xtask explore builds it anew");

@@ -18,10 +18,12 @@ use validation::catalogue;
 
 /// The built-in scenes, then those of the pages about the literature, a line each.
 pub(crate) fn list(format: TextOrJson) -> Result<String> {
-    let scenes = catalogue::built_in().map(|(name, text)| Scene::parse(name, text));
-    let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
-    let line = |scene: &Scene| format!("{:<24} {} ({})\n", scene.name, scene.title, scene.source);
-    let entry = |scene: &Scene| json!({ "name": scene.name, "title": scene.title, "source": scene.source });
+    let of = |(title, group): (&'static str, &'static [(&str, &str)])| {
+        group.iter().map(move |(name, text)| Ok((title, Scene::parse(name, text)?)))
+    };
+    let scenes = catalogue::GROUPS.into_iter().flat_map(of).collect::<Result<Vec<_>>>()?;
+    let line = |(_, scene): &(_, Scene)| format!("{:<24} {} ({})\n", scene.name, scene.title, scene.source);
+    let entry = |(group, Scene { name, title, source, .. }): &(_, Scene)| json!({ "name": name, "title": title, "source": source, "group": group });
     Ok(match format {
         TextOrJson::Text => scenes.iter().map(line).collect(),
         TextOrJson::Json => pretty("list", &json!({ "scenes": scenes.iter().map(entry).collect::<Vec<_>>() })),

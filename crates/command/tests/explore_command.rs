@@ -23,10 +23,14 @@ fn a_page_opens_with_the_scene_asked_for() {
     let plain = page(&[]);
     assert_eq!(chosen(&plain), Value::Null);
     assert!(plain.len() < 4_000_000, "{} bytes", plain.len());
-    assert_eq!(chosen(&page(&["disc"])), json!({ "name": "disc", "text": null }));
+    assert_eq!(chosen(&page(&["disc"])), json!({ "name": "disc", "text": null, "set": {} }));
+    let set = ["disc", "--set", "m=2", "--set", "phi=pi/2"];
+    assert_eq!(chosen(&page(&set))["set"], json!({ "m": 2.0, "phi": std::f64::consts::FRAC_PI_2 }));
+    refused(&["explore", "disc", "--set", "mm=2", "--out", &out], &["`mm`"]);
+    refused(&["explore", "--set", "m=2", "--out", &out], &["--set needs a scene"]);
     // whatever the text, it stays in its place
     let text = "title = \"</script><b>\"\n";
     std::fs::write(&own, text).expect("a file");
-    assert_eq!(chosen(&page(&[&own])), json!({ "name": own, "text": text }));
+    assert_eq!(chosen(&page(&[&own])), json!({ "name": own, "text": text, "set": {} }));
     refused(&["explore", "no-such-scene", "--out", &out], &["neither a file nor one of the built-in scenes"]);
 }

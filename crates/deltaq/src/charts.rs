@@ -154,7 +154,7 @@ fn going_on(
     if !names.give(&own) {
         return None;
     }
-    let next = Prepared::around(Setting { start, ..setting }, equations, names.constants(named), settings);
+    let next = Prepared::around(Setting { start, ..setting }, equations, names.constants(named), 0, settings);
     let mut next = next.ok()?;
     next.enter(system, &points);
     Some((by, next))

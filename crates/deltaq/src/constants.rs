@@ -31,33 +31,30 @@ pub fn prepare(
     settings: &Settings,
 ) -> Result<Prepared, SolveError> {
     let mut prepared = Prepared::new(setting, equations, settings)?;
-    resolve(&mut prepared, constants, settings)?;
+    resolve(&mut prepared, constants, settings, None)?;
     Ok(prepared)
 }
 
-/// Sets the free constants as `rule` says.
-pub(crate) fn resolve(prepared: &mut Prepared, rule: &ConstantsRule, settings: &Settings) -> Result<(), SolveError> {
-    let constants = free_constants(prepared, rule, settings)?;
-    prepared.set_constants(constants);
-    Ok(())
-}
-
-/// The free constants of `rule`.
-pub(crate) fn free_constants(
+/// Sets the free constants as `rule` says; those that are natural are looked for from `near` on, or zero.
+pub(crate) fn resolve(
     prepared: &mut Prepared,
     rule: &ConstantsRule,
     settings: &Settings,
-) -> Result<Vec<f64>, SolveError> {
-    match rule {
-        ConstantsRule::Zero => Ok(vec![0.0; prepared.equations.free_constants.len()]),
-        ConstantsRule::Given(values) => given_constants(&prepared.equations, values),
-        ConstantsRule::Natural { horizon } => natural_constants(prepared, *horizon, settings),
-    }
+    near: Option<&[f64]>,
+) -> Result<(), SolveError> {
+    let own = prepared.own_constants().len();
+    let constants = match rule {
+        ConstantsRule::Zero => vec![0.0; own],
+        ConstantsRule::Given(values) => given_constants(&prepared.equations, own, values)?,
+        ConstantsRule::Natural { horizon } => natural_constants(prepared, *horizon, settings, near)?,
+    };
+    prepared.set_constants(&constants);
+    Ok(())
 }
 
 /// Values given one a free constant, or one a memory variable (then those without a costate have to be zero).
-fn given_constants(equations: &Equations, values: &[f64]) -> Result<Vec<f64>, SolveError> {
-    let constants = &equations.free_constants;
+fn given_constants(equations: &Equations, own: usize, values: &[f64]) -> Result<Vec<f64>, SolveError> {
+    let constants = &equations.free_constants[..own];
     if let Some(&value) = values.iter().find(|x| !x.is_finite()) {
         return Err(SolveError::ConstantNotFinite { formulation: equations.formulation.into(), value });
     }
@@ -73,7 +70,7 @@ fn given_constants(equations: &Equations, values: &[f64]) -> Result<Vec<f64>, So
     Err(SolveError::ConstantCount {
         formulation: equations.formulation.into(),
         expected: constants.len(),
-        names: constant_names(equations).join(", "),
+        names: constant_names(equations)[..own].join(", "),
         found: values.len(),
     })
 }
@@ -92,11 +89,16 @@ const LONGER: usize = 4;
 
 /// Finds the constants `C` that make every [`equations::FreeConstant::natural`] vanish at `horizon`.
 ///
-/// Single shooting from zero: unknowns are the constants, residuals the quantities at the horizon. All runs
-/// together may take [`LONGER`] times the first one's steps, for each run that the search may make.
-fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings) -> Result<Vec<f64>, SolveError> {
+/// Single shooting from `near`, or zero: unknowns are the constants, residuals the quantities at the horizon.
+/// All runs together may take [`LONGER`] times the first one's steps, for each run that the search may make.
+fn natural_constants(
+    prepared: &mut Prepared,
+    horizon: f64,
+    settings: &Settings,
+    near: Option<&[f64]>,
+) -> Result<Vec<f64>, SolveError> {
     let equations = &prepared.equations;
-    let constants = &equations.free_constants;
+    let constants = &equations.free_constants[..prepared.own_constants().len()];
     if constants.is_empty() {
         return Ok(Vec::new());
     }
@@ -114,7 +116,7 @@ fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings)
         })
         .collect();
     let Some(places) = places else { return Err(SolveError::NoNaturalCondition { formulation: formulation() }) };
-    let guess = vec![0.0; constants.len()];
+    let guess = near.map_or(vec![0.0; constants.len()], <[f64]>::to_vec);
     let tolerance = settings.tolerance * TIGHTER;
     let options = ShootOptions::with_tolerance(RESIDUAL * tolerance);
     let runs = options.max_iterations * (2 * guess.len() + 2);
@@ -132,7 +134,7 @@ fn natural_constants(prepared: &mut Prepared, horizon: f64, settings: &Settings)
         if left == 0 {
             return Err(refuse(SolveError::Search { horizon, steps: taken }));
         }
-        prepared.set_constants(constants.to_vec());
+        prepared.set_constants(constants);
         if let Some(cause) = of_all.interrupt.as_ref().and_then(Interrupt::cause) {
             return Err(refuse(SolveError::Ended { horizon, cause }));
         }

@@ -10,14 +10,12 @@ mod threads;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use equations::{Compiled, Equations, FreeConstant, LaneEquations};
+use equations::{Compiled, Equations, LaneEquations};
 use integrate::{Interrupt, Method};
-use mechanics::{ConstantsRule, RemovalProgram, State, System};
+use mechanics::{ConstantsRule, State, System};
 use scene::{Scene, Start, Starts};
-use symbolic::Symbol;
 
-use crate::constants::free_constants;
-use crate::{Choice, Form, Metric, Prepared, Settings, SolveError, derive_in_form, formulation, setting};
+use crate::{Choice, Metric, Prepared, Settings, SolveError, Varying, formulation, setting};
 pub use costates::costate_names;
 pub(crate) use costates::{Costates, is_costate};
 pub use motions::MemberMotion;
@@ -47,14 +45,12 @@ pub use threads::{number_of_threads, over_threads};
 /// ```
 #[derive(Clone)]
 pub struct Ensemble {
-    prepared: Prepared,
+    varying: Varying,
     lanes: Result<LaneEquations, String>,
     choice: Choice,
     system: System,
     starts: Starts,
     costates: Costates,
-    /// Of equations in the variables of a removal: their start.
-    removal: Option<RemovalProgram>,
     end: f64,
     settings: Settings,
     metric: Metric,
@@ -85,19 +81,6 @@ impl EnsembleStart {
     }
 }
 
-/// The equations of `choice` for all values of the parameters that vary.
-fn derived(scene: &Scene, choice: &Choice, varied: &[Symbol], form: Form) -> Result<Equations, SolveError> {
-    // what vanishes for the values of the scene only has to stay
-    let mut system = scene.system.clone();
-    for (p, part) in system.parameters.iter_mut().filter(|p| varied.contains(&p.symbol)).zip(1..) {
-        p.value += APART * (1.0 + p.value.abs()) * (0.5 + (0.618_033_988_749_894_9 * f64::from(part)).fract());
-    }
-    Ok(derive_in_form(&system, &scene.start, choice, form)?.0)
-}
-
-/// So far from the scene's values of parameters an ensemble of them is derived.
-const APART: f64 = 1e-2;
-
 /// A member, ready to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnsembleMember {
@@ -126,7 +109,7 @@ impl Ensemble {
     /// # Errors
     /// As [`crate::solve_choice`]; [`SolveError::Scene`] where the scene has no such name;
     /// [`SolveError::Member`] where a name comes twice, where multipliers or costates are to vary that the
-    /// formulation does not start from, or parameters while the constants are natural at a horizon.
+    /// formulation does not start from.
     pub fn new(scene: &Scene, choice: &Choice, names: &[&str], settings: &Settings) -> Result<Self, SolveError> {
         let refused = |reason: String| Err(SolveError::Member { reason });
         if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
@@ -141,33 +124,21 @@ impl Ensemble {
             return refused(format!("multipliers vary, and {} does not start from them", choice.formulation));
         }
         let varied = starts.parameters();
-        if !varied.is_empty() && matches!(choice.constants, ConstantsRule::Natural { .. }) {
-            let reason = "its constants are natural at a horizon, for which parameters have to be the same";
-            return refused(reason.into());
-        }
-        let mut equations = derived(scene, choice, &varied, settings.form)?;
-        let system = scene.system.clone();
-        let mut constants = vec![0.0; equations.free_constants.len()];
-        constants.extend(system.parameters.iter().filter(|p| varied.contains(&p.symbol)).map(|p| p.value));
-        for &symbol in &varied {
-            equations.parameters.remove(&symbol);
-            equations.free_constants.push(FreeConstant { symbol, natural: None, memory: None });
-        }
         let settings = Settings { method: Some(Method::Taylor), ..settings.clone() };
-        let prepared = Prepared::around(setting(scene), equations, constants, &settings)?;
-        let start = integrate::Start { t: scene.start.t, y: prepared.start.clone() };
+        let varying = Varying::new(scene, choice, &varied, &settings)?;
+        let Prepared { equations, form, constants, start, .. } = varying.prepared();
+        let start = integrate::Start { t: scene.start.t, y: start.clone() };
         integrate::check_start(&start, setting(scene).end, &settings.options(settings.tolerance))?;
-        let point = [&[start.t], &start.y[..], &prepared.constants].concat();
+        let point = [&[start.t], &start.y[..], constants].concat();
+        let system = scene.system.clone();
         let lanes = match system.breakpoints.is_empty() {
-            true => LaneEquations::new(&prepared.equations, &prepared.form, &point)?,
+            true => LaneEquations::new(equations, form, &point)?,
             false => Err("the system has breakpoints, at which a motion begins anew".into()),
         };
         let metric = Metric::varying(&system, &varied)?;
-        let words = Arc::new(Mutex::new(prepared.equations.clone()));
-        let removal = prepared.equations.removal.as_ref();
-        let removal = removal.map(|removal| RemovalProgram::new(&system, removal, &varied));
+        let words = Arc::new(Mutex::new(equations.clone()));
         let (choice, end) = (choice.clone(), setting(scene).end);
-        Ok(Ensemble { prepared, lanes, choice, system, starts, costates, removal, end, settings, metric, words })
+        Ok(Ensemble { varying, lanes, choice, system, starts, costates, end, settings, metric, words })
     }
 
     /// Members end at `end`, and not where the scene does.
@@ -182,12 +153,12 @@ impl Ensemble {
 
     /// The equations of all members; parameters that vary are free constants in them, behind the others.
     pub fn equations(&self) -> &Equations {
-        &self.prepared.equations
+        &self.varying.prepared().equations
     }
 
     /// The equations compiled.
     pub fn compiled(&self) -> &Compiled {
-        &self.prepared.compiled
+        &self.varying.prepared().compiled
     }
 
     /// The member that starts there.
@@ -196,27 +167,10 @@ impl Ensemble {
     /// [`SolveError`] without a start; [`SolveError::Member`] for parameters not finite or wrong in number.
     pub fn member_at(&mut self, start: &EnsembleStart) -> Result<EnsembleMember, SolveError> {
         let EnsembleStart { state, end, parameters, constants } = start;
-        let (end, varied) = (*end, self.metric.parameters());
-        if parameters.len() != varied || !parameters.iter().all(|x| x.is_finite()) {
-            let reason = format!("{varied} finite values are needed for the parameters that vary");
-            return Err(SolveError::Member { reason });
-        }
-        let removal = self.removal.as_mut().map(|removal| removal.start(state, parameters)).transpose()?;
-        let prepared = &mut self.prepared;
-        prepared.values.set_state(state);
-        if let Some(removal) = removal {
-            prepared.values.set(&removal.values());
-        }
-        prepared.t = state.t;
-        let free = &mut prepared.equations.free_constants;
-        let of_parameters = free.split_off(free.len() - parameters.len());
-        let resolved = free_constants(prepared, constants, &self.settings);
-        prepared.equations.free_constants.extend(of_parameters);
-        let mut constants = resolved?;
-        constants.extend(parameters);
-        prepared.set_constants(constants.clone());
-        let (y, guess) = (prepared.start.clone(), prepared.guess.clone());
-        Ok(EnsembleMember { t: state.t, end, y, constants, guess })
+        self.varying.set(state, parameters, constants, false)?;
+        let Prepared { start, constants, guess, .. } = self.varying.prepared();
+        let (y, constants, guess) = (start.clone(), constants.clone(), guess.clone());
+        Ok(EnsembleMember { t: state.t, end: *end, y, constants, guess })
     }
 
     /// The member with these numbers, one a name, or why there is none.

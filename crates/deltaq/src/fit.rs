@@ -59,7 +59,7 @@ pub fn best_fit(
     let settings = &Settings { method: Some(prepared.method.method), ..settings.clone() };
     let mut difference = |tolerance: f64, limits: &Settings, constants: &[f64], residual: &mut [f64]| {
         let broken = |reason: String| BoundaryError::Residual { reason };
-        prepared.set_constants(constants.to_vec());
+        prepared.set_constants(constants);
         let run = prepared.integrate(end, &limits.options(tolerance)).map_err(|e| broken(e.to_string()))?;
         run.solution.completed()?;
         for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {

@@ -30,7 +30,7 @@ impl Prepared {
         self.other_start = Some(self.states_of(system, looser));
         self.states_of(system, kept);
         self.t = kept.0.t;
-        self.set_constants(Names::of(&self.equations).constants(&kept.1));
+        self.set_constants(&Names::of(&self.equations).constants(&kept.1));
     }
 }
 

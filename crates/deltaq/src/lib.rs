@@ -91,6 +91,7 @@ mod sweep;
 mod table;
 mod trajectory;
 mod trial;
+mod varying;
 pub mod words;
 
 pub use decision::{Finding, Section};
@@ -132,3 +133,4 @@ pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
 pub use sweep::{Sweep, SweepPoint};
 pub use table::{FORMS, FORMULATIONS, formulation};
+pub use varying::Varying;

@@ -21,6 +21,8 @@ pub struct Prepared {
     pub method: Chosen,
     /// Values of the free constants.
     pub constants: Vec<f64>,
+    /// How many of these, the last ones, are parameters that vary.
+    parameters: usize,
     /// `t₀`.
     pub t: f64,
     /// `y(t₀)`.
@@ -47,14 +49,15 @@ impl Prepared {
     /// With the free constants zero.
     pub(crate) fn new(setting: Setting, equations: Equations, settings: &Settings) -> Result<Self, SolveError> {
         let constants = vec![0.0; equations.free_constants.len()];
-        Prepared::around(setting, equations, constants, settings)
+        Prepared::around(setting, equations, constants, 0, settings)
     }
 
-    /// In a form that suits these values of the free constants.
+    /// In a form that suits these values of the free constants, the last of which are so many parameters.
     pub(crate) fn around(
         setting: Setting,
         equations: Equations,
         constants: Vec<f64>,
+        parameters: usize,
         settings: &Settings,
     ) -> Result<Self, SolveError> {
         settings.check()?;
@@ -67,13 +70,14 @@ impl Prepared {
         let asked = |method| Chosen { method, why: "asked for".into() };
         let method = settings.method.map_or_else(|| suited(&equations), asked);
         let (start, guess) = (Vec::new(), Vec::new());
-        let (own, other_start, largest, breakpoints) = (Vec::new(), None, None, setting.system.breakpoints.clone());
+        let (other_start, largest, breakpoints) = (None, None, setting.system.breakpoints.clone());
         let mut prepared = Prepared {
             equations,
             compiled,
             form,
             method,
-            constants: own,
+            constants,
+            parameters,
             t,
             start,
             guess,
@@ -82,7 +86,7 @@ impl Prepared {
             other_start,
             largest,
         };
-        prepared.set_constants(constants);
+        prepared.start_anew();
         if prepared.compiled.has_chart() {
             prepared.largest = Some(GROWTH * chart_size(&mut prepared.compiled, t, &prepared.start).max(1.0));
         }
@@ -104,12 +108,28 @@ impl Prepared {
         Ok(())
     }
 
-    /// Sets the free constants, and by them the start.
-    pub(crate) fn set_constants(&mut self, constants: Vec<f64>) {
-        self.values.set_constants(&constants);
+    /// The free constants but the parameters.
+    pub(crate) fn own_constants(&self) -> &[f64] {
+        &self.constants[..self.constants.len() - self.parameters]
+    }
+
+    /// Sets the free constants but the parameters, and by them the start.
+    pub(crate) fn set_constants(&mut self, own: &[f64]) {
+        self.constants[..own.len()].copy_from_slice(own);
+        self.start_anew();
+    }
+
+    /// Sets the parameters that vary; what motions start from is set by [`Prepared::set_constants`].
+    pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
+        let own = self.constants.len() - self.parameters;
+        self.constants[own..].copy_from_slice(parameters);
+    }
+
+    /// The start, as the constants have it.
+    fn start_anew(&mut self) {
+        self.values.set_constants(&self.constants);
         let (start, guess) = self.values.evaluate();
         (self.start, self.guess) = (start.to_vec(), guess.to_vec());
-        self.constants = constants;
         self.set_compiled();
     }
 

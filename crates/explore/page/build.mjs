@@ -25,7 +25,7 @@ const markup = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
 const said = (...words) => execFileSync(deltaq, words, { encoding: "utf8", maxBuffer: 1 << 26 });
 const { scenes } = JSON.parse(said("list", "--format", "json"));
-const texts = scenes.map(({ name, title, source }) => ({ name, title, source, text: said("show", name, "--source") }));
+const texts = scenes.map(({ name, title, source, group }) => ({ name, title, source, group, text: said("show", name, "--source") }));
 
 const parts = ["uplot", "katex"].map((name) => {
   const { version, license } = JSON.parse(read(`node_modules/${name}/package.json`));

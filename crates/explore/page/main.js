@@ -290,7 +290,7 @@ function redraw() {
 
 // Everything as the address says; without a word there, as the page was made.
 async function restore() {
-  const otherwise = chosen ? { scene: chosen.text === null ? chosen.name : OWN, text: chosen.text } : {};
+  const otherwise = chosen ? { scene: chosen.text === null ? chosen.name : OWN, text: chosen.text, set: { ...chosen.set } } : {};
   const readable = decode(location.hash, otherwise);
   if (!own() && !builtIn(state.scene)) state.scene = scenes[0].name;
   element("scene").value = own() ? OWN : state.scene;
@@ -303,7 +303,10 @@ async function restore() {
 
 async function begin() {
   const option = ({ name, title }) => `<option value="${name}">${title}</option>`;
-  element("scene").innerHTML = `${scenes.map(option).join("")}<option value="${OWN}" hidden>own text</option>`;
+  const groups = [...new Set(scenes.map(({ group }) => group))];
+  const list = (group) => scenes.filter((scene) => scene.group === group).map(option).join("");
+  const grouped = groups.map((group) => `<optgroup label="${group}">${list(group)}</optgroup>`);
+  element("scene").innerHTML = `${grouped.join("")}<option value="${OWN}" hidden>own text</option>`;
   const source = element("worker").textContent;
   const module = await compile(element("program").textContent);
   motionsEngine = new Engine(module, source);

@@ -165,13 +165,25 @@ export class Stage {
 
   listen() {
     const { canvas } = this;
+    const fingers = new Map();
+    const apart = () => {
+      const [a, b] = [...fingers.values()];
+      return Math.hypot(a.x - b.x, a.y - b.y);
+    };
     canvas.addEventListener("pointerdown", (event) => {
-      if (this.flat && !this.eye) return;
       canvas.setPointerCapture(event.pointerId);
-      canvas.onpointermove = ({ movementX, movementY }) => this.turn(movementX, movementY);
+      fingers.set(event.pointerId, event);
     });
-    canvas.addEventListener("pointerup", () => (canvas.onpointermove = null));
-    canvas.addEventListener("pointercancel", () => (canvas.onpointermove = null));
+    canvas.addEventListener("pointermove", (event) => {
+      if (!fingers.has(event.pointerId)) return;
+      const before = fingers.size === 2 && apart();
+      const { x, y } = fingers.get(event.pointerId);
+      fingers.set(event.pointerId, event);
+      // one turns, two draw apart
+      if (before) this.magnify(apart() / before);
+      else if (fingers.size === 1 && (!this.flat || this.eye)) this.turn(event.x - x, event.y - y);
+    });
+    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, ({ pointerId }) => fingers.delete(pointerId));
     canvas.addEventListener("dblclick", () => this.reset());
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();

@@ -3,27 +3,37 @@
 use scene::SceneError;
 use serde_json::{Value, json};
 
+use crate::kept::Kept;
 use crate::question::{Answer, Ask, Question, Refused};
 use crate::subject::Subject;
 use crate::{controls, motions, words};
 
-/// Answers a [`Question`] in JSON.
-pub fn answer(question: &str) -> Answer {
-    let mut numbers = Vec::new();
-    let value = match answered(question, &mut numbers) {
-        Ok(value) => value,
-        Err(Refused::Faulty(error)) => json!({ "faults": faults(&error), "message": error.to_string() }),
-        Err(error) => json!({ "refused": error.to_string() }),
-    };
-    Answer { text: value.to_string(), numbers }
+/// Answers questions; the same ones in the same way, whatever was asked before, but for how near motions at a
+/// glance come.
+#[derive(Default)]
+pub struct Explorer {
+    kept: Kept,
 }
 
-fn answered(question: &str, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
+impl Explorer {
+    /// Answers a [`Question`] in JSON.
+    pub fn answer(&mut self, question: &str) -> Answer {
+        let mut numbers = Vec::new();
+        let value = match answered(question, &mut self.kept, &mut numbers) {
+            Ok(value) => value,
+            Err(Refused::Faulty(error)) => json!({ "faults": faults(&error), "message": error.to_string() }),
+            Err(error) => json!({ "refused": error.to_string() }),
+        };
+        Answer { text: value.to_string(), numbers }
+    }
+}
+
+fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
     let question: Question = serde_json::from_str(question)?;
     let subject = Subject::of(&question)?;
     match question.ask {
         Ask::Scene => Ok(scene(&subject)),
-        Ask::Motions => motions::sampled(&subject, &question, numbers),
+        Ask::Motions => motions::sampled(&subject, &question, kept, numbers),
         Ask::Equations => words::equations(&subject),
         Ask::Decision => words::decision(subject, &question),
     }

@@ -43,7 +43,7 @@ impl Bodies {
     pub(crate) fn put_moved(&mut self, t: f64, q: &[f64], numbers: &mut Vec<f64>) {
         let poses = self.poses.at(t, q);
         let mut moved = poses.iter().zip(&self.moved).filter(|(_, moved)| **moved).map(|(pose, _)| pose).peekable();
-        let place = moved.peek().map_or([0.0; 3], |pose| pose.touches.first().copied().unwrap_or(pose.at));
+        let place = moved.peek().map_or([0.0; 3], |pose| pose.marked());
         numbers.extend(place);
         moved.for_each(|pose| put(pose, numbers));
     }

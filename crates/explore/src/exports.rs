@@ -7,10 +7,11 @@ use std::cell::RefCell;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use crate::{Answer, answer};
+use crate::{Answer, Explorer};
 
 thread_local! {
     static QUESTION: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static EXPLORER: RefCell<Explorer> = RefCell::default();
     static ANSWER: RefCell<Answer> = RefCell::default();
 }
 
@@ -30,7 +31,7 @@ pub fn ask() {
     ANSWER.set(Answer::default());
     std::panic::set_hook(Box::new(|panic| ANSWER.set(Answer { text: panic.to_string(), numbers: Vec::new() })));
     let question = QUESTION.with_borrow(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    ANSWER.set(answer(&question));
+    ANSWER.set(EXPLORER.with_borrow_mut(|explorer| explorer.answer(&question)));
 }
 
 /// Where the text of the answer is.

@@ -18,7 +18,7 @@
 //! let question = serde_json::json!({
 //!     "ask": "motions", "name": "sledge", "text": text, "motions": ["Chetaev"], "steps": 10,
 //! });
-//! let explore::Answer { text, numbers } = explore::answer(&question.to_string());
+//! let explore::Answer { text, numbers } = explore::Explorer::default().answer(&question.to_string());
 //! let answer: serde_json::Value = serde_json::from_str(&text)?;
 //! let motion = &answer["motions"][0];
 //! let [from, width] = ["from", "width"].map(|name| motion[name].as_u64().unwrap() as usize);
@@ -35,11 +35,12 @@ mod bodies;
 mod controls;
 #[cfg(target_family = "wasm")]
 mod exports;
+mod kept;
 mod motions;
 mod question;
 mod run;
 mod subject;
 mod words;
 
-pub use answering::answer;
+pub use answering::Explorer;
 pub use question::{Answer, Ask, Question};

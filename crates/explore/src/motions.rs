@@ -6,6 +6,7 @@ use scene::Scene;
 use serde_json::{Value, json};
 
 use crate::bodies::Bodies;
+use crate::kept::Kept;
 use crate::question::{Question, Refused};
 use crate::run::{Run, settings};
 use crate::subject::Subject;
@@ -17,8 +18,14 @@ use crate::subject::Subject;
 /// the place whose path is drawn, and twelve numbers a body that moves: its place, its rotation row by row.
 /// Rows of the ground are of twelve numbers a body, at every time or one for all; those of a gap are `t`, the
 /// gap, and what it has to pass (infinite in doubt, or at a glance).
-pub(crate) fn sampled(subject: &Subject, question: &Question, numbers: &mut Vec<f64>) -> Result<Value, Refused> {
+pub(crate) fn sampled(
+    subject: &Subject,
+    question: &Question,
+    kept: &mut Kept,
+    numbers: &mut Vec<f64>,
+) -> Result<Value, Refused> {
     let Subject { scene, choices } = subject;
+    kept.turn_to(question, scene);
     let settings = settings(question);
     let steps = question.steps.max(1);
     let time = |i: usize| scene.start.t + scene.duration * i as f64 / steps as f64;
@@ -31,7 +38,11 @@ pub(crate) fn sampled(subject: &Subject, question: &Question, numbers: &mut Vec<
     let (mut answers, mut runs) = (Vec::new(), Vec::new());
     for (i, choice) in choices.iter().enumerate() {
         let mut answer = json!({ "label": choice.label, "formulation": choice.formulation });
-        match Run::of(scene, choice, question.glance, &settings) {
+        let run = match question.glance {
+            true => Run::at_a_glance(scene, choice, &settings, kept),
+            false => Run::of(scene, choice, &settings),
+        };
+        match run {
             Err(error) => answer["refused"] = error.to_string().into(),
             Ok(mut run) => {
                 sampler.describe(&mut answer, scene, &mut run)?;
@@ -42,6 +53,7 @@ pub(crate) fn sampled(subject: &Subject, question: &Question, numbers: &mut Vec<
         answers.push(answer);
     }
     let gaps = gaps(scene, &answers, &mut runs, numbers)?;
+    runs.into_iter().for_each(|(i, run)| run.leave(&choices[i], kept));
     Ok(json!({
         "start": scene.start.t, "end": scene.start.t + scene.duration, "times": sampler.times.len(),
         "bodies": sampler.bodies.described(), "ground": ground, "motions": answers, "gaps": gaps,

@@ -1,13 +1,11 @@
 //! A motion as it is asked for: in two runs with an error estimate, or in one at a glance.
 
-use deltaq::{
-    Choice, Motion, Prepared, Settings, SingleRun, SolveError, derive_in_form, error_estimate, formulation, prepare,
-    removals, setting, solve_choice,
-};
+use deltaq::{Choice, Motion, Settings, SingleRun, SolveError, Varying, error_estimate, setting, solve_choice};
 use equations::{Equations, Outputs};
 use integrate::{Options, Status};
 use scene::Scene;
 
+use crate::kept::Kept;
 use crate::question::Question;
 
 /// Steps of one run at most, and of one at a glance.
@@ -30,30 +28,49 @@ pub(crate) enum Run {
     /// Twice, from chart to chart.
     Motion(Box<Motion>),
     /// Once, in one chart, to the end.
-    Glance(Box<Prepared>, Box<SingleRun>),
+    Glance(Box<Varying>, Box<SingleRun>),
 }
 
 impl Run {
     /// Integrates `choice` from the start of the scene.
-    pub(crate) fn of(scene: &Scene, choice: &Choice, glance: bool, settings: &Settings) -> Result<Run, SolveError> {
-        if !glance {
-            return Ok(Run::Motion(Box::new(solve_choice(scene, choice, settings)?)));
+    pub(crate) fn of(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Run, SolveError> {
+        Ok(Run::Motion(Box::new(solve_choice(scene, choice, settings)?)))
+    }
+
+    /// Integrates it at a glance; in full where that does not come to the end: another chart may lead on, and
+    /// why there is no motion is said in words.
+    pub(crate) fn at_a_glance(
+        scene: &Scene,
+        choice: &Choice,
+        settings: &Settings,
+        kept: &mut Kept,
+    ) -> Result<Run, SolveError> {
+        let once = |mut varying: Varying, parameters: &[f64]| {
+            varying.set(&scene.start, parameters, &choice.constants, true)?;
+            let prepared = varying.prepared_mut();
+            let (method, max_steps) = (prepared.method.method, settings.max_steps);
+            let options = Options { method, max_steps, ..Options::with_tolerance(settings.tolerance) };
+            let run = prepared.integrate(setting(scene).end, &options)?;
+            Ok((varying, run))
+        };
+        let parameters = kept.values(scene);
+        match kept.take(scene, choice, settings).and_then(|varying| once(varying, &parameters)) {
+            Ok((varying, run)) if run.solution.status == Status::Completed => {
+                Ok(Run::Glance(Box::new(varying), Box::new(run)))
+            }
+            Ok((varying, _)) => {
+                kept.keep(choice, varying);
+                Run::of(scene, choice, settings)
+            }
+            Err(_) => Run::of(scene, choice, settings),
         }
-        if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
-            removals(scene)?;
+    }
+
+    /// What it was made of stays for the next one of `choice`.
+    pub(crate) fn leave(self, choice: &Choice, kept: &mut Kept) {
+        if let Run::Glance(varying, _) = self {
+            kept.keep(choice, *varying);
         }
-        let setting = setting(scene);
-        let (equations, _) = derive_in_form(setting.system, setting.start, choice, settings.form)?;
-        let mut prepared = prepare(setting, equations, &choice.constants, settings)?;
-        let Settings { tolerance, max_steps, .. } = *settings;
-        let method = prepared.method.method;
-        let options = Options { method, max_steps, ..Options::with_tolerance(tolerance) };
-        let run = prepared.integrate(setting.end, &options)?;
-        if run.solution.status != Status::Completed {
-            // another chart may lead on, and why it ends is said in words
-            return Run::of(scene, choice, false, settings);
-        }
-        Ok(Run::Glance(Box::new(prepared), Box::new(run)))
     }
 
     /// The last time at which it can be read off.
@@ -68,7 +85,7 @@ impl Run {
     pub(crate) fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
         match self {
             Run::Motion(motion) => motion.at(t),
-            Run::Glance(prepared, run) => run.at(&mut prepared.compiled, t),
+            Run::Glance(varying, run) => run.at(&mut varying.prepared_mut().compiled, t),
         }
     }
 
@@ -76,7 +93,7 @@ impl Run {
     pub(crate) fn equations(&self) -> (&Equations, &[f64]) {
         match self {
             Run::Motion(motion) => (&motion.equations, &motion.constants),
-            Run::Glance(prepared, _) => (&prepared.equations, &prepared.constants),
+            Run::Glance(varying, _) => (&varying.prepared().equations, varying.constants()),
         }
     }
 

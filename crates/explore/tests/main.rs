@@ -2,14 +2,18 @@
 
 use deltaq::words::Headline;
 use deltaq::{Settings, choices, compare_unfitted, solve_choice};
-use explore::{Answer, answer};
+use explore::{Answer, Explorer};
 use scene::Scene;
 use serde_json::{Value, json};
 
 const SLEDGE: &str = include_str!("../../../validation/scenes/sledge.toml");
 
 fn ask(question: Value) -> (Value, Vec<f64>) {
-    let Answer { text, numbers } = answer(&question.to_string());
+    ask_again(&mut Explorer::default(), question)
+}
+
+fn ask_again(explorer: &mut Explorer, question: Value) -> (Value, Vec<f64>) {
+    let Answer { text, numbers } = explorer.answer(&question.to_string());
     (serde_json::from_str(&text).expect("an answer is JSON"), numbers)
 }
 
@@ -133,4 +137,66 @@ fn bodies_and_a_point_where_a_scene_has_none() {
     // the blade's y axis is level, the slope 0.4 about y
     assert_eq!(numbers[end - 6..end - 4], [q[2].sin(), q[2].cos()]);
     assert!((numbers[end - 12] - 0.4_f64.cos() * q[0]).abs() < 1e-14);
+}
+
+/// What is kept while sliders move, against motions in full: every scene, all its numbers moved at once.
+#[test]
+fn motions_at_a_glance_follow_sliders() {
+    // of the largest coordinate
+    const NEAR: f64 = 1e-3;
+    // where two runs differ by more, a motion makes much of the tolerance at a glance, too
+    const CALM: f64 = 1e-9;
+    let mut compared = 0;
+    for (name, text) in scenes() {
+        let (scene, _) = ask(json!({ "ask": "scene", "name": name, "text": text }));
+        let count = scene["coordinates"].as_array().unwrap().len();
+        let of_removals = |motion: &&Value| motion["formulation"] == "removed-constraint";
+        let removed = &scene["motions"].as_array().unwrap().iter().find(of_removals).unwrap()["label"];
+        let question = |part: f64, glance: bool| {
+            json!({ "ask": "motions", "name": name, "text": text, "set": moved(&scene, part),
+                    "motions": ["Chetaev", "vakonomic", removed], "steps": 20, "glance": glance })
+        };
+        let mut explorer = Explorer::default();
+        ask_again(&mut explorer, question(0.02, true));
+        let (near, coarse) = ask_again(&mut explorer, question(0.04, true));
+        let (full, numbers) = ask(question(0.04, false));
+        assert_eq!(near["message"], full["message"], "{name}");
+        let Some(motions) = near["motions"].as_array() else { continue };
+        for (i, near) in motions.iter().enumerate() {
+            let full = &full["motions"][i];
+            assert_eq!(near["refused"], full["refused"], "{name}, {}", near["label"]);
+            if full["status"] != "completed" || full["error"].as_f64().unwrap() > CALM {
+                continue;
+            }
+            assert_eq!(place(near, "rows"), 21, "{name}, {}", near["label"]);
+            for row in 0..=20 {
+                let [a, b] = [(near, &coarse), (full, &numbers)].map(|(m, n)| coordinates(m, n, row, count));
+                let limit = NEAR * b.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+                assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < limit), "{name}, {}: {a:?} {b:?}", near["label"]);
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 100, "{compared}");
+}
+
+/// All numbers of a scene that can be set, moved by so large a part of their sliders, and a tenth as long.
+fn moved(scene: &Value, part: f64) -> serde_json::Map<String, Value> {
+    let controls = scene["controls"].as_array().unwrap().iter().filter(|control| control["kind"] != "kappa");
+    let set = |control: &Value| {
+        let [value, low, high] = ["value", "low", "high"].map(|name| control[name].as_f64().unwrap());
+        let shortened = if control["name"] == "duration" { 0.1 } else { 1.0 };
+        (control["name"].as_str().unwrap().to_owned(), json!(shortened * value + part * (high - low)))
+    };
+    controls.map(set).collect()
+}
+
+/// Names and texts of all scenes.
+fn scenes() -> Vec<(String, String)> {
+    let folders =
+        ["scenes", "equivalence"].map(|name| format!("{}/../../validation/{name}", env!("CARGO_MANIFEST_DIR")));
+    let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|file| file.unwrap().path());
+    let scenes = files.filter(|file| file.extension().is_some_and(|ending| ending == "toml"));
+    let text = |file: &std::path::PathBuf| std::fs::read_to_string(file).unwrap();
+    scenes.map(|file| (file.file_stem().unwrap().to_string_lossy().into_owned(), text(&file))).collect()
 }

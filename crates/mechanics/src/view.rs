@@ -50,6 +50,13 @@ pub struct Pose {
     pub touches: Vec<Place>,
 }
 
+impl Pose {
+    /// The point whose path is drawn: where the body touches first, or else its place.
+    pub fn marked(&self) -> Place {
+        self.touches.first().copied().unwrap_or(self.at)
+    }
+}
+
 impl Body {
     /// All its expressions: `c`, the rows of `R`, the contacts.
     pub fn expressions(&self) -> Vec<Expr> {

@@ -79,11 +79,7 @@ pub fn moving<E>(scene: &Scene, motions: Vec<Drawn<'_, E>>) -> Result<Option<Mov
     for Drawn { label, style, mut at } in motions {
         let states = grid(STEPS * FINER).map(|t| Ok((t, at(t)?))).collect::<Result<Vec<_>, E>>();
         let states = states.map_err(Unseen::Motion)?;
-        let path = states.iter().map(|(t, q)| {
-            let pose = &poses.at(*t, q)[followed];
-            pose.touches.first().copied().unwrap_or(pose.at)
-        });
-        let path = path.collect();
+        let path = states.iter().map(|(t, q)| poses.at(*t, q)[followed].marked()).collect();
         let solids = sample(&mut poses, bodies, is_moved, states.into_iter().step_by(FINER));
         drawn.push(Bodies { label, style, solids, path });
     }

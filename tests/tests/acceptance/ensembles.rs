@@ -7,7 +7,6 @@ use deltaq::{
 };
 use equations::Equations;
 use integrate::Method;
-use mechanics::ConstantsRule;
 use scene::Scene;
 use validation::catalogue::{CLASSICS, SCENES, find};
 
@@ -47,8 +46,7 @@ fn members(name: &str, base: &Scene, parameter: Option<&str>) -> Vec<Scene> {
 
 fn compare(name: &str, base: &Scene, choice: &Choice, count: &mut Count) {
     let settings = Settings { method: Some(Method::Taylor), tolerance: 1e-9, ..Settings::default() };
-    let natural = matches!(choice.constants, ConstantsRule::Natural { .. });
-    let parameter = base.system.parameters.first().map(|p| base.system.graph.name(p.symbol)).filter(|_| !natural);
+    let parameter = base.system.parameters.first().map(|p| base.system.graph.name(p.symbol));
     let what = format!("{name}, {}", choice.label);
     let Ok(mut ensemble) = Ensemble::new(base, choice, parameter.as_deref().as_slice(), &settings) else {
         assert!(solve_choice(base, choice, &settings).is_err(), "{what}: no ensemble where there is a motion");

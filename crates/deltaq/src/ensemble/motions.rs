@@ -53,7 +53,7 @@ impl Ensemble {
         let begin = Clock::start();
         let runs = self.run(members, times, options);
         let seconds = begin.seconds();
-        let (compiled, metric) = (&self.prepared.compiled, &self.metric);
+        let (compiled, metric) = (&self.varying.prepared().compiled, &self.metric);
         let names: Vec<String> = self.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let read = shared(options.threads, members.len(), 1, |take| {
             let (compiled, metric) = (compiled.clone(), metric.clone());

@@ -80,7 +80,7 @@ impl Ensemble {
             times,
             origin,
             options: &options,
-            compiled: &self.prepared.compiled,
+            compiled: &self.varying.prepared().compiled,
             lanes: self.lanes.as_ref(),
             words: &self.words,
             left: Mutex::default(),
