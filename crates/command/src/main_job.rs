@@ -46,9 +46,7 @@ pub(crate) fn scene_files(comparison: &mut Comparison) -> Result<Vec<File>> {
     let moving = bodies(comparison).with_context(|| format!("bodies of scene `{name}`"))?;
     let still = pictures(comparison).with_context(|| format!("pictures of scene `{name}`"))?;
     let mut files: Vec<File> = moving.into_iter().chain(still).collect();
-    let links: Vec<String> =
-        files.iter().filter_map(|f| Some(f.path.file_name()?.to_string_lossy().into_owned())).collect();
-    files.push(File { path: format!("scenes/{name}.md").into(), text: scene_page(comparison, &links)? });
+    files.push(File { path: format!("scenes/{name}.md").into(), text: scene_page(comparison, &files)? });
     Ok(files)
 }
 

@@ -23,6 +23,17 @@ pub(crate) fn link(text: &str, path: &str) -> String {
     format!("[{text}]({})", path.bytes().map(encoded).collect::<String>())
 }
 
+/// What stands for a character in the text of a picture, which is XML.
+const ENTITIES: [(&str, &str); 4] = [("&quot;", "\""), ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")];
+
+/// A picture in a page beside it; those who cannot see it are told its title.
+pub(crate) fn image(picture: &File) -> String {
+    let name = picture.path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    let title = picture.text.split_once("<title>").and_then(|(_, rest)| Some(rest.split_once("</title>")?.0));
+    let plain = |title: &str| ENTITIES.iter().fold(title.to_owned(), |text, (entity, c)| text.replace(entity, c));
+    format!("!{}", link(&title.map_or(name.clone(), plain), &name))
+}
+
 /// Writes every file beside its place first; only when all are written are they moved into place.
 ///
 /// # Errors
@@ -64,11 +75,14 @@ fn make_readable(_: &fs::File) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::link;
+    use super::{File, image, link};
 
     #[test]
     fn names_of_files_do_not_end_links() {
         assert_eq!(link("my [1].svg", "a/my [1](ü).svg"), "[my \\[1\\].svg](a/my%20%5B1%5D%28%C3%BC%29.svg)");
         assert_eq!(link("x", "ball-in-cone_2.svg"), "[x](ball-in-cone_2.svg)");
+        let picture = |text: &str| File { path: "scenes/own.svg".into(), text: text.into() };
+        assert_eq!(image(&picture("<svg><title>gap &lt; 1 &amp; more</title></svg>")), "![gap < 1 & more](own.svg)");
+        assert_eq!(image(&picture("<svg/>")), "![own.svg](own.svg)");
     }
 }

@@ -5,24 +5,24 @@ use std::fmt::Write;
 use anyhow::Result;
 use deltaq::{Comparison, EquationStyle, derive_at, equations_text};
 
-use crate::report::files::link;
-use crate::report::{Headline, Table, membership, tables};
+use crate::report::files::image;
+use crate::report::{File, Headline, Table, membership, tables};
 use deltaq::words::{precise, short};
 use random::substitution;
 
-/// The whole page, in Markdown.
+/// The whole page, in Markdown, with its pictures.
 ///
 /// # Errors
 /// Where a motion cannot be read off.
-pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<String> {
+pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<String> {
     let mut page = String::new();
     let scene = &comparison.scene;
     let Headline { verdict, why, sure } = Headline::of(comparison);
     let _ = writeln!(page, "# {}\n\n**{verdict}**\n\n{why}\n\n{sure}", scene.title);
-    let (bodies, pictures): (Vec<&String>, Vec<&String>) = pictures.iter().partition(|p| p.ends_with("-bodies.svg"));
-    for path in bodies {
-        let _ =
-            writeln!(page, "\n!{}\n\nThe bodies under each formulation, from one start, in a loop.", link(path, path));
+    let is_moving = |picture: &&File| picture.path.to_string_lossy().ends_with("-bodies.svg");
+    let (moving, still): (Vec<&File>, Vec<&File>) = pictures.iter().partition(is_moving);
+    for picture in moving {
+        let _ = writeln!(page, "\n{}\n\nThe bodies under each formulation, from one start, in a loop.", image(picture));
     }
     if !scene.source.is_empty() {
         let _ = writeln!(page, "\nSource: {}.", scene.source.trim_end_matches('.'));
@@ -51,8 +51,8 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[String]) -> Result<St
     page +=
         "\nError estimate: largest difference, in the kinetic metric, to a run at a hundred times larger tolerance.\n";
     page += "\n## Motions\n";
-    for path in pictures {
-        let _ = writeln!(page, "\n!{}", link(path, path));
+    for picture in still {
+        let _ = writeln!(page, "\n{}", image(picture));
     }
     let _ = writeln!(page, "\n## Where the motions part\n\n{}", tables::pairs(comparison));
     page += "Gaps are lengths in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$, in m √kg where $L$ is in J; times in s. Two motions are *different* only where the gap is over \
