@@ -2,6 +2,7 @@
 
 mod ensemble;
 mod linearize;
+mod range;
 mod scenes;
 
 use std::path::PathBuf;
@@ -11,9 +12,10 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use deltaq::Fits;
-pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MOST_MEMBERS, MotionArguments, Range};
+pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
 pub use linearize::{LinearizeArguments, TableFormat};
 use random::Kind;
+pub use range::{MOST_MEMBERS, Range};
 pub use scenes::{CheckArguments, NewArguments, Overrides, SceneArguments, ShowArguments};
 use validation::bench::MEMBERS;
 use validation::stability::Stepping;
@@ -203,7 +205,7 @@ pub struct CompareArguments {
     /// ends included: a table. The motions are Chetaev's and the vakonomic one, or of costates `P0_w` the one
     /// without constraints, or two given by `--formulation`. Several combine; with `--out` a file, which goes
     /// on where it was cut off.
-    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = ensemble::range,
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range::range,
           conflicts_with_all = ["markdown", "format", "with"])]
     pub sweep: Vec<Range>,
     /// Tolerance of the looser of the two runs of every motion.

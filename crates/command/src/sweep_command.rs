@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader};
 use anyhow::{Context, Result, bail, ensure};
 use deltaq::{Settings, Sweep, SweepPoint};
 
-use crate::cli::{CompareArguments, Range};
+use crate::cli::{CompareArguments, MOST_MEMBERS, Range};
 use crate::columns::quoted;
 use crate::main_job::protocol;
 use crate::sink::Sink;
@@ -39,10 +39,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let names: Vec<String> = grid.names().map(String::from).collect();
     let sweep = Sweep::new(&scene.name, &text, &arguments.set.overrides, &names, formulations, &settings)?;
 
-    let computed = |index: usize| {
-        let values: Vec<f64> = grid.point(index).into_iter().map(|(_, x)| x).collect();
-        grid.begin(index) + &row(&sweep.point(&values))
-    };
+    let computed = |index: usize| grid.begin(index) + &row(&sweep.point(&grid.point(index)));
     let path = arguments.output.out.as_ref().map(|folder| folder.join(format!("{}-sweep.csv", scene.name)));
     let mut done = 0;
     let mut sink = Sink::open(path.as_deref(), |file, told| {
@@ -51,10 +48,10 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
         Ok(bytes)
     })?;
     let mut reads_on = done > 0 || sink.write(&grid.head())?;
-    let bar = parallel::progress(grid.count(), quiet);
-    while reads_on && done < grid.count() {
+    let bar = parallel::progress(grid.count, quiet);
+    while reads_on && done < grid.count {
         bar.set_position(done as u64);
-        let next: Vec<usize> = (done..grid.count().min(done + CHUNK)).collect();
+        let next: Vec<usize> = (done..grid.count.min(done + CHUNK)).collect();
         let rows = parallel::map(&next, |&index| computed(index));
         done += rows.len();
         reads_on = sink.write(&rows.concat())?;
@@ -63,7 +60,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     if !reads_on {
         return Ok(String::new());
     }
-    let told = sink.close(&format!("{} points", grid.count()))?;
+    let told = sink.close(&format!("{} points", grid.count))?;
     let (Some(path), Some(folder)) = (&path, &arguments.output.out) else { return Ok(told) };
     let table = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     write_all(folder, &sweep_files(&scene.name, &scene.title, sweep.titles(), &grid.swept(), &table)?)?;
@@ -88,14 +85,10 @@ fn row(point: &SweepPoint) -> String {
     cells.join(",") + "\n"
 }
 
-/// To fifteen digits: a proof is about the number as it is written, and 0.6 is meant, not 0.6000000000000001.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.14e}").parse().unwrap_or(x)
-}
-
 /// All combinations of some ranges, of which the last one changes fastest.
 struct Grid<'a> {
     ranges: &'a [Range],
+    count: usize,
 }
 
 impl<'a> Grid<'a> {
@@ -103,11 +96,9 @@ impl<'a> Grid<'a> {
         for (i, range) in ranges.iter().enumerate() {
             ensure!(ranges[..i].iter().all(|other| other.name != range.name), "--sweep: `{}` varies twice", range.name);
         }
-        let count = ranges.iter().try_fold(1_usize, |count, range| count.checked_mul(range.count));
-        let most = crate::cli::MOST_MEMBERS;
-        match count {
-            Some(count) if count <= most => Ok(Grid { ranges }),
-            _ => bail!("--sweep makes more than {most} points"),
+        match Range::combinations(ranges) {
+            Some(count) => Ok(Grid { ranges, count }),
+            None => bail!("--sweep makes more than {MOST_MEMBERS} points"),
         }
     }
 
@@ -115,20 +106,8 @@ impl<'a> Grid<'a> {
         self.ranges.iter().map(|range| range.name.as_str())
     }
 
-    fn count(&self) -> usize {
-        self.ranges.iter().map(|range| range.count).product()
-    }
-
-    fn point(&self, index: usize) -> Vec<(String, f64)> {
-        let mut rest = index;
-        let mut point: Vec<(String, f64)> = Vec::new();
-        for Range { name, from, to, count } in self.ranges.iter().rev() {
-            let part = (rest % count) as f64 / (*count.max(&2) - 1) as f64;
-            point.push((name.clone(), rounded(from * (1.0 - part) + to * part)));
-            rest /= count;
-        }
-        point.reverse();
-        point
+    fn point(&self, index: usize) -> Vec<f64> {
+        Range::combined(self.ranges, index).0
     }
 
     fn swept(&self) -> Vec<Swept> {
@@ -141,7 +120,7 @@ impl<'a> Grid<'a> {
 
     /// How the row of a point begins.
     fn begin(&self, index: usize) -> String {
-        self.point(index).iter().map(|(_, x)| format!("{x:?},")).collect()
+        self.point(index).iter().map(|x| format!("{x:?},")).collect()
     }
 }
 
@@ -162,7 +141,7 @@ fn whole_rows(file: &File, told: &str, grid: &Grid, computed: &dyn Fn(usize) -> 
         } else {
             rows += 1;
             let is_first = rows == 1;
-            rows <= grid.count() && line.starts_with(&grid.begin(rows - 1)) && (!is_first || line == computed(0))
+            rows <= grid.count && line.starts_with(&grid.begin(rows - 1)) && (!is_first || line == computed(0))
         };
         ensure!(ours, "{told} is of another sweep, or of another version: remove it, or take another --out");
         bytes += line.len() as u64;

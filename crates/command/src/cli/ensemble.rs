@@ -4,10 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::range::{Range, range};
 use super::{Format, SceneArguments};
-
-/// Members of an ensemble, at most.
-pub const MOST_MEMBERS: usize = 1_000_000;
 
 /// One motion of a scene, and how it is printed.
 #[derive(Args, Debug)]
@@ -86,37 +84,4 @@ pub struct EnsembleArguments {
     /// File to write; to the terminal if left out.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-}
-
-/// Equidistant values of something that varies.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Range {
-    /// What varies.
-    pub name: String,
-    /// First value.
-    pub from: f64,
-    /// Last value.
-    pub to: f64,
-    /// Number of values.
-    pub count: usize,
-}
-
-/// `NAME=FROM:TO:COUNT`, or `NAME=FROM..TO:COUNT`.
-pub(super) fn range(text: &str) -> Result<Range, String> {
-    let parts = text.split_once('=').and_then(|(name, rest)| {
-        let (ends, count) = rest.rsplit_once(':')?;
-        let (from, to) = ends.split_once("..").or_else(|| ends.split_once(':'))?;
-        Some((name, from, to, count))
-    });
-    let (name, from, to, count) = parts.ok_or_else(|| format!("`{text}` is not NAME=FROM:TO:COUNT"))?;
-    let number = |x: &str| match scene::number(x) {
-        Ok(number) if number.is_finite() => Ok(number),
-        Ok(_) => Err(format!("`{x}` in `{text}` is not a finite number")),
-        Err(error) => Err(format!("`{x}` in `{text}`: {error}")),
-    };
-    let count: usize = count.trim().parse().map_err(|_| format!("`{count}` in `{text}` is not a count"))?;
-    if !(1..=MOST_MEMBERS).contains(&count) {
-        return Err(format!("`{text}` asks for {count} values; 1 to {MOST_MEMBERS} are possible"));
-    }
-    Ok(Range { name: name.trim().into(), from: number(from)?, to: number(to)?, count })
 }

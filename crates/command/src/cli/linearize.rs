@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::SceneArguments;
-use super::ensemble::{FreeArguments, Range, range};
+use super::ensemble::FreeArguments;
+use super::range::{Range, range};
 
 /// `deltaq linearize`.
 #[derive(Args, Debug)]

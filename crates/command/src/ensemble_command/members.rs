@@ -17,8 +17,7 @@ pub struct Members {
     places: Vec<String>,
     /// What the file says, row by row.
     listed: Vec<f64>,
-    /// First value, last value and number of each range.
-    ranges: Vec<(f64, f64, usize)>,
+    ranges: Vec<Range>,
     count: usize,
 }
 
@@ -63,7 +62,7 @@ impl Members {
         let count = self.count.saturating_mul(range.count);
         ensure!(count <= MOST_MEMBERS, "{place}: that makes {count} members; at most {MOST_MEMBERS} are possible");
         self.count = count;
-        self.ranges.push((range.from, range.to, range.count));
+        self.ranges.push(range.clone());
         self.names.push(range.name.clone());
         self.places.push(place);
         Ok(())
@@ -76,17 +75,9 @@ impl Members {
 
     /// One value a name.
     pub(crate) fn row(&self, member: usize) -> Vec<f64> {
-        let mut rest = member;
-        let mut values = Vec::with_capacity(self.names.len());
-        for &(from, to, count) in self.ranges.iter().rev() {
-            let last = (count.max(2) - 1) as f64;
-            values.push(from + (to - from) * (rest % count) as f64 / last);
-            rest /= count;
-        }
+        let (varied, line) = Range::combined(&self.ranges, member);
         let listed = self.names.len() - self.ranges.len();
-        values.extend(self.listed[rest * listed..][..listed].iter().rev());
-        values.reverse();
-        values
+        [&self.listed[line * listed..][..listed], &varied].concat()
     }
 
     /// Where the name is from, of which a fault of the scene says that it means nothing.
