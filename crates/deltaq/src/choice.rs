@@ -16,7 +16,8 @@ pub struct Choice {
     pub label: String,
     /// Name of the formulation.
     pub formulation: &'static str,
-    /// The removal, where the formulation needs one.
+    /// The removal, where the formulation needs one: expressions in the graph of its scene, which mean nothing
+    /// in that of another reading of it, or of a clone made before.
     pub removal: Option<Removal>,
     /// Free constants.
     pub constants: ConstantsRule,
