@@ -23,7 +23,8 @@ pub(crate) fn list(format: TextOrJson) -> Result<String> {
     };
     let scenes = catalogue::GROUPS.into_iter().flat_map(of).collect::<Result<Vec<_>>>()?;
     let line = |(_, scene): &(_, Scene)| format!("{:<24} {} ({})\n", scene.name, scene.title, scene.source);
-    let entry = |(group, Scene { name, title, source, .. }): &(_, Scene)| json!({ "name": name, "title": title, "source": source, "group": group });
+    let entry =
+        |(group, s): &(_, Scene)| json!({ "name": s.name, "title": s.title, "source": s.source, "group": group });
     Ok(match format {
         TextOrJson::Text => scenes.iter().map(line).collect(),
         TextOrJson::Json => pretty("list", &json!({ "scenes": scenes.iter().map(entry).collect::<Vec<_>>() })),

@@ -16,8 +16,8 @@ pub struct Choice {
     pub label: String,
     /// Name of the formulation.
     pub formulation: &'static str,
-    /// The removal, where the formulation needs one: expressions in the graph of its scene, which mean nothing
-    /// in that of another reading of it, or of a clone made before.
+    /// The removal, where the formulation needs one: expressions in the graph of its scene. In that of
+    /// another reading of it, or of a clone made before, they mean nothing.
     pub removal: Option<Removal>,
     /// Free constants.
     pub constants: ConstantsRule,
