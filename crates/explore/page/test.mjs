@@ -150,8 +150,8 @@ async function sliders() {
   await after(page, () => slide(page, "phi'", 800));
   const moved = await rows(page, "Chetaev");
   must(Math.abs(moved.at(-1)[3] - before.at(-1)[3]) > 1, "a slider changes nothing");
-  // a hand on a slider for two seconds
-  const [updates, took] = await page.evaluate(async () => {
+  // a hand on a slider: for two seconds while the browser still compiles, and for two more
+  const hand = () => page.evaluate(async () => {
     const slider = document.querySelector('[data-name="alpha"] input[type=range]');
     const [took, from, began] = [[], window.explored.drawn, performance.now()];
     for (let i = 0; performance.now() - began < 2000; i++) {
@@ -162,9 +162,10 @@ async function sliders() {
     }
     return [(window.explored.drawn - from) / ((performance.now() - began) / 1000), took];
   });
+  const [[, cold], [updates, took]] = [await hand(), await hand()];
   must(Math.min(...took) <= BUSY * LIMITS.sledge, `sledge recomputed in ${Math.min(...took).toFixed(1)} ms, at most ${LIMITS.sledge}`);
   must(updates >= LIMITS.updates / BUSY, `${updates.toFixed(0)} updates a second, at least ${LIMITS.updates}`);
-  said.push(`sledge ${median(took).toFixed(1)} ms (least ${Math.min(...took).toFixed(1)}), ${updates.toFixed(0)} updates a second, native in two runs ${nativeMilliseconds("sledge").toFixed(1)} ms`);
+  said.push(`sledge ${median(took).toFixed(1)} ms (least ${Math.min(...took).toFixed(1)}, in the first seconds ${median(cold).toFixed(1)}), ${updates.toFixed(0)} updates a second, native in two runs ${nativeMilliseconds("sledge").toFixed(1)} ms`);
   await page.keyboard.press("Escape");
   await page.focus("#stage");
   const label = () => page.$eval("#play", (button) => button.getAttribute("aria-label"));

@@ -62,8 +62,8 @@ pub struct Shot {
     pub evaluations: usize,
     /// Whether the limit on iterations ended the search.
     pub exhausted: bool,
-    /// Condition number (Euclidean norm) of `∂r/∂c` at c; infinite where the unknowns are not determined, or
-    /// no difference can be taken.
+    /// Condition number (Euclidean norm) of the last `∂r/∂c` on the way; infinite where the unknowns are not
+    /// determined, or none was evaluated.
     pub condition: f64,
 }
 
@@ -124,12 +124,12 @@ pub enum BoundaryError {
         /// Jacobians evaluated.
         iterations: usize,
     },
-    /// The residual stays above the tolerance; the Jacobian at the best point does not fix the unknowns.
+    /// The residual stays above the tolerance; the last Jacobian does not fix the unknowns.
     #[error("the residual is {residual}; the condition number of its Jacobian is {condition}, the limit is {limit}")]
     Singular {
         /// The smallest `|r|` found.
         residual: f64,
-        /// Condition number of the Jacobian there.
+        /// Condition number of that Jacobian.
         condition: f64,
         /// 1e12.
         limit: f64,
@@ -235,14 +235,13 @@ fn minimise(
         smallest: f64::INFINITY,
         iterations: 0,
         evaluations: 0,
+        first: None,
+        condition: f64::INFINITY,
     };
-    search.values(guess)?;
+    search.first = Some(search.values(guess)?);
     let minimiser = LevenbergMarquardt::new().with_patience(10 * options.max_iterations).with_ftol(options.least_gain);
     let (problem, _report) = minimiser.minimize(Target(RefCell::new(search)));
-    let mut search = problem.0.into_inner();
-    let best = search.best.clone();
-    let condition = search.differences(&best).map_or(f64::INFINITY, condition);
-    let Search { smallest, iterations, evaluations, .. } = search;
+    let Search { best, smallest, iterations, evaluations, condition, .. } = problem.0.into_inner();
     let exhausted = iterations >= options.max_iterations;
     Ok(Shot { unknowns: best, residual: smallest, iterations, evaluations, exhausted, condition })
 }
@@ -271,7 +270,7 @@ fn check(residuals: usize, guess: &[f64], options: &ShootOptions) -> Result<(), 
     }
 }
 
-fn condition(jacobian: DMatrix<f64>) -> f64 {
+fn condition(jacobian: &DMatrix<f64>) -> f64 {
     let values = jacobian.singular_values();
     // Sorted, largest first; there is at least one.
     let (largest, smallest) = (values[0], values[values.len() - 1]);
@@ -289,6 +288,10 @@ struct Search<'a, 'r> {
     smallest: f64,
     iterations: usize,
     evaluations: usize,
+    /// r at the guess, until the minimiser asks for it.
+    first: Option<Vec<f64>>,
+    /// Of the last Jacobian.
+    condition: f64,
 }
 
 impl Search<'_, '_> {
@@ -330,6 +333,7 @@ impl Search<'_, '_> {
             }
             column *= if column.norm() > self.noise { width.recip() } else { 0.0 };
         }
+        self.condition = condition(&jacobian);
         Ok(jacobian)
     }
 }
@@ -353,7 +357,12 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Target<'_, '_> {
     fn residuals(&self) -> Option<DVector<f64>> {
         let search = &mut *self.0.borrow_mut();
         let at = search.at.clone();
-        let values = search.values(&at).unwrap_or_else(|_| vec![OUT_OF_REACH; search.residuals]);
+        // it asks for the guess first
+        let values = match search.first.take() {
+            Some(values) => Ok(values),
+            None => search.values(&at),
+        };
+        let values = values.unwrap_or_else(|_| vec![OUT_OF_REACH; search.residuals]);
         Some(DVector::from_vec(values))
     }
 
