@@ -254,6 +254,11 @@ async function looks() {
       const page = await open(link({ scene, tab, time: 3 }), options);
       const width = await page.evaluate(() => document.documentElement.scrollWidth);
       must(width <= (options.width ?? 1280), `${scene} is ${width} px wide on ${look}`);
+      if (tab === "equations") {
+        await page.waitForSelector("#equations .formula");
+        const longest = await page.$$eval(".formula", (formulas) => Math.max(...formulas.map(({ children }) => children.length)));
+        must(longest > 3, `equations of ${scene} are not in pieces`);
+      }
       await page.screenshot({ path: join(pictures, `${scene}-${look}.png`) });
       await page.close();
     }

@@ -11,6 +11,21 @@ const spaced = (mathml) =>
 const math = (latex, displayMode) =>
   spaced(katex.renderToString(latex, { output: "mathml", displayMode, throwOnError: false }));
 
+// An equation in pieces between which a line can end: all but the first begin with a plus or minus that is in no
+// bracket.
+function formula(latex) {
+  const pieces = [""];
+  let depth = 0;
+  for (const token of latex.split(/(\\[a-zA-Z]+|[{}()[\]]| [-+] )/)) {
+    if ("{([".includes(token || " ")) depth += 1;
+    else if ("})]".includes(token || " ")) depth -= 1;
+    // with nothing before it, a sign stands between two terms all the same
+    else if (depth === 0 && / [-+] /.test(token)) pieces.push("{}");
+    pieces[pieces.length - 1] += token;
+  }
+  return `<div class="formula">${pieces.map((piece) => math(piece, true)).join("")}</div>`;
+}
+
 function inline(text) {
   const parts = text.split(/(\$[^$]+\$|\*\*[^*]+\*\*)/);
   const part = (piece) => {
@@ -26,7 +41,7 @@ function markup(text) {
   const prose = (piece) =>
     piece.split("\n").map((line) => line.trim()).filter(Boolean)
       .map((line) => (line.startsWith("- ") ? `<li>${inline(line.slice(2))}</li>` : `<p>${inline(line)}</p>`)).join("");
-  return pieces.map((piece, i) => (i % 2 ? `<div class="formula">${math(piece, true)}</div>` : prose(piece))).join("");
+  return pieces.map((piece, i) => (i % 2 ? formula(piece) : prose(piece))).join("");
 }
 
 // The system, then the equations of every motion in a section of their own.
