@@ -24,8 +24,8 @@ export class Curves {
   }
 
   options() {
-    const { motions, gaps } = this.samples;
-    const options = gaps.length ? [["gap", "gap to " + gaps[0].first]] : [];
+    const { motions, gaps, units } = this.samples;
+    const options = gaps.length ? [["gap", `gap to ${gaps[0].first}`]] : [];
     if (motions.length) options.push(["observable:energy", "energy"]);
     if (motions.some((motion) => motion.multipliers.length)) options.push(["multiplier", "multipliers, costates"]);
     for (const group of ["coordinate", "velocity", "observable", "invariant"]) {
@@ -35,7 +35,7 @@ export class Curves {
         if (!options.some(([known]) => known === key)) options.push([key, NAMES[group] + name]);
       }
     }
-    return options;
+    return options.map(([key, name]) => [key, units[key] ? `${name} (${units[key]})` : name]);
   }
 
   // Tables to join, and a series for each column of them.
@@ -52,9 +52,11 @@ export class Curves {
     if (key === "gap") {
       for (const { t, gap, limit, second } of gaps) {
         const { look } = motions.find((motion) => motion.label === second);
-        add(t, gap.map(logarithm), second, look);
+        // in doubt, as at a glance, there is no limit; what is not certain is not drawn
+        const isCertain = (x, i) => !Number.isFinite(limit[i]) || x > limit[i];
+        add(t, gap.map((x, i) => (isCertain(x, i) ? logarithm(x) : null)), second, look);
         if (limit.every((x) => !Number.isFinite(x))) continue;
-        add(t, limit.map(logarithm), "has to pass", { colour: `${look.colour}99`, dash: [2, 3], width: 1.6 });
+        add(t, limit.map(logarithm), "certain above", { colour: `${look.colour}99`, dash: [2, 3], width: 1.6 });
       }
       return { tables, series };
     }

@@ -94,6 +94,9 @@ export class Samples {
   constructor({ answer, numbers, milliseconds }, coordinates) {
     const names = coordinates.map(({ name }) => name);
     const counts = {};
+    const known = coordinates.filter(({ unit }) => unit);
+    const units = known.flatMap(({ name, unit }) => [[`coordinate:${name}`, unit], [`velocity:${name}'`, `${unit}/s`]]);
+    this.units = { gap: "m √kg", "observable:energy": "J", ...Object.fromEntries(units) };
     Object.assign(this, { start: answer.start, end: answer.end, times: answer.times, bodies: answer.bodies, milliseconds });
     this.numbers = numbers;
     this.all = answer.motions;
