@@ -47,7 +47,7 @@ pub struct Effort {
 impl Effort {
     /// For the main job, which has other things to do as well.
     pub fn brief() -> Effort {
-        Effort { seconds: 0.0015, repeats: 2, max_steps: 50_000, patience: 0.015 }
+        Effort { seconds: 0.0015, repeats: 2, max_steps: 50_000, patience: 0.008 }
     }
 }
 
