@@ -125,8 +125,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     });
 
     if energy_is_constant(&system, &jacobian) {
-        let energy = g.sub(g.dot(&g.variables(&v), &momenta), system.lagrangian);
-        equations.invariants.push(Named { name: "energy".into(), expression: energy });
+        equations.invariants.push(Named { name: "energy".into(), expression: system.energy() });
     }
     for i in 0..q.len() {
         let free =

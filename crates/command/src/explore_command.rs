@@ -1,10 +1,12 @@
 //! `deltaq explore`: the page in which scenes are explored.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use serde_json::json;
 use validation::catalogue;
+use validation::report::{File, write_all};
 
 use crate::cli::ExploreArguments;
 
@@ -38,6 +40,6 @@ pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
         page = page.replacen(CHOSEN, &CHOSEN.replace("null", &chosen), 1);
     }
     let out = &arguments.out;
-    std::fs::write(out, page).with_context(|| format!("cannot write `{}`", out.display()))?;
+    write_all(Path::new("."), &[File { path: out.clone(), text: page }])?;
     Ok(format!("{}: open it in a browser\n", out.display()))
 }

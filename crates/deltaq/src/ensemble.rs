@@ -16,8 +16,8 @@ use mechanics::{ConstantsRule, State, System};
 use scene::{Scene, Start, Starts};
 
 use crate::{Choice, Metric, Prepared, Settings, SolveError, Varying, formulation, setting};
-pub use costates::costate_names;
-pub(crate) use costates::{Costates, is_costate};
+pub(crate) use costates::Costates;
+pub use costates::{costate_names, given_costates, is_costate};
 pub use motions::MemberMotion;
 pub use run::{EnsembleOptions, MemberRun};
 pub use threads::{number_of_threads, over_threads};

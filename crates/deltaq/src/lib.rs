@@ -108,8 +108,8 @@ pub use constants::{constant_names, prepare};
 pub use doubt::Doubt;
 pub use ending::Ending;
 pub use ensemble::{
-    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, costate_names,
-    number_of_threads, over_threads,
+    Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, costate_names, given_costates,
+    is_costate, number_of_threads, over_threads,
 };
 pub use equations_text::{EquationStyle, equations_text, system_text};
 pub use error::SolveError;

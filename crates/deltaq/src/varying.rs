@@ -32,7 +32,6 @@ pub struct Varying {
     prepared: Prepared,
     /// Of equations in the variables of a removal: their start.
     removal: Option<RemovalProgram>,
-    parameters: usize,
     settings: Settings,
 }
 
@@ -63,7 +62,7 @@ impl Varying {
         let symbols: Vec<Symbol> = varied.iter().map(|p| p.symbol).collect();
         let removal = prepared.equations.removal.as_ref();
         let removal = removal.map(|removal| RemovalProgram::new(system, removal, &symbols));
-        Ok(Varying { prepared, removal, parameters: varied.len(), settings: settings.clone() })
+        Ok(Varying { prepared, removal, settings: settings.clone() })
     }
 
     /// Sets `(t₀, q₀, v₀)`, the parameters that vary and the other free constants. What is natural at a
@@ -78,8 +77,9 @@ impl Varying {
         constants: &ConstantsRule,
         near: bool,
     ) -> Result<(), SolveError> {
-        if parameters.len() != self.parameters || !parameters.iter().all(|x| x.is_finite()) {
-            let reason = format!("{} finite values are needed for the parameters that vary", self.parameters);
+        let varied = self.prepared.constants.len() - self.constants().len();
+        if parameters.len() != varied || !parameters.iter().all(|x| x.is_finite()) {
+            let reason = format!("{varied} finite values are needed for the parameters that vary");
             return Err(SolveError::Member { reason });
         }
         let removal = self.removal.as_mut().map(|removal| removal.start(state, parameters)).transpose()?;

@@ -2,8 +2,7 @@
 
 use std::f64::consts::PI;
 
-use deltaq::{Choice, costate_names};
-use mechanics::ConstantsRule;
+use deltaq::given_costates;
 use scene::Scene;
 use serde_json::{Value, json};
 
@@ -41,7 +40,7 @@ pub(crate) fn of(subject: &Subject) -> Vec<Value> {
     for (i, &mu) in scene.multipliers.iter().enumerate() {
         controls.push(control(&format!("mu{}", i + 1), "multiplier", "", mu, around(mu, mu.abs().max(2.0))));
     }
-    for (name, p) in choices.iter().flat_map(|choice| costates(scene, choice)) {
+    for (name, p) in choices.iter().flat_map(|choice| given_costates(scene, choice)) {
         let known = controls.iter().any(|known: &Value| known["name"] == *name);
         if !known {
             controls.push(control(&name, "costate", "", p, around(p, p.abs().max(10.0))));
@@ -75,15 +74,4 @@ fn velocities(scene: &Scene) -> Vec<(String, f64)> {
         Some((name.clone(), g.evaluate(*written, &values).ok()?))
     };
     scene.completion.given.iter().filter_map(given).collect()
-}
-
-/// Costates at the start, as far as they are known without integration: zero until a search finds them.
-fn costates(scene: &Scene, choice: &Choice) -> Vec<(String, f64)> {
-    let Some(removal) = &choice.removal else { return Vec::new() };
-    let names = costate_names(scene, removal);
-    let values = match &choice.constants {
-        ConstantsRule::Given(values) if values.len() == names.len() => values.clone(),
-        _ => vec![0.0; names.len()],
-    };
-    names.into_iter().zip(values).collect()
 }

@@ -60,14 +60,11 @@ pub(crate) fn sampled(
     }))
 }
 
-/// The energy `v·∂L/∂v − L` and the observables of a system.
+/// The energy and the observables of a system.
 fn observables(system: &System) -> Result<Observables, SolveError> {
     let mut system = system.clone();
-    let (g, v) = (&system.graph, system.velocities());
-    let momenta = g.gradient(system.lagrangian, &v);
-    let power: Vec<_> = v.iter().zip(momenta).map(|(v, p)| g.mul(g.variable(*v), p)).collect();
-    let expression = g.sub(g.sum(&power), system.lagrangian);
-    system.watched.insert(0, Watched { name: "energy".into(), expression, constant: false });
+    let energy = Watched { name: "energy".into(), expression: system.energy(), constant: false };
+    system.watched.insert(0, energy);
     Ok(Observables::of(&system)?)
 }
 

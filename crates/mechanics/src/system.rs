@@ -174,6 +174,12 @@ impl System {
         self.graph.jacobian(&self.constraints, &self.velocities())
     }
 
+    /// The energy `v·∂L/∂v − L`.
+    pub fn energy(&self) -> Expr {
+        let (g, v) = (&self.graph, self.velocities());
+        g.sub(g.dot(&g.variables(&v), &g.gradient(self.lagrangian, &v)), self.lagrangian)
+    }
+
     /// Velocity Hessian (mass matrix) `M = ∂²L/∂v²`, n×n.
     pub fn velocity_hessian(&self) -> Matrix {
         let v = self.velocities();

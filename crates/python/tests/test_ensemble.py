@@ -101,6 +101,8 @@ def test_what_is_wrong_is_said(system):
     for times, words in [([1, 0.5], "ascending"), ([-1], "before the start"), ([np.inf], "times contains")]:
         with pytest.raises(ValueError, match=words):
             system.ensemble(times=times, vary={"g": [1, 2]})
+    # constants that are natural at a horizon are found for every value of a parameter
+    assert len(system.ensemble("removed-constraint", vary={"g": [1, 2]})) == 2
     for tolerance in (0, 1, -1, np.nan):
         with pytest.raises(deltaq.CallError, match="tolerance"):
             system.ensemble(vary={"g": [1, 2]}, tolerance=tolerance)

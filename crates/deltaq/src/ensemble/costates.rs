@@ -24,8 +24,18 @@ pub fn costate_names(scene: &Scene, removal: &Removal) -> Vec<String> {
     removal.memory.iter().map(|w| format!("{START}{}", scene.system.graph.name(w.symbol))).collect()
 }
 
+/// The costates at the start of a choice, as far as it gives them: zero otherwise, until a search finds them.
+pub fn given_costates(scene: &Scene, choice: &Choice) -> Vec<(String, f64)> {
+    let names = choice.removal.as_ref().map_or(Vec::new(), |removal| costate_names(scene, removal));
+    let values = match &choice.constants {
+        ConstantsRule::Given(values) if values.len() == names.len() => values.clone(),
+        _ => vec![0.0; names.len()],
+    };
+    names.into_iter().zip(values).collect()
+}
+
 /// Whether a name is that of a costate at the start.
-pub(crate) fn is_costate(name: &str) -> bool {
+pub fn is_costate(name: &str) -> bool {
     name.starts_with(START)
 }
 
@@ -37,7 +47,7 @@ impl Costates {
         scene: &Scene,
         choice: &Choice,
     ) -> Result<(Costates, Vec<&'a str>), String> {
-        let known = choice.removal.as_ref().map_or(Vec::new(), |removal| costate_names(scene, removal));
+        let (known, base): (Vec<String>, Vec<f64>) = given_costates(scene, choice).into_iter().unzip();
         let (mut varied, mut others) = (Vec::new(), Vec::new());
         for (place, name) in names.iter().enumerate() {
             match known.iter().position(|known| known == name) {
@@ -54,10 +64,6 @@ impl Costates {
         if varied.is_empty() {
             return Ok((Costates::default(), others));
         }
-        let base = match &choice.constants {
-            ConstantsRule::Given(values) if values.len() == known.len() => values.clone(),
-            _ => vec![0.0; known.len()],
-        };
         Ok((Costates { base, varied }, others))
     }
 

@@ -131,6 +131,9 @@ fn what_is_no_member_is_refused() {
         let refused = Ensemble::new(&base, &chetaev, &[], &settings);
         assert!(matches!(refused, Err(SolveError::Tolerance { .. })), "tolerance {tolerance}");
     }
+    let natural = choice(&base, "removed-constraint");
+    assert!(Ensemble::new(&base, &natural, &["g"], &settings()).is_ok());
+    assert!(Ensemble::new(&base, &natural, &[], &settings()).is_ok());
 }
 
 #[test]
