@@ -44,8 +44,10 @@ export class Controls {
     const { name, unit, low, high, value } = control;
     const row = document.createElement("div");
     row.className = "row";
-    row.innerHTML = `<label>${readable(name)}<small>${unit}</small></label><input type="range" min="0" max="1000" step="1">
+    row.innerHTML = `<label>${readable(name)}<small></small></label><input type="range" min="0" max="1000" step="1">
       <input type="number" step="any"><button type="button" class="plain" title="as in the text" aria-label="${name} as in the text">↺</button>`;
+    // a unit is whatever the text says
+    row.querySelector("small").textContent = unit;
     const [slider, number, back] = row.querySelectorAll("input, button");
     const entry = { control, row, slider, number, bounds: [low, high] };
     this.rows.set(name, entry);

@@ -17,8 +17,9 @@ export class Curves {
     this.samples = samples;
     const options = this.options();
     const key = options.some(([key]) => key === chosen) ? chosen : options[0]?.[0];
-    const list = options.map(([key, name]) => `<option value="${key}">${name}</option>`).join("");
-    if (list !== this.list) this.select.innerHTML = this.list = list;
+    const list = JSON.stringify(options);
+    if (list !== this.list) this.select.replaceChildren(...options.map(([key, name]) => new Option(name, key)));
+    this.list = list;
     this.select.value = key;
     this.draw(key);
   }

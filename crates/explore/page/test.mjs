@@ -235,6 +235,13 @@ async function ownText() {
   must(await twin.$eval("#text", (panel) => !panel.hidden), "a link does not bring the panel back");
   await twin.close();
 
+  // what a text says is shown as it stands there
+  const marked = OWN.replace('x = { unit = "m"', 'x = { unit = "<i>m</i>"') + `[observables]\n'<i>"sum"</i>' = "x + y"\n`;
+  await after(page, () => type(page, marked));
+  const units = await page.$$eval("[data-name=x] small, #curve option", (all) => all.map(({ textContent }) => textContent));
+  must(units.includes("<i>m</i>") && units.includes(`<i>"sum"</i>`), `marks in names and units: ${units}`);
+  must((await page.$$("#numbers i, #curve i")).length === 0, "names or units are taken for elements");
+
   const broken = OWN.replace("y'*cos(phi)", "y'*cos(phj)").replace("duration = 3", "duratoin = 3");
   await type(page, broken);
   await page.waitForSelector("#faults:not([hidden])");
