@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let as_pages = arguments.output.out.is_some() || arguments.markdown;
     let watch = Watch::begin(quiet)?;
     let (mut files, mut value, mut before) = (Vec::new(), verdicts(&[]), String::new());
+    let mut sound = Ok(());
     for scene in scenes {
         let mut answer = |comparison: &mut Comparison| -> Result<String> {
             if as_json {
@@ -50,6 +51,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
         })
         .with_context(|| format!("scene `{name}`"))?;
         let text = answer(&mut comparison)?;
+        sound = sound.and_then(|()| comparison.is_sound());
         if as_pages {
             watch.tell(&format!("{name}: page and pictures"), text.clone());
             files.extend(scene_files(&mut comparison)?);
@@ -65,11 +67,16 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
         write_all(folder, &files)?;
     }
     let pages = files.iter().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
-    Ok(match &arguments.output.out {
+    let text = match &arguments.output.out {
         _ if as_json => pretty("compare", &value),
         Some(folder) => format!("{} files in {}\n", files.len(), folder.display()),
         None => pages.map(|page| page.text.clone() + "\n").collect(),
-    })
+    };
+    if sound.is_err() {
+        print(&text)?;
+    }
+    sound?;
+    Ok(text)
 }
 
 /// Compares a scene, and tells what is done next and what there is so far.
@@ -109,6 +116,7 @@ fn compared(
 fn json_of(comparison: &Comparison) -> Value {
     let mut value = verdicts(std::slice::from_ref(comparison));
     let mut scene = value["scenes"][&comparison.scene.name].take();
+    scene["contradictions"] = comparison.contradictions().iter().map(ToString::to_string).collect();
     for (i, pair) in comparison.pairs.iter().enumerate() {
         let found = &mut scene["pairs"][i];
         (found["largest"], found["estimates"]) = (json!(pair.gap.largest), json!(pair.gap.estimates));

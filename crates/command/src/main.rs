@@ -1,6 +1,7 @@
 //! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
 //! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
-//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate.
+//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate; 4 where results contradict each other, which is a fault of
+//! the program.
 
 mod answer;
 mod bench_command;
@@ -22,7 +23,7 @@ mod stability_command;
 mod sweep_command;
 mod watch;
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write, stderr};
 use std::process::ExitCode;
 
 use anyhow::{Context, Error, Result};
@@ -30,6 +31,7 @@ use clap::{CommandFactory, Parser};
 
 use answer::{Answer, Unwritten};
 use cli::{Cli, Command};
+use deltaq::Contradicted;
 use random::parallel;
 
 // derivations allocate much: an eighth of the time of a thousand random systems
@@ -49,33 +51,42 @@ fn main() -> ExitCode {
     };
     match run(cli) {
         Ok(answer) => printed(&answer),
-        Err(error) => failed(&error, if error.is::<Unwritten>() { 1 } else { 2 }),
+        Err(error) => failed(&error),
     }
 }
 
 fn printed(answer: &Answer) -> ExitCode {
     if let Err(error) = answer.print() {
-        return failed(&error, 1);
+        return failed(&error);
     }
     match &answer.complaint {
         None => ExitCode::SUCCESS,
         Some(complaint) => {
-            eprintln!("deltaq: {complaint}");
+            let _ = writeln!(stderr(), "deltaq: {complaint}");
             ExitCode::from(3)
         }
     }
 }
 
-/// Says what went wrong, and why.
-fn failed(error: &Error, code: u8) -> ExitCode {
+/// The exit code of an error.
+fn code(error: &Error) -> u8 {
+    match () {
+        () if error.is::<Unwritten>() => 1,
+        () if error.is::<Contradicted>() => 4,
+        () => 2,
+    }
+}
+
+/// Says what went wrong, and why, unless nobody listens any more.
+fn failed(error: &Error) -> ExitCode {
     let mut told = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {
         if !told.contains(&cause) {
             told += &format!("\n  {cause}");
         }
     }
-    eprintln!("deltaq: {told}");
-    ExitCode::from(code)
+    let _ = writeln!(stderr(), "deltaq: {told}");
+    ExitCode::from(code(error))
 }
 
 fn run(cli: Cli) -> Result<Answer> {
@@ -121,4 +132,21 @@ fn manual(command: Option<&str>) -> Result<String> {
     let mut text = Vec::new();
     clap_mangen::Man::new(about.clone()).render(&mut text)?;
     Ok(String::from_utf8(text)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_error_has_its_exit_code() {
+        let contradicted = || Error::from(Contradicted(vec!["scene: one, but another".into()]));
+        let errors = [
+            Error::msg("bad input"),
+            Error::msg("full").context(Unwritten),
+            contradicted(),
+            contradicted().context("scene"),
+        ];
+        assert_eq!(errors.map(|error| code(&error)), [2, 1, 4, 4]);
+    }
 }

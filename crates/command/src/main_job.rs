@@ -216,6 +216,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
     let results = Results::of(sections, &names, quiet)?;
+    results.comparisons.iter().try_for_each(Comparison::is_sound)?;
     let mut files = results.files();
     let further: Vec<(&str, &str)> = results.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
     if complete {

@@ -8,7 +8,7 @@ use crate::gap::{Verdict, compare_motions};
 use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
 use crate::{
-    Choice, Membership, Metric, Settings, SolveError, constant_names, formulation, integrability, solve_choice,
+    Answer, Choice, Membership, Metric, Settings, SolveError, constant_names, formulation, integrability, solve_choice,
 };
 
 /// A scene in every formulation.
@@ -101,7 +101,16 @@ impl Comparison {
     /// Decides whether the next motion is one of a family; `None` where nothing is left to be asked.
     pub fn decide_next(&mut self) -> Option<&Decided> {
         let asked = self.undecided()?;
-        self.decided.push(decide(&self.scene, &self.runs, asked));
+        let decided = decide(&self.scene, &self.runs, asked);
+        if decided.outcome.as_ref().is_ok_and(|found| matches!(found.answer(), Answer::NoneProved { .. })) {
+            // is the difference that is proved one that had to be seen?
+            let (first, second) = (asked.0.min(asked.1), asked.0.max(asked.1));
+            let pair = self.pairs.iter_mut().find(|p| (p.first, p.second) == (first, second));
+            if let Some(pair) = pair.filter(|p| p.gap.verdict == Verdict::Same) {
+                pair.predicted = predicted(&self.scene, &self.runs[first].choice, &self.runs[second]);
+            }
+        }
+        self.decided.push(decided);
         self.decided.last()
     }
 

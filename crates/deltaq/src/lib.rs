@@ -63,6 +63,7 @@ mod clock;
 mod code;
 mod comparison;
 mod constants;
+mod contradiction;
 mod discrete_run;
 mod doubt;
 mod ending;
@@ -105,6 +106,7 @@ pub use choice::{
 pub use code::code;
 pub use comparison::{Comparison, Extent, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
+pub use contradiction::{Contradicted, Contradiction};
 pub use doubt::Doubt;
 pub use ending::Ending;
 pub use ensemble::{

@@ -23,6 +23,9 @@ pub struct Membership {
     pub proof: Proof,
     /// `c = φ(q, v)` for every start, where that was found and verified.
     pub section: Option<Section>,
+    /// The least mismatch that the proved one implies, in the same unit as ρ; looked for only where the
+    /// numbers show none.
+    pub implied: Option<f64>,
 }
 
 /// What is known of the set.
@@ -45,13 +48,17 @@ pub enum Answer {
         /// Taylor coefficients agree up to this order; `None` where there are none.
         order: Option<usize>,
     },
-    /// Round-off hides it.
+    /// Round-off hides it, or proof and numbers contradict each other ([`Membership::contradiction`]).
     Undecided,
 }
 
 impl Membership {
-    /// The answer. A proof is about the numbers as they are written, and has the last word.
+    /// The answer. A proof is about the numbers as they are written, and has the last word, unless what is
+    /// computed in floating point excludes it: then one of the two is wrong, and there is no answer.
     pub fn answer(&self) -> Answer {
+        if self.contradiction().is_some() {
+            return Answer::Undecided;
+        }
         let (order, unproved) = match &self.proof.this_start {
             Finding::None(none) => return Answer::NoneProved { order: none.order },
             Finding::Contained { .. } => return Answer::SomeProved,
@@ -129,7 +136,10 @@ impl<'a> Pairing<'a> {
             _ if !self.constants.is_empty() => None,
             _ => question.section(system, &exact, start)?,
         };
-        Ok(Membership { decision, proof, section })
+        let unseen = refuted && decision.verdict == decision::Verdict::Contained;
+        let least = |until| question.least_by_series(system, start, until - start.t);
+        let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
+        Ok(Membership { decision, proof, section, implied })
     }
 
     /// The certificate that no constants do, for others to check; the reason in words where there is none.

@@ -4,6 +4,7 @@
 //! `PROPTEST_CASES=N` more. Failures are shrunk and printed as scene files, seeds kept in `properties.seeds`.
 
 mod claims;
+mod contradictions;
 mod estimates;
 mod forms;
 mod generator;

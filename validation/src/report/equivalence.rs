@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{Answer, Finding, Membership, Pairing, Section, choices, membership};
+use deltaq::{Answer, Contradicted, Finding, Membership, Pairing, Section, choices, membership};
 use mechanics::Removal;
 use random::{parallel, substitution};
 use scene::Scene;
@@ -51,6 +51,7 @@ impl Asked {
         };
         let what = || format!("scene `{}` with {:?} {set:?}", self.scene, self.set);
         let membership = found.with_context(what)?.with_context(what)?;
+        membership.contradiction().map_or(Ok(()), |found| Err(Contradicted(vec![format!("{}: {found}", what())])))?;
         Ok([Found::here(&membership), Found::almost_everywhere(&membership)])
     }
 

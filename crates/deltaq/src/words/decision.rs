@@ -60,6 +60,9 @@ fn constants(membership: &Membership, c: &str) -> String {
 
 /// Why the answer is what it is.
 fn reason(membership: &Membership) -> String {
+    if let Some(contradiction) = membership.contradiction() {
+        return format!("two results contradict each other: {contradiction}");
+    }
     let decision = &membership.decision;
     let part = short(decision.least / decision.acceleration);
     let mismatch = format!("the least mismatch of accelerations is {part} of the motion's own");

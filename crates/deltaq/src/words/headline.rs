@@ -7,6 +7,7 @@ use equations::Role;
 
 use super::decision;
 use super::numbers::{enumerate, precise, short};
+use crate::contradiction::FAULT;
 use crate::{CERTAINTY, Comparison, Pair, Verdict, formulation};
 
 /// Three answers, each in a few sentences.
@@ -22,6 +23,12 @@ pub struct Headline {
 impl Headline {
     /// Of what has been compared so far.
     pub fn of(comparison: &Comparison) -> Headline {
+        let contradictions = comparison.contradictions();
+        if !contradictions.is_empty() {
+            let found: Vec<String> = contradictions.iter().map(|found| format!("{found}.")).collect();
+            let verdict = format!("No verdict: results contradict each other. {FAULT}");
+            return Headline { verdict, why: found.join(" "), sure: String::new() };
+        }
         let verdict = [verdicts(comparison), without_motion(comparison)].concat().join(" ");
         let sure: Vec<String> = decision::sentences(comparison).into_iter().chain(errors(comparison)).collect();
         Headline { verdict, why: why(comparison).join(" "), sure: sure.join(" ") }

@@ -8,9 +8,6 @@ use super::CheckError;
 use crate::case::{Which, equations};
 use crate::{Case, Kind};
 
-/// A mismatch up to this many times its noise does not stand out.
-const CERTAIN: f64 = 10.0;
-
 /// Decides whether the Chetaev motion is vakonomic; finds a vakonomic motion's multipliers from itself.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let Some(found) = case.membership()? else { return Ok(()) };
@@ -23,20 +20,13 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         decision.noise,
         words(&found.proof.this_start)
     );
-    if let (Verdict::Contained, Finding::None(_)) = (decision.verdict, &found.proof.this_start) {
-        // a proved mismatch need not stand out from the noise: how large is it as far as was judged?
-        let choices = choices(&case.scene);
-        let least = Pairing::new(&case.scene, &choices[0], &choices[1])?
-            .least_by_series(decision.until.unwrap_or(case.end()))?;
-        case.found.bound(9, "decision and proof agree", least.unwrap_or(f64::NAN), CERTAIN * decision.noise);
+    let contradiction = found.contradiction();
+    let told = contradiction.as_ref().map_or(note.clone(), ToString::to_string);
+    case.found.require(9, "decision and proof agree", contradiction.is_none(), told);
+    if matches!((decision.verdict, &found.proof.this_start), (Verdict::Contained, Finding::None(_))) {
+        // a proved mismatch need not stand out from the noise
         return Ok(());
     }
-    let contradiction = match (decision.verdict, &found.proof.this_start) {
-        (Verdict::NotContained, Finding::Contained { .. }) => true,
-        (Verdict::NotContained, _) => found.section.is_some(),
-        _ => false,
-    };
-    case.found.require(9, "decision and proof agree", !contradiction, &note);
     let dimension = decision.set.dimension();
     if let (Verdict::Contained, Finding::Contained { rank, .. }) = (decision.verdict, &found.proof.this_start)
         && case.recipe.kind != Kind::NearRankLoss

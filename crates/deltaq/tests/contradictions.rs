@@ -1,0 +1,135 @@
+//! Results that exclude each other, forged one at a time: each is noticed, and there is no verdict.
+
+use decision::{Finding, NoConstants};
+use deltaq::words::Headline;
+use deltaq::{Comparison, Settings, Verdict, choices, compare, compare_unfitted};
+use mechanics::Integrability;
+use scene::Scene;
+
+fn compared(name: &str, text: &str) -> Comparison {
+    let scene = Scene::parse(name, text).expect("a scene");
+    let choices = choices(&scene);
+    compare_unfitted(scene, choices, Vec::new(), &Settings::default()).expect("a comparison")
+}
+
+/// Nonintegrable; no multipliers give Chetaev's motion.
+fn sledge() -> Comparison {
+    compared("sledge", include_str!("../../scene/sledge.toml"))
+}
+
+/// Integrable: all multipliers do.
+fn bowl() -> Comparison {
+    compared("bowl", include_str!("../../../validation/scenes/bowl.toml"))
+}
+
+/// Some multipliers do, by an identity.
+fn disc() -> Comparison {
+    compared("disc", include_str!("../../../validation/scenes/disc.toml"))
+}
+
+fn no_constants() -> Finding {
+    Finding::None(NoConstants { order: 1, full_rank: true })
+}
+
+/// The one thing that is found, the page's first words and the command's error.
+fn found(comparison: &Comparison) -> String {
+    let [found] = &comparison.contradictions()[..] else { panic!("{:?}", comparison.contradictions()) };
+    let headline = Headline::of(comparison);
+    assert!(headline.verdict.starts_with("No verdict: results contradict each other."), "{}", headline.verdict);
+    assert!(headline.why.contains(&found.to_string()) && headline.sure.is_empty(), "{}", headline.why);
+    assert!(comparison.is_sound().unwrap_err().to_string().contains(&found.to_string()));
+    found.to_string()
+}
+
+/// What was decided about Chetaev's motion and the vakonomic family.
+fn decided(comparison: &mut Comparison) -> &mut deltaq::Membership {
+    let asked = (comparison.run("vakonomic"), comparison.run("chetaev"));
+    let is = |d: &&mut deltaq::Decided| (Some(d.family), Some(d.curve)) == asked;
+    comparison.decided.iter_mut().find(is).and_then(|d| d.outcome.as_mut().ok()).expect("a decision")
+}
+
+fn pair<'a>(comparison: &'a mut Comparison, other: &str) -> &'a mut deltaq::Pair {
+    let wanted = (comparison.run("chetaev").unwrap(), comparison.run(other).unwrap());
+    comparison.pairs.iter_mut().find(|p| (p.first, p.second) == wanted).expect("a pair")
+}
+
+#[test]
+fn scenes_as_they_are_contradict_nothing() {
+    for comparison in [sledge(), bowl(), disc()] {
+        assert_eq!(comparison.contradictions(), Vec::new());
+        assert!(comparison.is_sound().is_ok());
+    }
+}
+
+#[test]
+fn a_proof_that_some_do_beside_a_mismatch() {
+    let mut sledge = sledge();
+    decided(&mut sledge).proof.this_start = Finding::Contained { rank: 1, order: 3 };
+    assert!(found(&sledge).contains("ranks show that some constants give the motion, but the least mismatch"));
+}
+
+#[test]
+fn a_proof_that_none_do_beside_a_formula_and_beside_no_mismatch() {
+    let mut disc = disc();
+    decided(&mut disc).proof.this_start = no_constants();
+    assert!(found(&disc).contains("but a formula gives such constants for all starts"));
+    let membership = decided(&mut disc);
+    (membership.section, membership.implied) = (None, Some(1e-3));
+    assert!(found(&disc).contains("with a mismatch of at least 1.0e-3, but the least mismatch found is"));
+    // a mismatch that noise hides is no contradiction
+    let membership = decided(&mut disc);
+    membership.implied = Some(membership.decision.noise);
+    assert_eq!(disc.contradictions(), Vec::new());
+}
+
+#[test]
+fn a_formula_for_all_starts_beside_a_mismatch() {
+    let (mut sledge, mut disc) = (sledge(), disc());
+    decided(&mut sledge).section = decided(&mut disc).section.clone();
+    decided(&mut sledge).proof.this_start = Finding::ThroughOrder { rank: 1, order: 3 };
+    assert!(found(&sledge).contains("a formula gives such constants for all starts, but the least mismatch"));
+}
+
+#[test]
+fn an_integrable_constraint_beside_motions_that_differ_or_no_multipliers() {
+    let mut sledge = sledge();
+    sledge.integrability = Integrability::Integrable { exact: true };
+    let all = sledge.contradictions();
+    assert!(all.iter().any(|c| c.other == "the motions of Chetaev and vakonomic differ"), "{all:?}");
+    assert!(all.iter().any(|c| c.other == "no constants of vakonomic give the motion of Chetaev"), "{all:?}");
+    let mut bowl = bowl();
+    pair(&mut bowl, "removed-constraint").gap.verdict = Verdict::Different;
+    assert!(found(&bowl).starts_with("the constraint is integrable"));
+}
+
+#[test]
+fn every_multiplier_beside_motions_that_differ() {
+    let mut bowl = bowl();
+    bowl.integrability = Integrability::NonlinearInVelocity;
+    pair(&mut bowl, "vakonomic").gap.verdict = Verdict::Different;
+    assert!(found(&bowl).ends_with("but the two motions differ"));
+}
+
+#[test]
+fn a_proved_difference_beside_motions_that_agree_and_beside_another_growth() {
+    let mut sledge = sledge();
+    pair(&mut sledge, "vakonomic").gap.verdict = Verdict::Same;
+    assert!(found(&sledge).contains("agree within their errors, but it is proved that they part as"));
+    let pair = pair(&mut sledge, "vakonomic");
+    pair.gap.verdict = Verdict::Different;
+    pair.growth.as_mut().expect("a growth").exponent += 1.0;
+    assert!(found(&sledge).contains("part as t^3, but they were measured to part as t^4.0"));
+}
+
+#[test]
+fn one_family_whose_motions_differ() {
+    let scene =
+        Scene::parse("heisenberg", include_str!("../../../validation/scenes/heisenberg.toml")).expect("a scene");
+    let choices = choices(&scene);
+    let mut heisenberg = compare(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
+    assert_eq!(heisenberg.contradictions(), Vec::new());
+    let chetaev = heisenberg.run("chetaev");
+    let fit = heisenberg.fits.iter_mut().find(|fit| fit.by_identity && Some(fit.target) != chetaev).expect("a fit");
+    fit.fitted.as_mut().expect("a motion").gap.verdict = Verdict::Different;
+    assert!(found(&heisenberg).contains("are one family, but their motions differ"));
+}
