@@ -206,6 +206,8 @@ pub(crate) struct Comparison {
     fits: Vec<Py<Fit>>,
     /// Which families have which motions: decided, not searched.
     decided: Vec<Py<Decided>>,
+    /// Results that exclude each other, in words: none, unless the program is wrong.
+    contradictions: Vec<String>,
 }
 
 #[pymethods]
@@ -244,7 +246,7 @@ impl Comparison {
 
     pub(crate) fn new(system: &Bound<'_, System>, compared: Compared) -> PyResult<Comparison> {
         let py = system.py();
-        let Compared { scene, integrability, runs, pairs, fits, decided } = compared;
+        let Compared { scene, integrability, runs, pairs, fits, decided, contradictions } = compared;
         let labels: Vec<String> = runs.iter().map(|r| r.0.label.clone()).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
         let vector = |values: Vec<f64>| {
@@ -318,6 +320,7 @@ impl Comparison {
         Ok(Comparison {
             system: system.clone().unbind(),
             integrability,
+            contradictions,
             decided: decided.into_iter().map(membership).collect::<PyResult<_>>()?,
             runs: runs.into_iter().map(run).collect::<PyResult<_>>()?,
             pairs: pairs.into_iter().map(pair).collect::<PyResult<_>>()?,
@@ -338,6 +341,7 @@ fn words(gap: &Gap) -> (&'static str, Option<String>) {
 pub(crate) struct Compared {
     scene: Scene,
     integrability: String,
+    contradictions: Vec<String>,
     runs: Vec<(deltaq::Choice, Result<Sampled, deltaq::SolveError>)>,
     pairs: Vec<deltaq::Pair>,
     fits: Vec<deltaq::Fit>,
@@ -349,8 +353,10 @@ pub(crate) fn compare(scene: Scene, fits: Fits, settings: &deltaq::Settings) -> 
     let choices = deltaq::choices(&scene);
     let mut compared = deltaq::compare_unfitted(scene, choices, Vec::new(), settings)?;
     compared.fit(fits, settings)?;
+    let contradictions = compared.contradictions().iter().map(ToString::to_string).collect();
     let deltaq::Comparison { scene, integrability, runs, pairs, fits, decided, .. } = compared;
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
-    Ok(Compared { integrability: integrability.to_string(), runs, pairs, fits, decided, scene })
+    let integrability = integrability.to_string();
+    Ok(Compared { integrability, contradictions, runs, pairs, fits, decided, scene })
 }

@@ -23,6 +23,7 @@ def test_verdicts(comparison):
     np.testing.assert_allclose(pair.gap.max(), pair.largest_gap)
     assert set(pair.largest_by_coordinate) == {"x", "y", "phi"} and max(pair.error_estimates) < 1e-8
     assert "nonintegrable" in comparison.integrability
+    assert comparison.contradictions == []
 
 
 def test_growth_is_as_predicted(comparison):

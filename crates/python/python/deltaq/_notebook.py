@@ -43,7 +43,8 @@ def comparison(self: Comparison) -> str:
         for d in self.decided
     ]
     runs = [[run.label, run.error] for run in self.runs if run.error is not None]
-    parts = [f"<p>The constraints: {escape(self.integrability)}</p>"]
+    parts = [f"<p><strong>No verdict, results contradict each other: {escape(found)}</strong></p>" for found in self.contradictions]
+    parts += [f"<p>The constraints: {escape(self.integrability)}</p>"]
     parts += [_table(pairs, ["motion", "motion", "verdict", "time to 1e-3", "largest gap"])] if pairs else []
     parts += [_table(decided, ["question", "answer", "dimension"])] if decided else []
     parts += [_table(runs, ["no motion", "because"])] if runs else []
