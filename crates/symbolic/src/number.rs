@@ -72,6 +72,11 @@ impl Rational {
         self.numerator().div_euclid(self.denominator())
     }
 
+    /// `self − floor(self)`, in [0, 1).
+    pub(crate) fn fraction(self) -> Self {
+        Self(Ratio::new(self.numerator().rem_euclid(self.denominator()), self.denominator()))
+    }
+
     pub(crate) fn add(self, other: Self) -> Option<Self> {
         self.0.checked_add(&other.0).and_then(Self::fitting)
     }

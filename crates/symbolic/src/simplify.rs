@@ -253,7 +253,7 @@ impl Arena {
         for (part, exponent) in parts {
             let part = Rational::integer(part);
             let whole = exponent.floor();
-            let rest = exponent.add(Rational::integer(-whole)).expect("a fraction below 1");
+            let rest = exponent.fraction();
             *coefficient = coefficient.mul(Number::Exact(part).powi(whole));
             if let Some(exact) = part.pow(rest) {
                 *coefficient = coefficient.mul(Number::Exact(exact));

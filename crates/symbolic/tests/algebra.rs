@@ -83,6 +83,18 @@ fn squares_of_sine_and_cosine_add_up() {
 }
 
 #[test]
+fn exponents_with_large_numerators_and_denominators_are_split_without_overflow() {
+    let g = Graph::new();
+    for exponent in ["-9000000000000000001/4611686018427387905", "9000000000000000001/4611686018427387905"] {
+        let power = read(&g, &format!("2^({exponent})"));
+        let value = g.evaluate(power, &HashMap::new()).expect("a value");
+        let (above, below) = exponent.split_once('/').expect("a fraction");
+        let expected = (2f64.ln() * above.parse::<f64>().unwrap() / below.parse::<f64>().unwrap()).exp();
+        assert!((value / expected - 1.0).abs() < 1e-14, "{value} instead of {expected}");
+    }
+}
+
+#[test]
 fn numbers_are_exact_and_overflow_to_floats() {
     same("0.1 + 0.2", "0.3");
     same("1/3 + 1/3 + 1/3", "1");
