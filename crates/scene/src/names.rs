@@ -7,6 +7,7 @@ use mechanics::System;
 use symbolic::{Expr, Graph, ParseError, ParseErrorKind, Scope, Symbol, Value};
 
 use super::section::{Source, Text};
+use super::system::KAPPA;
 use crate::{NameFault, SceneError, SceneErrorKind, Unavailable};
 
 /// What a name stands for.
@@ -152,9 +153,14 @@ impl Names {
         (name, span): (&str, &Range<usize>),
         role: Role,
     ) -> Result<(), SceneError> {
-        let is_set = matches!(role, Role::Parameter | Role::Coordinate);
-        let overriding = if is_set { overriding(name).map(NameFault::Overriding) } else { None };
-        let fault = overriding.map_or_else(|| self.check_new(graph, name), Err);
+        let overriding = match role {
+            Role::Parameter => overriding(name),
+            // any scene may be given this parameter
+            _ if name == KAPPA => Some("the parameter of the formulation `kappa`"),
+            Role::Coordinate => overriding(name),
+            _ => None,
+        };
+        let fault = overriding.map(NameFault::Overriding).map_or_else(|| self.check_new(graph, name), Err);
         fault.map_err(|fault| source.error(span, SceneErrorKind::InvalidName { name: name.into(), fault }))
     }
 

@@ -13,7 +13,7 @@ use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{Parameter, System, Watched};
 
 /// The parameter that can be set in a scene that does not name it.
-const KAPPA: &str = "kappa";
+pub(super) const KAPPA: &str = "kappa";
 
 /// Reads everything that makes the system, and the positions at the start.
 pub(super) fn build<'a>(

@@ -68,6 +68,8 @@ fn names_of_overrides_are_reserved() {
             );
         }
     }
+    let error = error("phi = {", "kappa = {");
+    assert!(error.to_string().contains("the parameter of the formulation `kappa`"), "{error}");
     let error = Scene::parse_with("sledge", SLEDGE, &[("t".into(), 3.0)]).unwrap_err();
     assert!(error.to_string().contains("did you mean `time`?"), "{error}");
 }
