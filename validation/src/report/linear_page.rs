@@ -34,7 +34,7 @@ pub fn sweep_text(title: &str, sweep: &Sweep) -> String {
     for (point, cells) in sweep.points.iter().zip(cells) {
         let error = point.part.eigenvalues.iter().fold(0.0_f64, |a, e| a.max(e.error));
         let padded = cells.into_iter().chain(std::iter::repeat(String::new())).take(width);
-        let rest = [short(error), point.part.zeros.to_string(), point.part.unstable().to_string()];
+        let rest = [short(error), point.part.zeros.to_string(), point.part.growth().to_string()];
         table.cells([short(point.value)].into_iter().chain(padded).chain(rest));
     }
     let _ = write!(text, "\n{table}");
