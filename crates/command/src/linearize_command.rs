@@ -3,6 +3,8 @@
 use anyhow::{Result, bail};
 use deltaq::{Settings, setting};
 use linear::{Sweep, SweepPoint, find_steady, linearize, linearize_at, sweep};
+use mechanics::State;
+use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use crate::answer::pretty;
@@ -33,11 +35,12 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
                 Some(t) => linearize_at(setting(&scene), &choice, t, &Settings::default())?,
             };
             let part = linearization.part(&free)?;
-            let point = SweepPoint { value: linearization.t, linearization, part };
+            let (t, state) = (linearization.t, scene.start.clone());
+            let point = SweepPoint { value: t, asked: t, state, linearization, part };
             Sweep { name: "t".into(), points: vec![point], changes: Vec::new() }
         }
     };
-    let page = || sweep_text(&scene.title, &sweep);
+    let page = || sweep_text(&scene, &sweep, arguments.find);
     if let Some(folder) = &arguments.out {
         let picture = format!("{}-eigenvalues.svg", scene.name);
         let text = format!("{}\n![Eigenvalues over {}]({picture})\n", page(), sweep.name);
@@ -51,7 +54,7 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
         TableFormat::Table => page(),
         TableFormat::Csv => csv(&sweep),
         TableFormat::Json => {
-            let mut object = json_of(&sweep);
+            let mut object = json_of(&scene, &sweep);
             (object["scene"], object["formulation"]) = (json!(scene.name), json!(choice.formulation));
             object["free"] = json!(free);
             pretty("linearize", &object)
@@ -71,24 +74,38 @@ fn csv(sweep: &Sweep) -> String {
     text
 }
 
-fn json_of(sweep: &Sweep) -> Value {
-    let point = |SweepPoint { value, linearization, part }: &SweepPoint| {
+fn json_of(scene: &Scene, sweep: &Sweep) -> Value {
+    let state = |state: &State| {
+        let names = scene.system.coordinates.iter().map(|c| &c.name);
+        let places = names.clone().cloned().zip(&state.q);
+        let all = places.chain(names.map(|name| format!("{name}'")).zip(&state.v));
+        all.map(|(name, x)| (name, json!(x))).collect::<Map<String, Value>>()
+    };
+    let point = |SweepPoint { value, asked, state: found, linearization, part }: &SweepPoint| {
         let carried: Map<String, Value> =
             linearization.carried.iter().map(|c| (c.name.clone(), json!(c.rate))).collect();
         let eigenvalues = part.eigenvalues.iter();
         let eigenvalues = eigenvalues.map(|e| json!({ "real": e.value.re, "imaginary": e.value.im, "error": e.error }));
+        let chains = part.chains.iter().map(|c| {
+            json!({
+                "real": c.value.re, "imaginary": c.value.im, "size": c.size, "radius": c.radius, "power": c.power,
+                "exact": c.is_exact,
+            })
+        });
         let states = part.states.iter().map(|&i| &linearization.states[i]);
         json!({
-            "value": value, "t": linearization.t, "form": linearization.form, "steady": linearization.is_steady,
+            "value": value, "asked": asked, "state": state(found), "t": linearization.t, "form": linearization.form, "steady": linearization.is_steady,
             "states": linearization.states, "values": linearization.values, "carried": carried,
             "matrix": linearization.matrix.row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
             "of": states.collect::<Vec<_>>(), "eigenvalues": eigenvalues.collect::<Vec<_>>(),
-            "zeros": part.zeros, "zero_vectors": linearization.spectrum.zero_vectors, "unstable": part.unstable(),
+            "zeros": part.zeros, "zero_error": part.zero_error, "zero_vectors": linearization.spectrum.zero_vectors,
+            "unstable": part.unstable(), "growing": part.growth().to_string(), "chains": chains.collect::<Vec<_>>(),
         })
     };
     let changes = sweep.changes.iter().map(|change| {
         json!({
-            "value": change.value, "width": change.width, "unstable": change.unstable, "frequency": change.frequency,
+            "value": change.value, "width": change.width, "asked": change.asked, "state": state(&change.state),
+            "unstable": change.unstable, "frequency": change.frequency,
         })
     });
     json!({

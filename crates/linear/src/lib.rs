@@ -49,6 +49,7 @@
 //! **What it refuses.** A start that is not steady, with the state that moves, its rate and the limit
 //! ([`LinearError`]). It knows no formulation: a new one is linearized without a line here.
 
+mod discs;
 mod error;
 mod find;
 mod linearization;
@@ -58,6 +59,6 @@ mod sweep;
 
 pub use error::LinearError;
 pub use find::find_steady;
-pub use linearization::{Carried, Linearization, Part, linearize, linearize_at};
-pub use spectrum::{Block, Eigenvalue, Spectrum};
+pub use linearization::{Carried, Growth, Linearization, Part, linearize, linearize_at};
+pub use spectrum::{Block, Chain, Eigenvalue, Spectrum};
 pub use sweep::{Change, Sweep, SweepPoint, equidistant, sweep};

@@ -1,12 +1,14 @@
 //! Equations of motion to first order about a motion.
 
+use std::fmt;
+
 use deltaq::{Choice, Ending, Form, Setting, Settings, SolveError, solve_from};
 use equations::{Compiled, Role};
 use nalgebra::DMatrix;
 
 use crate::point::{COORDINATES, Point, VELOCITIES, in_quasi_velocities};
 use crate::spectrum::sort;
-use crate::{Eigenvalue, LinearError, Spectrum};
+use crate::{Block, Chain, Eigenvalue, LinearError, Spectrum};
 
 /// A coordinate on which no rate depends.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,13 +166,17 @@ impl Linearization {
                 wanted[w] = true;
             }
         }
-        let blocks = self.spectrum.blocks.iter().filter(|block| block.places.iter().any(|&i| wanted[i]));
-        let mut part = Part { states: Vec::new(), eigenvalues: Vec::new(), zeros: 0 };
-        for block in blocks {
+        let Spectrum { blocks, chains, zero_error, .. } = &self.spectrum;
+        let asked = |block: &Block| block.places.iter().any(|&i| wanted[i]);
+        let mut part =
+            Part { states: Vec::new(), eigenvalues: Vec::new(), zeros: 0, zero_error: 0.0, chains: Vec::new() };
+        part.chains.extend(chains.iter().filter(|chain| chain.blocks.iter().any(|&i| asked(&blocks[i]))).cloned());
+        for block in blocks.iter().filter(|block| asked(block)) {
             part.states.extend(&block.places);
             part.eigenvalues.extend(&block.eigenvalues);
             part.zeros += block.zeros;
         }
+        part.zero_error = if part.zeros > 0 { *zero_error } else { 0.0 };
         part.states.sort_unstable();
         sort(&mut part.eigenvalues);
         Ok(part)
@@ -205,11 +211,51 @@ pub struct Part {
     pub eigenvalues: Vec<Eigenvalue>,
     /// How many more there are, all zero: of integrals, symmetries and families of steady motions.
     pub zeros: usize,
+    /// How far these may be from zero.
+    pub zero_error: f64,
+    /// Which of all these let deviations grow as powers of time, or leave that open.
+    pub chains: Vec<Chain>,
+}
+
+/// How deviations grow, as far as the equations to first order and the errors decide it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Growth {
+    /// So many eigenvalues have a positive real part, beyond their errors.
+    Exponential(usize),
+    /// Like this power of time, or faster: an eigenvalue on the imaginary axis has too few eigenvectors.
+    Power(usize),
+    /// Every eigenvalue is zero, or errors leave open what eigenvalues on the imaginary axis do.
+    Undecided,
+    /// No faster than `e^(error t)`: no disc is right of the axis, and what is on it has its eigenvectors.
+    None,
 }
 
 impl Part {
-    /// How many deviations grow.
+    /// How many eigenvalues have a positive real part, beyond their errors.
     pub fn unstable(&self) -> usize {
         self.eigenvalues.iter().filter(|eigenvalue| eigenvalue.is_unstable()).count()
+    }
+
+    /// How deviations grow.
+    pub fn growth(&self) -> Growth {
+        let power = self.chains.iter().filter(|chain| chain.is_exact).map(|chain| chain.power).max();
+        match (self.unstable(), power) {
+            (0, Some(power)) if self.chains.iter().all(|chain| chain.is_exact) => Growth::Power(power),
+            (0, _) if !self.chains.is_empty() || self.eigenvalues.is_empty() => Growth::Undecided,
+            (0, _) => Growth::None,
+            (count, _) => Growth::Exponential(count),
+        }
+    }
+}
+
+impl fmt::Display for Growth {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Growth::Exponential(count) => write!(f, "{count}"),
+            Growth::Power(1) => write!(f, "like t"),
+            Growth::Power(power) => write!(f, "like t^{power}"),
+            Growth::Undecided => write!(f, "undecided"),
+            Growth::None => write!(f, "0"),
+        }
     }
 }

@@ -16,15 +16,19 @@ pub struct Sweep {
     pub name: String,
     /// Its values, and what belongs to each.
     pub points: Vec<SweepPoint>,
-    /// Where the number of deviations that grow changes, by rising value.
+    /// Where the number of eigenvalues with a positive real part changes, by rising value asked for.
     pub changes: Vec<Change>,
 }
 
 /// One value of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepPoint {
-    /// The value.
+    /// The value in the state that is linearized.
     pub value: f64,
+    /// The value in the start from which that state was found; the same where none is looked for.
+    pub asked: f64,
+    /// That state.
+    pub state: State,
     /// The equations to first order.
     pub linearization: Linearization,
     /// The eigenvalues that were asked for.
@@ -34,11 +38,15 @@ pub struct SweepPoint {
 /// A value at which stability changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
-    /// The value.
+    /// The value, in the steady motion there.
     pub value: f64,
     /// Width of the interval in which it is: no error leaves another one open.
     pub width: f64,
-    /// Deviations that grow before and behind it.
+    /// The value in the start from which that motion was found; the same where none is looked for.
+    pub asked: f64,
+    /// A steady motion just behind it.
+    pub state: State,
+    /// Eigenvalues with a positive real part below it and above.
     pub unstable: [usize; 2],
     /// Imaginary part of the eigenvalue that crosses, ≥ 0: 0 for one that does not oscillate.
     pub frequency: f64,
@@ -46,8 +54,8 @@ pub struct Change {
 
 /// Bisection ends where the values are closer than this, over their size.
 const CLOSE: f64 = 1e-14;
-/// So near, over the size of a value, the real part of an eigenvalue is minus its error where it crosses.
-const NEAR: [f64; 3] = [1e-12, 1e-11, 1e-9];
+/// So near, over the size of a value, errors decide again what eigenvalues on the axis do.
+const NEAR: [f64; 5] = [1e-12, 1e-11, 1e-9, 1e-7, 1e-5];
 
 /// `count` values from one to another, both included.
 pub fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
@@ -58,8 +66,8 @@ pub fn equidistant(from: f64, to: f64, count: usize) -> Vec<f64> {
 /// the parameter, start value or multiplier `name`; the `free` coordinates as in [`Linearization::part`]. The
 /// start has to be a steady motion at each value, or, with `find`, is where one is looked for.
 ///
-/// Between two neighbours with different numbers of growing deviations, the value where that number changes
-/// is found by bisection; where it changes and comes back between them, it is not seen.
+/// Between two neighbours with different numbers of eigenvalues that have a positive real part, the value
+/// where that number changes is found by bisection; where it changes and comes back, it is not seen.
 ///
 /// # Errors
 /// [`LinearError::At`] with the value; [`LinearError::Solve`] for a name that cannot vary, or a formulation
@@ -75,9 +83,12 @@ pub fn sweep(
     let mut finder = find.then(|| Family::new(scene, &chetaev(), name)).transpose()?;
     let mut at = |value: f64| -> Result<SweepPoint, LinearError> {
         let mut found = || {
-            let state = finder.as_mut().map(|finder| finder.at(value, None)?.settle()).transpose()?;
-            let linearization = Linearization::steady(family.at(value, state)?)?;
-            Ok(SweepPoint { value, part: linearization.part(free)?, linearization })
+            let settled = finder.as_mut().map(|finder| finder.at(value, None)?.0.settle()).transpose()?;
+            let (point, state) = family.at(value, settled)?;
+            let linearization = Linearization::steady(point)?;
+            let part = linearization.part(free)?;
+            let there = in_state(scene, name, &state).unwrap_or(value);
+            Ok(SweepPoint { value: there, asked: value, state, linearization, part })
         };
         found().map_err(|error| LinearError::At { name: name.into(), value, error: Box::new(error) })
     };
@@ -97,6 +108,13 @@ pub fn sweep(
         sweep.points.push(point);
     }
     Ok(sweep)
+}
+
+/// What a state has in the place of a coordinate or a velocity.
+fn in_state(scene: &Scene, name: &str, state: &State) -> Option<f64> {
+    let (coordinate, values) = name.strip_suffix('\'').map_or((name, &state.q), |coordinate| (coordinate, &state.v));
+    let place = scene.system.coordinates.iter().position(|c| c.name == coordinate)?;
+    values.get(place).copied()
 }
 
 /// The equations of a scene with other numbers in the place of one, derived and compiled once.
@@ -120,17 +138,17 @@ impl Family {
         Ok(Family { ensemble, starts, constants: choice.constants, point })
     }
 
-    /// The start with this value, or another state with the same numbers.
-    fn at(&mut self, value: f64, other: Option<State>) -> Result<&mut Point, LinearError> {
+    /// The start with this value, or another state with the same numbers, and that state.
+    fn at(&mut self, value: f64, other: Option<State>) -> Result<(&mut Point, State), LinearError> {
         let start = self.starts.at(&[value]).map_err(|error| LinearError::Scene(Box::new(error)))?;
         let varied = self.starts.vary_multipliers();
         let constants = if varied { ConstantsRule::Given(start.multipliers) } else { self.constants.clone() };
         let (state, end) = (other.unwrap_or(start.state), f64::INFINITY);
-        let start = EnsembleStart { state, end, parameters: start.parameters, constants };
+        let start = EnsembleStart { state: state.clone(), end, parameters: start.parameters, constants };
         let member = self.ensemble.member_at(&start)?;
         member.set(&mut self.point.compiled);
         self.point.y = member.start().to_vec();
-        Ok(&mut self.point)
+        Ok((&mut self.point, state))
     }
 }
 
@@ -138,28 +156,39 @@ type At<'a> = &'a mut dyn FnMut(f64) -> Result<SweepPoint, LinearError>;
 
 /// The first change that bisection comes upon, and a point just behind it.
 ///
-/// The number of growing deviations changes where a real part is as large as its error; close to that, if the
-/// eigenvalue crosses, lies the value at which it is minus its error. The change is between the two.
-fn change(at: At, low: SweepPoint, high: SweepPoint) -> Result<(Change, SweepPoint), LinearError> {
-    let [low, high] = bisect(at, low, high, Part::unstable)?;
+/// The number of eigenvalues with a positive real part changes where one real part is as large as its error.
+/// The value is anywhere between the last points close by at which errors leave as much open as at the ends.
+fn change(at: At, first: SweepPoint, last: SweepPoint) -> Result<(Change, SweepPoint), LinearError> {
+    let [low, high] = bisect(at, first.clone(), last.clone(), Part::unstable)?;
     let unstable = [&low, &high].map(|point| point.part.unstable());
     let most = if unstable[0] > unstable[1] { &low } else { &high };
     let growing = most.part.eigenvalues.iter().filter(|e| e.is_unstable());
     let crossing = growing.min_by(|a, b| a.value.re.total_cmp(&b.value.re));
     let frequency = crossing.map_or(0.0, |e| e.value.im.abs());
-    let mut ends = [low.value, high.value];
-    let scale = low.value.abs() + high.value.abs();
+    let ends = [settled(at, &low, &first)?, settled(at, &high, &last)?];
+    let middle = |of: fn(&SweepPoint) -> f64| 0.5 * (of(&ends[0]) + of(&ends[1]));
+    let (value, width) = (middle(|point| point.value), (ends[1].value - ends[0].value).abs());
+    let asked = middle(|point| point.asked);
+    Ok((Change { value, width, asked, state: high.state.clone(), unstable, frequency }, high))
+}
+
+/// The point nearest to `edge`, on the way to `end`, at which errors leave as much open as there; `edge` where
+/// there is none close by.
+fn settled(at: At, edge: &SweepPoint, end: &SweepPoint) -> Result<SweepPoint, LinearError> {
+    let open = |part: &Part| (part.unstable(), not_decaying(part), part.chains.len());
+    let way = end.asked - edge.asked;
     for near in NEAR {
-        let around = [at(low.value - near * scale)?, at(high.value + near * scale)?];
-        if not_decaying(&around[0].part) != not_decaying(&around[1].part) {
-            let [a, b] = around;
-            let others = bisect(at, a, b, not_decaying)?.map(|point| point.value);
-            ends = [ends[0].min(others[0]), ends[1].max(others[1])];
+        let step = near * (edge.asked.abs() + end.asked.abs());
+        if open(&edge.part) == open(&end.part) || step >= way.abs() {
             break;
         }
+        let there = at(edge.asked + step.copysign(way))?;
+        if open(&there.part) == open(&end.part) {
+            let [_, there] = bisect(at, edge.clone(), there, |part| usize::from(open(part) == open(&end.part)))?;
+            return Ok(there);
+        }
     }
-    let (value, width) = (0.5 * (ends[0] + ends[1]), (ends[1] - ends[0]).abs());
-    Ok((Change { value, width, unstable, frequency }, high))
+    Ok(edge.clone())
 }
 
 /// How many deviations do not decay beyond what their errors leave open.
@@ -172,11 +201,11 @@ fn bisect(
     at: At,
     mut low: SweepPoint,
     mut high: SweepPoint,
-    count: fn(&Part) -> usize,
+    count: impl Fn(&Part) -> usize,
 ) -> Result<[SweepPoint; 2], LinearError> {
-    let limit = CLOSE * (low.value.abs() + high.value.abs());
-    while (high.value - low.value).abs() > limit {
-        let middle = at(0.5 * (low.value + high.value))?;
+    let limit = CLOSE * (low.asked.abs() + high.asked.abs());
+    while (high.asked - low.asked).abs() > limit {
+        let middle = at(0.5 * (low.asked + high.asked))?;
         if count(&middle.part) == count(&low.part) { low = middle } else { high = middle }
     }
     Ok([low, high])

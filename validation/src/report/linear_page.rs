@@ -3,16 +3,18 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use linear::{Eigenvalue, Sweep, SweepPoint};
+use linear::{Chain, Eigenvalue, Sweep, SweepPoint};
 use nalgebra::Complex;
+use scene::Scene;
 
 use crate::report::Table;
 use deltaq::words::{enumerate, precise, short};
 use picture::{Axis, Curve, Panel, Picture, Style};
 
-/// What was linearized, a table with one line a value, and where stability changes.
-pub fn sweep_text(title: &str, sweep: &Sweep) -> String {
-    let mut text = format!("# {title}\n\n");
+/// What was linearized, a table with one line per value, the states that were `found`, what first order leaves
+/// open, and where stability changes.
+pub fn sweep_text(scene: &Scene, sweep: &Sweep, found: bool) -> String {
+    let mut text = format!("# {}\n\n", scene.title);
     let Some(SweepPoint { linearization, part, .. }) = sweep.points.first() else { return text };
     let names = |places: &[usize]| places.iter().map(|&i| linearization.states[i].clone()).collect::<Vec<_>>();
     let carried: Vec<String> =
@@ -34,24 +36,125 @@ pub fn sweep_text(title: &str, sweep: &Sweep) -> String {
     for (point, cells) in sweep.points.iter().zip(cells) {
         let error = point.part.eigenvalues.iter().fold(0.0_f64, |a, e| a.max(e.error));
         let padded = cells.into_iter().chain(std::iter::repeat(String::new())).take(width);
-        let rest = [short(error), point.part.zeros.to_string(), point.part.unstable().to_string()];
+        let rest = [short(error), point.part.zeros.to_string(), point.part.growth().to_string()];
         table.cells([short(point.value)].into_iter().chain(padded).chain(rest));
     }
     let _ = write!(text, "\n{table}");
+    if found {
+        let _ = write!(text, "\nSteady motions that were found:\n\n{}", states(scene, sweep));
+    }
     let vectors = linearization.spectrum.zero_vectors;
     if part.states.len() == linearization.states.len() && part.zeros > vectors {
-        let _ = writeln!(text, "\nThe zeros have {vectors} eigenvectors: some deviations grow as powers of time.");
+        let _ = writeln!(
+            text,
+            "\nThe {} zeros, within {}, have {vectors} eigenvectors.",
+            part.zeros,
+            short(part.zero_error)
+        );
     }
+    text + &left_open(sweep) + &changes(scene, sweep, found)
+}
+
+/// One line per state found: what was asked for, coordinates and velocities.
+fn states(scene: &Scene, sweep: &Sweep) -> Table {
+    let names = scene.system.coordinates.iter().map(|c| &c.name);
+    let varied = (sweep.name != "t").then(|| format!(">start, {}", sweep.name));
+    let columns = names.clone().map(|name| format!(">{name}")).chain(names.map(|name| format!(">{name}'")));
+    let mut table = Table::new(varied.clone().into_iter().chain(columns));
+    for point in &sweep.points {
+        let asked = varied.as_ref().map(|_| short(point.asked));
+        table.cells(asked.into_iter().chain(point.state.q.iter().chain(&point.state.v).map(|x| precise(*x))));
+    }
+    table
+}
+
+/// What eigenvalues on the imaginary axis do, each sentence once, and from which value on.
+fn left_open(sweep: &Sweep) -> String {
+    let mut said: Vec<(String, Vec<f64>)> = Vec::new();
+    let mut say = |sentence: String, value: f64| match said.iter_mut().find(|(known, _)| *known == sentence) {
+        Some((_, values)) => values.push(value),
+        None => said.push((sentence, vec![value])),
+    };
+    for SweepPoint { value, part, .. } in &sweep.points {
+        if part.eigenvalues.is_empty() && part.chains.is_empty() {
+            say("Every eigenvalue is zero: to first order nothing is decided about stability.".into(), *value);
+        }
+        for chain in &part.chains {
+            say(sentence(chain), *value);
+        }
+    }
+    let all = sweep.points.len();
+    let mut text = String::new();
+    for (sentence, values) in said {
+        let places = match &values[..] {
+            _ if all == 1 => String::new(),
+            [value] => format!("At {} = {}: ", sweep.name, short(*value)),
+            [first, .., last] => {
+                format!("At {} of {all} values, {} = {} … {}: ", values.len(), sweep.name, short(*first), short(*last))
+            }
+            [] => continue,
+        };
+        let _ = writeln!(text, "\n{places}{sentence}");
+    }
+    text
+}
+
+/// What a chain does to deviations.
+fn sentence(chain: &Chain) -> String {
+    let Chain { value, size, radius, power, is_exact, .. } = chain;
+    let power = if *power == 1 { "t".into() } else { format!("t^{power}") };
+    let place = match value.im {
+        im if im.abs() <= *radius => "0".into(),
+        im => format!("±{} i", precise(im)),
+    };
+    match (is_exact, chain.power) {
+        (true, _) if chain.power + 1 == *size => {
+            format!("{size} equal eigenvalues {place} have one eigenvector: deviations grow like {power}.")
+        }
+        (true, _) => {
+            format!("{size} equal eigenvalues {place} lack eigenvectors: deviations grow like {power} or faster.")
+        }
+        (false, 0) => format!(
+            "An error of {} leaves open on which side of the imaginary axis {size} of the eigenvalues at {place} are.",
+            short(*radius)
+        ),
+        (false, _) => format!(
+            "{size} eigenvalues within {} of {place} lack eigenvectors, or nearly: deviations grow like {power} until \
+             about t = {}; then it is undecided.",
+            short(*radius),
+            short(1.0 / radius)
+        ),
+    }
+}
+
+/// Where stability changes.
+fn changes(scene: &Scene, sweep: &Sweep, found: bool) -> String {
+    let mut text = String::new();
     for change in &sweep.changes {
-        let [before, behind] = change.unstable;
         let kind = if change.frequency == 0.0 {
             "a real eigenvalue".into()
         } else {
             format!("a pair at ±{} i", precise(change.frequency))
         };
+        let have = |count: usize| match count {
+            0 => "no eigenvalue has".into(),
+            1 => "one has".into(),
+            count => format!("{count} have"),
+        };
+        let [below, above] = change.unstable.map(have);
+        let from = if found {
+            let start = format!("{} = {}", sweep.name, sure(change.asked, change.width.max(1e-12)));
+            let names = scene.system.coordinates.iter().map(|c| &c.name);
+            let values = names.clone().cloned().zip(&change.state.q);
+            let all = values.chain(names.map(|name| format!("{name}'")).zip(&change.state.v));
+            let all: Vec<String> = all.map(|(name, x)| format!("{name} = {}", precise(*x))).collect();
+            format!(" The motion there, found from a start with {start}: {}.", all.join(", "))
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             text,
-            "\nStability changes at {} = {}: {before} deviations grow before, {behind} behind; {kind} crosses.",
+            "\nStability to first order changes at {} = {}: {below} a positive real part below this value, {above} above; {kind} crosses.{from}",
             sweep.name,
             sure(change.value, change.width)
         );
