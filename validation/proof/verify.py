@@ -1,150 +1,623 @@
-"""Verifies that no multipliers mu_0 make a Chetaev motion vakonomic: python verify.py SCENE.toml CERTIFICATE.json
+"""Verifies that no multipliers mu_0 make a Chetaev motion vakonomic: python verify.py [SCENE.toml] CERTIFICATE.json
 
-Plain Python, and nothing of the program that wrote the certificate (`deltaq prove SCENE --out CERTIFICATE.json`). Numbers of a scene are
-decimals, angles at the start multiples of 1/N and quarter turns. T = e^(i/N) is transcendental (Lindemann): T -> tau, i -> a root of -1
-maps all that is computed here into the integers mod p, if nothing is divided by 0 there. Along the motion mu = mu_0 + mu_1 t + ... solves
-A' mu' + (d/dt A' - f_q') mu = -E, E = d/dt L_v - L_q - Q = A' lambda, A = f_v, in each power of t: through order K these are linear
-equations S x = b for x = (mu_0 .. mu_(K+1)). If the named rows of [S | -b], each an order and the number of a coordinate, have a
-determinant that is not 0 mod p, then it is not 0 in the numbers themselves, and no x solves S x = b."""
+Plain Python, and nothing of the program that wrote the certificate (`deltaq prove SCENE --out CERTIFICATE.json`). It ends with 0: verified;
+with 1: forged, something that was read is not so; with 2: cannot read, and what.
 
-import json, math, re, sys, tomllib
+Theorem. Let L, f, Q of the certificate's plain scene be analytic at its start (q, v, t), with f = 0 there, h constraints, A = f_v, and let
+the bordered matrix [L_vv, -A'; A, 0] be regular. Then there is one Chetaev motion, E := d/dt L_v - L_q - Q = A' lambda with f = 0. It is
+vakonomic if and only if some mu = mu_0 + mu_1 t + ... solves A' mu' + (d/dt A' - f_q') mu = -E in each power of t. Through order K these
+are linear equations S x = b for x = (mu_0 .. mu_(K+1)). If the named rows of [S | -b] have a determinant that is not 0, no x solves them.
+
+What is computed here are images mod p of numbers made from fractions, e^(2 pi i/M), e^(ia) and e^a for fractions a (independent over the
+algebraic numbers: Lindemann, Weierstrass), and roots of primes. [M, z] says e^(2 pi i/M) -> z, of order M mod p. The power r of the images of
+e^i and e is 1, so e^(n/d) has an image where r and d have no common factor. A root goes to a root, in the field of e^(2 pi i/M) to its Gauss
+sum. This is a homomorphism on all quotients whose divisors do not go to 0: what is not 0 mod p is not 0, whoever has chosen p, z, r. p is a
+prime over 2^50 and over K + 2, by which series divide. Doubt is left in two places: that f = 0 at a start with all velocities given is found
+exactly where all numbers are fractions, else mod p; and the scene file is held against the plain scene by Taylor coefficients of L, f and Q
+along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of f = 0, if this is a
+connected analytic manifold, as the minor is analytic on it."""
+
+import hashlib, json, math, operator, re, secrets, sys, tomllib
 from fractions import Fraction
-from itertools import product, zip_longest
+from itertools import product
 
-demand = lambda true, words: true or sys.exit(f"refused: {words}")
+class Forged(Exception): pass
+class Unreadable(Exception): pass
+
+def demand(true, words, fault=Forged):
+    if not true:
+        raise fault(words)
+
+def readable(true, words):
+    demand(true, words, Unreadable)
+
 invert = lambda x: pow(x, -1, P)
-plus = lambda x, y: [(a + b) % P for a, b in zip_longest(x, y, fillvalue=0)]
-times = lambda x, y: [sum(x[j] * y[k - j] for j in range(k + 1)) % P for k in range(SIZE)]
 
-class Jet:
-    """A series in t mod p, pi apart, its derivatives by seeds, and its first term as (fraction, quarter turns) where that is known."""
-    def __init__(self, c, d=None, first=None):
-        self.c, self.d, self.first = (list(c) + [0] * SIZE)[:SIZE], d or {}, first
+def is_prime(n):
+    """Miller and Rabin, with bases that leave no doubt under 2^64."""
+    twos, bases = (n - 1 & 1 - n).bit_length() - 1, (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
+    passes = lambda a: (x := pow(a, n - 1 >> twos, n)) == 1 or any(pow(x, 2**k, n) == n - 1 for k in range(twos))
+    return n in bases or n > 1 and all(n % a and passes(a) for a in bases)
+
+# Formulas ---------------------------------------------------------------------------------------------------------------------------------
+
+UNARY = "sin cos exp log asin acos atan asinh acosh atanh".split()
+
+class Formulas:
+    """Operations on numbers, each written once. What is read is the place of a number, or a list of such; `meaning` tells names."""
+    def __init__(self, meaning=lambda formulas, name: formulas.put("name", name)):
+        self.operations, self.places, self.known, self.meaning = [], {}, {}, meaning
+    def put(self, *operation):
+        if operation not in self.places:
+            self.places[operation] = len(self.operations)
+            self.operations.append(operation)
+        return self.places[operation]
+    def number(self, x):
+        return self.put("number", Fraction(x))
+    def add(self, a, b):
+        return [self.add(x, y) for x, y in zip(a, b, strict=True)] if isinstance(a, list) else self.put("+", a, b)
+    def times(self, a, b):
+        if not isinstance(a, list):
+            return [self.times(a, x) for x in b] if isinstance(b, list) else self.put("*", a, b)
+        if not isinstance(b, list):
+            return [self.times(x, b) for x in a]
+        rows = [[self.dot(row, x) for x in (zip(*b) if isinstance(b[0], list) else [b])] for row in a]
+        return rows if isinstance(b[0], list) else [row[0] for row in rows]
+    def minus(self, a, b):
+        return self.add(a, self.times(self.number(-1), b))
+    def over(self, a, b):
+        return self.times(a, self.put("^", b, self.number(-1)))
+    def dot(self, a, b):
+        sum, *rest = [self.times(x, y) for x, y in zip(a, b, strict=True)]
+        for x in rest:
+            sum = self.add(sum, x)
+        return sum
+    def rate(self, a):
+        return [self.rate(x) for x in a] if isinstance(a, list) else self.put("rate", a)
+    def turn(self, n, angle):
+        """cos I + sin [n]x + (1 - cos) n n'"""
+        s, c = self.put("sin", angle), self.put("cos", angle)
+        other = lambda i, j: c if i == j else self.times(s, self.times(self.number(1 if (i - j) % 3 == 1 else -1), n[3 - i - j]))
+        along = lambda i, j: self.times(self.minus(self.number(1), c), self.times(n[i], n[j]))
+        return [[self.add(along(i, j), other(i, j)) for j in range(3)] for i in range(3)]
+    def call(self, name, a):
+        x, minus, over, put = a[0], self.minus, self.over, self.put
+        one, half, up, down = self.number(1), self.number("1/2"), lambda x: put("exp", x), lambda x: put("exp", self.times(self.number(-1), x))
+        tanh = lambda x: over(minus(up(x), down(x)), self.add(up(x), down(x)))
+        transposed, spin = lambda m: [list(row) for row in zip(*m)], lambda m: [m[2][1], m[0][2], m[1][0]]
+        written = {
+            "ln": lambda: put("log", x), "sqrt": lambda: put("^", x, half), "pow": lambda: put("^", *a), "atan2": lambda: put("atan2", *a),
+            "tan": lambda: over(put("sin", x), put("cos", x)), "cot": lambda: over(put("cos", x), put("sin", x)),
+            "sec": lambda: over(one, put("cos", x)), "csc": lambda: over(one, put("sin", x)), "tanh": lambda: tanh(x),
+            "sinh": lambda: self.times(half, minus(up(x), down(x))), "cosh": lambda: self.times(half, self.add(up(x), down(x))),
+            "step": lambda: self.times(half, minus(*[tanh(over(minus(x, y), a[3])) for y in a[1:3]])),
+            "dot": lambda: self.dot(*a), "norm": lambda: put("^", self.dot(x, x), half), "transpose": lambda: transposed(x),
+            "cross": lambda: [minus(self.times(x[i - 2], a[1][i - 1]), self.times(x[i - 1], a[1][i - 2])) for i in range(3)],
+            "diag": lambda: [[y if i == j else self.number(0) for j in range(len(a))] for i, y in enumerate(a)],
+            "rotation": lambda: self.turn(self.times(put("over length", self.dot(x, x)), x), a[1]),
+            "angular_velocity": lambda: spin(self.times(self.rate(x), transposed(x))),
+            "body_angular_velocity": lambda: spin(self.times(transposed(x), self.rate(x))),
+        }
+        readable(name in written or name in UNARY and len(a) == 1, f"the function {name}")
+        return written[name]() if name in written else put(name, x)
+
+    def read(self, text):
+        """Sums of products of powers. A name with its primes is one name, numbers are exact, and nothing is executed."""
+        found = re.findall(r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|([A-Za-z_]\w*'*)|(\*\*|\.[A-Za-z]+|\S)", str(text), re.ASCII)
+        tokens = [("number", a) if a else ("name", b) if b else ("^" if c == "**" else c, c) for a, b, c in found] + [("end", "the end")]
+        def take(*kinds):
+            readable(tokens[0][0] in kinds, f"`{tokens[0][1]}` in the formula {str(text)[:60]}")
+            return tokens.pop(0)[1]
+        def sums():
+            value = products()
+            while tokens[0][0] in ("+", "-"):
+                value = (self.add if take("+", "-") == "+" else self.minus)(value, products())
+            return value
+        def products():
+            value = signed()
+            while tokens[0][0] in ("*", "/"):
+                value = (self.times if take("*", "/") == "*" else self.over)(value, signed())
+            return value
+        def signed():
+            if tokens[0][0] in ("+", "-"):
+                return self.times(self.number(take("+", "-") + "1"), signed())
+            value = primary()
+            return self.put("^", value, (take("^"), signed())[1]) if tokens[0][0] == "^" else value
+        def listed(close):
+            values = []
+            while tokens[0][0] != close:
+                values.append(sums())
+                tokens[0][0] == close or take(",")
+            return (take(close), values)[1]
+        def primary():
+            kind, word = tokens[0][0], take("number", "name", "(", "[")
+            if kind == "(":
+                value = (sums(), take(")"))[0]
+            elif kind != "name":
+                value = listed("]") if kind == "[" else self.number(word)
+            elif tokens[0][0] != "(":
+                if word not in self.known:
+                    self.known[word] = self.put("pi") if word == "pi" else self.meaning(self, word)
+                value = self.known[word]
+            elif word == "rotation" and set(tokens[1][1]) <= set("xyz") and tokens[2][0] == ",":
+                axes, _, angles = (take("("), take("name"))[1], take(","), listed(")")
+                value, *turns = [self.turn([self.number(int(x == axis)) for x in "xyz"], angle) for axis, angle in zip(axes, angles, strict=True)]
+                for turn in turns:
+                    value = self.times(value, turn)
+            else:
+                value = self.call(word, (take("("), listed(")"))[1])
+            while tokens[0][0] == "'" or re.fullmatch(r"\.[xyz]+", tokens[0][0]):
+                value = self.rate(value) if tokens[0][0] == "'" else value
+                for letter in take(tokens[0][0])[1:]:
+                    value = value["xyz".index(letter)]
+            return value
+        try:
+            value = sums()
+        except (TypeError, IndexError, ValueError, RecursionError, ZeroDivisionError) as error:
+            raise Unreadable(f"the formula {str(text)[:60]} ({error})")
+        take("end")
+        return value
+
+    def below(self, places):
+        """These operations and all that they are made of."""
+        found, todo = set(), list(places)
+        while todo:
+            place = todo.pop()
+            if place not in found:
+                found.add(place)
+                todo += [a for a in self.operations[place][1:] if isinstance(a, int)]
+        return [self.operations[place] for place in sorted(found)]
+
+    def degrees(self, names):
+        """Of each operation as a polynomial in these names; 2 for more, and for what is no polynomial."""
+        found = []
+        for kind, *args in self.operations:
+            below = [found[a] for a in args if isinstance(a, int)]
+            degree = sum(below) if kind == "*" else max(below, default=0) if kind == "+" else 2 * sum(below)
+            found.append(int(args[0] in names) if kind == "name" else min(degree, 2))
+        return found
+
+    def run(self, scope, rates=()):
+        """All values, where scope has those of names; the rate of what depends on x is made of pairs (x, x')."""
+        values = []
+        for kind, *args in self.operations:
+            if kind == "name":
+                readable(args[0] in scope, f"the name {args[0]}")
+                values.append(scope[args[0]])
+            elif kind == "number":
+                values.append(Series.of(args[0]))
+            elif kind == "rate":
+                slopes = slopes_of(values[args[0]], [x for x, _ in rates])
+                values.append(Series([sum(c) % P for c in zip(*[convolve(slope, x.c) for slope, (_, x) in zip(slopes, rates)])]))
+            else:
+                values.append(Series([], (0, 1)) if kind == "pi" else APPLY[kind](*[values[a] for a in args]))
+        return values
+
+    def in_decimals(self, scope):
+        values, known = [], {"+": operator.add, "*": operator.mul, "^": operator.pow, "number": float, "name": scope.get, "pi": lambda: math.pi}
+        for kind, *args in self.operations:
+            values.append((known.get(kind) or getattr(math, kind))(*[values[a] if isinstance(a, int) else a for a in args]))
+        return values
+
+# Series mod p -----------------------------------------------------------------------------------------------------------------------------
+
+def convolve(a, b):
+    if any(a[1:]) and any(b[1:]):
+        return [sum(map(operator.mul, a[: k + 1], b[k::-1])) % P for k in range(len(a))]
+    a, b = (b, a) if any(a[1:]) else (a, b)
+    return [a[0] * x % P for x in b]
+
+def grown(first, step):
+    """The series y with k y_k = step(k, y)."""
+    y = [first % P]
+    for k in range(1, SIZE):
+        y.append(step(k, y) * invert(k) % P)
+    return y
+
+follow = lambda u, slope, k: sum(j * u[j] * slope[k - j] for j in range(1, k + 1))
+
+def power(u, alpha, first):
+    """u^alpha"""
+    demand(u[0] % P, "a division by 0 mod p")
+    over = invert(u[0])
+    return grown(first, lambda k, y: over * sum((alpha * j - (k - j)) * u[j] * y[k - j] for j in range(1, k + 1)))
+
+class Series:
+    """A series in t mod p, its first term as (a, b) for a + b pi where this is known exactly, and what it depends on with slopes."""
+    made = 0
+    def __init__(self, c, first=None, slopes=(), leaf=False):
+        Series.made += 1
+        self.c, self.made, self.slopes = (list(c) + [0] * SIZE)[:SIZE], Series.made, [(x, slope) for x, slope in slopes if x.live]
+        self.first, self.live = first, leaf or bool(self.slopes)
+        if first and any(x.numerator.bit_length() + x.denominator.bit_length() > 4000 for x in first):
+            self.plain().first = None
     def of(x):
-        """A number; one that is a multiple of pi/2 to all the digits of a double is meant as that."""
-        if isinstance(x, Jet):
+        if isinstance(x, Series):
             return x
-        text, turns = repr(float(x)), round(float(x) / (math.pi / 2))
-        if len(re.sub(r"e.*|\D", "", text)) >= 14 and 0 < abs(turns) <= 8 and abs(float(x) / turns / (math.pi / 2) - 1) <= 2.3e-16:
-            return Jet([], {}, (Fraction(0), turns))
-        return Jet([Fraction(text).numerator * invert(Fraction(text).denominator) % P], {}, (Fraction(text), 0))
+        x = Fraction(x)
+        demand(x.denominator % P, "a division by 0 mod p")
+        return Series([x.numerator * invert(x.denominator) % P], (x, 0))
     def plain(self):
-        demand(not (self.first and self.first[1]), "pi stands outside of an angle")
+        readable(not (self.first and self.first[1]), "pi stands outside of an angle")
         return self
-    def chain(self, value, slope, first=None):
-        return Jet(value, {s: times(slope, e) for s, e in self.d.items()}, first)
+    def fixed(self):
+        return not self.live and not any(self.c[1:])
+    def fraction(self, words):
+        """The first term, which has to be known as a fraction."""
+        readable(self.first and not self.first[1], f"{words} what is not known to be a fraction at the start")
+        return Fraction(self.first[0])
     def __add__(a, b):
-        b = Jet.of(b)
+        b = Series.of(b)
         first = (a.first[0] + b.first[0], a.first[1] + b.first[1]) if a.first and b.first else a.plain() and b.plain() and None
-        return Jet(plus(a.c, b.c), {s: plus(a.d.get(s, []), b.d.get(s, [])) for s in a.d | b.d}, first)
+        return Series([(x + y) % P for x, y in zip(a.c, b.c)], first, [(a, ONE), (b, ONE)])
     def __mul__(a, b):
-        b = Jet.of(b)
+        b = Series.of(b)
         for x, y in (a, b), (b, a):  # pi may be multiplied by a fraction that stays, and by nothing else
-            y.first and not y.first[1] and not y.d and not any(y.c[1:]) or x.plain()
+            x.first and x.first[1] and readable(y.fixed() and y.first and not y.first[1], "pi stands outside of an angle")
         first = a.first and b.first and (a.first[0] * b.first[0], a.first[0] * b.first[1] + a.first[1] * b.first[0])
-        return Jet(times(a.c, b.c), (a.chain([], b.c) + b.chain([], a.c)).d, first)
-    def __truediv__(a, b):
-        b, c = Jet.of(b).plain(), []
-        for k in range(SIZE):
-            c.append(((k == 0) - sum(c[j] * b.c[k - j] for j in range(k))) * invert(b.c[0]) % P)
-        return a * b.chain(c, [-x for x in times(c, c)], b.first and (1 / b.first[0], 0))
-    def __pow__(a, n):
-        n = Jet.of(n).plain().first[0]
-        demand(n.denominator == 1, "a power is no whole number")
-        return math.prod([a if n >= 0 else Jet.of(1) / a] * abs(int(n)), start=Jet.of(1))
-    def turn(a, up, i):
-        """e^(ia) or e^(-ia)"""
-        demand(a.first and a.first[0] * N % 1 == a.first[1] % 1 == 0, "an angle at the start is no multiple of 1/N")
-        c = [pow(up, int(a.first[0] * N), P) * pow(i, int(a.first[1]), P) % P]
-        for k in range(1, SIZE):
-            c.append(i * invert(k) * sum(j * a.c[j] * c[k - j] for j in range(1, k + 1)) % P)
-        return a.chain(c, [i * x for x in c])
-    __neg__, __sub__ = lambda a: a * -1, lambda a, b: a + Jet.of(b) * -1
-    sin = lambda a: (a.turn(TAU, I) - a.turn(invert(TAU), -I)) / Jet([2 * I])
-    cos = lambda a: (a.turn(TAU, I) + a.turn(invert(TAU), -I)) / 2
+        return Series(convolve(a.c, b.c), first, [(a, b.c), (b, a.c)])
+    def __pow__(a, b):
+        """Whole powers by multiplication, halves by the root, others of 1 or by exp and log."""
+        a, b = a.plain(), Series.of(b).plain()
+        if not b.fixed() or not b.first:
+            return (b * function("log", a)).exp()
+        b = Fraction(b.first[0])
+        readable(abs(b) < 2**16, "a power that large")
+        if b.denominator == 1 and b >= 0:
+            result, base = Series.of(1), a
+            for bit in bin(b.numerator)[:1:-1]:
+                result, base = result * base if bit == "1" else result, base * base if b >= 2 else base
+            return result
+        if b.denominator == 2 and abs(b) > 1 or b.denominator == 1 and b < -1:
+            return (a ** (abs(b) / b / b.denominator)) ** abs(b.numerator)
+        if b > 0 and a.fixed() and a.first and not a.first[0]:
+            return a
+        demand(a.c[0], "a division by 0 mod p")
+        if b == -1:
+            first = invert(a.c[0]), a.first and a.first[0] and (1 / Fraction(a.first[0]), 0)
+        elif abs(b) == Fraction(1, 2):
+            image, exact = root(a.fraction("a root of"))
+            first = (image, exact and (exact, 0)) if b > 0 else (invert(image), exact and (1 / exact, 0))
+        else:
+            readable(a.fraction("a power of") == 1, f"the power {b}")
+            first = 1, (1, 0)
+        alpha = b.numerator * invert(b.denominator) % P
+        c = power(a.c, alpha, first[0])
+        return Series(c, first[1], [(a, convolve([alpha, *ZERO[1:]], convolve(c, power(a.c, -1, invert(a.c[0])))))] if a.live else ())
+    def exp(self):
+        c = grown(exponential(self.fraction("exp of"), E), lambda k, y: follow(self.c, y, k))
+        return Series(c, None if self.first[0] else (1, 0), [(self, c)])
+    def sine(self, quarters):
+        """The sine, so many quarter turns on."""
+        readable(self.first, "a sine or cosine of what is not known to be a fraction at the start, but for multiples of pi")
+        part = Fraction(self.first[1]) * UNITY[0] / 2 + UNITY[0] // 4 * quarters
+        readable(part.denominator == 1, f"an angle of {self.first[1]} pi")
+        first = exponential(Fraction(self.first[0]), E_I) * pow(UNITY[1], part.numerator, P) % P
+        up, down = [grown(x, lambda k, y: i * follow(self.c, y, k)) for x, i in ((first, I), (invert(first), -I))]
+        known = KNOWN.get((Fraction(self.first[1]) + Fraction(quarters, 2)) % 2) if not self.first[0] else None
+        slope = [(x + y) * invert(2) % P for x, y in zip(up, down)]
+        return Series([(x - y) * invert(2 * I) % P for x, y in zip(up, down)], None if known is None else (known, 0), [(self, slope)])
 
-def read(text, scope):
-    """A formula of a scene by Python's own reader; a name with primes is one name, and numbers are exact."""
-    text = re.sub(r"(\w)'+", lambda m: m[0].replace("'", "_rate"), str(text)).replace("^", "**")
-    demand(not re.search(r"__|[A-Za-z_]\.|\.[A-Za-z_]|[^\w\s+\-*/().,]", text), f"the formula {text}")
-    text = re.sub(r"(?<![\w.])(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", r"F('\g<0>')", text)
-    names = {"F": Jet.of, "sin": Jet.sin, "cos": Jet.cos, "tan": lambda a: a.sin() / a.cos(), "pi": Jet([], {}, (Fraction(0), 2))}
-    return eval(text, names | {"__builtins__": {}}, scope)
+KNOWN = {Fraction(k, 6): Fraction(x, 2) for k, x in zip((0, 1, 3, 5, 6, 7, 9, 11), (0, 1, 2, 1, 0, -1, -2, -1))}  # sines of multiples of pi
+
+def function(name, u):
+    """The integral of a slope, from the one point where it is known."""
+    at = int(name in ("log", "acosh"))
+    readable(u.fraction(f"{name} of") == at, f"{name} of another number than {at}")
+    first = (0, Fraction(name == "acos") / 2)
+    if u.fixed():
+        return Series([], first)
+    sign, square, alpha = {
+        "log": (1, u + -1, -1), "asin": (1, u * u * -1, "-1/2"), "acos": (-1, u * u * -1, "-1/2"), "atan": (1, u * u, -1),
+        "asinh": (1, u * u, "-1/2"), "atanh": (1, u * u * -1, -1), "acosh": (1, u * u + -2, "-1/2"),
+    }[name]
+    slope = (square + 1) ** Fraction(alpha) * sign
+    return Series(grown(0, lambda k, y: follow(u.c, slope.c, k)), first, [(u, slope.c)])
+
+def arc(y, x):
+    readable(x.fraction("atan2 with") > 0, "atan2 where x is not over 0")
+    return function("atan", y * x**-1)
+
+APPLY = {name: (lambda u, name=name: function(name, u)) for name in UNARY} | {
+    "+": operator.add, "*": operator.mul, "^": operator.pow, "exp": lambda u: u.plain().exp(), "atan2": arc, "sin": lambda u: u.sine(0),
+    "cos": lambda u: u.sine(1), "over length": lambda u: Series.of(1) if u.c == ONE else u ** Fraction(-1, 2),
+}
+
+def exponential(x, base):
+    readable(math.gcd(x.denominator, R) == 1, f"e to a power with the denominator {x.denominator}")
+    return pow(base, x.numerator * pow(x.denominator, -1, R) % R, P)
+
+def root_of_prime(l):
+    d = 8 if l == 2 else l
+    if UNITY[0] % d == 0:
+        z = pow(UNITY[1], UNITY[0] // d, P)
+        return (z + invert(z) if l == 2 else sum(pow(z, k * k, P) for k in range(l)) * (1 if l % 4 == 1 else -I)) % P
+    readable(str(l) in ROOTS, f"the root of {l}: it has no image")
+    demand(pow(ROOTS[str(l)], 2, P) == l % P, f"the root of {l}")
+    return ROOTS[str(l)]
+
+def root(x):
+    """The image of the root of a fraction, and that itself where it is one."""
+    readable(x > 0, "a root of what is not over 0")
+    n, outside, image = x.numerator * x.denominator, Fraction(1, x.denominator), 1
+    for l in range(2, 4096):
+        while n % (l * l) == 0:
+            n, outside = n // (l * l), outside * l
+        if n % l == 0:
+            n, image, outside = n // l, image * root_of_prime(l) % P, outside
+    whole = math.isqrt(n)
+    rational = image == 1 and whole * whole == n
+    image = image * (whole if whole * whole == n else root_of_prime(n) if is_prime(n) else readable(False, f"the root of {n}"))
+    return image * Series.of(outside).c[0] % P, outside * whole if rational else None
+
+def slopes_of(y, leaves):
+    """The derivatives of y by leaves, found from the end."""
+    found, todo = {}, [y]
+    while todo:
+        x = todo.pop()
+        if x.made not in found:
+            found[x.made] = x
+            todo += [a for a, _ in x.slopes]
+    total = {y.made: ONE}
+    for made in sorted(found, reverse=True):
+        for a, slope in found[made].slopes:
+            part = convolve(total[made], slope)
+            total[a.made] = [(x + z) % P for x, z in zip(total[a.made], part)] if a.made in total else part
+    return [total.get(x.made, ZERO) for x in leaves]
 
 def determinant(rows):
-    k = next((k for k, row in enumerate(rows) if row[0] % P), None)
-    if k is None:
-        return int(not rows)
-    first = [x * invert(rows[k][0]) % P for x in rows[k]]
-    rest = [[(x - row[0] * y) % P for x, y in zip(row, first)][1:] for row in rows[:k] + rows[k + 1 :]]
-    return (-1) ** k * rows[k][0] * determinant(rest) % P
+    rows, result = [list(row) for row in rows], 1
+    for i in range(len(rows)):
+        k = next((k for k in range(i, len(rows)) if rows[k][i] % P), None)
+        if k is None:
+            return 0
+        if k != i:
+            rows[i], rows[k], result = rows[k], rows[i], -result
+        result, over = result * rows[i][i] % P, invert(rows[i][i])
+        for row in rows[i + 1 :]:
+            if row[i]:
+                factor = row[i] * over % P
+                row[i:] = [(x - factor * y) % P for x, y in zip(row[i:], rows[i][i:])]
+    return result % P
 
-def by_removal(table, at, rates):
-    """All velocities, where the start gives rates of parameters: every coordinate to first order in t by way of the first removal."""
-    removal = table["removal"] if "parameters" in table["removal"] else next(iter(table["removal"].values()))
-    texts, at, definitions = removal.get("rates", {}) | removal.get("memory", {}), dict(at), table.get("definitions", {})
-    for texts_now in definitions | removal.get("start", {}), definitions:
-        for name, text in texts_now.items():
-            at[name] = read(text, at)
-        at |= {x + "_rate": rate for x, rate in rates.items()}
-        rates = {x: read(text, at) for x, text in texts.items()} | rates
-        at |= {x: Jet([at[x].c[0], rate.c[0]], {}, at[x].first) for x, rate in rates.items()}
-    return {x: Jet(read(text, at).c[1:]) for x, text in removal.get("direct", {}).items()} | rates
+# The proof --------------------------------------------------------------------------------------------------------------------------------
 
-def balance(table, at, q, v):
-    """f with its derivatives, L_v, L_q and Q along series for q and v (seeds 0 .. n-1, n .. 2n-1), and what formulas may contain."""
-    names, scope = list(table["coordinates"]), at | {"t": Jet([at["t"].c[0], 1], {}, at["t"].first)}
-    for j, name in enumerate(names):
-        scope |= {name: Jet(q[j], {j: Jet([1]).c}, at[name].first), name + "_rate": Jet(v[j], {len(names) + j: Jet([1]).c})}
-    for name, text in table.get("definitions", {}).items():
-        scope[name] = read(text, scope)
-    f, forces = [read(text, scope).plain() for text in table["system"]["constraints"]], table["system"].get("forces", {})
-    slopes = [read(table["system"]["lagrangian"], scope).d.get(seed, Jet([]).c) for seed in range(2 * len(names))]
-    return f, slopes[len(names) :], slopes[: len(names)], [read(forces.get(x, 0), scope).plain().c for x in names], scope
+def resize(size):
+    global SIZE, ZERO, ONE
+    SIZE, ZERO, ONE = size, [0] * size, [1] + [0] * (size - 1)
 
-def verify(table, proof):
+def value(text, scope, meaning=None):
+    formulas = Formulas(meaning) if meaning else Formulas()
+    place = formulas.read(text)
+    readable(isinstance(place, int), f"{text}: no number")
+    return formulas.run(scope)[place]
+
+def started(scene):
+    """The numbers of the start, by name."""
+    at = {name: value(text, {}) for name, text in scene["parameters"].items()}
+    written = [("t", scene["time"]), *((x, scene["positions"][x]) for x in scene["coordinates"]), *scene["velocities"].items()]
+    for name, text in written:
+        at[name] = value(text, dict(at))
+    return at
+
+def along(names, at, q, v, t):
+    """What formulas may contain, q, v and t being series that slopes are taken by."""
+    first = lambda name: at[name].first if name in at else None
+    curve = {x: Series(c, first(x), leaf=True) for x, c in zip(names, q)} | {x + "'": Series(c, first(x + "'"), leaf=True) for x, c in zip(names, v)}
+    return at | curve | {"t": Series(t, first("t"), leaf=True)}
+
+UNIQUE = "constraints at the start", "equations of motion"
+
+def verify(proof):
     """The determinant of the named rows, after the start, the motion and its uniqueness have been verified."""
-    names, order, at, start = list(table["coordinates"]), proof["order"], {}, table["start"]
-    n, q, reactions = len(names), [proof["motion"][x] for x in names], proof["reactions"]
-    v = [[(k + 1) * x % P for k, x in enumerate(c[1:])] for c in q]
-    places = {name: entry.get("start", 0) for name, entry in table["coordinates"].items()}
-    for name, written in ({"t": start.get("time", 0)} | table.get("parameters", {}) | places).items():
-        at[name] = read(proof["set"].get("time" if name == "t" else name, written), at)
-    given = (start["velocities"] | proof["set"]).items()
-    rates = {x[:-1]: read(text, at) for x, text in given if x[-1] == "'" and x not in proof["completed"]}
-    rates = by_removal(table, at, rates) if rates.keys() - set(names) else rates
+    scene, order, reactions = proof["scene"], proof["order"], proof["reactions"]
+    names, resized = scene["coordinates"], resize(order + 3)
+    n, q, at, remark = len(names), [proof["motion"][x] for x in names], started(scene), ""
+    v = [[(k + 1) * x % P for k, x in enumerate(c[1:])] + [0] for c in q]
     for x, c in zip(names, q):
-        demand(at[x].c[0] == c[0] and (x not in rates or rates[x].plain().c[0] == c[1]), f"{x} at the start")
-    demand({len(c) for c in q} == {SIZE} and len(reactions) == order + 1, "the length of a series")
-    f, momenta, slopes, Q, scope = balance(table, at, q, v)
-    h, A, B = len(f), *([[x.d.get(i, Jet([]).c) for i in seeds] for x in f] for seeds in (range(n, 2 * n), range(n)))
-    E = [[((k + 1) * momenta[i][k + 1] - slopes[i][k] - Q[i][k]) % P for k in range(order + 1)] for i in range(n)]
+        demand(len(c) == SIZE and at[x].c[0] == c[0] and (x + "'" not in at or at[x + "'"].plain().c[0] == c[1]), f"{x} at the start")
+    formulas = Formulas()
+    L, f = formulas.read(scene["lagrangian"]), [formulas.read(text) for text in scene["constraints"]]
+    Q, divisors = [formulas.read(scene["forces"].get(x, "0")) for x in names], {text: formulas.read(text) for text in proof["divided_by"] if text not in UNIQUE}
+    scope = along(names, at, q, v, [at["t"].c[0], 1])
+    values, leaves = formulas.run(scope), [scope[x] for x in names] + [scope[x + "'"] for x in names]
+    slopes, h = slopes_of(values[L].plain(), leaves), len(f)
+    both = [slopes_of(values[place].plain(), leaves) for place in f]
+    A, B, momenta = [x[n:] for x in both], [x[:n] for x in both], slopes[n:]
+    demand(h > 0 and len(reactions) == order + 1 and all(len(x) == h for x in reactions), "the number of reactions")
+    E = [[((k + 1) * momenta[i][k + 1] - slopes[i][k] - values[Q[i]].plain().c[k]) % P for k in range(order + 1)] for i in range(n)]
     for i, k in product(range(n), range(order + 1)):
         demand((E[i][k] - sum(A[j][i][k - l] * reactions[l][j] for l in range(k + 1) for j in range(h))) % P == 0, "the motion")
-    demand(not any(c for x in f for c in x.c[: order + 2]), "the constraints along the motion")
-    moved = [balance(table, at, q, [[c[0], c[1] + (i == j), *c[2:]] for i, c in enumerate(v)]) for j in range(n)]
-    matrix = [[moved[j][1][i][1] - momenta[i][1] for j in range(n)] + [-A[j][i][0] for j in range(h)] for i in range(n)]
-    free = [j for j, x in enumerate(names) if x not in rates]
-    linear = all(y.d[s][1] == x.d[s][1] for j in free for x, y in zip(f, moved[j][0]) for s in x.d if s >= n)
-    demand(len(free) in (0, h) and linear and proof["completed"] in ([], [names[j] + "'" for j in free]), "what the start leaves open")
-    divided = {"constraints at the start": determinant([[A[i][j][0] for j in free] for i in range(h)] if free else [])}
-    divided["equations of motion"] = determinant(matrix + [[x[0] for x in row] + [0] * h for row in A])
-    divided |= {text: read(text, scope).c[0] for text in proof["divided_by"] if text not in divided}
+    demand(not any(c for place in f for c in values[place].c[: order + 2]), "the constraints along the motion")
+    # the start is unique
+    free = [j for j, x in enumerate(names) if x + "'" not in scene["velocities"]]
+    degrees = formulas.degrees([names[j] + "'" for j in free])
+    demand(len(free) in (0, h) and proof["completed"] in ([], [names[j] + "'" for j in free]), "what the start leaves open")
+    readable(all(degrees[place] <= 1 for place in f), "constraints that are not linear in the velocities they supply")
+    divided = {UNIQUE[0]: determinant([[A[i][j][0] for j in free] for i in range(h)] if free else [])}
+    if not free:
+        demand(all(values[place].first in (None, (0, 0)) for place in f), "the constraints at the start")
+        remark = "" if all(values[place].first for place in f) else " (that the constraints hold there was found mod p)"
+    # the motion is unique: L_v moves by L_vv where v moves
+    resize(2)
+    matrix = [[0] * n + [-A[j][i][0] for j in range(h)] for i in range(n)] + [[x[0] for x in row] + [0] * h for row in A]
+    start = {name: Series(x.c, x.first) for name, x in at.items()}
+    for j in range(n):
+        moved = along(names, start, q, [[c[0], int(i == j)] for i, c in enumerate(v)], [at["t"].c[0]])
+        moved |= {x: Series([c[0]], at[x].first, leaf=True) for x, c in zip(names, q)}
+        for i, slope in enumerate(slopes_of(formulas.run(moved)[L], [moved[x + "'"] for x in names])):
+            matrix[i][j] = slope[1]
+    divided |= {UNIQUE[1]: determinant(matrix)} | {text: values[place].plain().c[0] for text, place in divisors.items()}
     demand(divided == proof["divided_by"] and all(divided.values()), "what is divided by")
     system = [[0] * (h * (order + 2)) + [E[i][k]] for k, i in proof["rows"]]
     for row, (k, i) in zip(system, proof["rows"]):
         for l, j in product(range(k + 1), range(h)):
             row[h * (k - l + 1) + j] += A[j][i][l] * (k - l + 1)
             row[h * (k - l) + j] += (l + 1) * A[j][i][l + 1] - B[j][i][l]
-    demand(min(map(min, proof["rows"])) >= 0 and {len(row) for row in system} == {len(system)}, "the rows")
-    return determinant(system)
+    demand({len(row) for row in system} == {len(system)}, "the number of rows")
+    demand(determinant(system) == proof["minor"] != 0, "the minor")
+    return remark
+
+# The scene file ---------------------------------------------------------------------------------------------------------------------------
+
+def hold(table, proof):
+    """Holds the plain scene, of which the certificate is verified, against the file."""
+    scene, given, order = proof["scene"], proof["set"], proof["order"]
+    names, start, definitions, parameters = list(table["coordinates"]), table.get("start", {}), table.get("definitions", {}), table.get("parameters", {})
+    removal = next(iter(table.get("removal", {}).values()), {})
+    own = [x for x in removal.get("parameters", []) if x not in names] + list(removal.get("memory", {}))
+    leaves = {x + dash for x in names + own for dash in ("", "'")} | {"t"}
+    def meaning(formulas, name):
+        if name in leaves:
+            return formulas.put("name", name)
+        if name in definitions or name in parameters:
+            return formulas.read(given.get(name, parameters[name]) if name in parameters else definitions[name])
+        readable(name[-1] == "'" and name[:-1] + "'" not in leaves and name[:-1] not in leaves, f"the name {name}")
+        return formulas.rate(meaning(formulas, name[:-1]))
+    demand(names == scene["coordinates"], "the coordinates are not those of the file")
+    elsewhere = r"duration|kappa|mu\d+|P0_\w+"
+    for name in given:
+        demand(name in parameters or name in leaves or name == "time" or re.fullmatch(elsewhere, name), f"what is set: the file has no {name}")
+    resize(order + 3)
+    at, same = started(scene), lambda a, b: a.c == b.c and a.first == b.first
+    for name in parameters:
+        demand(name not in scene["parameters"] or same(value(name, {}, meaning), at[name]), f"{name} is not that of the file")
+    if not proof["almost_every_start"]:
+        here = {"t": value(given.get("time", start.get("time", 0)), {}, meaning)}
+        demand(same(here["t"], at["t"]), "the time of the start is not that of the file")
+        for x, entry in table["coordinates"].items():
+            here[x] = value(given.get(x, entry["start"]), dict(here), meaning)
+            demand(same(here[x], at[x]), f"{x} at the start is not that of the file")
+        texts = start.get("velocities", {}) | {name: text for name, text in given.items() if name[-1] == "'"}
+        readable(not start.get("project"), "velocities that are projected")
+        rates = {name: value(text, dict(here), meaning) for name, text in texts.items()}
+        if any(name[:-1] not in names for name in rates):
+            rates = by_removal(removal, here, rates, names, meaning)
+        for name, x in rates.items():
+            demand(name in proof["completed"] or name in at and x.c[0] == at[name].c[0], f"{name} at the start is not that of the file")
+        extra = [name for name in scene["velocities"] if name not in rates]
+        demand(not extra or len(scene["velocities"]) == len(names), f"{extra} at the start: not in the file")
+        demand(set(proof["completed"]) <= set(rates), "what is completed")
+        if proof["completed"]:
+            near(scene, rates, texts)
+    # Taylor coefficients along a random curve
+    curves = lambda firsts: [[x, *(secrets.randbelow(P) for _ in range(SIZE - 1))] for x in firsts]
+    q, v = (curves(proof["motion"][x][k] for x in names) for k in (0, 1))
+    scope = along(names, at, q, v, curves([at["t"].c[0]])[0])
+    rates = [(scope[x], scope[x + "'"]) for x in names] + [(scope["t"], Series.of(1))]
+    plain, formulas = Formulas(), Formulas(meaning)
+    forces, flat = table["system"].get("forces", {}), lambda x: [z for y in x for z in flat(y)] if isinstance(x, list) else [x]
+    f = flat([formulas.read(text) for text in table["system"].get("constraints", [])])
+    for i, place in enumerate(f):
+        below = formulas.below([place])
+        if not any(kind == "rate" or kind == "name" and args[0][-1] == "'" for kind, *args in below):
+            f[i] = formulas.rate(place)
+    file = [formulas.read(table["system"]["lagrangian"]), *f, *(formulas.read(forces.get(x, 0)) for x in names)]
+    texts = [scene["lagrangian"], *scene["constraints"], *(scene["forces"].get(x, "0") for x in names)]
+    words = ["the Lagrangian", *(f"constraint {i + 1}" for i in range(len(f))), *(f"the force on {x}" for x in names)]
+    demand(len(file) == len(texts), "the number of constraints is not that of the file")
+    own, values = [plain.read(text) for text in texts], formulas.run(scope, rates)
+    others = plain.run(scope)
+    for place, mine, word in zip(file, own, words):
+        demand(values[place].plain().c == others[mine].plain().c, f"{word} is not that of the file")
+
+def by_removal(removal, here, rates, names, meaning):
+    """All velocities, where the start gives rates of parameters of the first removal."""
+    at, moving = dict(here), removal.get("rates", {}) | removal.get("memory", {})
+    at |= {x: value(text, at, meaning) for x, text in removal.get("start", {}).items()}
+    at = {x: Series(y.c, y.first, leaf=True) for x, y in at.items()} | rates
+    for x, text in moving.items():
+        rates[x + "'"] = at[x + "'"] = value(text, at, meaning)
+    pairs = [(at[x], at[x + "'"]) for x in at if x + "'" in at] + [(at["t"], Series.of(1))]
+    for x, text in removal.get("direct", {}).items():
+        formulas = Formulas(meaning)
+        place = formulas.rate(formulas.read(text))
+        rates[x + "'"] = formulas.run(at, pairs)[place]
+    return {name: x for name, x in rates.items() if name[:-1] in names}
+
+def near(scene, rates, texts):
+    """Velocities that are completed have to fulfil the constraints but for round-off."""
+    at = {}
+    for name, text in [*scene["parameters"].items(), ("t", scene["time"]), *((x, scene["positions"][x]) for x in scene["coordinates"]), *texts.items()]:
+        formulas = Formulas()
+        place = formulas.read(text)
+        at[name] = formulas.in_decimals(at)[place]
+    formulas = Formulas()
+    f = [formulas.read(text) for text in scene["constraints"]]
+    values = formulas.in_decimals(at)
+    for place in f:
+        moves = sum(abs(formulas.in_decimals(at | {name: 0.0})[place] - values[place]) for name in texts)
+        demand(abs(values[place]) <= 1e-6 * moves, "what is completed misses the constraints by more than round-off")
+
+# Reading ----------------------------------------------------------------------------------------------------------------------------------
+
+def checked(proof):
+    """The certificate, where every field is of its kind."""
+    global P, I, R, E, E_I, UNITY, ROOTS
+    whole, word = lambda x: type(x) is int and 0 <= x < 2**64, lambda x: type(x) is str
+    many, named = lambda kind: lambda x: type(x) is list and all(map(kind, x)), lambda kind: lambda x: type(x) is dict and all(map(kind, x.values()))
+    scene = {"coordinates": many(word), "parameters": named(word), "lagrangian": word, "constraints": many(word), "forces": named(word), "time": word, "positions": named(word), "velocities": named(word)}
+    fields = {
+        "schema": word, "scene": lambda x: type(x) is dict and all(kind(x.get(key)) for key, kind in scene.items()) and x.keys() == scene.keys(), "digest": word,
+        "almost_every_start": lambda x: type(x) is bool, "prime": whole, "unity": lambda x: many(whole)(x) and len(x) == 2, "exponents": lambda x: named(whole)(x) and x.keys() == {"order", "e^i", "e"},
+        "roots": named(whole), "order": lambda x: whole(x) and x < 200, "rows": many(lambda x: many(whole)(x) and len(x) == 2), "minor": whole, "divided_by": named(whole),
+        "set": named(word), "completed": many(word), "motion": named(many(whole)), "reactions": many(many(whole)),
+    }
+    readable(type(proof) is dict and proof.get("schema") == "deltaq/certificate/2", "the schema")
+    for name, kind in fields.items():
+        readable(kind(proof.get(name)), f"the field {name}")
+    readable(proof.keys() == fields.keys(), f"the fields {proof.keys() - fields.keys()}")
+    plain, names = proof["scene"], set(proof["scene"]["coordinates"])
+    demand(proof["motion"].keys() == names == plain["positions"].keys() and len(names) == len(plain["coordinates"]) and plain["forces"].keys() <= names and {x + "'" for x in names} >= plain["velocities"].keys(), "the coordinates")
+    demand(not plain["parameters"].keys() & (names | {x + "'" for x in names} | {"t", "pi"}), "a name that is used twice")
+    digest = hashlib.sha256(json.dumps(plain, separators=(",", ":"), ensure_ascii=False).encode()).hexdigest()
+    demand(proof["digest"] == "sha256:" + digest, "the digest of the scene")
+    P, UNITY, ROOTS, (M, z), exponents = proof["prime"], proof["unity"], proof["roots"], proof["unity"], proof["exponents"]
+    R, E_I, E = exponents["order"], exponents["e^i"], exponents["e"]
+    demand(is_prime(P) and P > max(2**50, proof["order"] + 2), "p is no prime over 2^50")
+    readable(0 < M < 2**32, "M")
+    factors = [l for l in range(2, 2**16) if M % l == 0 and is_prime(l)] 
+    demand(M % 4 == 0 and pow(z, M, P) == 1 and all(pow(z, M // l, P) != 1 for l in factors), "the image of e^(2 pi i/M)")
+    demand(R > 0 and pow(E_I, R, P) == pow(E, R, P) == 1, "the images of e^i and e")
+    demand(all(i < len(names) and k <= proof["order"] for k, i in proof["rows"]), "the rows")
+    demand(all(x < P for c in [*proof["motion"].values(), *proof["reactions"]] for x in c), "a coefficient that is not under p")
+    I = pow(z, M // 4, P)
+    return proof
+
+def main(*files):
+    sys.setrecursionlimit(20000)
+    held = "; no scene file was given to hold it against"
+    try:
+        readable(0 < len(files) < 3, "the arguments; python verify.py [SCENE.toml] CERTIFICATE.json")
+        with open(files[-1]) as file:
+            proof = checked(json.load(file))
+        remark, table = verify(proof), None
+        if files[1:]:
+            with open(files[0], "rb") as file:
+                table = tomllib.load(file, parse_float=str)
+            try:
+                hold(table, proof)
+            except (Unreadable, KeyError, TypeError, AttributeError) as fault:
+                raise Unreadable(f"{files[0]}: {fault}; the certificate is verified for its own plain scene")
+            held = f"; it is that of {files[0]}"
+    except Forged as fault:
+        return print(f"forged: {fault}") or 1
+    except Unreadable as fault:
+        return print(f"cannot read: {fault}") or 2
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError) as fault:
+        return print(f"cannot read: {type(fault).__name__}: {fault}") or 2
+    scene = proof["scene"]
+    start = {"t": scene["time"]} | {x: scene["positions"][x] for x in scene["coordinates"]} | scene["velocities"]
+    open_ = [x + "'" for x in scene["coordinates"] if x + "'" not in scene["velocities"]]
+    everywhere = ", drawn at random, and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
+    print(f"verified: no mu_0 makes Chetaev's motion from this start{everywhere} vakonomic (order {proof['order']}, minor {proof['minor']} mod {P})")
+    print("start:", ", ".join(f"{name} = {text}" for name, text in start.items()) + (f"; from the constraints: {' '.join(open_)}" if open_ else "") + remark)
+    if proof["completed"]:
+        print(f"completed: {' '.join(proof['completed'])}, which decimals of the scene miss by round-off")
+    if proof["set"]:
+        print("set:", ", ".join(f"{name} = {text}" for name, text in proof["set"].items()))
+    print(f"scene: {proof['digest']}{held}")
+    return 0
 
 if __name__ == "__main__":
-    try:
-        TABLE, PROOF = tomllib.load(open(sys.argv[1], "rb")), json.load(open(sys.argv[2]), parse_float=str, parse_constant=str)
-        P, I, N, TAU, SIZE = PROOF["prime"], PROOF["i"], int(PROOF["N"]), PROOF["tau"], PROOF["order"] + 3
-        demand(PROOF["schema"] == "deltaq/certificate/1" and all(pow(a, P - 1, P) == 1 for a in (2, 3, 5, 7)) and (I * I + 1) % P == 0, "schema, p or i")
-        demand(verify(TABLE, PROOF) == PROOF["minor"] != 0, "the minor")
-    except Exception as error:
-        sys.exit(f"refused: {type(error).__name__}, {error}")
-    print(f"verified: no mu_0 (order {PROOF['order']}, minor {PROOF['minor']} mod {P})", *PROOF["completed"])
+    sys.exit(main(*sys.argv[1:]))

@@ -70,7 +70,7 @@ impl Output {
 
 /// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
 pub(crate) fn pretty(kind: &str, object: &Value) -> String {
-    let version = if matches!(kind, "solve" | "linearize") { 2 } else { 1 };
+    let version = if matches!(kind, "solve" | "linearize" | "certificate") { 2 } else { 1 };
     let text = format!("{object:#}\n");
     text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\","), 1)
 }

@@ -257,6 +257,9 @@ pub struct ProveArguments {
     /// File for the certificate, which `validation/proof/verify.py` checks; `-` for the terminal.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
+    /// Prove it for a start drawn at random, and so for almost every start, in the place of the scene's own.
+    #[arg(long)]
+    pub almost_every: bool,
     /// Output format of the answer; a certificate is JSON.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub format: TextOrJson,

@@ -1,8 +1,9 @@
 //! `deltaq prove`.
 
 use anyhow::{Context, Result};
-use deltaq::{certificate, membership};
+use deltaq::{PlainScene, certificate, membership};
 use serde_json::{Map, Value, json};
+use sha2::{Digest, Sha256};
 
 use crate::answer::{Answer, pretty};
 use crate::cli::{ProveArguments, TextOrJson};
@@ -13,26 +14,31 @@ use validation::report::{membership_sentence, membership_value};
 /// # Errors
 /// Bad input, with its place, and a file that cannot be written.
 pub fn run(arguments: &ProveArguments) -> Result<Answer> {
-    let ProveArguments { scene: given, out, format } = arguments;
+    let ProveArguments { scene: given, out, almost_every, format } = arguments;
     let scene = given.find()?;
     let to_terminal = out.as_os_str() == "-";
-    let reason = match certificate(&scene)? {
+    let reason = match certificate(&scene, *almost_every)? {
         Err(reason) => reason,
         Ok(certificate) => {
-            let named = |pairs: Vec<(String, Value)>| pairs.into_iter().collect::<Map<_, _>>();
             let order = certificate.order;
+            let plain = plain(certificate.scene);
+            let digest = digest(&plain);
+            let (exponents, circle, neper) = certificate.exponents;
             let value = json!({
+                "scene": plain,
+                "digest": digest,
+                "almost_every_start": almost_every,
                 "prime": certificate.prime,
-                "i": certificate.imaginary,
-                "N": certificate.parts,
-                "tau": certificate.turn,
+                "unity": certificate.unity,
+                "exponents": { "order": exponents, "e^i": circle, "e": neper },
+                "roots": named(certificate.roots),
                 "order": order,
                 "rows": certificate.rows,
                 "minor": certificate.minor,
-                "divided_by": named(certificate.divided_by.into_iter().map(|(what, x)| (what, x.into())).collect()),
-                "set": named(given.set.overrides.iter().map(|(name, x)| (name.clone(), (*x).into())).collect()),
+                "divided_by": named(certificate.divided_by),
+                "set": named(given.set.overrides.iter().map(|(name, x)| (name.clone(), x.to_string()))),
                 "completed": certificate.completed,
-                "motion": named(certificate.motion.into_iter().map(|(name, jet)| (name, jet.into())).collect()),
+                "motion": named(certificate.motion),
                 "reactions": certificate.reactions,
             });
             let text = pretty("certificate", &value);
@@ -42,8 +48,9 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
             std::fs::write(out, text).with_context(|| format!("cannot write `{}`", out.display()))?;
             return Ok(match format {
                 TextOrJson::Text => {
-                    let what = "no μ₀ makes the vakonomic motion Chetaev's: proved";
-                    format!("{}: {what} (order {order}); the certificate is in {}\n", scene.name, out.display())
+                    let what = "no μ₀ makes the vakonomic motion Chetaev's";
+                    let start = if *almost_every { " from almost every start" } else { "" };
+                    format!("{}: {what}{start}: proved (order {order}); the certificate is in {}\n", scene.name, out.display())
                 }
                 TextOrJson::Json => {
                     let value = json!({ "answer": "none", "proved": true, "order": order, "certificate": out });
@@ -67,4 +74,26 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Some(Err(error)) => format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}."),
     };
     Ok(Answer { text, complaint: Some(format!("no certificate for {}: {reason}. {sentence}", scene.name)) })
+}
+
+fn named(pairs: impl IntoIterator<Item = (String, impl Into<Value>)>) -> Map<String, Value> {
+    pairs.into_iter().map(|(name, x)| (name, x.into())).collect()
+}
+
+fn plain(scene: PlainScene) -> Value {
+    json!({
+        "coordinates": scene.coordinates,
+        "parameters": named(scene.parameters),
+        "lagrangian": scene.lagrangian,
+        "constraints": scene.constraints,
+        "forces": named(scene.forces),
+        "time": scene.time,
+        "positions": named(scene.positions),
+        "velocities": named(scene.velocities),
+    })
+}
+
+/// SHA-256 of the plain scene as JSON without spaces.
+fn digest(plain: &Value) -> String {
+    Sha256::digest(plain.to_string()).iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }

@@ -1,26 +1,32 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{Jet, Modular, PRIME, inverse};
-use crate::family::CostateRate;
+use crate::exact::{Jet, Modular, ORDERS, PRIME, inverse};
+use crate::family::{CostateRate, inputs};
+use crate::plain_scene::PlainScene;
+use crate::program::Program;
 use crate::proof::{Echelon, Question, Ranks};
-use crate::series::order;
+use crate::series::{SeriesStart, order};
 use crate::start::ExactStart;
 
 /// A proof that no `μ₀` makes a Chetaev motion vakonomic; `validation/proof/verify.py` checks it.
 ///
 /// With `μ = μ₀ + μ₁ s + …` the powers `s⁰ … s^K` of `Aᵀ μ̇ + (Ȧᵀ − f_qᵀ) μ = −E` are linear equations
 /// `S x = b` for `x = (μ₀, …, μ_{K+1})`. Some of their rows make `[S | −b]` a square matrix whose determinant
-/// modulo `p` is not zero. `T = e^{i/N} ↦ τ`; all other numbers are in `0..p`.
+/// modulo `p` is not zero. Numbers are in `0..p`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Certificate {
+    /// The system and the start.
+    pub scene: PlainScene,
+    /// Whether that start was drawn at random.
+    pub almost_every_start: bool,
     /// `p`.
     pub prime: u64,
-    /// Image of `√−1`.
-    pub imaginary: u64,
-    /// `N`, in decimals; angles at the start are multiples of `1/N`, quarter turns apart.
-    pub parts: String,
-    /// `τ`.
-    pub turn: u64,
+    /// `M` and the image of `e^{2πi/M}`.
+    pub unity: (u64, u64),
+    /// A prime `r`, and images of `e^i` and `e` of this order: those of `e^{ia}` and `e^a` for a fraction `a`.
+    pub exponents: (u64, u64, u64),
+    /// Images of the roots of primes that are used.
+    pub roots: Vec<(String, u64)>,
     /// `K`.
     pub order: usize,
     /// Rows of `[S | −b]`, each as a power of `s` and the number of a coordinate, from 0.
@@ -37,6 +43,9 @@ pub struct Certificate {
     pub reactions: Vec<Vec<u64>>,
 }
 
+/// Random starts that are tried: some have roots without an image.
+const STARTS: u64 = 32;
+
 impl Question<'_> {
     /// The certificate that no vakonomic motion, for any `μ₀`, is Chetaev's from `start`; else the reason.
     ///
@@ -44,7 +53,44 @@ impl Question<'_> {
     /// The reason, in words.
     pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
         let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
-        let (curve, series) = self.series(&exact, self.orders()).map_err(|fault| fault.to_string())?;
+        if start.projected {
+            return Err("the velocities at the start are not those of the scene, but projected ones".into());
+        }
+        // decimals stand in the place of velocities that are not determined by the constraints
+        let decimal = |i: &usize| exact.velocities[*i].exact().is_some();
+        let open = start.open(&completed);
+        let open = if open.iter().any(decimal) { &[] } else { open };
+        self.certified(start, &exact, open, completed)
+    }
+
+    /// The same from a start drawn at random, with whole numbers: so that there is none from almost every one.
+    ///
+    /// # Errors
+    /// The reason, in words.
+    pub fn almost_every_certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
+        let mut reason = String::new();
+        for seed in 0..STARTS {
+            let certificate = start.random(seed).map_err(|fault| fault.to_string()).and_then(|exact| {
+                let open: Vec<usize> = (0..exact.velocities.len()).filter(|&i| exact.velocities[i].exact().is_none()).collect();
+                let certificate = self.certified(start, &exact, &open, Vec::new())?;
+                Ok(Certificate { almost_every_start: true, ..certificate })
+            });
+            match certificate {
+                Err(why) => reason = why,
+                found => return found,
+            }
+        }
+        Err(reason)
+    }
+
+    fn certified(
+        &self,
+        start: &ExactStart,
+        exact: &SeriesStart<Modular>,
+        open: &[usize],
+        completed: Vec<String>,
+    ) -> Result<Certificate, String> {
+        let (mut curve, series) = self.series(exact, self.orders()).map_err(|fault| fault.to_string())?;
         let refuted = Ranks::of(&series).refuted().ok_or("Taylor coefficients leave some μ₀")?;
         let shape = &self.family().shape;
         let (n, h, last) = (shape.coordinates, shape.constraints, refuted.order);
@@ -56,8 +102,19 @@ impl Question<'_> {
                 "coefficients of less than full rank have no minor to show: the proof is one of ranks modulo p".into(),
             );
         }
-        if start.projected {
-            return Err("the velocities at the start are not those of the scene, but projected ones".into());
+        let system = &start.system;
+        let g = &system.graph;
+        let velocity = |i: &usize| system.coordinates[*i].velocity;
+        let slopes = g.jacobian(&system.constraints, &open.iter().map(velocity).collect::<Vec<_>>());
+        if slopes.entries().iter().any(|&e| open.iter().any(|i| g.depends_on(e, velocity(i)))) {
+            return Err("the constraints are not linear in the velocities that they supply".into());
+        }
+        // the motion is written two orders further than the mismatch
+        if last + 3 > ORDERS {
+            return Err(format!("the proof is of order {last}, and series have {ORDERS} coefficients"));
+        }
+        if last + 3 > self.orders() {
+            curve = self.series(exact, last + 3).map_err(|fault| fault.to_string())?.0;
         }
         let values = self.family().evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
         let instant = shape.instant(&values);
@@ -80,7 +137,6 @@ impl Question<'_> {
         }
         let one = Modular::one();
         let (_, minor) = inverse(&minor, width, one).ok_or("there is no minor of full size")?;
-        let open = start.open(&completed);
         let jacobian = order(instant.jacobian, 0);
         let matrix: Vec<Modular> =
             (0..h).flat_map(|i| open.iter().map(move |j| i * n + j)).map(|at| jacobian[at]).collect();
@@ -93,12 +149,19 @@ impl Question<'_> {
         divided_by.extend(self.divisors.iter().cloned().zip(divisors.iter().map(|x| x.value())));
         let coordinates = curve.inputs.len() - 3 * n;
         let jet = |i: usize| (0..last + 3).map(|k| curve.inputs[coordinates + i].coefficient(k).value()).collect();
-        let (parts, turn) = Modular::turn();
+        let all = [&[system.lagrangian][..], &system.constraints, &system.forces, &start.written].concat();
+        let under_roots: Vec<_> = g.under_roots(&all).into_iter().collect();
+        let program = Program::new(g, &inputs(system, &[]), &under_roots).map_err(|fault| fault.to_string())?;
+        let mut radicands = program.evaluator::<Jet<Modular>>();
+        let radicands = radicands.run(&curve.inputs).iter().filter_map(Jet::exact);
+        let scene = PlainScene::new(start, exact, open).ok_or("a parameter is no number that could be followed")?;
         Ok(Certificate {
+            scene,
+            almost_every_start: false,
             prime: PRIME,
-            imaginary: Modular::imaginary().value(),
-            parts,
-            turn: turn.value(),
+            unity: (4, Modular::imaginary().value()),
+            exponents: Modular::exponents(),
+            roots: Modular::roots(radicands).into_iter().map(|(l, root)| (l.to_string(), root)).collect(),
             order: last,
             rows,
             minor: minor.value(),

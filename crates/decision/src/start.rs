@@ -37,7 +37,9 @@ pub enum NoExactStart {
 pub struct ExactStart {
     pub(crate) system: System,
     time: f64,
-    /// Positions and velocities from parameters, time and positions; numbers among them, which need no graph.
+    /// Positions and velocities as written; these from parameters, time and positions; numbers among them,
+    /// which need no graph.
+    pub(crate) written: Vec<Expr>,
     values: Program,
     numbers: Vec<Option<f64>>,
     /// Velocities that the constraints supply.
@@ -91,7 +93,7 @@ impl ExactStart {
         inputs.extend(&q);
         let values: Vec<Expr> = positions.chain(velocities).collect();
         let numbers = values.iter().map(|&e| g.as_number(e)).collect();
-        let values = Program::new(g, &inputs, &values)?;
+        let (written, values) = (values.clone(), Program::new(g, &inputs, &values)?);
         inputs.extend(&v);
         let mut outputs = system.constraints.clone();
         outputs.extend(g.jacobian(&system.constraints, &v).entries());
@@ -103,6 +105,7 @@ impl ExactStart {
         Ok(ExactStart {
             system,
             time,
+            written,
             values,
             numbers,
             supplied,

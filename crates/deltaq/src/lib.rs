@@ -95,7 +95,7 @@ mod trial;
 mod varying;
 pub mod words;
 
-pub use decision::{Finding, Section};
+pub use decision::{Finding, PlainScene, Section};
 pub use symbolic::Language;
 
 pub use charts::ChartChange;

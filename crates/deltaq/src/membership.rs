@@ -142,13 +142,15 @@ impl<'a> Pairing<'a> {
         Ok(Membership { decision, proof, section, implied })
     }
 
-    /// The certificate that no constants do, for others to check; the reason in words where there is none.
+    /// The certificate that no constants do from the scene's start, or from one drawn at random and so from
+    /// almost every one, for others to check; the reason in words where there is none.
     ///
     /// # Errors
     /// [`SolveError::Decision`] where an expression cannot be evaluated.
-    pub fn certificate(&self) -> Result<Result<Certificate, String>, SolveError> {
+    pub fn certificate(&self, almost_every_start: bool) -> Result<Result<Certificate, String>, SolveError> {
         let question = Question::new(&self.scene.system, &self.curve, &self.constants, &self.family)?;
-        Ok(question.certificate(&self.exact_start()?))
+        let start = self.exact_start()?;
+        Ok(if almost_every_start { question.almost_every_certificate(&start) } else { question.certificate(&start) })
     }
 
     /// How the family's motion with `constants` leaves the other; `None` without a term up to the twelfth.
@@ -203,12 +205,14 @@ pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveEr
     principal(scene)?.map(|pairing| pairing.decide(end)).transpose()
 }
 
-/// The certificate that no `μ₀` makes the vakonomic motion Chetaev's; or the reason in words.
+/// The certificate that no `μ₀` makes the vakonomic motion Chetaev's, from the scene's start or from almost
+/// every one; or the reason in words.
 ///
 /// # Errors
 /// As [`Pairing::new`] and [`Pairing::certificate`].
-pub fn certificate(scene: &Scene) -> Result<Result<Certificate, String>, SolveError> {
-    principal(scene)?.map_or(Ok(Err("nothing is constrained".into())), |pairing| pairing.certificate())
+pub fn certificate(scene: &Scene, almost_every_start: bool) -> Result<Result<Certificate, String>, SolveError> {
+    let nothing = Ok(Err("nothing is constrained".into()));
+    principal(scene)?.map_or(nothing, |pairing| pairing.certificate(almost_every_start))
 }
 
 /// Chetaev's motion and the vakonomic family.

@@ -79,7 +79,8 @@ impl Graph {
         roots.into_iter().collect()
     }
 
-    fn under_roots(&self, es: &[Expr]) -> BTreeSet<Expr> {
+    /// Every distinct base of a power that is no integer, in `es`.
+    pub fn under_roots(&self, es: &[Expr]) -> BTreeSet<Expr> {
         let reachable = self.arena.borrow().reachable(es, |_| true);
         reachable.into_iter().flat_map(|e| self.bases(e, |r| r.as_integer().is_none())).collect()
     }

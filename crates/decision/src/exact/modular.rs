@@ -6,6 +6,7 @@
 //! transcendental for every `N`, independent of `e^{1/N}` (Lindemann, Weierstrass); so
 //! `T = e^{i/N} ↦ τ = h^{1/N}` is a ring homomorphism wherever nothing divided by has the image 0.
 
+use std::collections::BTreeMap;
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
@@ -22,8 +23,6 @@ const CIRCLE: u64 = 500_365_693_788_483_288;
 const NEPER: u64 = 871_121_100_965_325_420;
 /// `√−1`.
 const IMAGINARY: u64 = 304_924_282_205_937_375;
-/// The least common multiple of 1 … 40.
-const COMMON: u64 = 5_342_931_457_063_200;
 /// A number without a square root.
 const NO_SQUARE: u64 = 53;
 /// `p − 1 = 2^4 · odd`.
@@ -72,14 +71,29 @@ impl Modular {
         Self::new(IMAGINARY)
     }
 
-    /// `N = 10^38 · lcm(1, …, 40)`, decimal, a multiple of angles' denominators; the image `τ` of `e^{i/N}`.
-    pub(crate) fn turn() -> (String, Self) {
-        let root = |base: Self, parts: i128| {
-            let part = Exact { numerator: 1, denominator: parts, quarters: 0 };
-            Self::rational_power(base.value(), part).unwrap_or(base)
-        };
-        let turn = root(root(Self::new(CIRCLE), 10_i128.pow(38)), COMMON.into());
-        (format!("{COMMON}{:038}", 0), turn)
+    /// `r` and the images of `e^i` and `e`.
+    pub(crate) fn exponents() -> (u64, u64, u64) {
+        (ORDER, CIRCLE, NEPER)
+    }
+
+    /// The primes of which a root is taken in [`Self::root`] of any of these, with the image of that.
+    pub(crate) fn roots(radicands: impl Iterator<Item = Exact>) -> BTreeMap<i128, u64> {
+        let mut roots = BTreeMap::new();
+        for x in radicands.filter(|x| x.is_rational()) {
+            let mut rest = x.numerator.saturating_mul(x.denominator).abs();
+            let tried = (2..TRIED).filter(|prime| {
+                let before = rest;
+                while rest > 1 && rest % prime == 0 {
+                    rest /= prime;
+                }
+                rest < before
+            });
+            let mut primes: Vec<i128> = tried.collect();
+            primes.push(rest);
+            let found = primes.into_iter().filter(|&prime| 1 < prime && prime < TRIED * TRIED);
+            roots.extend(found.filter_map(|prime| Some((prime, Self::integer(prime).square_root()?.value()))));
+        }
+        roots
     }
 
     pub(crate) fn is_zero(self) -> bool {
