@@ -3,3 +3,4 @@
 mod errors;
 mod estimates;
 mod examples;
+mod gaps;
