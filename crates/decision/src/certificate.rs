@@ -71,7 +71,8 @@ impl Question<'_> {
         let mut reason = String::new();
         for seed in 0..STARTS {
             let certificate = start.random(seed).map_err(|fault| fault.to_string()).and_then(|exact| {
-                let open: Vec<usize> = (0..exact.velocities.len()).filter(|&i| exact.velocities[i].exact().is_none()).collect();
+                let open: Vec<usize> =
+                    (0..exact.velocities.len()).filter(|&i| exact.velocities[i].exact().is_none()).collect();
                 let certificate = self.certified(start, &exact, &open, Vec::new())?;
                 Ok(Certificate { almost_every_start: true, ..certificate })
             });

@@ -7,6 +7,7 @@ use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, Syst
 use scene::Scene;
 use symbolic::{Expr, Symbol};
 
+use crate::table::known;
 use crate::{FORMS, FORMULATIONS, SolveError, formulation};
 
 /// One formulation of the scene, with all choices made.
@@ -78,14 +79,14 @@ pub fn constants_of(choice: &Choice, scene: &Scene) -> ConstantsRule {
 /// Derives the equations of a choice, without what they do not need.
 ///
 /// # Errors
-/// [`SolveError::Derivation`], [`SolveError::Removal`].
+/// [`SolveError::UnknownFormulation`], [`SolveError::Derivation`], [`SolveError::Removal`].
 pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
     derive_from(system, None, choice)
 }
 
 /// [`derive()`] for a motion that starts at `start`, where pivots may have to be chosen.
 fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Result<Equations, SolveError> {
-    let formulation: &Formulation = formulation(choice.formulation).unwrap_or(&FORMULATIONS[0]);
+    let formulation = known(choice.formulation)?;
     let removal = choice.removal.as_ref();
     let derived = |all_costates: bool| (formulation.derive)(system, &Derivation { removal, start, all_costates });
     let mut equations = derived(false)?;

@@ -61,28 +61,39 @@ impl Comparison {
         self.add(Run { choice, outcome })
     }
 
-    /// Adds a run, and compares it with those before, where that is worth it.
+    /// Adds a run, and compares it with those before, where that is worth it. A motion that cannot be read off
+    /// at its start is none; one that cannot later on is stopped there.
     ///
     /// # Errors
-    /// [`SolveError`] where a motion cannot be read off.
+    /// [`SolveError::Compile`] where `L` or `f` contain a symbol that is not defined.
     pub fn add(&mut self, mut run: Run) -> Result<(), SolveError> {
         let (mut metric, second) = (Metric::new(&self.scene.system)?, self.runs.len());
+        run.outcome = run.outcome.and_then(|mut motion| motion.at(motion.start()).map(|_| motion));
         for first in 0..second {
             let before = &mut self.runs[first];
             if !worth_comparing(before, &run) {
                 continue;
             }
             let (Ok(one), Ok(two)) = (&mut before.outcome, &mut run.outcome) else { continue };
-            let gap = compare_motions(one, two, &mut metric)?;
+            let mut gap = compare_motions(one, two, &mut metric)?;
             let limit = |t: f64| gap.limit_at(t);
             let names = [before.choice.formulation, run.choice.formulation];
             let asked =
                 self.extent == Extent::Everything || names == [chetaev::FORMULATION.name, vakonomic::FORMULATION.name];
             let growth = match gap.verdict {
-                Verdict::Different if asked => growth(two, one, &mut metric, &limit)?,
+                // where it cannot be read off, nothing is fitted
+                Verdict::Different if asked => growth(two, one, &mut metric, &limit).unwrap_or(None),
                 _ => None,
             };
-            let predicted = growth.as_ref().and_then(|_| predicted(&self.scene, &before.choice, &run));
+            let predicted = match gap.verdict {
+                Verdict::Different if growth.is_none() => None,
+                // what no gap shows may be proved, of all motions that Chetaev's is compared with
+                Verdict::Same | Verdict::Undecided { .. } if names[0] != chetaev::FORMULATION.name => None,
+                _ => predicted(&self.scene, &before.choice, &run),
+            };
+            if predicted.as_ref().is_some_and(|term| term.proved) {
+                gap.prove();
+            }
             self.pairs.push(Pair { first, second, gap, growth, predicted });
         }
         self.runs.push(run);
@@ -102,13 +113,10 @@ impl Comparison {
     pub fn decide_next(&mut self) -> Option<&Decided> {
         let asked = self.undecided()?;
         let decided = decide(&self.scene, &self.runs, asked);
-        if decided.outcome.as_ref().is_ok_and(|found| matches!(found.answer(), Answer::NoneProved { .. })) {
-            // is the difference that is proved one that had to be seen?
-            let (first, second) = (asked.0.min(asked.1), asked.0.max(asked.1));
-            let pair = self.pairs.iter_mut().find(|p| (p.first, p.second) == (first, second));
-            if let Some(pair) = pair.filter(|p| p.gap.verdict == Verdict::Same) {
-                pair.predicted = predicted(&self.scene, &self.runs[first].choice, &self.runs[second]);
-            }
+        let none = |found: &Membership| matches!(found.answer(), Answer::NoneProved { .. });
+        if decided.outcome.as_ref().is_ok_and(none) {
+            let is_asked = |p: &&mut Pair| [(p.first, p.second), (p.second, p.first)].contains(&asked);
+            self.pairs.iter_mut().filter(is_asked).for_each(|pair| pair.gap.prove());
         }
         self.decided.push(decided);
         self.decided.last()

@@ -137,7 +137,7 @@ impl Comparison {
         }
         let predicted = pair.predicted.as_ref().filter(|predicted| predicted.proved)?;
         let start = self.runs[pair.first].outcome.as_ref().ok()?.start();
-        if pair.gap.verdict == Verdict::Same && stands_out(predicted, pair, start) {
+        if pair.gap.certain_from.is_none() && stands_out(predicted, pair, start) {
             return Some(contradiction(
                 format!("{first} and {second} agree within their errors"),
                 format!("it is proved that they part as {:.1e} t^{}", predicted.length, predicted.exponent),

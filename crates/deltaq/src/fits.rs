@@ -74,7 +74,7 @@ pub(crate) fn fits(
     let mut fits = Vec::new();
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
-        if pairs.iter().find(pair).is_some_and(|p| p.gap.verdict == Verdict::Different) {
+        if pairs.iter().find(pair).is_some_and(|p| p.gap.certain_from.is_some()) {
             let mut known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
             let by_identity = known.is_some();
             if let (None, Some(&first)) = (&known, vakonomic.first()) {

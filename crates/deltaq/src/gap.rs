@@ -1,5 +1,7 @@
 //! Two motions of one system: are they the same, from when not, by how much.
 
+use std::cmp::Ordering;
+
 use integrate::find_root;
 
 use crate::error_estimate::relative_to;
@@ -53,9 +55,11 @@ impl Sampling {
 /// The word on two motions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// The gap stays under the certainty limit over the whole horizon, and the estimates are small.
+    /// Neither the gap nor the difference of a coordinate passes its certainty limit over the whole horizon,
+    /// and the estimates are small. This was measured; it proves nothing.
     Same,
-    /// The gap passes the certainty limit.
+    /// The gap or the difference of a coordinate passes its certainty limit, or it is proved
+    /// ([`Gap::proved`]).
     Different,
     /// Neither can be said.
     Undecided {
@@ -80,10 +84,12 @@ impl Verdict {
 pub struct GapPoint {
     /// Time.
     pub t: f64,
-    /// `sqrt(Δqᵀ M Δq)`.
+    /// `sqrt(Δqᵀ |M| Δq)`.
     pub gap: f64,
     /// What a gap has to pass: [`CERTAINTY`] times the summed error estimates up to `t`, infinite in doubt.
     pub limit: f64,
+    /// Whether the gap or the difference of a coordinate passes its limit.
+    pub certain: bool,
 }
 
 /// What the comparison of two motions found.
@@ -93,8 +99,15 @@ pub struct Gap {
     pub verdict: Verdict,
     /// Time up to which both motions exist.
     pub end: f64,
-    /// First time at which the gap passes the certainty limit.
+    /// First time at which the gap or the difference of a coordinate passes its certainty limit.
     pub certain_from: Option<f64>,
+    /// First time at which the difference of each coordinate passes its own limit: the kinetic metric hides
+    /// those of little inertia.
+    pub certain_by_coordinate: Vec<Option<f64>>,
+    /// Whether the motions are proved to differ, by whatever little.
+    pub proved: bool,
+    /// Whether `M` has a negative eigenvalue at some instant, so that gaps are lengths by `|M|`.
+    pub indefinite: bool,
     /// First times at which the gap passes [`THRESHOLDS`].
     pub passes: [Option<f64>; 3],
     /// Largest gap, among the certain ones where there are any.
@@ -109,10 +122,11 @@ pub struct Gap {
     pub points: Vec<GapPoint>,
 }
 
-/// Compares two motions of one system from one start, over the time that both exist.
+/// Compares two motions of one system from one start, over the time that both exist. One that cannot be read
+/// off at an instant is stopped at the one before.
 ///
 /// # Errors
-/// [`SolveError`] where a motion cannot be read off.
+/// [`SolveError`] where the first motion cannot be read off at its start.
 pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Metric) -> Result<Gap, SolveError> {
     compare_motions_by(first, second, metric, &Sampling::default())
 }
@@ -120,7 +134,7 @@ pub fn compare_motions(first: &mut Motion, second: &mut Motion, metric: &mut Met
 /// [`compare_motions`] with other samples and clocks: for motions backwards, or in other units of time.
 ///
 /// # Errors
-/// [`SolveError`] where a motion cannot be read off.
+/// As [`compare_motions`].
 pub fn compare_motions_by(
     first: &mut Motion,
     second: &mut Motion,
@@ -129,13 +143,24 @@ pub fn compare_motions_by(
 ) -> Result<Gap, SolveError> {
     let (t0, end) = sampling.range(first, second);
     let mut points = Vec::new();
-    let mut differences: Vec<Vec<f64>> = Vec::new();
+    let mut coordinates: Vec<Vec<Difference>> = Vec::new();
     let (mut estimates, mut scale) = ([0.0_f64; 2], 0.0_f64);
     let origin = first.at(t0)?;
+    let n = origin.coordinates.len();
     let mut largest_length = 0.0_f64;
+    let (mut own, mut sizes, mut imprecise, mut indefinite) = (vec![0.0_f64; n], vec![0.0_f64; n], None, false);
+    let mut read = t0;
     for t in sample_times(t0, end, sampling.instants) {
-        let (one, first_error) = first.at_with_difference(t)?;
-        let (two, second_error) = second.at_with_difference(sampling.clock(t))?;
+        let readings = (first.at_with_difference(t), second.at_with_difference(sampling.clock(t)));
+        let ((one, first_error), (two, second_error)) = match readings {
+            (Ok(one), Ok(two)) => (one, two),
+            (one, two) => {
+                one.err().iter().for_each(|error| first.end_at(read, error));
+                two.err().iter().for_each(|error| second.end_at(sampling.clock(read), error));
+                break;
+            }
+        };
+        read = t;
         let (q, v) = (&one.coordinates, &one.velocities);
         let difference = subtract(q, &two.coordinates);
         for (estimate, error) in estimates.iter_mut().zip([&first_error, &second_error]) {
@@ -144,24 +169,46 @@ pub fn compare_motions_by(
         scale = scale.max(metric.distance(t, q, v, &origin.coordinates));
         largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
         let doubted = [(&*first, t), (&*second, sampling.clock(t))].into_iter().any(|(motion, t)| motion.is_doubted(t));
-        let limit = CERTAINTY * (estimates[0] + estimates[1] + ROUND_OFF * largest_length);
-        let limit = if doubted { f64::INFINITY } else { limit };
-        points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit });
-        differences.push(difference);
+        let limit = |estimate: f64, size: f64| {
+            if doubted { f64::INFINITY } else { CERTAINTY * (estimate + ROUND_OFF * size) }
+        };
+        for i in 0..n {
+            own[i] = own[i].max(first_error[i].abs() + second_error[i].abs());
+            sizes[i] = sizes[i].max(q[i].abs()).max((v[i] * (t - t0)).abs());
+        }
+        // a coordinate of no size of its own has the round-off of the others: in length or in number
+        let common = sizes.iter().copied().fold(0.0, f64::max);
+        let (units, negative) = metric.inertia(t, q, v);
+        indefinite |= negative;
+        let size = |i: usize| sizes[i].max(common.min(largest_length / units[i]));
+        imprecise = (0..n).map(|i| (own[i] / size(i), i)).filter(|(part, _)| *part >= SAME_ESTIMATE).max_by(larger);
+        coordinates
+            .push((0..n).map(|i| Difference { by: difference[i].abs(), limit: limit(own[i], size(i)) }).collect());
+        let limit = limit(estimates[0] + estimates[1], largest_length);
+        points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit, certain: false });
     }
     if sampling.rate < 0.0 {
         // the second motion started where the first one ended, with the error it had there
         let largest = points.iter().fold(0.0_f64, |a, p| a.max(p.limit));
         points.iter_mut().for_each(|p| p.limit = largest);
+        for i in 0..n {
+            let largest = coordinates.iter().fold(0.0_f64, |a, d| a.max(d[i].limit));
+            coordinates.iter_mut().for_each(|d| d[i].limit = largest);
+        }
     }
+    for (p, differences) in points.iter_mut().zip(&coordinates) {
+        p.certain = p.gap > p.limit || differences.iter().any(Difference::is_certain);
+    }
+    let first_of = |i: usize| points.iter().zip(&coordinates).find(|(_, d)| d[i].is_certain()).map(|(p, _)| p.t);
+    let certain_by_coordinate: Vec<Option<f64>> = (0..n).map(first_of).collect();
     // where a difference is certain, only certain gaps count; otherwise all of them
-    let certain = points.iter().any(|p| p.gap > p.limit);
+    let certain = points.iter().any(|p| p.certain);
     let mut largest = 0.0_f64;
-    let mut largest_by_coordinate = vec![0.0_f64; origin.coordinates.len()];
-    for (p, difference) in points.iter().zip(&differences).filter(|(p, _)| !certain || p.gap > p.limit) {
+    let mut largest_by_coordinate = vec![0.0_f64; n];
+    for (p, differences) in points.iter().zip(&coordinates).filter(|(p, _)| !certain || p.certain) {
         largest = largest.max(p.gap);
-        for (l, d) in largest_by_coordinate.iter_mut().zip(difference) {
-            *l = l.max(d.abs());
+        for (l, d) in largest_by_coordinate.iter_mut().zip(differences) {
+            *l = l.max(d.by);
         }
     }
     let mut gap_at = |t: f64| -> f64 {
@@ -171,8 +218,7 @@ pub fn compare_motions_by(
         }
     };
     let passes = THRESHOLDS.map(|threshold| first_passing(&points, &mut gap_at, threshold));
-    let certain_from = points.iter().find(|p| p.gap > p.limit).map(|p| p.t);
-    let complete = first.is_complete() && second.is_complete();
+    let certain_from = points.iter().find(|p| p.certain).map(|p| p.t);
     let estimate = estimates[0].max(estimates[1]);
     let relative = relative_to(scale, estimate);
     let doubt = first.doubt.as_ref().or(second.doubt.as_ref());
@@ -180,12 +226,13 @@ pub fn compare_motions_by(
         Verdict::Different
     } else if let Some(doubt) = doubt {
         Verdict::Undecided { because: doubt.because.clone() }
-    } else if !complete {
-        let stop = [&first.ending, &second.ending].into_iter().find_map(|e| match e {
-            Ending::Stopped { t, cause } => Some(format!("no difference up to t = {t:.6}, where one stops: {cause}")),
-            Ending::Completed => None,
-        });
-        Verdict::Undecided { because: stop.unwrap_or_default() }
+    } else if let Some((t, cause)) = earlier_stop(first, second) {
+        Verdict::Undecided { because: format!("no difference up to t = {t:.6}, where one stops: {cause}") }
+    } else if let (true, Some((part, i))) = (relative < SAME_ESTIMATE, imprecise) {
+        let name = &metric.names[i];
+        let because =
+            format!("relative error estimate of {name} {part:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain");
+        Verdict::Undecided { because }
     } else if relative < SAME_ESTIMATE {
         Verdict::Same
     } else if scale <= CERTAINTY * estimate {
@@ -199,10 +246,65 @@ pub fn compare_motions_by(
             format!("relative error estimate {relative:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain");
         Verdict::Undecided { because }
     };
-    Ok(Gap { verdict, end, certain_from, passes, largest, largest_by_coordinate, estimates, scale, points })
+    Ok(Gap {
+        verdict,
+        end: read,
+        certain_from,
+        certain_by_coordinate,
+        proved: false,
+        indefinite,
+        passes,
+        largest,
+        largest_by_coordinate,
+        estimates,
+        scale,
+        points,
+    })
+}
+
+/// The difference of a coordinate at an instant, and what it has to pass.
+struct Difference {
+    by: f64,
+    limit: f64,
+}
+
+impl Difference {
+    fn is_certain(&self) -> bool {
+        self.by > self.limit
+    }
+}
+
+fn larger(a: &(f64, usize), b: &(f64, usize)) -> Ordering {
+    a.0.total_cmp(&b.0)
+}
+
+/// When and why the first of the two stops that does, if one does.
+fn earlier_stop<'a>(first: &'a Motion, second: &'a Motion) -> Option<(f64, &'a str)> {
+    let stop = |motion: &'a Motion| match &motion.ending {
+        Ending::Stopped { t, cause } => Some(((t - motion.start()).abs(), *t, &cause[..])),
+        Ending::Completed => None,
+    };
+    let stops = [first, second].into_iter().filter_map(stop);
+    stops.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, t, cause)| (t, cause))
 }
 
 impl Gap {
+    /// The motions are proved to differ, whatever the gap shows.
+    pub(crate) fn prove(&mut self) {
+        (self.proved, self.verdict) = (true, Verdict::Different);
+    }
+
+    /// Whether the gap itself passes its limit: of motions that differ in coordinates of hardly any inertia, or
+    /// only by proof, it does not.
+    pub fn shows(&self) -> bool {
+        self.points.iter().any(|p| p.gap > p.limit)
+    }
+
+    /// What the gap was under at every instant, for all that was measured; infinite in doubt.
+    pub fn bound(&self) -> f64 {
+        self.points.iter().fold(0.0, |a, p| a.max(p.gap + p.limit))
+    }
+
     /// The certainty limit at `t`: that of the first sample from `t` on, infinite after the last.
     pub fn limit_at(&self, t: f64) -> f64 {
         self.points.iter().find(|p| p.t >= t).map_or(f64::INFINITY, |p| p.limit)

@@ -10,7 +10,8 @@ use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Expr;
 
-use crate::{Choice, LeadingTerm, Metric, SolveError, choices, formulation};
+use crate::table::known;
+use crate::{Choice, LeadingTerm, Metric, SolveError, choices};
 
 /// All constants that give a formulation a given motion: what was computed and what was proved of them.
 ///
@@ -191,7 +192,7 @@ impl<'a> Pairing<'a> {
 
 /// A choice's equations, nothing left out, forces apart if its principle has none; whether they are in.
 fn as_derived(system: &System, choice: &Choice) -> Result<(Equations, bool), SolveError> {
-    let entry = formulation(choice.formulation).unwrap_or(&chetaev::FORMULATION);
+    let entry = known(choice.formulation)?;
     let forces = if entry.takes_forces { system.forces.clone() } else { vec![system.graph.zero(); system.dimension()] };
     let derivation = Derivation { removal: choice.removal.as_ref(), start: None, all_costates: true };
     Ok(((entry.derive)(&System { forces, ..system.clone() }, &derivation)?, entry.takes_forces))

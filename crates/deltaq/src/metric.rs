@@ -1,12 +1,17 @@
 //! The kinetic metric: how far two configurations are apart.
 
 use mechanics::System;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use symbolic::{CompileError, Evaluator, Symbol};
 
-/// The length `sqrt(Δqᵀ M Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
+/// The length `sqrt(Δqᵀ |M| Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
+///
+/// `|M|` has the eigenvalues of `M` without their signs: it is `M` where that is positive semidefinite, and
+/// elsewhere what makes a norm of it. Coordinates without inertia have no length.
 #[derive(Clone)]
 pub struct Metric {
+    /// Names of the coordinates.
+    pub(crate) names: Vec<String>,
     program: Evaluator<f64>,
     dimension: usize,
     inputs: Vec<f64>,
@@ -33,7 +38,8 @@ impl Metric {
         let mut values = system.parameter_values();
         values.retain(|symbol, _| !parameters.contains(symbol));
         let program = Evaluator::new(system.graph.compile(&inputs, &outputs, &values)?);
-        Ok(Metric { program, dimension: system.dimension(), inputs: vec![0.0; inputs.len()] })
+        let names = system.coordinates.iter().map(|c| c.name.clone()).collect();
+        Ok(Metric { names, program, dimension: system.dimension(), inputs: vec![0.0; inputs.len()] })
     }
 
     /// Values of the parameters that vary.
@@ -55,13 +61,17 @@ impl Metric {
         self.program.evaluate(&self.inputs).split_at(n * n)
     }
 
-    /// `sqrt(|Δqᵀ M Δq|)` with `M` at `(t, q, v)`.
+    /// `sqrt(Δqᵀ |M| Δq)` with `M` at `(t, q, v)`.
     pub fn length(&mut self, t: f64, q: &[f64], v: &[f64], difference: &[f64]) -> f64 {
         let n = self.dimension;
-        let rows = self.at(t, q, v).0.chunks_exact(n);
-        let square: f64 =
-            rows.zip(difference).map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>()).sum();
-        square.abs().sqrt()
+        let mass = self.at(t, q, v).0;
+        let rows = mass.chunks_exact(n).zip(difference);
+        let square: f64 = rows.map(|(row, d)| d * row.iter().zip(difference).map(|(m, e)| m * e).sum::<f64>()).sum();
+        let mass = DMatrix::from_row_slice(n, n, mass);
+        match mass.clone().cholesky() {
+            Some(_) => square.sqrt(),
+            None => (absolute_root(&mass) * DVector::from_column_slice(difference)).norm(),
+        }
     }
 
     /// [`Metric::length`] of `q − other`.
@@ -69,19 +79,55 @@ impl Metric {
         self.length(t, q, v, &subtract(q, other))
     }
 
-    /// Upper triangular `R` with `RᵀR = M` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`;
-    /// where `M` is not positive definite, the square roots of its diagonal instead.
+    /// `R` with `RᵀR = |M|` at `(t, q, v)`, so that the length of `Δq` is that of `R Δq`.
     pub(crate) fn factor(&mut self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
         let n = self.dimension;
         let mass = DMatrix::from_row_slice(n, n, self.at(t, q, v).0);
-        let diagonal = DMatrix::from_diagonal(&mass.diagonal().map(|m| m.abs().sqrt()));
-        mass.cholesky().map_or(diagonal, |c| c.l().transpose())
+        let root = || absolute_root(&mass);
+        mass.clone().cholesky().map_or_else(root, |c| c.l().transpose())
+    }
+
+    /// The length of each coordinate's unit at `(t, q, v)`, and whether `M` has a negative eigenvalue there.
+    pub(crate) fn inertia(&mut self, t: f64, q: &[f64], v: &[f64]) -> (Vec<f64>, bool) {
+        let n = self.dimension;
+        let mass = DMatrix::from_row_slice(n, n, self.at(t, q, v).0);
+        let factor = |root: &DMatrix<f64>| root.column_iter().map(|column| column.norm()).collect::<Vec<f64>>();
+        match mass.clone().cholesky() {
+            Some(c) => (factor(&c.l().transpose()), false),
+            None => {
+                let units = factor(&absolute_root(&mass));
+                let scaled = DMatrix::from_fn(n, n, |i, j| {
+                    let product = units[i] * units[j];
+                    if product > 0.0 { mass[(i, j)] / product } else { 0.0 }
+                });
+                let negative = eigen(&scaled).is_some_and(|eigen| eigen.eigenvalues.min() < -NEGATIVE);
+                (units, negative)
+            }
+        }
     }
 
     /// `max |fᵢ(t, q, v)|`, 0 where there is no constraint.
     pub fn constraint_residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         self.at(t, q, v).1.iter().fold(0.0, |a, f| a.max(f.abs()))
     }
+}
+
+/// An eigenvalue of `M` with rows and columns of length 1 is negative below minus this.
+const NEGATIVE: f64 = 1e-9;
+
+/// `R` with `RᵀR = |M|`; NaN where `M` is not finite.
+fn absolute_root(mass: &DMatrix<f64>) -> DMatrix<f64> {
+    match eigen(mass) {
+        Some(eigen) => {
+            DMatrix::from_diagonal(&eigen.eigenvalues.map(|x| x.abs().sqrt())) * eigen.eigenvectors.transpose()
+        }
+        None => DMatrix::from_element(mass.nrows(), mass.ncols(), f64::NAN),
+    }
+}
+
+/// `None` for a matrix that is not finite, in which no iteration would end.
+fn eigen(mass: &DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
+    mass.iter().all(|x| x.is_finite()).then(|| mass.clone().symmetric_eigen())
 }
 
 pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {

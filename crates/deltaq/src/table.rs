@@ -2,6 +2,8 @@
 
 use equations::Formulation;
 
+use crate::SolveError;
+
 /// Every formulation, in the order of reports. A further one is one crate and one line here.
 pub const FORMULATIONS: &[Formulation] = &[
     chetaev::FORMULATION,
@@ -17,6 +19,15 @@ pub const FORMS: &[Formulation] = &[reduction::REDUCED_CHETAEV, reduction::REDUC
 /// The formulation or form of that name.
 pub fn formulation(name: &str) -> Option<&'static Formulation> {
     FORMULATIONS.iter().chain(FORMS).find(|f| f.name == name)
+}
+
+/// [`formulation`] of what a choice says.
+pub(crate) fn known(name: &str) -> Result<&'static Formulation, SolveError> {
+    let unknown = || {
+        let known: Vec<&str> = FORMULATIONS.iter().chain(FORMS).map(|f| f.name).collect();
+        SolveError::UnknownFormulation { name: name.into(), known: known.join(", ") }
+    };
+    formulation(name).ok_or_else(unknown)
 }
 
 /// The form of that formulation in quasi-velocities.

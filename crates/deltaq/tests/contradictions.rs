@@ -113,10 +113,11 @@ fn every_multiplier_beside_motions_that_differ() {
 #[test]
 fn a_proved_difference_beside_motions_that_agree_and_beside_another_growth() {
     let mut sledge = sledge();
-    pair(&mut sledge, "vakonomic").gap.verdict = Verdict::Same;
+    let gap = &mut pair(&mut sledge, "vakonomic").gap;
+    let certain_from = gap.certain_from.take();
     assert!(found(&sledge).contains("agree within their errors, but it is proved that they part as"));
     let pair = pair(&mut sledge, "vakonomic");
-    pair.gap.verdict = Verdict::Different;
+    pair.gap.certain_from = certain_from;
     pair.growth.as_mut().expect("a growth").exponent += 1.0;
     assert!(found(&sledge).contains("part as t^3, but they were measured to part as t^4.0"));
 }

@@ -4,3 +4,4 @@ mod contradictions;
 mod errors;
 mod estimates;
 mod examples;
+mod gaps;

@@ -55,8 +55,9 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<Stri
         let _ = writeln!(page, "\n{}", image(picture));
     }
     let _ = writeln!(page, "\n## Where the motions part\n\n{}", tables::pairs(comparison));
-    page += "Gaps are lengths in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$, in m √kg where $L$ is in J; times in s. Two motions are *different* only where the gap is over \
-             ten times the sum of both error estimates, *the same* where it never is and the estimates are below 1e-8 of the way.\n";
+    page += "Gaps are lengths in the kinetic metric $\\sqrt{\\Delta q^T |M| \\Delta q}$, in m √kg where $L$ is in J; times in s. Two motions are *different* where the gap, or the \
+             difference of a coordinate, is over ten times the sum of both error estimates, or where that is proved. *Same* says what was measured: up to the end, neither is, and the estimates \
+             are below 1e-8 of the way.\n";
     let growth = tables::growth(comparison);
     if !growth.is_empty() {
         let _ = writeln!(page, "\n### How the gaps start\n\n{growth}");

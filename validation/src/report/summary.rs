@@ -69,8 +69,10 @@ fn pairs(comparison: &Comparison) -> String {
         let letter = letter.and_then(|i| ('a'..='z').nth(i)).map_or(String::new(), String::from);
         let names = format!("{} – {}", label(pair.first), label(pair.second));
         let [first, second, _] = pair.gap.passes.map(or_dash);
-        let verdict = pair.gap.verdict.word();
-        table.push([letter, names, verdict.into(), first, second, short(pair.gap.largest)].to_vec());
+        let seen = pair.gap.verdict != Verdict::Different || pair.gap.certain_from.is_some();
+        let verdict = if seen { pair.gap.verdict.word() } else { "different (proved)" };
+        let largest = if seen { short(pair.gap.largest) } else { format!("< {}", short(pair.gap.bound())) };
+        table.push([letter, names, verdict.into(), first, second, largest].to_vec());
     }
     let count = |wanted: &str| others.iter().filter(|p| p.gap.verdict.word() == wanted).count();
     let counts = ["same", "different", "undecided"].map(|verdict| (count(verdict), verdict));
@@ -83,7 +85,7 @@ fn pairs(comparison: &Comparison) -> String {
 
 /// Pairs that differ: those with the first motion, which is Chetaev's if it was asked for.
 fn plotted(comparison: &Comparison) -> Vec<&Pair> {
-    let differ = rows(comparison).filter(|p| p.gap.verdict == Verdict::Different);
+    let differ = rows(comparison).filter(|p| p.gap.shows());
     let first = rows(comparison).map(|p| p.first).min();
     differ.filter(|p| Some(p.first) == first).take(CURVES).collect()
 }

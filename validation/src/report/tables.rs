@@ -4,7 +4,7 @@ use anyhow::Result;
 use deltaq::{ChartChange, Comparison, Ending, Pair, Verdict};
 
 use crate::report::Table;
-use deltaq::words::{enumerate, or_dash, precise, short};
+use deltaq::words::{enumerate, or_dash, precise, short, unseen};
 
 /// Times at which invariants and residuals are sampled.
 const SAMPLES: usize = 400;
@@ -18,6 +18,7 @@ pub(crate) fn verdict_words(gap: &deltaq::Gap) -> String {
         Verdict::Same => "same".into(),
         Verdict::Different => match gap.passes[0] {
             Some(t) => format!("**different**, 1e-6 at {} s", short(t)),
+            None if gap.certain_from.is_none() => format!("**different**: proved; {}", unseen(gap)),
             None => format!("**different**, by at most {}", short(gap.largest)),
         },
         Verdict::Undecided { because } => format!("undecided: {because}"),
@@ -81,6 +82,9 @@ pub(crate) fn pairs(comparison: &Comparison) -> Table {
         let [a, b, c] = pair.gap.passes.map(or_dash);
         let verdict = match &pair.gap.verdict {
             Verdict::Same => "same".to_string(),
+            Verdict::Different if pair.gap.certain_from.is_none() => {
+                format!("**different**: proved; {}", unseen(&pair.gap))
+            }
             Verdict::Different => "**different**".to_string(),
             Verdict::Undecided { because } => format!("undecided: {because}"),
         };

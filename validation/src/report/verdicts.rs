@@ -38,6 +38,7 @@ fn scene(comparison: &Comparison) -> Value {
                 "first": label(p.first),
                 "second": label(p.second),
                 "verdict": p.gap.verdict.word(),
+                "proved": p.gap.proved,
                 "passes": p.gap.passes.map(|t| t.map(rounded)),
             })
         })

@@ -8,7 +8,7 @@ use equations::Role;
 use super::decision;
 use super::numbers::{enumerate, precise, short};
 use crate::contradiction::FAULT;
-use crate::{CERTAINTY, Comparison, Pair, Verdict, formulation};
+use crate::{CERTAINTY, Comparison, Gap, Pair, Verdict, formulation};
 
 /// Three answers, each in a few sentences.
 pub struct Headline {
@@ -85,15 +85,24 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
         [] => {}
         [class] if names(class).len() == 1 => sentences.push(alone(comparison, class[0])),
         [_] if !refused && rows(comparison).all(|p| p.gap.verdict == Verdict::Same) => {
-            return vec!["All formulations give the same motion.".into()];
+            return vec![format!(
+                "No formulation's motion differs from another's by more than the error estimates{}.",
+                until(comparison)
+            )];
         }
         [_, _, ..] if rows(comparison).filter(across).all(|p| p.gap.verdict == Verdict::Different) => {
-            let each: Vec<String> = classes.iter().map(|class| names(class).join(" = ")).collect();
+            let each: Vec<String> = classes.iter().map(|class| names(class).join(" ≈ ")).collect();
             sentences.push(format!("{} different motions: {}.", classes.len(), each.join("; ")));
+            if each.iter().any(|names| names.contains(" ≈ ")) {
+                sentences.push(format!("≈: no difference above the error estimates{}.", until(comparison)));
+            }
         }
         several => {
             let shared = several.iter().map(|class| names(class)).filter(|names| names.len() > 1);
-            sentences.extend(shared.map(|names| format!("{} give the same motion.", enumerate(&names))));
+            let none = |names: Vec<String>| {
+                format!("{}: no difference above the error estimates{}.", enumerate(&names), until(comparison))
+            };
+            sentences.extend(shared.map(none));
         }
     }
     let first = |name: &str| comparison.run(name);
@@ -102,11 +111,7 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
         let both = format!("{} and {}", label(comparison, p.first), label(comparison, p.second));
         match &p.gap.verdict {
             Verdict::Different if [p.first, p.second].iter().all(|i| main.contains(&Some(*i))) => {
-                let when = match p.gap.passes[1] {
-                    Some(t) => format!("1e-3 apart after {} s", short(t)),
-                    None => "apart by less than 1e-3".into(),
-                };
-                sentences.push(format!("{both}: {when}, largest gap {}.", short(p.gap.largest)));
+                sentences.push(format!("{both}: {}.", how_different(comparison, &p.gap)));
             }
             Verdict::Undecided { because } => undecided.push((because.clone(), both)),
             _ => {}
@@ -114,6 +119,38 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
     }
     sentences.extend(by_reason(undecided).iter().map(|(why, of)| format!("{}: undecided, {why}.", of.join("; "))));
     sentences
+}
+
+/// From when, by how much, in what.
+fn how_different(comparison: &Comparison, gap: &Gap) -> String {
+    if gap.certain_from.is_none() {
+        return format!("different, which is proved; {}", unseen(gap));
+    }
+    let largest = short(gap.largest);
+    if let Some(t) = gap.passes[1] {
+        return format!("1e-3 apart after {} s, largest gap {largest}", short(t));
+    }
+    if gap.shows() {
+        return format!("apart by less than 1e-3, largest gap {largest}");
+    }
+    let coordinates = comparison.scene.system.coordinates.iter().zip(&gap.largest_by_coordinate);
+    let certain = coordinates.zip(&gap.certain_by_coordinate).filter(|(_, from)| from.is_some());
+    let certain: Vec<String> = certain.map(|((c, by), _)| format!("{} by up to {}", c.name, short(*by))).collect();
+    format!("apart in {}, which the kinetic metric does not show", enumerate(&certain))
+}
+
+/// What was measured of two motions that are proved to differ, and do not differ by more than their errors.
+pub fn unseen(gap: &Gap) -> String {
+    match gap.bound() {
+        bound if bound.is_finite() => format!("by less than {} up to {} s: measured", short(bound), short(gap.end)),
+        _ => "no difference was measured".into(),
+    }
+}
+
+/// Up to when pairs without a difference were compared: the earliest end.
+fn until(comparison: &Comparison) -> String {
+    let same = rows(comparison).filter(|p| p.gap.verdict == Verdict::Same).map(|p| p.gap.end);
+    same.min_by(f64::total_cmp).map_or(String::new(), |t| format!(" up to {} s", short(t)))
 }
 
 /// What has the same reason, together, in the order of the first.
@@ -188,5 +225,14 @@ fn errors(comparison: &Comparison) -> Option<String> {
     let estimates = rows(comparison).flat_map(|p| p.gap.estimates);
     let largest =
         estimates.fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| if b > a || b.is_nan() { b } else { a })))?;
-    Some(format!("Error estimates: at most {}; a gap counts from {CERTAINTY} times the sum of two.", short(largest)))
+    let indefinite = if rows(comparison).any(|p| p.gap.indefinite) {
+        " M is not positive definite: gaps are lengths by |M|, whose eigenvalues have no signs, and each coordinate is judged by its own \
+         estimates, too."
+    } else {
+        ""
+    };
+    Some(format!(
+        "Error estimates: at most {}; a gap counts from {CERTAINTY} times the sum of two.{indefinite}",
+        short(largest)
+    ))
 }

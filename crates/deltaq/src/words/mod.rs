@@ -5,5 +5,5 @@ mod headline;
 mod numbers;
 
 pub use decision::{decisions, how_far, sentence};
-pub use headline::{Headline, rows};
+pub use headline::{Headline, rows, unseen};
 pub use numbers::{enumerate, or_dash, precise, short};
