@@ -42,7 +42,7 @@
 
 use equations::{Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement};
 use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Symbol, Vanishing};
 
 /// Entry of the table of formulations.
 pub const FORMULATION: Formulation = Formulation {
@@ -149,7 +149,7 @@ fn energy_is_constant(system: &System, jacobian: &symbolic::Matrix) -> bool {
     let homogeneous = system.constraints.iter().zip(work).all(|(&f, av)| {
         (1..=4).any(|degree| {
             let rest = g.sub(av, g.mul(g.integer(degree), f));
-            g.vanishes_at_points(rest, &system.parameter_values()).is_zero()
+            g.vanishes(rest, &system.parameter_values()) == Vanishing::Exactly
         })
     });
     homogeneous && system.is_autonomous() && !system.has_forces()

@@ -93,6 +93,7 @@ mod table;
 mod trajectory;
 mod trial;
 mod varying;
+mod watch;
 pub mod words;
 
 pub use decision::{Finding, PlainScene, Section};

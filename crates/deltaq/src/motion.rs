@@ -12,8 +12,10 @@ use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::method::Chosen;
 use crate::metric::subtract;
+use crate::single_run::{UNITS, move_digits};
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
+use crate::watch::Watch;
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
 
 /// Wall-clock seconds spent.
@@ -150,12 +152,41 @@ impl Motion {
         Ok(names.zip(start).zip(drift).map(|((name, start), drift)| (name, start, drift)).collect())
     }
 
+    /// The doubt that begins where the scene's own constraints, or what is listed as constant, are off by more
+    /// than the error estimate. What cannot be read off is another matter.
+    fn broken(&mut self, mut watch: Watch) -> Option<Doubt> {
+        let times = self.grid(WATCHED);
+        watch.begin(times[0], &self.at(times[0]).ok()?, &[]);
+        let kept: Vec<Outputs> = times.iter().map_while(|&t| self.at(t).ok()).collect();
+        if times.iter().zip(&kept).all(|(&t, kept)| watch.is_clear(t, kept)) {
+            return None;
+        }
+        let invariants = self.equations.invariants.clone();
+        let mut before = times[0];
+        for (&t, kept) in times.iter().zip(&kept) {
+            let looser = self.looser.outputs(&mut self.compiled, t).ok()?;
+            let mut moved = || {
+                let mut state = self.kept.state(&mut self.compiled, t).ok()?;
+                move_digits(&mut state, |_| UNITS);
+                self.compiled.outputs(t, &state).ok().map(|outputs| outputs.invariants)
+            };
+            if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut moved) {
+                return Some(Doubt { from: before, because });
+            }
+            before = t;
+        }
+        None
+    }
+
     /// `samples + 1` equidistant times from start to end.
     pub fn grid(&self, samples: usize) -> Vec<f64> {
         let (a, b) = (self.start(), self.end());
         (0..=samples).map(|i| a + (b - a) * i as f64 / samples as f64).collect()
     }
 }
+
+/// Stretches of a motion at whose ends the scene's own constraints are looked at.
+const WATCHED: usize = 32;
 
 /// Integrates `equations` from `setting.start` to `setting.end`, twice, and keeps the tighter run.
 ///
@@ -181,6 +212,9 @@ pub fn solve(
     let steps = [motion.kept.step_times(), motion.looser.step_times()];
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), by);
+    if motion.doubt.is_none() {
+        motion.doubt = motion.broken(Watch::new(setting.system, &[])?);
+    }
     Ok(motion)
 }
 

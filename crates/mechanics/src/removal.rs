@@ -127,7 +127,7 @@ impl Removal {
         }
         let constants = system.parameter_values();
         for (index, &f) in system.constraints.iter().enumerate() {
-            let verdict = system.graph.vanishes_at_points(self.rewrite(system, f), &constants);
+            let verdict = system.graph.vanishes(self.rewrite(system, f), &constants);
             if verdict.is_zero() {
                 continue;
             }

@@ -14,7 +14,8 @@ const TERMS: usize = 5_000;
 /// Terms of a coefficient that is multiplied out to clear it of denominators.
 const CLEARED: usize = 10_000;
 
-/// A difference under this part of its terms, at the start, is tested for being zero.
+/// A difference under this part of its terms, at the start, is tested for being zero: what is so exactly is
+/// taken out, what is only round-off there stays as 0 there, and so is no pivot.
 const CANCELLED: f64 = 1e-9;
 
 /// A coefficient, its value at the start (NaN where that is not finite) and the nodes of its expression.
@@ -58,12 +59,13 @@ impl SolvedConstraints {
         for _ in 0..h {
             let (p, c) = choose_pivot(candidates(&matrix, &pivots, n))?;
             let Some(Pivot { entry: pivot, row: undivided, column }) = matrix.take(p, c) else { break };
-            let row: BTreeMap<usize, Entry> =
-                undivided.iter().map(|(&j, undivided)| (j, known(g.div(undivided.e, pivot.e)))).collect();
+            let divided = |entry: &Entry| Entry { number: entry.number / pivot.number, ..known(g.div(entry.e, pivot.e)) };
+            let row: BTreeMap<usize, Entry> = undivided.iter().map(|(&j, entry)| (j, divided(entry))).collect();
             quotients.extend(row.range(..n).map(|(_, entry)| entry.e));
             for (i, factor) in column {
                 for (&j, entry) in &row {
                     let before = matrix.rows()[i].get(&j).copied().unwrap_or_else(|| known(g.zero()));
+                    let was_zero = before.number == 0.0 && (factor.number == 0.0 || entry.number == 0.0);
                     let mut rest = known(g.sub(before.e, g.mul(factor.e, entry.e)));
                     // sin²/cos + cos is 1/cos
                     let over_pivot = g.sub(g.mul(before.e, pivot.e), g.mul(factor.e, undivided[&j].e));
@@ -75,8 +77,11 @@ impl SolvedConstraints {
                     }
                     // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
                     let terms = before.number.abs() + (factor.number * entry.number).abs();
-                    let stays =
-                        rest.number.abs() > CANCELLED * terms || !g.vanishes_at_points(rest.e, &constants).is_zero();
+                    let cancels = was_zero || rest.number.abs() <= CANCELLED * terms;
+                    let stays = !g.is_zero(rest.e) && !(cancels && g.vanishes_exactly(rest.e));
+                    if was_zero || cancels && g.is_round_off(rest.e, &values) {
+                        rest.number = 0.0;
+                    }
                     matrix.set(i, j, stays.then_some(rest));
                 }
             }

@@ -186,9 +186,8 @@ fn difference(g: &Graph, a: &Sparse, b: &Sparse) -> Sparse {
 /// Whether a form in `q` is one of the position alone, and `∂_i d_j = ∂_j d_i`.
 fn is_closed(system: &System, form: &Sparse) -> bool {
     let g = &system.graph;
-    let constants = system.parameter_values();
     let by = |e: Option<&Expr>, i: usize| e.map_or(g.zero(), |&e| g.derivative(e, system.coordinates[i].position));
-    let vanishes = |e: Expr| g.is_zero(e) || g.vanishes(e, &constants).is_zero();
+    let vanishes = |e: Expr| g.is_zero(e) || g.vanishes_exactly(e);
     form.iter().all(|(&j, &e)| {
         let symbols = g.symbols_of(e);
         let mut others = (0..system.dimension()).filter(|&i| symbols.contains(&system.coordinates[i].position));
@@ -230,7 +229,6 @@ impl Search<'_> {
             }
         }
         let short = factors.len() + rest.len() < row.len();
-        let zero = || g.vanishes(g.sum(&cancelled), &self.system.parameter_values()).is_zero();
-        (short && zero()).then_some((factors, rest))
+        (short && g.vanishes_exactly(g.sum(&cancelled))).then_some((factors, rest))
     }
 }

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 /// Terms beyond which the exact test gives up.
 const TERM_LIMIT: usize = 400;
-/// Random points of the numerical test.
+/// Finite values that the numerical test asks for.
 const POINTS: usize = 32;
 /// Points that may be tried to find so many where the value is finite.
 const TRIES: usize = 20 * POINTS;
@@ -14,9 +14,9 @@ const TRIES: usize = 20 * POINTS;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Vanishing {
-    /// It simplifies to the number zero.
+    /// Its normal form is the number zero. Only this allows to take it out of an equation.
     Exactly,
-    /// Zero within round-off at `points` random points.
+    /// Zero within round-off at `points` random points; it may differ from zero elsewhere.
     Numerically {
         /// How many points.
         points: usize,
@@ -28,12 +28,16 @@ pub enum Vanishing {
         /// What round-off can amount to there.
         bound: f64,
     },
-    /// The value was finite at none of `tried` random points.
+    /// Of `tried` random points, too few had a finite value.
     Undecided {
         /// How many points.
         tried: usize,
     },
 }
+
+/// Where random points of the numerical test are drawn, symbol by symbol: its value at the start, and how far
+/// from there a motion may come.
+pub type Around = HashMap<Symbol, [f64; 2]>;
 
 impl Vanishing {
     /// Is it zero, exactly or numerically?
@@ -47,9 +51,10 @@ impl Vanishing {
 }
 
 impl Graph {
-    /// Is `e` identically zero? Exact by expansion where that succeeds, else by evaluation at random
-    /// points (fixed seed) against the round-off bound of the evaluation itself. `constants` are
-    /// numbers to put in first; where they do not stay exact, what they cancel to is round-off as well.
+    /// Is `e` identically zero? Exact by expansion where that succeeds, else by evaluation at random points
+    /// (fixed seed; both signs, sizes from 0.01 to 100) against the round-off bound of the evaluation itself.
+    /// `constants` are numbers to put in first; where they do not stay exact, what they cancel to is round-off
+    /// as well.
     ///
     /// ```
     /// use std::collections::HashMap;
@@ -62,38 +67,69 @@ impl Graph {
     /// ```
     #[track_caller]
     pub fn vanishes(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        self.answer(e, constants, true)
+        self.vanishes_around(e, constants, &Around::new())
     }
 
-    /// [`Graph::vanishes`] without the expansion, which takes most of the time, where points decide.
+    /// [`Graph::vanishes`] with half of the points drawn `around` a start.
     #[track_caller]
-    pub fn vanishes_at_points(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        self.answer(e, constants, false)
-    }
-
-    #[track_caller]
-    fn answer(&self, e: Expr, constants: &HashMap<Symbol, f64>, exactly: bool) -> Vanishing {
-        match self.vanishes_in_truth(e, constants, exactly) {
+    pub fn vanishes_around(&self, e: Expr, constants: &HashMap<Symbol, f64>, around: &Around) -> Vanishing {
+        match self.vanishes_in_truth(e, constants, around) {
             answer if !faults::goes_wrong("answer turned") => answer,
             answer if answer.is_zero() => Vanishing::No { value: 1.0, bound: 0.0 },
             _ => Vanishing::Exactly,
         }
     }
 
-    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>, exactly: bool) -> Vanishing {
+    /// Whether `e` is zero as a rational function of its symbols, sines, roots and other functions, or by its
+    /// normal form, whatever the values of its symbols: what may be taken out of equations. `false` where that
+    /// cannot be told.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let x = g.variable(g.symbol("x"));
+    /// // 1 + tanh(4 (x − 30)) is zero to the last digit for all x under 20, and 2 beyond 40
+    /// let far = g.mul(g.integer(4), g.sub(x, g.integer(30)));
+    /// assert!(!g.vanishes_exactly(g.add(g.one(), g.call(symbolic::Function::Tanh, far))));
+    /// ```
+    #[track_caller]
+    pub fn vanishes_exactly(&self, e: Expr) -> bool {
+        let split = || {
+            let mut arena = self.arena.borrow_mut();
+            let e = arena.with_split_angles(e);
+            arena.is_zero_rational(e)
+        };
+        let zero = self.arena.borrow().is_zero_rational(e)
+            || match self.vanishes_in_truth(e, &HashMap::new(), &Around::new()) {
+                Vanishing::Exactly => true,
+                Vanishing::No { .. } => false,
+                _ => split(),
+            };
+        zero != faults::goes_wrong("answer turned")
+    }
+
+    /// Whether the value of `e` at these values of its symbols cannot be told from zero: no divisor.
+    pub fn is_round_off(&self, e: Expr, values: &HashMap<Symbol, f64>) -> bool {
+        let symbols: Vec<Symbol> = self.symbols_of(e).into_iter().collect();
+        let Ok(tape) = self.compile(&symbols, &[e], &HashMap::new()) else { return false };
+        let number = |s: &Symbol| Bounded::from_f64(values.get(s).copied().unwrap_or(f64::NAN));
+        let inputs: Vec<Bounded> = symbols.iter().map(number).collect();
+        Evaluator::new(tape).evaluate(&inputs)[0].may_be_zero()
+    }
+
+    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>, around: &Around) -> Vanishing {
         let e = self.substituted(&[open], &self.as_numbers(constants))[0];
         if e == Arena::ZERO {
             return Vanishing::Exactly;
         }
-        let mut sampled = self.sample(e, &HashMap::new());
+        let mut sampled = self.sample(e, &HashMap::new(), around);
         if matches!(sampled, Vanishing::No { .. }) && e != open && self.arena.borrow().contains_float(e) {
             // what cancelled floats leave does not tell their size; constants as inputs keep it
-            let again = self.sample(open, constants);
+            let again = self.sample(open, constants, around);
             if again.is_zero() {
                 sampled = again;
             }
         }
-        if matches!(sampled, Vanishing::No { .. }) || !exactly && sampled.is_zero() {
+        if matches!(sampled, Vanishing::No { .. }) {
             return sampled;
         }
         let normal = self.arena.borrow_mut().normal_numerator(e, TERM_LIMIT);
@@ -101,7 +137,7 @@ impl Graph {
     }
 
     /// The numerical test, at these values of the constants.
-    fn sample(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
+    fn sample(&self, e: Expr, constants: &HashMap<Symbol, f64>, around: &Around) -> Vanishing {
         let symbols: Vec<Symbol> = self.symbols_of(e).into_iter().collect();
         let Ok(tape) = self.compile(&symbols, &[e], &HashMap::new()) else {
             return Vanishing::Undecided { tried: 0 };
@@ -109,17 +145,13 @@ impl Graph {
         let mut evaluator = Evaluator::new(tape);
         let mut random = SplitMix::new(0x5eed);
         let mut inputs = vec![Bounded::from_f64(0.0); symbols.len()];
-        let mut points = 0;
-        let mut tried = 0;
+        let (mut points, mut tried) = (0, 0);
         while points < POINTS && tried < TRIES {
-            tried += 1;
-            // Where a root or logarithm needs positive values, random signs may never give them all.
-            let signed = tried % 2 == 1;
             for (x, symbol) in inputs.iter_mut().zip(&symbols) {
-                *x = Bounded::from_f64(
-                    constants.get(symbol).copied().unwrap_or_else(|| coordinate(&mut random, signed)),
-                );
+                let drawn = || coordinate(&mut random, tried, around.get(symbol));
+                *x = Bounded::from_f64(constants.get(symbol).copied().unwrap_or_else(drawn));
             }
+            tried += 1;
             let output = evaluator.evaluate(&inputs)[0];
             if !output.is_finite() {
                 continue;
@@ -129,13 +161,20 @@ impl Graph {
             }
             points += 1;
         }
-        if points == 0 { Vanishing::Undecided { tried } } else { Vanishing::Numerically { points } }
+        if points < POINTS { Vanishing::Undecided { tried } } else { Vanishing::Numerically { points } }
     }
 }
 
-/// In [0.2, 1.3], with a random sign if `signed`.
-fn coordinate(random: &mut SplitMix, signed: bool) -> f64 {
+/// In turns: around the start, if there is one; in [0.2, 1.3], where roots and logarithms are finite; the same
+/// with random signs; of sizes from 0.01 to 100.
+fn coordinate(random: &mut SplitMix, tried: usize, around: Option<&[f64; 2]>) -> f64 {
     let bits = random.bits();
-    let x = 0.2 + 1.1 * (bits >> 11) as f64 / (1_u64 << 53) as f64;
-    if signed && bits & 1 == 1 { -x } else { x }
+    let part = (bits >> 11) as f64 / (1_u64 << 53) as f64;
+    let signed = |x: f64| if bits & 1 == 1 { -x } else { x };
+    match (tried % 4, around) {
+        (0 | 2, Some([start, reach])) => start + signed(part * reach),
+        (0, None) => 0.2 + 1.1 * part,
+        (1, _) => signed(0.2 + 1.1 * part),
+        _ => signed(100.0_f64.powf(2.0 * part - 1.0)),
+    }
 }

@@ -40,7 +40,7 @@ impl Arena {
     }
 
     /// tan = sin/cos, and sines and cosines of sums by the addition theorems; likewise hyperbolic ones.
-    fn with_split_angles(&mut self, e: Expr) -> Expr {
+    pub(crate) fn with_split_angles(&mut self, e: Expr) -> Expr {
         let split = |arena: &mut Arena, e: Expr| match *arena.node(e) {
             Node::Call(function, argument) => arena.split_call(function, argument).unwrap_or(e),
             _ => e,
@@ -67,7 +67,8 @@ impl Arena {
         let Node::Sum(constant, terms) = self.node(u).clone() else {
             return self.plain_pair(u, hyperbolic);
         };
-        if terms.len() > 4 {
+        // cosh(250) − sinh(250) is 0 in numbers, and 1 + tanh(x − 250) is not
+        if terms.len() > 4 || hyperbolic && !constant.is_zero() {
             return self.plain_pair(u, hyperbolic);
         }
         let mut total = (Self::ZERO, Self::ONE);

@@ -1,7 +1,5 @@
 //! Rotations as products of turns, and their angular velocities.
 
-use std::collections::HashMap;
-
 use crate::value::{Scope, Turn, Value};
 use crate::{Expr, Function, Graph, Matrix};
 
@@ -21,10 +19,10 @@ impl Graph {
         word.chars().zip(angles).map(turn).collect::<Option<Vec<_>>>().map(|turns| self.turned(turns))
     }
 
-    /// The turn about `axis`, which is divided by its length unless that is 1.
+    /// The turn about `axis`, which is divided by its length unless that is 1 exactly.
     pub(crate) fn rotation_about(&self, axis: &[Expr; 3], angle: Expr) -> Value {
         let square = self.dot(axis, axis);
-        let unit = self.vanishes_at_points(self.sub(square, self.one()), &HashMap::new()).is_zero();
+        let unit = self.vanishes_exactly(self.sub(square, self.one()));
         let length = self.sqrt(square);
         let axis = if unit { *axis } else { axis.map(|a| self.div(a, length)) };
         self.turned(vec![Turn { axis, angle }])

@@ -237,3 +237,32 @@ fn depth_is_no_danger() {
     let nested = (0..10_000).fold(g.zero(), |sum, _| g.powi(g.add(sum, g.variable(x)), 2));
     assert!(g.size(&[nested]) > 10_000);
 }
+
+#[test]
+fn what_switches_on_far_away_does_not_vanish_exactly() {
+    let g = Graph::new();
+    for text in [
+        "1 + tanh(4*(x - 300))",
+        "1 + tanh(50*(x - 5))",
+        "exp(-(x - 300)^2)",
+        "exp(x - 900)",
+        "step(x, 500, 900, 0.05)",
+        "(sqrt(x) + sqrt(y) + sqrt(z))*y",
+        "x - sqrt(x^2)",
+        "sin(x) - sinh(x)",
+        "x - sin(x)",
+        "x^(1/4) - x^(1/2)",
+    ] {
+        assert!(!g.vanishes_exactly(read(&g, text)), "{text}");
+    }
+    for text in [
+        "tanh(x - 3)*cosh(x - 3) - sinh(x - 3)",
+        "1/(x - y) + 1/(y - x)",
+        "sin(x - y) - sin(x)*cos(y) + cos(x)*sin(y)",
+        "(sin(x)*cos(y)/(cos(x)*sin(y) - sin(x)*cos(y)) + 1)*sin(x - y) + cos(x)*sin(y)",
+        "sqrt(x)*(sqrt(x) + 1) - x - sqrt(x)",
+        "pi*(x + 1) - pi*x - pi",
+    ] {
+        assert!(g.vanishes_exactly(read(&g, text)), "{text}");
+    }
+}

@@ -66,7 +66,7 @@ impl QuasiVelocities {
 
 struct Elimination<'a> {
     g: &'a Graph,
-    parameters: HashMap<Symbol, f64>,
+    parameters: HashSet<Symbol>,
     /// Parameters, start and coefficients.
     values: HashMap<Symbol, f64>,
     /// By column.
@@ -105,7 +105,7 @@ impl<'a> Elimination<'a> {
         };
         let mut elimination = Elimination {
             g,
-            parameters: system.parameter_values(),
+            parameters: system.parameters.iter().map(|p| p.symbol).collect(),
             values: point(system, start),
             velocities: velocities.collect(),
             matrix: SparseMatrix::new(Vec::new()),
@@ -217,24 +217,24 @@ impl<'a> Elimination<'a> {
         changed: &mut BTreeSet<usize>,
     ) {
         let g = self.g;
-        let mut parts: Vec<(usize, Expr)> = own;
-        for (&j, &(e, _)) in terms {
+        let mut parts: Vec<(usize, Expr, bool)> = own.into_iter().map(|(j, e)| (j, e, false)).collect();
+        for (&j, &(e, x)) in terms {
             let e = self.named(g.mul(scale, e));
-            parts.push((j, e));
+            parts.push((j, e, x == 0.0));
         }
         let offset = self.named(g.mul(scale, offset));
         let QuasiVelocity { symbol, coordinate, .. } = self.velocities[column];
         let mut added = Vec::new();
-        for (row, (factor, _)) in self.matrix.take_column(column) {
+        for (row, (factor, x)) in self.matrix.take_column(column) {
             added.push((row, g.mul(factor, scale)));
-            for &(j, e) in &parts {
-                self.add(row, j, g.mul(factor, e));
+            for &(j, e, is_zero) in &parts {
+                self.add(row, j, g.mul(factor, e), is_zero || x == 0.0);
             }
             let rest = g.add(self.rows[row].offset, g.mul(factor, offset));
             self.rows[row].offset = self.named(rest);
             changed.insert(row);
         }
-        let terms = parts.into_iter().map(|(j, e)| (self.velocities[j].symbol, e)).collect();
+        let terms = parts.into_iter().map(|(j, e, _)| (self.velocities[j].symbol, e)).collect();
         if let Some(eliminated) = self.eliminated.last_mut() {
             eliminated.slopes.push((symbol, g.neg(scale)));
             eliminated.added.extend(added);
@@ -242,19 +242,24 @@ impl<'a> Elimination<'a> {
         self.steps.push(vec![DependentVelocity { symbol, coordinate, terms, offset }]);
     }
 
-    /// Adds to a coefficient. What cancels without simplifying is taken out: it would be taken for a pivot.
-    fn add(&mut self, row: usize, column: usize, e: Expr) {
+    /// Adds to a coefficient what is zero at the start if `is_zero`. What cancels exactly is taken out; what is
+    /// round-off at the start stays as 0 there, and so is no pivot.
+    fn add(&mut self, row: usize, column: usize, e: Expr, is_zero: bool) {
         let g = self.g;
         let old = self.matrix.rows()[row].get(&column).copied();
         let sum = old.map_or(e, |(old, _)| g.add(old, e));
         let value = self.number(sum);
         let size = old.map_or(0.0, |old| old.1.abs());
         self.rows[row].scale = self.rows[row].scale.max(value.abs()).max(size);
-        let cancels = g.is_zero(sum)
-            || (old.is_some()
-                && value.abs() <= CANCELLED * size
-                && g.vanishes_at_points(sum, &self.parameters).is_zero());
-        let entry = if cancels { None } else { Some((self.named(sum), value)) };
+        let cancelled = old.is_some() && value.abs() <= CANCELLED * size;
+        let known_zero = is_zero && old.is_none_or(|old| old.1 == 0.0);
+        let entry = if g.is_zero(sum) || (cancelled || known_zero && old.is_some()) && g.vanishes_exactly(sum) {
+            None
+        } else if known_zero || cancelled && g.is_round_off(sum, &self.values) {
+            Some((self.named(sum), 0.0))
+        } else {
+            Some((self.named(sum), value))
+        };
         self.matrix.set(row, column, entry);
     }
 
@@ -335,7 +340,7 @@ impl<'a> Elimination<'a> {
     }
 
     fn is_constant(&self, e: Expr) -> bool {
-        self.g.symbols_of(e).iter().all(|s| self.parameters.contains_key(s))
+        self.g.symbols_of(e).iter().all(|s| self.parameters.contains(s))
     }
 }
 
