@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     }
     let scene = arguments.scene.find()?;
     let style = if arguments.latex { EquationStyle::Latex } else { EquationStyle::Plain };
-    let integrability = integrability(&scene.system, &scene.start)?.to_string();
+    let integrability = integrability(&scene)?.to_string();
     let mut equations = Vec::new();
     let asked = &arguments.formulation;
     let all: Vec<Choice> = choices(&scene).into_iter().chain(forms(&scene)).collect();

@@ -46,8 +46,7 @@ impl Comparison {
     /// [`mechanics::RemovalError`] for dependent constraints; [`SolveError::Tolerance`].
     pub fn new(scene: Scene, extent: Extent, settings: &Settings) -> Result<Comparison, SolveError> {
         settings.check()?;
-        // in a graph of its own: brackets are long, and every motion has a copy of the scene's
-        let integrability = integrability(&scene.system.clone(), &scene.start)?;
+        let integrability = integrability(&scene)?;
         let (runs, pairs, fits, decided) = Default::default();
         Ok(Comparison { scene, integrability, extent, runs, pairs, fits, decided })
     }

@@ -1,19 +1,22 @@
-//! Is the constraint integrable? By brackets, and where these are too long, by ranks over a finite field.
+//! Is the constraint integrable? By brackets, and where these cannot tell, by ranks over a finite field.
 
 use decision::{ExactStart, Family, Finding, Question};
 use equations::Derivation;
 use mechanics::{Completion, Integrability, State, System};
+use scene::Scene;
 
 use crate::SolveError;
 
-/// [`mechanics::integrability`], with [`integrals_by_ranks`] where the brackets are too long for it.
+/// [`mechanics::integrability`], with [`integrals_by_ranks`] where brackets cannot tell.
 ///
 /// # Errors
 /// [`SolveError`] for dependent constraints.
-pub fn integrability(system: &System, state: &State) -> Result<Integrability, SolveError> {
-    let verdict = mechanics::integrability(system, state)?;
-    let Integrability::Undecided { constraints, .. } = verdict else { return Ok(verdict) };
-    Ok(match integrals_by_ranks(system, state)? {
+pub fn integrability(scene: &Scene) -> Result<Integrability, SolveError> {
+    // in a graph of its own: brackets are long
+    let (system, state) = (&scene.system.clone(), &scene.start);
+    let verdict = mechanics::integrability(system, state, state.t + scene.duration)?;
+    let Integrability::Undecided { at_most, constraints, .. } = verdict else { return Ok(verdict) };
+    Ok(match integrals_by_ranks(system, state)?.filter(|(integrals, _)| *integrals <= at_most) {
         None => verdict,
         Some((0, depth)) => Integrability::Nonintegrable { depth },
         Some((integrals, _)) if integrals == constraints => Integrability::Integrable { exact: false },

@@ -17,8 +17,7 @@ pub(crate) fn equations(subject: &Subject) -> Result<Value, Refused> {
         }
         Err(error) => json!({ "label": choice.label, "refused": error.to_string() }),
     };
-    // in a graph of its own: brackets are long
-    let integrability = integrability(&scene.system.clone(), &scene.start)?;
+    let integrability = integrability(scene)?;
     Ok(json!({
         "system": system_text(&scene.system, EquationStyle::Latex),
         "integrability": integrability.to_string(),

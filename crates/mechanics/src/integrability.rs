@@ -1,10 +1,8 @@
 //! Is the constraint integrable? Frobenius' test by the Lie flag of the admissible directions.
 
-use std::collections::HashMap;
-
 use symbolic::{Expr, Matrix, Symbol, Vanishing};
 
-use crate::rank::generic_rank;
+use crate::rank::{Surroundings, generic_rank};
 use crate::solved_constraints::SolvedConstraints;
 use crate::{RemovalError, State, System};
 
@@ -15,10 +13,11 @@ pub enum Integrability {
     Unconstrained,
     /// Every constraint is (a combination of) total time derivatives: `f = 0` confines the configuration.
     Integrable {
-        /// Whether the brackets vanish by simplification and not only at random points.
+        /// Whether the brackets vanish by simplification; else ranks over a finite field say so.
         exact: bool,
     },
-    /// Some independent combinations of the constraints are total time derivatives, the others are not.
+    /// Some independent combinations of the constraints are total time derivatives, as far as points tell: no
+    /// more are.
     PartlyIntegrable {
         /// Number of integrable combinations.
         integrals: usize,
@@ -32,8 +31,10 @@ pub enum Integrability {
     },
     /// A constraint is not linear in the velocities; Frobenius' test is about those that are.
     NonlinearInVelocity,
-    /// The next brackets are too long for this test.
+    /// This test cannot tell.
     Undecided {
+        /// Why not.
+        why: Undecided,
         /// Brackets that were nested.
         depth: usize,
         /// Integrable combinations that these leave at most.
@@ -41,6 +42,17 @@ pub enum Integrability {
         /// Number of constraints.
         constraints: usize,
     },
+}
+
+/// Why Frobenius' test cannot tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Undecided {
+    /// The next brackets are too long for it.
+    TooLong,
+    /// They vanish at the points that were tried, and not by simplification: they may begin elsewhere.
+    AtPoints,
+    /// They have no value at any point that was tried.
+    NoPoint,
 }
 
 /// Nodes over which a bracket is too long: each bracket around it makes it several times longer.
@@ -58,17 +70,26 @@ impl std::fmt::Display for Integrability {
         match self {
             Integrability::Unconstrained => write!(f, "no constraint"),
             Integrability::Integrable { exact: true } => write!(f, "integrable (brackets vanish identically)"),
-            Integrability::Integrable { exact: false } => write!(f, "integrable (brackets vanish at random points)"),
+            Integrability::Integrable { exact: false } => write!(f, "integrable (by ranks over a finite field)"),
             Integrability::PartlyIntegrable { integrals, constraints } => {
-                write!(f, "partly integrable: {integrals} of {constraints} constraints are integrable combinations")
+                write!(
+                    f,
+                    "partly integrable: {integrals} of {constraints} constraints are integrable combinations at the \
+                     points tried, and nowhere more"
+                )
             }
             Integrability::Nonintegrable { depth } => {
                 write!(f, "nonintegrable: brackets nested {depth} deep reach every direction")
             }
-            Integrability::Undecided { depth, at_most, constraints } => write!(
+            Integrability::Undecided { why, depth, at_most, constraints } => write!(
                 f,
                 "undecided: brackets nested {depth} deep leave at most {at_most} of {constraints} integrable combinations, \
-                 and the next are too long"
+                 and the next {}",
+                match why {
+                    Undecided::TooLong => "are too long",
+                    Undecided::NoPoint => "have no value at the points tried",
+                    Undecided::AtPoints => "vanish at the points tried, but not by simplification",
+                }
             ),
             Integrability::NonlinearInVelocity => {
                 write!(f, "not linear in the velocities: Frobenius' test does not apply")
@@ -81,7 +102,9 @@ impl std::fmt::Display for Integrability {
 ///
 /// Fields `X₁ … X_m` span the admissible directions in `(q, t)` (with `T = c ∂_q + ∂_t` where anything
 /// depends on time or `b ≠ 0`). Brackets `[X, Y] = Y_x X − X_x Y` are added until the rank stays; what it
-/// lacks is the number of integrals. Ranks are taken at random points; fields are differentiated exactly.
+/// lacks is the number of integrals. Fields are differentiated exactly. Ranks are taken at points round
+/// `state` and the way up to `end`, in the scene's own sizes: a rank there is certain, and what adds none may
+/// do so elsewhere. So *integrable* is said only where every bracket vanishes by simplification.
 ///
 /// # Errors
 /// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.
@@ -93,10 +116,10 @@ impl std::fmt::Display for Integrability {
 /// # let start = mechanics::State { t: 0.0, q: vec![0., 0., 0.3], v: vec![0.5, 0.5 * 0.3f64.tan(), 1.] };
 /// use mechanics::{Integrability, integrability};
 /// // the ice sledge: y'*cos(phi) - x'*sin(phi)
-/// assert_eq!(integrability(&system, &start)?, Integrability::Nonintegrable { depth: 1 });
+/// assert_eq!(integrability(&system, &start, 1.0)?, Integrability::Nonintegrable { depth: 1 });
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn integrability(system: &System, state: &State) -> Result<Integrability, RemovalError> {
+pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integrability, RemovalError> {
     let h = system.constraints.len();
     if h == 0 {
         return Ok(Integrability::Unconstrained);
@@ -113,12 +136,14 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
         space.push(system.time);
     }
     let admissible = solved.fields(system, with_time);
+    let mut depth = 0;
+    let undecided = |why, depth, at_most| Ok(Integrability::Undecided { why, depth, at_most, constraints: h });
     if g.size(&admissible.concat()) > LONGEST {
-        return Ok(Integrability::Undecided { depth: 0, at_most: h, constraints: h });
+        return undecided(Undecided::TooLong, depth, h);
     }
-    let constants: HashMap<Symbol, f64> = system.parameter_values();
+    let (constants, surroundings) = (system.parameter_values(), Surroundings::of_start(system, state, end));
     let rank_of =
-        |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &constants);
+        |fields: &[Vec<Expr>]| generic_rank(g, &Matrix::new(fields.len(), space.len(), fields.concat()), &surroundings);
     let bracket = |x: &[Expr], y: &[Expr]| -> Vec<Expr> {
         let along = |field: &[Expr], by: &[Expr], i: usize| g.dot(&g.gradient(field[i], &space), by);
         (0..space.len()).map(|i| g.sub(along(y, x, i), along(x, y, i))).collect()
@@ -127,7 +152,7 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
     let mut fields = admissible.clone();
     let mut newest = admissible.clone();
     let mut rank = fields.len();
-    let (mut depth, mut exact) = (0, true);
+    let mut open = None;
     while rank < space.len() {
         let mut added = Vec::new();
         for (i, x) in admissible.iter().enumerate() {
@@ -136,23 +161,25 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
             for y in newest.iter().skip(first) {
                 let z = bracket(x, y);
                 if g.size(&z) > LONGEST {
-                    return Ok(Integrability::Undecided { depth, at_most: space.len() - rank, constraints: h });
+                    return undecided(Undecided::TooLong, depth, space.len() - rank);
                 }
-                // where there is a direction more, nobody asks how exactly another bracket vanishes
-                if rank == admissible.len() {
-                    let verdicts: Vec<Vanishing> = z.iter().map(|&e| g.vanishes(e, &constants)).collect();
-                    if verdicts.iter().all(|v| v.is_zero()) {
-                        exact &= verdicts.iter().all(|v| matches!(v, Vanishing::Exactly));
-                        continue;
-                    }
+                if z.iter().all(|&e| g.is_zero(e)) {
+                    continue;
                 }
                 fields.push(z.clone());
-                if rank_of(&fields) > rank {
+                let found = rank_of(&fields);
+                // as long as there are no others, what is not zero adds a direction
+                let alone = rank == admissible.len() && found <= Some(rank);
+                let verdicts: Vec<Vanishing> =
+                    z.iter().filter(|_| alone).map(|&e| g.vanishes(e, &constants)).collect();
+                if found > Some(rank) || verdicts.iter().any(|v| matches!(v, Vanishing::No { .. })) {
                     rank += 1;
                     added.push(z);
-                } else {
-                    exact = false;
-                    fields.pop();
+                    continue;
+                }
+                fields.pop();
+                if !alone || !verdicts.iter().all(|v| matches!(v, Vanishing::Exactly)) {
+                    open = open.max(Some(if found.is_none() { Undecided::NoPoint } else { Undecided::AtPoints }));
                 }
             }
         }
@@ -163,9 +190,10 @@ pub fn integrability(system: &System, state: &State) -> Result<Integrability, Re
         newest = added;
     }
     let integrals = space.len() - rank;
-    Ok(match integrals {
-        0 => Integrability::Nonintegrable { depth },
-        _ if integrals == h => Integrability::Integrable { exact },
-        _ => Integrability::PartlyIntegrable { integrals, constraints: h },
+    Ok(match open {
+        _ if integrals == 0 => Integrability::Nonintegrable { depth },
+        None if integrals == h => Integrability::Integrable { exact: true },
+        Some(Undecided::AtPoints) | None if integrals < h => Integrability::PartlyIntegrable { integrals, constraints: h },
+        open => return undecided(open.unwrap_or(Undecided::AtPoints), depth, integrals),
     })
 }

@@ -38,7 +38,7 @@
 //! sledge.constraints = vec![sledge.expression("y'*cos(phi) - x'*sin(phi)")?];
 //! let start = State { t: 0.0, q: vec![0.0; 3], v: vec![1.0, 0.0, 0.5] };
 //!
-//! assert_eq!(integrability(&sledge, &start)?, Integrability::Nonintegrable { depth: 1 });
+//! assert_eq!(integrability(&sledge, &start, 10.0)?, Integrability::Nonintegrable { depth: 1 });
 //! // u is the distance run along the blade
 //! let removal = Removal::by_quasi_velocities(&sledge, &start)?;
 //! assert_eq!(sledge.graph.plain(removal.memory[1].rate), "u_x'*sin(phi)");
@@ -68,9 +68,9 @@ mod start;
 mod system;
 mod view;
 
-pub use integrability::{Integrability, integrability};
+pub use integrability::{Integrability, Undecided, integrability};
 pub use observables::Observables;
-pub use rank::generic_rank;
+pub use rank::{Surroundings, generic_rank};
 pub use removal::{ConstantsRule, DisplacementParameter, MemoryVariable, Removal};
 pub use removal_error::RemovalError;
 pub use shape::{Kind, Place, Shape};

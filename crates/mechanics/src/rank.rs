@@ -2,61 +2,125 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use nalgebra::DMatrix;
-use symbolic::{Bounded, Evaluator, Graph, Matrix, Scalar, SplitMix, Symbol};
+use symbolic::{Bounded, Evaluator, Expr, Graph, Matrix, Scalar, SplitMix, Symbol};
 
-use crate::SingularValues;
+use crate::{State, System};
 
-/// Singular values under this fraction of the largest count as zero.
-pub(crate) const RANK_LIMIT: f64 = 1e-9;
+/// How far from the centre points are drawn, in sizes.
+const REACHES: [f64; 4] = [1.0, 0.1, 3.0, 0.01];
+/// Signs of the way from the centre: drawn, all up, all down. Roots and logarithms have a side.
+const SIGNS: [Option<f64>; 3] = [None, Some(1.0), Some(-1.0)];
 
-/// Points at which a generic rank is taken.
-const POINTS: u64 = 6;
-
-/// Least numerical rank of `matrix` with entries off by `errors`: how many singular values are over
-/// [`RANK_LIMIT`] times the largest, rows scaled to their largest entry, and over the norm of the errors.
-fn certain_rank(mut matrix: DMatrix<f64>, mut errors: DMatrix<f64>) -> usize {
-    for (mut row, mut errors) in matrix.row_iter_mut().zip(errors.row_iter_mut()) {
-        let scale = row.amax();
-        if scale > 0.0 {
-            row /= scale;
-            errors /= scale;
-        }
-    }
-    let singular = SingularValues::of(&matrix).values;
-    let largest = singular.max();
-    let limit = errors.norm().max(RANK_LIMIT * largest);
-    singular.iter().filter(|&&s| largest > 0.0 && s > limit).count()
+/// Where expressions are tried: constants have their values, everything else a centre and a size.
+pub struct Surroundings {
+    constants: HashMap<Symbol, f64>,
+    /// Centre and size; without an entry 0 and 1.
+    variables: HashMap<Symbol, (f64, f64)>,
 }
 
-/// The rank of `matrix` almost everywhere: the largest at a few pseudo-random points where all entries are
-/// finite. `constants` keep their values. An entry that is round-off of larger terms counts as zero.
-pub fn generic_rank(graph: &Graph, matrix: &Matrix, constants: &HashMap<Symbol, f64>) -> usize {
-    if matrix.rows() == 0 || matrix.columns() == 0 {
-        return 0;
+impl Surroundings {
+    /// Round zero, in sizes of 1.
+    pub fn of_zero(constants: HashMap<Symbol, f64>) -> Self {
+        Surroundings { constants, variables: HashMap::new() }
+    }
+
+    /// Round a start, in sizes that go with the units: of a coordinate how large it is, how far its velocity
+    /// takes it up to `end`, how far all kinetic energy and the work of its own force up to `end` could.
+    pub fn of_start(system: &System, start: &State, end: f64) -> Self {
+        let (g, constants) = (&system.graph, system.parameter_values());
+        let mut values = constants.clone();
+        values.extend(system.values_at(start));
+        let number = |e: Expr| g.evaluate(e, &values).ok().filter(|x| x.is_finite()).unwrap_or(0.0);
+        let time = (end - start.t).abs();
+        let momenta = g.gradient(system.lagrangian, &system.velocities());
+        let masses: Vec<f64> =
+            momenta.iter().zip(&system.coordinates).map(|(&p, c)| number(g.derivative(p, c.velocity)).abs()).collect();
+        let forces: Vec<f64> = g.gradient(system.lagrangian, &system.positions()).into_iter().map(number).collect();
+        let over = |x: f64, mass: f64| if mass > 0.0 { x / mass } else { 0.0 };
+        let own = |i: usize| masses[i] * start.v[i].powi(2) + over((forces[i] * time).powi(2), masses[i]);
+        let energy: f64 = (0..masses.len()).map(own).sum();
+        let size = |i: usize| {
+            let size = start.q[i].abs().max((start.v[i] * time).abs()).max(over(energy, masses[i]).sqrt() * time);
+            if size > 0.0 && size.is_finite() { size } else { 1.0 }
+        };
+        let mut variables: HashMap<Symbol, (f64, f64)> = HashMap::new();
+        for (i, c) in system.coordinates.iter().enumerate() {
+            let size = size(i);
+            variables.insert(c.position, (start.q[i], size));
+            variables.insert(c.velocity, (start.v[i], if time > 0.0 { size / time } else { size }));
+        }
+        variables.insert(system.time, (start.t, if time > 0.0 { time } else { 1.0 }));
+        Surroundings { constants, variables }
+    }
+
+    /// Values at one of the points: a pure function of its number and of the places of the symbols.
+    fn point(&self, symbols: &[Symbol], point: usize) -> Vec<Bounded> {
+        let (reach, sign) = (REACHES[point % REACHES.len()], SIGNS[point % SIGNS.len()]);
+        let mut random = SplitMix::new(point as u64);
+        let value = |symbol: &Symbol| {
+            let (magnitude, drawn) = (0.3 + random.unit(), if random.unit() < 0.5 { 1.0 } else { -1.0 });
+            let (centre, size) = self.variables.get(symbol).copied().unwrap_or((0.0, 1.0));
+            let varied = centre + size * reach * magnitude * sign.unwrap_or(drawn);
+            Bounded::from_f64(self.constants.get(symbol).copied().unwrap_or(varied))
+        };
+        symbols.iter().map(value).collect()
+    }
+}
+
+/// The rank of `matrix` almost everywhere, as far as points tell: the largest of those that are certain at
+/// one point each. So it is never too large; too small where a point of larger rank was not among them.
+/// `None` where no entry is finite at any of them.
+pub fn generic_rank(graph: &Graph, matrix: &Matrix, surroundings: &Surroundings) -> Option<usize> {
+    let most = matrix.rows().min(matrix.columns());
+    if most == 0 {
+        return Some(0);
     }
     let symbols: BTreeSet<Symbol> = matrix.entries().iter().flat_map(|&e| graph.symbols_of(e)).collect();
     let symbols: Vec<Symbol> = symbols.into_iter().collect();
-    let Ok(tape) = graph.compile(&symbols, matrix.entries(), &HashMap::new()) else { return 0 };
-    let mut evaluator = Evaluator::new(tape);
-    let mut at = |point| {
-        let entries = evaluator.evaluate(&random_values(&symbols, constants, point));
-        let number = |e: &Bounded| if e.may_be_zero() { 0.0 } else { e.value };
-        let of = |part: &dyn Fn(&Bounded) -> f64| {
-            DMatrix::from_row_iterator(matrix.rows(), matrix.columns(), entries.iter().map(part))
-        };
-        entries.iter().all(|e| e.is_finite()).then(|| certain_rank(of(&number), of(&|e| e.round_off())))
-    };
-    (0..POINTS).filter_map(&mut at).max().unwrap_or(0)
+    let mut evaluator = Evaluator::new(graph.compile(&symbols, matrix.entries(), &HashMap::new()).ok()?);
+    let mut found = None;
+    for point in 0..REACHES.len() * SIGNS.len() {
+        let entries = evaluator.evaluate(&surroundings.point(&symbols, point));
+        if entries.iter().all(|e| e.is_finite()) {
+            found = found.max(Some(certain_rank(entries.chunks(matrix.columns()).map(<[Bounded]>::to_vec).collect())));
+        }
+        if found == Some(most) {
+            break;
+        }
+    }
+    found
 }
 
-/// Values in ±[0.3, 1.3] for every symbol that is not a constant, a pure function of its place and `point`.
-fn random_values(symbols: &[Symbol], constants: &HashMap<Symbol, f64>, point: u64) -> Vec<Bounded> {
-    let value = |(i, symbol): (usize, &Symbol)| {
-        let x = SplitMix::new(point << 32 | i as u64).bits();
-        let magnitude = 0.3 + (x >> 11) as f64 / (1u64 << 53) as f64;
-        let random = if x & 1 == 0 { magnitude } else { -magnitude };
-        Bounded::from_f64(constants.get(symbol).copied().unwrap_or(random))
-    };
-    symbols.iter().enumerate().map(value).collect()
+/// How many pivots differ from zero by more than all round-off before them, whatever the units of rows and
+/// columns: these are scaled to entries of size 1.
+fn certain_rank(mut rows: Vec<Vec<Bounded>>) -> usize {
+    let scaled = |x: Bounded, by: f64| Bounded { value: x.value * by, magnitude: x.magnitude * by };
+    let inverse = |largest: f64| if largest > 0.0 { largest.log2().round().exp2().recip() } else { 1.0 };
+    let columns = rows.first().map_or(0, Vec::len);
+    for _ in 0..2 {
+        for row in &mut rows {
+            let by = inverse(row.iter().map(|x| x.value.abs()).fold(0.0, f64::max));
+            row.iter_mut().for_each(|x| *x = scaled(*x, by));
+        }
+        for j in 0..columns {
+            let by = inverse(rows.iter().map(|row| row[j].value.abs()).fold(0.0, f64::max));
+            rows.iter_mut().for_each(|row| row[j] = scaled(row[j], by));
+        }
+    }
+    let mut rank = 0;
+    loop {
+        let places = (rank..rows.len()).flat_map(|i| (0..columns).map(move |j| (i, j)));
+        let certain = places.filter(|&(i, j)| !rows[i][j].may_be_zero() && rows[i][j].is_finite());
+        let size = |(i, j): (usize, usize)| rows[i][j].value.abs();
+        let Some((pivot, column)) = certain.max_by(|&a, &b| size(a).total_cmp(&size(b))) else { return rank };
+        rows.swap(rank, pivot);
+        let (above, below) = rows.split_at_mut(rank + 1);
+        let row = &above[rank];
+        for other in below {
+            let factor = other[column] / row[column];
+            other.iter_mut().zip(row).for_each(|(x, &y)| *x = *x - factor * y);
+            other[column] = Bounded::from_f64(0.0);
+        }
+        rank += 1;
+    }
 }

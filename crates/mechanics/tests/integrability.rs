@@ -1,13 +1,13 @@
 //! Frobenius' verdict on constraints whose integrability is known by construction.
 
-use mechanics::{Integrability, RemovalError, integrability};
+use mechanics::{Integrability, RemovalError, Undecided, integrability};
 
 use crate::systems;
 
 #[track_caller]
 fn verdict(coordinates: &[&str], constraints: &[&str]) -> Integrability {
     let (system, state) = systems::kinetic(coordinates, &[("a", 0.7), ("Omega", 1.3)], constraints);
-    integrability(&system, &state).unwrap_or_else(|e| panic!("{constraints:?}: {e}"))
+    integrability(&system, &state, 3.0).unwrap_or_else(|e| panic!("{constraints:?}: {e}"))
 }
 
 #[track_caller]
@@ -110,7 +110,7 @@ fn the_test_does_not_apply_to_nonlinear_constraints() {
 #[test]
 fn dependent_constraints_are_refused() {
     let (system, state) = systems::kinetic(&["x", "y", "z"], &[], &["z' - y*x'", "2*z' - 2*y*x'"]);
-    let error = integrability(&system, &state).unwrap_err();
+    let error = integrability(&system, &state, 3.0).unwrap_err();
     assert!(matches!(error, RemovalError::Dependent { pivot, limit } if pivot < limit), "{error}");
 }
 
@@ -139,7 +139,34 @@ fn long_brackets_in_which_much_cancels_do_not_raise_the_rank() {
 
 #[test]
 fn brackets_that_are_too_long_leave_it_undecided() {
-    let Integrability::Undecided { depth, at_most, constraints } = train(3) else { panic!("decided") };
+    let Integrability::Undecided { why: Undecided::TooLong, depth, at_most, constraints } = train(3) else { panic!("decided") };
     assert!(depth >= 3 && at_most >= 6 && constraints == 10, "{depth}, {at_most}, {constraints}");
     assert!(!train(3).is_integrable());
+}
+
+#[test]
+fn what_begins_elsewhere_is_not_called_integrable() {
+    let begins = ["(1 + tanh(40*(x - 9)))/2", "exp(-(x - 30)^2)", "(1 + tanh(4*(t - 8)))/2"];
+    for f in begins {
+        let found = verdict(&["x", "y", "z"], &[&format!("z' - y*{f}*x'")]);
+        assert!(!found.is_integrable(), "{f}: {found}");
+    }
+}
+
+#[test]
+fn no_value_at_any_point_is_no_rank() {
+    // nothing is negative but under the first root
+    let found = verdict(&["x", "y", "z"], &["z' - (sqrt(x) + sqrt(a))*y'"]);
+    assert_eq!(found, Integrability::Nonintegrable { depth: 1 });
+    let nowhere = verdict(&["x", "y", "z"], &["z' - sqrt(x - 200)*y'"]);
+    assert!(!nowhere.is_integrable(), "{nowhere}");
+}
+
+#[test]
+fn small_coefficients_are_no_round_off() {
+    for small in ["1e-7", "1e-15", "1e-30", "1e-150"] {
+        must_be_nonintegrable(&["x", "y", "z"], &[&format!("z' - {small}*y*x'")], 1);
+        must_be_nonintegrable(&["x", "y", "z"], &[&format!("{small}*z' - y*x'")], 1);
+    }
+    must_be_nonintegrable(&["x", "y", "psi", "phi"], &["x' - 5e8*psi'*cos(phi)", "y' - 5e8*psi'*sin(phi)"], 2);
 }

@@ -152,7 +152,7 @@ fn what_cancels_without_simplifying_is_zero() {
         assert!(system.graph.is_zero(second.rate), "{}", system.graph.plain(second.rate));
         complete_removal_start(&system, &removal, &state).unwrap();
     }
-    let verdict = mechanics::integrability(&system, &state).unwrap();
+    let verdict = mechanics::integrability(&system, &state, 3.0).unwrap();
     assert!(matches!(verdict, mechanics::Integrability::Integrable { .. }), "{verdict}");
 }
 

@@ -262,8 +262,7 @@ impl System {
     /// Frobenius' verdict on the constraints, in words; RemovalError where they are dependent at the start.
     #[getter]
     fn integrability(&self) -> PyResult<String> {
-        let scene = self.scene();
-        Ok(integrability(&scene.system, &scene.start).map_err(errors::solve)?.to_string())
+        Ok(integrability(&self.scene()).map_err(errors::solve)?.to_string())
     }
 
     /// The same system with other numbers in some places; overrides as in `load`, over those of before.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use equations::Equations;
 use mechanics::{Removal, State, System};
+use scene::Scene;
 use symbolic::{Expr, Matrix, Symbol};
 
 /// Units: `q_i = a_i q̂_i`, `t = τ t̂`, `L̂ = κ L`, `f̂ = c f`. `τ = −1`, all else 1: the motion backwards.
@@ -29,11 +30,12 @@ impl Scaling {
 
     fn map(&self, system: &System) -> HashMap<Symbol, Expr> {
         let g = &system.graph;
-        let scaled = |factor: f64, s: Symbol| (s, g.mul(g.number(factor), g.variable(s)));
+        // quotients of decimals stay what they are
+        let scaled = |(a, over): (f64, f64), s: Symbol| (s, g.mul(g.div(g.number(a), g.number(over)), g.variable(s)));
         let coordinates = system.coordinates.iter().zip(&self.lengths);
         coordinates
-            .flat_map(|(c, &a)| [scaled(a, c.position), scaled(a / self.time, c.velocity)])
-            .chain([scaled(self.time, system.time)])
+            .flat_map(|(c, &a)| [scaled((a, 1.0), c.position), scaled((a, self.time), c.velocity)])
+            .chain([scaled((self.time, 1.0), system.time)])
             .collect()
     }
 
@@ -45,7 +47,36 @@ impl Scaling {
         let rewritten = |factor: f64, e: Expr| g.mul(g.number(factor), g.substitute(e, &map));
         let lagrangian = rewritten(self.action, system.lagrangian);
         let constraints = system.constraints.iter().map(|&f| rewritten(self.constraint, f)).collect();
-        (scaled.lagrangian, scaled.constraints) = (lagrangian, constraints);
+        // virtual work Q dq is an L, too
+        let forces = system.forces.iter().zip(&self.lengths).map(|(&q, &a)| rewritten(self.action * a, q)).collect();
+        (scaled.lagrangian, scaled.constraints, scaled.forces) = (lagrangian, constraints, forces);
+        scaled.breakpoints.iter_mut().for_each(|t| *t /= self.time);
+        for watched in &mut scaled.watched {
+            watched.expression = g.substitute(watched.expression, &map);
+        }
+        scaled
+    }
+
+    /// The scene in the new units: the system, its start as written, removals, multipliers, duration.
+    pub fn scene(&self, scene: &Scene) -> Scene {
+        let system = self.system(&scene.system);
+        let (g, map) = (&system.graph, self.map(&system));
+        let written = |(s, e): &(Symbol, Expr)| {
+            let place = |symbols: Vec<Symbol>| symbols.iter().position(|x| x == s);
+            let (position, velocity) = (place(system.positions()), place(system.velocities()));
+            // a parameter of a removal keeps its unit, but for time
+            let length = position.or(velocity).map_or(1.0, |i| self.lengths[i]);
+            let rate = if position.is_some() { 1.0 } else { self.time };
+            (*s, g.div(g.mul(g.number(rate), g.substitute(*e, &map)), g.number(length)))
+        };
+        let mut scaled = scene.clone();
+        scaled.completion.written = scene.completion.written.iter().map(written).collect();
+        scaled.completion.guessed = scene.completion.guessed.iter().map(written).collect();
+        scaled.removals = scene.removals.iter().map(|removal| self.removal(&system, removal)).collect();
+        scaled.start = self.state(&scene.start);
+        scaled.multipliers = self.multipliers(&scene.multipliers);
+        scaled.duration = scene.duration / self.time;
+        scaled.system = system;
         scaled
     }
 

@@ -62,7 +62,7 @@ use equations::{
     Block, Chart, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role, StateVariable,
     Statement, refuse_forces,
 };
-use mechanics::{DisplacementParameter, Removal, System, fresh_symbol, generic_rank};
+use mechanics::{DisplacementParameter, Removal, System, Surroundings, fresh_symbol, generic_rank};
 use symbolic::{Expr, Graph, Symbol};
 
 /// Entry of the table of formulations.
@@ -236,10 +236,9 @@ fn require_regular(
 ) -> Result<(), DerivationError> {
     let g = &system.graph;
     let hessian = g.jacobian(&g.gradient(generating, highest), highest);
-    let rank = generic_rank(g, &hessian, &system.parameter_values());
-    if rank == highest.len() {
-        return Ok(());
-    }
+    // without a value at any point tried, the start will tell
+    let rank = generic_rank(g, &hessian, &Surroundings::of_zero(system.parameter_values()));
+    let Some(rank) = rank.filter(|&rank| rank < highest.len()) else { return Ok(()) };
     let second: Vec<String> =
         parameters.iter().filter(|p| p.momentum.is_some()).map(|p| g.name(p.u.second_rate)).collect();
     Err(DerivationError::SingularHighestHessian {

@@ -141,7 +141,7 @@ pub(super) fn bijection(case: &mut Case) -> Result<(), CheckError> {
 /// T11.
 pub(super) fn frobenius(case: &mut Case) -> Result<(), CheckError> {
     let (system, start) = (&case.scene.system, &case.scene.start);
-    let found = integrability(system, start)?;
+    let found = integrability(&case.scene)?;
     let right = match (case.recipe.truth(), found) {
         (Truth::Unconstrained, Integrability::Unconstrained)
         | (Truth::Integrable, Integrability::Integrable { .. })
