@@ -15,6 +15,8 @@ use mechanics::fresh_symbol;
 pub struct LaneEquations {
     series: SeriesTape,
     workspace: SeriesWorkspace<Lanes>,
+    /// For the first order only.
+    rates: SeriesWorkspace<Lanes>,
     condition: Option<Evaluator<Lanes>>,
     guards: Evaluator<Lanes>,
     projection: Option<Projection>,
@@ -49,6 +51,7 @@ impl LaneEquations {
             .map(|condition| equations.evaluator_by(&plan.all_definitions(equations), &known, &[condition]));
         Ok(Ok(LaneEquations {
             workspace: series.workspace(1),
+            rates: series.workspace(1),
             series,
             condition: condition.transpose()?,
             guards: equations.evaluator(&known, &equations.guards)?,
@@ -77,6 +80,15 @@ impl LaneEquations {
         assert_eq!(places.len(), constants.len(), "free constants");
         for (x, constant) in places.iter_mut().zip(constants) {
             x.0[lane] = *constant;
+        }
+    }
+
+    /// The rates of the states in every lane.
+    pub fn rates(&mut self, t: &[f64; LANES], y: &[[f64; LANES]], rates: &mut [[f64; LANES]]) {
+        self.load(t, y);
+        self.series.expand(&self.inputs, Lanes([1.0; LANES]), &mut self.rates, 1, &mut |_, _| {});
+        for (i, rate) in rates.iter_mut().enumerate() {
+            *rate = self.series.input(1 + i, &self.rates).map_or([0.0; LANES], |series| series[1].0);
         }
     }
 

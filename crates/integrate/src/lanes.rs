@@ -8,6 +8,7 @@
 //! coefficient is not finite, an event function changes sign or is nearly zero, or steps get too short or too
 //! many: all rare.
 
+mod inside;
 mod problem;
 
 use std::array::from_fn;
@@ -20,6 +21,7 @@ use crate::status::{ProjectionReport, Work};
 use crate::stepper::shortest_step;
 use crate::taylor_step::{Ends, longest_step, once, order};
 use crate::time_loop::HALVINGS;
+use inside::finite;
 pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
 
 /// Takes a member and what became of it.
@@ -70,6 +72,8 @@ struct Lanes<'a, P> {
     /// Under this an event function is nearly zero.
     events_least: Vec<Lane>,
     inner: Vec<Lane>,
+    inner_slope: Vec<Lane>,
+    inner_rates: Vec<Lane>,
 }
 
 /// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series to the
@@ -103,6 +107,7 @@ pub fn integrate_lanes<P: LaneProblem>(
             return;
         }
         lanes.expand();
+        lanes.look_inside();
         let adopted = from_fn(|lane| lanes.judge(lane, done));
         lanes.adopt(&adopted);
         for lane in 0..LANES {
@@ -145,6 +150,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             events_next: zeros(events),
             events_least: zeros(events),
             inner: zeros(n),
+            inner_slope: zeros(n),
+            inner_rates: zeros(n),
         }
     }
 
@@ -214,7 +221,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
     fn judge(&mut self, lane: usize, done: Done) -> bool {
         let Some(rider) = &mut self.riders[lane] else { return false };
         if self.finite[lane] {
-            rider.run.work.evaluations += 1;
+            rider.run.work.evaluations += if rider.fresh { 1 } else { 2 };
             rider.run.work.orders += self.orders - 1;
         }
         if !self.trusted[lane] || self.moved[lane].is_nan() {
@@ -384,16 +391,4 @@ fn evaluate(coefficients: &[Lane], theta: &Lane, powers: &mut [Lane], values: &m
         *value = from_fn(|l| row[0][l] + sum[l]);
         *slope = weighted;
     }
-}
-
-/// Lanes without NaN and infinity.
-#[inline(always)]
-fn finite(values: &[Lane]) -> [bool; LANES] {
-    let mut sums = [[0.0; LANES]; 2];
-    for pair in values.chunks(2) {
-        for (sum, x) in sums.iter_mut().zip(pair) {
-            *sum = from_fn(|l| sum[l] + 0.0 * x[l]);
-        }
-    }
-    from_fn(|l| sums[0][l] + sums[1][l] == 0.0)
 }

@@ -90,6 +90,15 @@ pub enum StopCause {
         /// Which one, counted from 0.
         component: usize,
     },
+    /// A projection moved the end of a step farther than errors of steps are, however small the step.
+    #[error(
+        "the projection moves component {component} of the state by more than 100 tolerances however short the step: the \
+         constraint is not kept by these rates"
+    )]
+    OffConstraint {
+        /// Which one, counted from 0.
+        component: usize,
+    },
     /// The error estimate asked for a step that no longer moves the time.
     #[error("a step of length {step:e} is asked for, the shortest possible is {limit:e}")]
     StepTooSmall {

@@ -11,6 +11,7 @@ pub(crate) enum Failure {
     Evaluation { reason: String },
     NotFinite { component: usize },
     NotSmooth { component: usize },
+    OffConstraint { component: usize },
     Steep { t: f64 },
 }
 
@@ -26,6 +27,7 @@ impl From<Failure> for StopCause {
             Failure::Evaluation { reason } => StopCause::Evaluation { reason },
             Failure::NotFinite { component } => StopCause::NotFinite { component },
             Failure::NotSmooth { component } => StopCause::NotSmooth { component },
+            Failure::OffConstraint { component } => StopCause::OffConstraint { component },
             Failure::Steep { t } => {
                 let reason = format!("a function in the equations changes within less than a step near t = {t}");
                 StopCause::Evaluation { reason }

@@ -19,7 +19,9 @@
 //! A series does not see past a branch point: that of √(1 + y) along y = (1 − t/2)² − 1 goes on as 1 − t/2
 //! where the root is t/2 − 1. So the slope of the polynomial at the end of the step is compared with the
 //! rates there, which the next expansion needs anyway; if they differ, the step is halved. Where that came to
-//! pass, it is likely to again: the rates are then computed alone first, for a small part of an expansion.
+//! pass, it is likely to again: the rates are then computed alone first, for a small part of an expansion. The
+//! same is done at a place inside the step, at the cost of one evaluation of the rates: a force (4t(1 − t))⁴⁰
+//! is zero to order 39 at both ends of [0, 1].
 //!
 //! Source: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order
 //! Taylor methods*, Experimental Mathematics 14 (2005), section 3.
@@ -32,7 +34,7 @@ use crate::problem::Start;
 use crate::status::StopCause;
 use crate::stepper::{Attempt, Stepper, next_step};
 use crate::system::{Failure, System};
-use crate::taylor_step::{Ends, first_powers, longest_step, once, order};
+use crate::taylor_step::{DEFECT, Ends, GOLDEN, MANY, ROUND_OFF, UNLIMITED, first_powers, longest_step, once, order};
 
 /// Where coefficients overflow, the unit of time is shortened by this factor, so many times.
 const SHORTER_UNIT: f64 = 1e-8;
@@ -60,6 +62,10 @@ pub(crate) struct Taylor<'s, 'p> {
     rough: bool,
     /// The rates at the candidate, where they are looked at first.
     rates: Vec<f64>,
+    /// The polynomial inside the step, its slope there times the step, and the last place, as a part of it.
+    inside: Vec<f64>,
+    inside_slope: Vec<f64>,
+    place: f64,
     /// Length of the step to try next.
     step: f64,
     /// Largest coefficient of each order, in tolerances.
@@ -96,6 +102,9 @@ impl<'s, 'p> Taylor<'s, 'p> {
             dropped: false,
             rough: false,
             rates: vec![0.0; n],
+            inside: vec![0.0; n],
+            inside_slope: vec![0.0; n],
+            place: 0.0,
             step: 0.0,
             sizes: vec![0.0; order + 1],
             powers: vec![[0.0; PARTS]; groups],
@@ -158,6 +167,33 @@ impl<'s, 'p> Taylor<'s, 'p> {
             },
         );
         self.candidate.copy_from_slice(&self.reached);
+    }
+
+    /// Compares the slope of the polynomial with the rates inside the step, where what the end does not show
+    /// may pass: at one place, and where the terms did not limit the step at [`MANY`].
+    fn check_inside(&mut self) -> Result<(), Failure> {
+        let count = if UNLIMITED * self.taken.abs() < self.step { MANY } else { 1 };
+        let (theta, order, begin) = (self.taken / self.unit, self.order, self.t);
+        for _ in 0..count {
+            self.place = (self.place + GOLDEN).fract();
+            let x = theta * self.place;
+            for (row, (y, slope)) in
+                self.coefficients.chunks_exact(order + 1).zip(self.inside.iter_mut().zip(&mut self.inside_slope))
+            {
+                (*y, *slope) = row.iter().rev().fold((0.0, 0.0), |(y, slope), c| (y * x + c, slope * x + y));
+                *slope *= theta;
+            }
+            self.system.rates(begin + self.taken * self.place, &self.inside, &mut self.rates)?;
+            let relative = self.relative_tolerance.max(ROUND_OFF);
+            for (component, absolute) in self.absolute_tolerances.iter().enumerate() {
+                let (y, slope) = (self.inside[component], self.inside_slope[component]);
+                let allowed = DEFECT * (absolute + relative * y.abs().max(slope.abs()));
+                if (slope - self.rates[component] * self.taken).abs() > allowed {
+                    return Err(Failure::NotSmooth { component });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Compares the slope of the polynomial at the end with the rates there.
@@ -254,6 +290,7 @@ impl Stepper for Taylor<'_, '_> {
             }
             self.check_slope()?;
         }
+        self.check_inside()?;
         self.expand()?;
         self.check_slope()?;
         let Some(segment) = segment else { return Ok(()) };

@@ -11,10 +11,16 @@ const LEAST_ORDER: f64 = 4.0;
 const LAST: f64 = 0.135;
 /// So much may a term before the last two be over the geometric sequence.
 const SLACK: f64 = 1e3;
-/// The slope of the polynomial at the end of a step, times the step, may differ from the rates by so many
-/// tolerances, and by as many moves of a projection; a relative tolerance below round-off is read as that.
-const DEFECT: f64 = 100.0;
-const ROUND_OFF: f64 = 1e-14;
+/// The slope of the polynomial, times the step, may differ from the rates by so many tolerances, and at the
+/// end by as many moves of a projection, which may move it by as many tolerances; a relative tolerance below
+/// round-off is read as that.
+pub(crate) const DEFECT: f64 = 100.0;
+pub(crate) const ROUND_OFF: f64 = 1e-14;
+/// Places inside steps at which polynomials are checked, in turn: these parts of a step; many in a step that
+/// is this many times shorter than terms allow, as they do not tell how much happens in it.
+pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
+pub(crate) const MANY: usize = 16;
+pub(crate) const UNLIMITED: f64 = 100.0;
 
 /// The order for a relative tolerance.
 pub(crate) fn order(relative_tolerance: f64) -> usize {
@@ -118,9 +124,11 @@ pub(crate) struct Defect<const N: usize> {
 }
 
 impl<const N: usize> Defect<N> {
-    /// The component whose rates are not those of the polynomial, if there is one.
+    /// The component whose rates are not those of the polynomial, if there is one, or that a projection moved
+    /// too far.
     pub(crate) fn component(&self, lane: usize) -> Option<usize> {
-        (self.worst[lane] > 1.0 + DEFECT * self.moved[lane]).then_some(self.component[lane])
+        let moved = self.moved[lane];
+        (self.worst[lane] > 1.0 + DEFECT * moved || moved > 1.0).then_some(self.component[lane])
     }
 }
 

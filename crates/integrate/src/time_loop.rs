@@ -2,13 +2,14 @@
 
 use crate::dense::{Basis, DenseOutput, evaluate_segment};
 use crate::events::{EventWatch, Segment};
-use crate::options::{Dense, Options, Projection};
+use crate::options::{Dense, Method, Options, Projection};
 use crate::pace::Pace;
 use crate::problem::Start;
 use crate::status::{ProjectionReport, Solution, Status, StopCause};
 use crate::steep::SteepWatch;
 use crate::stepper::{Attempt, Stepper};
 use crate::system::{Failure, System, check_finite};
+use crate::taylor_step::{DEFECT, ROUND_OFF};
 
 /// So many times in a row is a step that cannot be evaluated halved.
 pub(crate) const HALVINGS: usize = 60;
@@ -41,6 +42,8 @@ pub(crate) fn run(
         dense: DenseOutput::new(start.t, &start.y, basis, degree),
         projection: options.before.as_ref().map_or(ProjectionReport::default(), |before| before.projection),
         pace: options.before.clone().map_or(Pace::new(start.t, end), |before| before.pace.on_to(end)),
+        absolute: options.absolute_tolerances(start.y.len()),
+        before: Vec::new(),
         options,
     };
     let status = match stepper.and_then(|stepper| record.walk(stepper, start, end)) {
@@ -57,6 +60,9 @@ struct Record<'a, 'p> {
     dense: DenseOutput,
     projection: ProjectionReport,
     pace: Pace,
+    absolute: Vec<f64>,
+    /// The candidate before it was projected.
+    before: Vec<f64>,
     options: &'a Options,
 }
 
@@ -117,6 +123,17 @@ impl Record<'_, '_> {
         Ok(())
     }
 
+    /// A step's error is of the size of the tolerance: a projection that moves much farther hides another one.
+    /// What several steps of a multistep method have added up is no error of one.
+    fn check_move(&self, candidate: &[f64]) -> Result<(), Failure> {
+        let relative = self.options.relative_tolerance.max(ROUND_OFF);
+        let is_far = |((y, before), absolute): ((&f64, &f64), &f64)| {
+            (y - before).abs() > DEFECT * (absolute + relative * y.abs().max(before.abs()))
+        };
+        let far = candidate.iter().zip(&self.before).zip(&self.absolute).position(is_far);
+        far.map_or(Ok(()), |component| Err(Failure::OffConstraint { component }))
+    }
+
     /// Checks, projects and stores the candidate that ends at `t`; returns the event that cuts it short.
     fn take(
         &mut self,
@@ -130,7 +147,12 @@ impl Record<'_, '_> {
         check_finite(candidate)?;
         let mut moved = None;
         if self.options.projection == Projection::EveryStep {
+            self.before.clear();
+            self.before.extend_from_slice(candidate);
             moved = Some(self.system.project(t, candidate)?);
+            if self.options.method != Method::Bdf {
+                self.check_move(candidate)?;
+            }
         }
         let watching = self.system.events() > 0;
         let has_room = watching || steep.is_on() || self.options.dense == Dense::Everywhere;

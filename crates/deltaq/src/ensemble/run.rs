@@ -259,6 +259,9 @@ impl LaneProblem for Riders<'_> {
     fn taylor(&mut self, t: &Lane, y: &[Lane], unit: &Lane, coefficients: &mut [Lane]) -> [bool; LANES] {
         self.lanes.taylor(t, y, unit, coefficients)
     }
+    fn rates(&mut self, t: &Lane, y: &[Lane], rates: &mut [Lane]) {
+        self.lanes.rates(t, y, rates);
+    }
     fn project(&mut self, t: &Lane, y: &mut [Lane]) -> Lane {
         self.lanes.project(t, y)
     }

@@ -22,6 +22,9 @@ pub trait LaneProblem {
     /// Taylor coefficients as those of [`crate::Problem::taylor`]; whether they are to be trusted, by lane.
     fn taylor(&mut self, t: &Lane, y: &[Lane], unit: &Lane, coefficients: &mut [Lane]) -> [bool; LANES];
 
+    /// `F(t, y)`, which may be NaN or infinite.
+    fn rates(&mut self, t: &Lane, y: &[Lane], rates: &mut [Lane]);
+
     /// Moves the states onto the invariant manifold; returns the Euclidean length moved, NaN if impossible.
     fn project(&mut self, t: &Lane, y: &mut [Lane]) -> Lane;
 

@@ -1,0 +1,63 @@
+//! Polynomials against the rates inside their steps.
+
+use std::array::from_fn;
+
+use super::{LANES, Lane, LaneProblem, Lanes};
+use crate::taylor_step::{DEFECT, GOLDEN, MANY, ROUND_OFF, UNLIMITED};
+
+impl<P: LaneProblem> Lanes<'_, P> {
+    /// As for a single motion: at one place in each step, and at many where terms do not limit the step. The
+    /// place depends on the motion's own attempts only.
+    pub(super) fn look_inside(&mut self) {
+        let under_way: [bool; LANES] = from_fn(|l| self.riders[l].as_ref().is_some_and(|rider| !rider.fresh));
+        let free: [bool; LANES] = from_fn(|l| under_way[l] && UNLIMITED * self.taken[l].abs() < self.step[l]);
+        let mut place: Lane = from_fn(|l| {
+            let work = self.riders[l].as_ref().map(|rider| rider.run.work);
+            work.map_or(0.0, |work| GOLDEN * (work.steps + work.rejected) as f64)
+        });
+        let count = if free.contains(&true) { MANY } else { usize::from(under_way.contains(&true)) };
+        for i in 0..count {
+            place = place.map(|place| (place + GOLDEN).fract());
+            let t: Lane = from_fn(|l| self.t[l] + place[l] * self.taken[l]);
+            let theta: Lane = from_fn(|l| self.taken[l] / self.unit[l]);
+            let share: Lane = from_fn(|l| place[l] * theta[l]);
+            let inner = self.inner.iter_mut().zip(&mut self.inner_slope);
+            let rows = inner.zip(self.coefficients.chunks_exact(self.orders));
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                move || {
+                    for ((y, slope), row) in rows {
+                        (*y, *slope) = ([0.0; LANES], [0.0; LANES]);
+                        for c in row.iter().rev() {
+                            *slope = from_fn(|l| y[l] + share[l] * slope[l]);
+                            *y = from_fn(|l| c[l] + share[l] * y[l]);
+                        }
+                        *slope = from_fn(|l| slope[l] * theta[l]);
+                    }
+                },
+            );
+            self.problem.rates(&t, &self.inner, &mut self.inner_rates);
+            let relative = self.options.relative_tolerance.max(ROUND_OFF);
+            let values = self.inner.iter().zip(&self.inner_slope).zip(&self.inner_rates);
+            for (((y, slope), rate), absolute) in values.zip(&self.absolute_tolerances) {
+                for l in 0..LANES {
+                    let allowed = DEFECT * (absolute[l] + relative * y[l].abs().max(slope[l].abs()));
+                    let agrees = (slope[l] - rate[l] * self.taken[l]).abs() <= allowed;
+                    self.smooth[l] &= agrees || !under_way[l] || i > 0 && !free[l];
+                }
+            }
+        }
+    }
+}
+
+/// Lanes without NaN and infinity.
+#[inline(always)]
+pub(super) fn finite(values: &[Lane]) -> [bool; LANES] {
+    let mut sums = [[0.0; LANES]; 2];
+    for pair in values.chunks(2) {
+        for (sum, x) in sums.iter_mut().zip(pair) {
+            *sum = from_fn(|l| sum[l] + 0.0 * x[l]);
+        }
+    }
+    from_fn(|l| sums[0][l] + sums[1][l] == 0.0)
+}
