@@ -11,6 +11,10 @@ use crate::{Ending, Motion, SolveError};
 /// A gap has to be this many times the sum of the two error estimates to count as a difference.
 pub const CERTAINTY: f64 = 10.0;
 
+/// The difference of one coordinate has to be this many times the limit that *same* asks for to count as a
+/// difference by itself: the errors of single coordinates are estimated less well than the length of all.
+const ALONE: f64 = 10.0;
+
 /// Relative error estimate that both motions have to stay under to be called the same.
 pub const SAME_ESTIMATE: f64 = 1e-8;
 
@@ -101,8 +105,8 @@ pub struct Gap {
     pub end: f64,
     /// First time at which the gap or the difference of a coordinate passes its certainty limit.
     pub certain_from: Option<f64>,
-    /// First time at which the difference of each coordinate passes its own limit: the kinetic metric hides
-    /// those of little inertia.
+    /// First time at which the difference of each coordinate passes a hundred times its own estimates: the
+    /// kinetic metric hides those of little inertia.
     pub certain_by_coordinate: Vec<Option<f64>>,
     /// Whether the motions are proved to differ, by whatever little.
     pub proved: bool,
@@ -218,6 +222,7 @@ pub fn compare_motions_by(
         }
     };
     let passes = THRESHOLDS.map(|threshold| first_passing(&points, &mut gap_at, threshold));
+    let doubtful = coordinates.iter().flat_map(|all| all.iter().enumerate()).find(|(_, d)| d.by > d.limit);
     let certain_from = points.iter().find(|p| p.certain).map(|p| p.t);
     let estimate = estimates[0].max(estimates[1]);
     let relative = relative_to(scale, estimate);
@@ -232,6 +237,12 @@ pub fn compare_motions_by(
         let name = &metric.names[i];
         let because =
             format!("relative error estimate of {name} {part:.1e} is over {SAME_ESTIMATE:.0e}, and no gap is certain");
+        Verdict::Undecided { because }
+    } else if let Some((i, d)) = doubtful {
+        let [by, limit] = [d.by, d.limit];
+        let name = &metric.names[i];
+        let because =
+            format!("{name} differs by {by:.1e}, over {limit:.1e}, which is {CERTAINTY} times its own estimates");
         Verdict::Undecided { because }
     } else if relative < SAME_ESTIMATE {
         Verdict::Same
@@ -270,7 +281,7 @@ struct Difference {
 
 impl Difference {
     fn is_certain(&self) -> bool {
-        self.by > self.limit
+        self.by > ALONE * self.limit
     }
 }
 

@@ -187,18 +187,19 @@ impl Numbers {
     }
 }
 
-/// A system with an integrable constraint, in some units of length, time and `L`.
+/// A system with an integrable constraint, in some units of time and `L`.
 fn integrable(numbers: &mut Numbers) -> String {
     const UNITS: [f64; 5] = [1e-9, 1e-3, 1.0, 1e3, 1e9];
-    let length = numbers.among(&UNITS);
-    let [a, b, c] = [0; 3].map(|_| length * numbers.among(&[0.04, 1.0, 1.0, 25.0]));
+    // exact fractions: another number is another constraint, and not integrable
+    let [a, b, c] = [0; 3].map(|_| numbers.among(&[0.25, 1.0, 4.0]));
     let (time, action) = (numbers.among(&UNITS), numbers.among(&UNITS));
-    let mass = numbers.among(&[1.0, 1.0, 1e-8, 1e-20]);
+    let mass = numbers.among(&[1.0, 1.0, 1e-8]);
     // in units of order 1: X = x/a, ẋ = (a/time) X′
     let (x, y, z) = (format!("(x/{a:e})"), format!("(y/{b:e})"), format!("(z/{c:e})"));
     let rate = |of: &str, unit: f64| format!("({of}'*{time:e}/{unit:e})");
     let (u, v, w) = (rate("x", a), rate("y", b), rate("z", c));
-    let potential = numbers.among(&["0", "0.8*Y", "X^2/2 + 0.3*Y^2", "cos(X) + sin(Y)", "0.5*Z^2"]);
+    let potential =
+        numbers.among(&["0", "0.8*Y", "X^2/2 + 0.3*Y^2", "X^2*Y - Y^3/3 + X^2 + Y^2", "cos(X) + sin(Y)", "0.5*Z^2"]);
     let constraint = numbers.among(&[
         "W - X*U",
         "W - U - V*cos(Y)",
