@@ -41,6 +41,9 @@ impl Discs {
 
     /// Radius of a circle round `centre`, not under `least`, that no eigenvalue can cross.
     pub(crate) fn radius(&self, centre: Complex<f64>, least: f64) -> f64 {
+        if self.error.amax() == 0.0 {
+            return least;
+        }
         let least = least.max(f64::MIN_POSITIVE);
         let mut radius = self.apart(centre, least);
         for _ in 0..TRIALS {
