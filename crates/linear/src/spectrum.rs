@@ -47,8 +47,8 @@ pub struct Chain {
     pub radius: f64,
     /// Deviations grow like this power of time until about 1/`radius`; 0 where none is shown, either.
     pub power: usize,
-    /// Whether they are equal and do so for ever: they belong to equal blocks without an error, coupled
-    /// in one direction only. Otherwise it is undecided how deviations go on.
+    /// Whether they are equal and do so for ever: they are exact zeros, or belong to equal blocks without an
+    /// error, coupled in one direction only. Otherwise it is undecided how deviations go on.
     pub is_exact: bool,
     /// Places in [`Spectrum::blocks`].
     pub blocks: Vec<usize>,
@@ -165,17 +165,16 @@ impl Spectrum {
             if cluster.iter().all(|(_, e)| e.value.re.abs() > e.error) || value.im < -radius {
                 continue;
             }
-            let found = discs.restriction(value, radius, size);
-            let power = found.as_ref().map_or(0, |found| found.power);
-            if found.is_some() && power == 0 && radius <= wide {
+            let found = discs.power(value, radius, size);
+            let power = found.unwrap_or(0);
+            if power == 0 && (radius == 0.0 || found.is_some() && radius <= wide) {
                 continue;
             }
             let mut blocks: Vec<usize> = cluster.iter().map(|(i, _)| *i).collect();
             blocks.sort_unstable();
             blocks.dedup();
-            let is_exact = power > 0
-                && blocks.len() == size
-                && blocks.iter().all(|&i| equal(&self.blocks[blocks[0]], &self.blocks[i]));
+            let same = |i: &usize| equal(&self.blocks[blocks[0]], &self.blocks[*i]);
+            let is_exact = power > 0 && (radius == 0.0 || blocks.len() == size && blocks.iter().all(same));
             chains.push(Chain { value, size, radius, power, is_exact, blocks });
         }
         chains.sort_by(|a, b| b.value.im.total_cmp(&a.value.im));
