@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix};
 
 /// Points on a circle round an eigenvalue, and of a contour.
 const ROUND: usize = 8;
-const CONTOUR: usize = 32;
+const CONTOUR: usize = 64;
 /// Largest spectral radius on a circle that counts: circles are looked at in points.
 const CLEAR: f64 = 0.5;
 /// A matrix is raised to the power of two to this for its spectral radius.
@@ -27,12 +27,6 @@ pub(crate) struct Discs {
     largest: f64,
 }
 
-/// The part of a matrix that belongs to some of its eigenvalues.
-pub(crate) struct Restriction {
-    /// `N^j` is not zero up to this `j`, by more than errors explain; `N` is `A − c` on the eigenspace.
-    pub(crate) power: usize,
-}
-
 impl Discs {
     pub(crate) fn new(matrix: &DMatrix<f64>, error: DMatrix<f64>, values: Vec<Complex<f64>>) -> Discs {
         let largest = matrix.norm() + error.norm();
@@ -41,6 +35,9 @@ impl Discs {
 
     /// Radius of a circle round `centre`, not under `least`, that no eigenvalue can cross.
     pub(crate) fn radius(&self, centre: Complex<f64>, least: f64) -> f64 {
+        if self.error.amax() == 0.0 {
+            return least;
+        }
         let least = least.max(f64::MIN_POSITIVE);
         let mut radius = self.apart(centre, least);
         for _ in 0..TRIALS {
@@ -93,9 +90,13 @@ impl Discs {
         inverse.iter().all(|x| x.is_finite()).then_some(inverse)
     }
 
-    /// What the matrix does to the deviations of the eigenvalues within `within` of `centre`: `N^j` is the
-    /// contour integral of `(z − c)^j (z − A)⁻¹` over 2πi. `None` where others are too close for a contour.
-    pub(crate) fn restriction(&self, centre: Complex<f64>, within: f64, size: usize) -> Option<Restriction> {
+    /// The largest `j` with `N^j` not zero, by more than errors explain, where `N` is `A − centre` on the space of
+    /// the eigenvalues within `within` of `centre`, `size` in number: `N^j` is the contour integral of
+    /// `(z − centre)^j (z − A)⁻¹` over 2πi. `None` where others are too close for a contour.
+    pub(crate) fn power(&self, centre: Complex<f64>, within: f64, size: usize) -> Option<usize> {
+        if self.largest == 0.0 {
+            return Some(0);
+        }
         let others = self.values.iter().map(|z| (z - centre).norm()).filter(|d| *d > within);
         let radius = others.fold(3.0 * self.largest.max(3.0 * within), f64::min) / 3.0;
         if within > radius / 3.0 {
@@ -120,7 +121,7 @@ impl Discs {
             let noise = 4.0 * radius.powi(*j as i32 + 1);
             powers[*j].zip_map(&moved, |x, moved| x.norm() > noise * moved + spread).iter().any(|&over| over)
         };
-        Some(Restriction { power: (1..size).take_while(shown).count() })
+        Some((1..size).take_while(shown).count())
     }
 }
 

@@ -166,7 +166,7 @@ impl Linearization {
                 wanted[w] = true;
             }
         }
-        let Spectrum { blocks, chains, zero_error, .. } = &self.spectrum;
+        let Spectrum { blocks, chains, .. } = &self.spectrum;
         let asked = |block: &Block| block.places.iter().any(|&i| wanted[i]);
         let mut part =
             Part { states: Vec::new(), eigenvalues: Vec::new(), zeros: 0, zero_error: 0.0, chains: Vec::new() };
@@ -175,8 +175,8 @@ impl Linearization {
             part.states.extend(&block.places);
             part.eigenvalues.extend(&block.eigenvalues);
             part.zeros += block.zeros;
+            part.zero_error = part.zero_error.max(block.zero_error);
         }
-        part.zero_error = if part.zeros > 0 { *zero_error } else { 0.0 };
         part.states.sort_unstable();
         sort(&mut part.eigenvalues);
         Ok(part)

@@ -1,8 +1,9 @@
 //! Eigenvalues of a matrix whose entries are known up to some error, block by block.
 
 use mechanics::SingularValues;
-use nalgebra::{Complex, DMatrix, DVector, Schur, linalg::balancing::balance_parlett_reinsch};
+use nalgebra::{Complex, DMatrix};
 
+use crate::core::{Core, allowed, balanced, nullity, structural_rank};
 use crate::discs::Discs;
 
 /// One eigenvalue.
@@ -30,6 +31,8 @@ pub struct Block {
     pub eigenvalues: Vec<Eigenvalue>,
     /// How many more there are, all zero.
     pub zeros: usize,
+    /// How far these may be from zero.
+    pub zero_error: f64,
 }
 
 /// Eigenvalues that no error tells from a multiple one on the imaginary axis, with fewer eigenvectors than
@@ -44,8 +47,8 @@ pub struct Chain {
     pub radius: f64,
     /// Deviations grow like this power of time until about 1/`radius`; 0 where none is shown, either.
     pub power: usize,
-    /// Whether they are equal and do so for ever: they belong to equal blocks without an error, coupled
-    /// in one direction only. Otherwise it is undecided how deviations go on.
+    /// Whether they are equal and do so for ever: they are exact zeros, or belong to equal blocks without an
+    /// error, coupled in one direction only. Otherwise it is undecided how deviations go on.
     pub is_exact: bool,
     /// Places in [`Spectrum::blocks`].
     pub blocks: Vec<usize>,
@@ -58,9 +61,10 @@ pub struct Chain {
 /// until there is none: so zeros are counted, chains among them as well.
 ///
 /// Errors: entries are off by what is given, by themselves where they were left out, and within a block,
-/// balanced, by 4 ε of its norm. The error of an eigenvalue is the radius of a circle round it that none
-/// crosses while all entries of the matrix move so far, and at least 4 ε of the largest eigenvalue. Of `k`
-/// eigenvalues close to a multiple one it is the `k`-th root of that.
+/// balanced, by ε of its norm and what the QR algorithm leaves. The error of an eigenvalue is the radius of a
+/// circle round it that none crosses while all entries of the matrix move so far, and at least 4 ε of the
+/// largest eigenvalue. Of `k` eigenvalues close to a multiple one it is about the `k`-th root of that. Only zeros
+/// that every matrix with entries in these places has stay where they are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Blocks, by their first places.
@@ -68,19 +72,13 @@ pub struct Spectrum {
     /// Independent eigenvectors of the eigenvalue zero; less than the zeros where deviations grow as powers
     /// of time.
     pub zero_vectors: usize,
-    /// How far what is counted as zero may be from zero.
-    pub zero_error: f64,
     /// What lets deviations grow as powers of time, or leaves that open.
     pub chains: Vec<Chain>,
 }
 
 /// Entries up to this part of the largest in their row or column are round-off.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
-/// Iterations of the QR algorithm for each eigenvalue.
-const ITERATIONS: usize = 200;
-/// Axes in which it is tried.
-const TURNS: usize = 5;
-/// Discs of more than this part of the fastest eigenvalue, half of the digits, decide nothing on the axis.
+/// Discs of more than this part of the matrix, half of the digits, decide nothing on the axis.
 const WIDE: f64 = 1e-8;
 /// Eigenvalues closer than so many errors are one cluster.
 const CLUSTER: f64 = 4.0;
@@ -110,48 +108,38 @@ impl Spectrum {
         let part = |m: &DMatrix<f64>, places: &[usize]| {
             DMatrix::from_fn(places.len(), places.len(), |i, j| m[(places[i], places[j])])
         };
-        let mut blocks = Vec::new();
+        let given = matrix.zip_map(noise, |a, e| a != 0.0 || e != 0.0);
+        let whole = components(&given);
+        let (mut blocks, mut own) = (Vec::new(), Vec::new());
         for places in components(&coupled) {
-            let (values, arithmetic) = of_block(part(&clean, &places), part(noise, &places))?;
+            let core = Core::of(part(&clean, &places), part(noise, &places))?;
             for (i, j) in (0..places.len()).flat_map(|i| (0..places.len()).map(move |j| (i, j))) {
-                error[(places[i], places[j])] += arithmetic[(i, j)];
+                error[(places[i], places[j])] += core.arithmetic[(i, j)];
             }
-            let eigenvalues: Vec<_> = values.into_iter().map(|value| Eigenvalue { value, error: 0.0 }).collect();
-            blocks.push(Block { zeros: places.len() - eigenvalues.len(), places, eigenvalues });
+            let rank =
+                structural_rank(&DMatrix::from_fn(places.len(), places.len(), |i, j| given[(places[i], places[j])]));
+            // zeros that all matrices with these entries have, and nothing from outside
+            let is_sure = rank == core.values.len() && whole.contains(&places);
+            let eigenvalues: Vec<_> = core.values.iter().map(|&value| Eigenvalue { value, error: 0.0 }).collect();
+            blocks.push(Block { zeros: places.len() - eigenvalues.len(), places, eigenvalues, zero_error: 0.0 });
+            own.push(is_sure.then(|| core.discs()));
         }
         let all = || blocks.iter().flat_map(|block| block.eigenvalues.iter().map(|e| e.value));
         let fastest = all().fold(0.0_f64, |fastest, z| fastest.max(z.norm()));
-        let least = 4.0 * f64::EPSILON * fastest;
         let zeros = std::iter::repeat_n(Complex::default(), n - all().count());
         let (balanced, error) = balanced(clean, error);
-        let zero_vectors = nullity(&SingularValues::of(&balanced), allowed(&balanced, &error));
+        let (zero_vectors, size) =
+            (nullity(&SingularValues::of(&balanced), allowed(&balanced, &error)), balanced.norm());
         let discs = Discs::new(&balanced, error, all().chain(zeros).collect());
-        let mut zero_error = 0.0_f64;
-        for block in &mut blocks {
-            for e in block.eigenvalues.iter_mut().filter(|e| e.value.im >= 0.0) {
-                e.error = discs.radius(e.value, least);
-            }
-            for i in (0..block.eigenvalues.len()).filter(|&i| block.eigenvalues[i].value.im < 0.0).collect::<Vec<_>>() {
-                let other = block.eigenvalues.iter().find(|e| e.value == block.eigenvalues[i].value.conj());
-                block.eigenvalues[i].error =
-                    other.map_or_else(|| discs.radius(block.eigenvalues[i].value, least), |e| e.error);
-            }
-            // what is not above its error is zero
-            let lost = block.eigenvalues.iter().filter(|e| e.value.norm() <= e.error);
-            zero_error = lost.fold(zero_error, |a, e| a.max(e.value.norm() + e.error));
-            block.eigenvalues.retain(|e| e.value.norm() > e.error);
-            block.zeros = block.places.len() - block.eigenvalues.len();
+        for (block, own) in blocks.iter_mut().zip(&own) {
+            block.enclose(own.as_ref(), &discs, 4.0 * f64::EPSILON * fastest);
         }
-        if blocks.iter().any(|block| block.zeros > 0) {
-            zero_error = discs.radius(Complex::default(), least.max(zero_error));
-        }
-        let mut spectrum = Spectrum { blocks, zero_vectors, zero_error, chains: Vec::new() };
-        let whole = components(&matrix.zip_map(noise, |a, e| a != 0.0 || e != 0.0));
+        let mut spectrum = Spectrum { blocks, zero_vectors, chains: Vec::new() };
         let equal = |one: &Block, other: &Block| {
             let alone = |block: &Block| whole.contains(&block.places) && part(noise, &block.places).amax() == 0.0;
             alone(one) && alone(other) && part(matrix, &one.places) == part(matrix, &other.places)
         };
-        spectrum.chains = spectrum.chains_on_the_axis(&discs, WIDE * fastest, equal);
+        spectrum.chains = spectrum.chains_on_the_axis(&discs, WIDE * size, equal);
         Some(spectrum)
     }
 
@@ -159,7 +147,7 @@ impl Spectrum {
     fn chains_on_the_axis(&self, discs: &Discs, wide: f64, equal: impl Fn(&Block, &Block) -> bool) -> Vec<Chain> {
         let mut left: Vec<(usize, Eigenvalue)> = Vec::new();
         for (i, block) in self.blocks.iter().enumerate() {
-            let zero = Eigenvalue { value: Complex::default(), error: self.zero_error };
+            let zero = Eigenvalue { value: Complex::default(), error: block.zero_error };
             let zeros = std::iter::repeat_n(zero, block.zeros);
             left.extend(block.eigenvalues.iter().copied().chain(zeros).map(|e| (i, e)));
         }
@@ -177,17 +165,16 @@ impl Spectrum {
             if cluster.iter().all(|(_, e)| e.value.re.abs() > e.error) || value.im < -radius {
                 continue;
             }
-            let found = discs.restriction(value, radius, size);
-            let power = found.as_ref().map_or(0, |found| found.power);
-            if found.is_some() && power == 0 && radius <= wide {
+            let found = discs.power(value, radius, size);
+            let power = found.unwrap_or(0);
+            if power == 0 && (radius == 0.0 || found.is_some() && radius <= wide) {
                 continue;
             }
             let mut blocks: Vec<usize> = cluster.iter().map(|(i, _)| *i).collect();
             blocks.sort_unstable();
             blocks.dedup();
-            let is_exact = power > 0
-                && blocks.len() == size
-                && blocks.iter().all(|&i| equal(&self.blocks[blocks[0]], &self.blocks[i]));
+            let same = |i: &usize| equal(&self.blocks[blocks[0]], &self.blocks[*i]);
+            let is_exact = power > 0 && (radius == 0.0 || blocks.len() == size && blocks.iter().all(same));
             chains.push(Chain { value, size, radius, power, is_exact, blocks });
         }
         chains.sort_by(|a, b| b.value.im.total_cmp(&a.value.im));
@@ -195,26 +182,29 @@ impl Spectrum {
     }
 }
 
-/// A matrix in units in which its rows are about as large as its columns, and its errors in the same.
-fn balanced(mut matrix: DMatrix<f64>, noise: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
-    let units = balance_parlett_reinsch(&mut matrix);
-    let noise = in_units(noise, &units);
-    (matrix, noise)
-}
-
-fn in_units(matrix: DMatrix<f64>, units: &DVector<f64>) -> DMatrix<f64> {
-    DMatrix::from_fn(matrix.nrows(), matrix.nrows(), |i, j| matrix[(i, j)] * units[j] / units[i])
-}
-
-/// The error of a matrix as a length: its own, and that of arithmetic.
-fn allowed(matrix: &DMatrix<f64>, noise: &DMatrix<f64>) -> f64 {
-    4.0 * f64::EPSILON * matrix.norm() + noise.norm()
-}
-
-/// How many singular values count as zero.
-fn nullity(svd: &SingularValues, error: f64) -> usize {
-    let limit = svd.values.len() as f64 * error;
-    svd.values.iter().filter(|&&s| s <= limit).count()
+impl Block {
+    /// Finds the errors; no error is below `least`, and what is not above its error is zero. `own` are the discs
+    /// of this block, where it has just these zeros.
+    fn enclose(&mut self, own: Option<&Discs>, all: &Discs, least: f64) {
+        let discs = own.unwrap_or(all);
+        let of = |value: Complex<f64>| discs.radius(Complex::new(value.re, value.im.abs()), least);
+        sort(&mut self.eigenvalues);
+        let mut last = (Complex::default(), f64::NAN);
+        for e in &mut self.eigenvalues {
+            // conjugates stand side by side
+            e.error = if last.0 == e.value.conj() { last.1 } else { of(e.value) };
+            last = (e.value, e.error);
+        }
+        let lost = self.eigenvalues.iter().filter(|e| e.value.norm() <= e.error);
+        let lost = lost.map(|e| e.value.norm() + e.error).reduce(f64::max);
+        self.eigenvalues.retain(|e| e.value.norm() > e.error);
+        self.zeros = self.places.len() - self.eigenvalues.len();
+        self.zero_error = match (lost, own) {
+            (None, Some(_)) => 0.0,
+            (None, None) if self.zeros == 0 => 0.0,
+            (lost, _) => all.radius(Complex::default(), lost.unwrap_or(least)),
+        };
+    }
 }
 
 /// Sets of places that reach each other, by their first ones.
@@ -238,63 +228,10 @@ fn components(coupled: &DMatrix<bool>) -> Vec<Vec<usize>> {
     found
 }
 
-/// Eigenvalues of one block, without those of its null space, and how far off arithmetic lets its entries be.
-fn of_block(block: DMatrix<f64>, noise: DMatrix<f64>) -> Option<(Vec<Complex<f64>>, DMatrix<f64>)> {
-    let n = block.nrows();
-    if n == 1 {
-        // exact
-        let value = block[(0, 0)];
-        let values = (value.abs() > noise[(0, 0)]).then_some(value.into()).into_iter().collect();
-        return Some((values, DMatrix::zeros(1, 1)));
-    }
-    let mut own = block;
-    let units = balance_parlett_reinsch(&mut own);
-    let error = 4.0 * f64::EPSILON * own.norm();
-    let (values, left) = eigenvalues(without_null_space(own, error + in_units(noise, &units).norm()))?;
-    Some((values, DMatrix::from_fn(n, n, |i, j| (error + left) * units[i] / units[j])))
-}
-
 /// By falling real part, then imaginary part: conjugates have the same real part to the last digit.
 pub(crate) fn sort(eigenvalues: &mut [Eigenvalue]) {
     let order = |a: Complex<f64>, b: Complex<f64>| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im));
     eigenvalues.sort_by(|a, b| order(a.value, b.value));
-}
-
-/// `Q₁ᵀ B Q₁` with `Q₁` orthogonal to the null space of `B`, until there is none: one zero less a vector.
-fn without_null_space(mut block: DMatrix<f64>, error: f64) -> DMatrix<f64> {
-    loop {
-        let svd = SingularValues::of(&block);
-        let rank = block.nrows() - nullity(&svd, error);
-        if rank == block.nrows() {
-            return block;
-        }
-        let kept = svd.right.rows(0, rank);
-        block = kept * &block * kept.transpose();
-    }
-}
-
-/// Eigenvalues, and how far from the matrix that has them exactly the given one is: the QR algorithm in its own
-/// axes, or, where it does not converge, in turned ones.
-fn eigenvalues(matrix: DMatrix<f64>) -> Option<(Vec<Complex<f64>>, f64)> {
-    let n = matrix.nrows();
-    if n == 0 {
-        return Some((Vec::new(), 0.0));
-    }
-    let mut random = Weyl::default();
-    (0..TURNS).find_map(|turn| {
-        let normal = DVector::from_fn(n, |_, _| if turn == 0 { 0.0 } else { random.number() });
-        let turned = reflected(&reflected(&matrix, &normal).transpose(), &normal).transpose();
-        let schur = Schur::try_new(turned.clone(), f64::EPSILON, ITERATIONS * n)?;
-        let values = schur.complex_eigenvalues().iter().copied().collect();
-        let (axes, triangle) = schur.unpack();
-        Some((values, (turned - &axes * triangle * axes.transpose()).norm()))
-    })
-}
-
-/// `(1 − 2 n nᵀ/|n|²) A`; `A` where `n` is zero.
-fn reflected(matrix: &DMatrix<f64>, normal: &DVector<f64>) -> DMatrix<f64> {
-    let square = normal.norm_squared();
-    if square == 0.0 { matrix.clone() } else { matrix - normal * (normal.transpose() * matrix) * (2.0 / square) }
 }
 
 /// Numbers without a pattern, the same in every run: Weyl's sequence.

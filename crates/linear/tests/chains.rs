@@ -1,6 +1,6 @@
 //! Jordan chains on the imaginary axis, with a feedback that splits them: the truth is in closed form.
 
-use linear::{Chain, Growth, Part, Spectrum};
+use linear::{Block, Chain, Growth, Part, Spectrum};
 use nalgebra::{Complex, DMatrix};
 
 const FEEDBACK: [f64; 9] = [1e-20, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12];
@@ -12,8 +12,10 @@ fn spectrum(matrix: &DMatrix<f64>) -> (Vec<(Complex<f64>, f64)>, Growth, Vec<Cha
     let eigenvalues: Vec<_> = found.blocks.iter().flat_map(|block| block.eigenvalues.clone()).collect();
     let zeros = n - eigenvalues.len();
     let mut all: Vec<_> = eigenvalues.iter().map(|e| (e.value, e.error)).collect();
-    all.extend(std::iter::repeat_n((Complex::default(), found.zero_error), zeros));
-    let (zero_error, chains) = (found.zero_error, found.chains.clone());
+    let zero = |block: &Block| std::iter::repeat_n((Complex::default(), block.zero_error), block.zeros);
+    all.extend(found.blocks.iter().flat_map(zero));
+    let zero_error = found.blocks.iter().fold(0.0_f64, |a, block| a.max(block.zero_error));
+    let chains = found.chains.clone();
     let part = Part { states: (0..n).collect(), eigenvalues, zeros, zero_error, chains: found.chains };
     (all, part.growth(), chains)
 }
