@@ -54,7 +54,8 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::NoPrinciple { .. }
         | Error::Step { .. }
         | Error::Breakpoint { .. }
-        | Error::Member { .. } => SolveError::new_err(text),
+        | Error::Member { .. }
+        | Error::UnknownFormulation { .. } => SolveError::new_err(text),
     }
 }
 
