@@ -81,7 +81,15 @@ fn units_change_no_word() {
             for (what, word) in &own {
                 let other = found.iter().find(|(of, _)| of == what).map_or("undecided: not said", |(_, word)| word);
                 let kind = what.split(' ').next().unwrap_or_default();
-                let count = counts.entry(match kind { "integrability" => "integrability", "decision" => "decision", "floating" => "floating", "dimension" => "dimension", _ => "verdict" }).or_default();
+                let count = counts
+                    .entry(match kind {
+                        "integrability" => "integrability",
+                        "decision" => "decision",
+                        "floating" => "floating",
+                        "dimension" => "dimension",
+                        _ => "verdict",
+                    })
+                    .or_default();
                 let is_open = |word: &str| word.starts_with("undecided");
                 if word == other || is_open(word) && is_open(other) {
                     count[0] += 1;

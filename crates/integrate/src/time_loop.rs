@@ -13,6 +13,8 @@ use crate::taylor_step::{DEFECT, ROUND_OFF};
 
 /// So many times in a row is a step that cannot be evaluated halved.
 pub(crate) const HALVINGS: usize = 60;
+/// A move of a projection that as many halvings do not halve is none of a step.
+const PERSISTENT: usize = 20;
 
 /// Integrates with `stepper`, or reports that it could not be set up.
 pub(crate) fn drive<S: Stepper>(
@@ -44,6 +46,7 @@ pub(crate) fn run(
         pace: options.before.clone().map_or(Pace::new(start.t, end), |before| before.pace.on_to(end)),
         absolute: options.absolute_tolerances(start.y.len()),
         before: Vec::new(),
+        moves: Moves { allowed: 1.0, last: f64::INFINITY, shorter: 0 },
         options,
     };
     let status = match stepper.and_then(|stepper| record.walk(stepper, start, end)) {
@@ -63,7 +66,17 @@ struct Record<'a, 'p> {
     absolute: Vec<f64>,
     /// The candidate before it was projected.
     before: Vec<f64>,
+    moves: Moves,
     options: &'a Options,
+}
+
+/// Moves of projections over what errors of steps are.
+struct Moves {
+    /// The largest one that counts as none.
+    allowed: f64,
+    /// That of the last attempt, and the number of attempts in a row that were dropped for it.
+    last: f64,
+    shorter: usize,
 }
 
 impl Record<'_, '_> {
@@ -124,14 +137,31 @@ impl Record<'_, '_> {
     }
 
     /// A step's error is of the size of the tolerance: a projection that moves much farther hides another one.
-    /// What several steps of a multistep method have added up is no error of one.
-    fn check_move(&self, candidate: &[f64]) -> Result<(), Failure> {
+    /// What shorter steps do not make smaller is no error of a step, but round-off of constraints that are
+    /// nearly dependent, and is allowed from then on. What several steps of a multistep method have added up
+    /// is no error of one.
+    fn check_move(&mut self, candidate: &[f64]) -> Result<(), Failure> {
         let relative = self.options.relative_tolerance.max(ROUND_OFF);
-        let is_far = |((y, before), absolute): ((&f64, &f64), &f64)| {
-            (y - before).abs() > DEFECT * (absolute + relative * y.abs().max(before.abs()))
-        };
-        let far = candidate.iter().zip(&self.before).zip(&self.absolute).position(is_far);
-        far.map_or(Ok(()), |component| Err(Failure::OffConstraint { component }))
+        let (mut component, mut worst) = (0, 0.0);
+        for (i, (y, before)) in candidate.iter().zip(&self.before).enumerate() {
+            let allowed = DEFECT * (self.absolute[i] + relative * y.abs().max(before.abs()));
+            let part = (y - before).abs() / allowed;
+            if part > worst {
+                (component, worst) = (i, part);
+            }
+        }
+        let Moves { allowed, last, shorter } = &mut self.moves;
+        if worst <= *allowed || self.options.method == Method::Bdf {
+            *shorter = 0;
+            return Ok(());
+        }
+        *shorter += 1;
+        if *shorter > PERSISTENT && worst > 0.5 * *last {
+            (*allowed, *shorter) = (2.0 * worst, 0);
+            return Ok(());
+        }
+        *last = worst;
+        Err(Failure::OffConstraint { component })
     }
 
     /// Checks, projects and stores the candidate that ends at `t`; returns the event that cuts it short.
@@ -150,9 +180,7 @@ impl Record<'_, '_> {
             self.before.clear();
             self.before.extend_from_slice(candidate);
             moved = Some(self.system.project(t, candidate)?);
-            if self.options.method != Method::Bdf {
-                self.check_move(candidate)?;
-            }
+            self.check_move(candidate)?;
         }
         let watching = self.system.events() > 0;
         let has_room = watching || steep.is_on() || self.options.dense == Dense::Everywhere;

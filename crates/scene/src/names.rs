@@ -7,7 +7,6 @@ use mechanics::System;
 use symbolic::{Expr, Graph, ParseError, ParseErrorKind, Scope, Symbol, Value};
 
 use super::section::{Source, Text};
-use super::system::KAPPA;
 use crate::{NameFault, SceneError, SceneErrorKind, Unavailable};
 
 /// What a name stands for.
@@ -33,6 +32,9 @@ impl Role {
         }
     }
 }
+
+/// The parameter that can be set in a scene that does not name it.
+pub(super) const KAPPA: &str = "kappa";
 
 /// The names that expressions can use.
 #[derive(Clone, Default)]

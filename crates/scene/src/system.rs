@@ -5,15 +5,12 @@ use std::collections::HashMap;
 use symbolic::{Graph, Symbol};
 
 use super::context::Context;
-use super::names::{Names, Role};
+use super::names::{KAPPA, Names, Role};
 use super::order::in_order;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source, Value};
 use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{Parameter, System, Watched};
-
-/// The parameter that can be set in a scene that does not name it.
-pub(super) const KAPPA: &str = "kappa";
 
 /// Reads everything that makes the system, and the positions at the start.
 pub(super) fn build<'a>(
