@@ -1,6 +1,6 @@
 //! Members integrated and read off.
 
-use equations::{Compiled, Outputs};
+use equations::{Compiled, Named, Outputs};
 
 use super::run::Outcome;
 use super::threads::shared;
@@ -8,8 +8,9 @@ use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::clock::Clock;
 use crate::error_estimate::Differences;
 use crate::metric::subtract;
-use crate::single_run::outputs;
-use crate::{ErrorEstimate, Metric, SolveError};
+use crate::single_run::{UNITS, move_digits, outputs};
+use crate::watch::Watch;
+use crate::{Doubt, ErrorEstimate, Metric, SolveError};
 
 /// What became of a member, read off.
 #[derive(Clone, Debug)]
@@ -19,14 +20,19 @@ pub struct MemberMotion {
     /// Largest differences of the two runs at these times; zero where there is none of them, none without
     /// [`EnsembleOptions::estimate`]. A coordinate's size is also how far its velocity may have brought it.
     pub estimate: Option<ErrorEstimate>,
+    /// Where the scene's own constraints, or what is listed as constant, are off by more than the two runs
+    /// leave open; never without [`EnsembleOptions::estimate`].
+    pub doubt: Option<Doubt>,
     /// The run behind it.
     pub run: MemberRun,
 }
 
 impl MemberMotion {
-    /// [`crate::Ending::status`], untrusted where its estimate is too large ([`ErrorEstimate::complaint`]).
+    /// [`crate::Ending::status`], untrusted where it is in doubt or its estimate is too large
+    /// ([`ErrorEstimate::complaint`]).
     pub fn status(&self) -> (&'static str, Option<String>) {
-        self.run.ending.status(self.estimate.as_ref().and_then(ErrorEstimate::complaint))
+        let doubt = self.doubt.as_ref().map(|doubt| doubt.because.clone());
+        self.run.ending.status(doubt.or_else(|| self.estimate.as_ref().and_then(ErrorEstimate::complaint)))
     }
 }
 
@@ -51,13 +57,21 @@ impl Ensemble {
         options: &EnsembleOptions,
     ) -> (Vec<Result<MemberMotion, SolveError>>, f64) {
         let begin = Clock::start();
-        let runs = self.run(members, times, options);
+        let instants = instants(members, times, options);
+        let all: Vec<f64> = instants.iter().map(|(t, _)| *t).collect();
+        let runs = self.run(members, &all, options);
         let seconds = begin.seconds();
+        let watch = Watch::new(&self.system, &self.starts.parameters());
+        let watch = match watch {
+            Ok(watch) => watch,
+            Err(error) => return (members.iter().map(|_| Err(error.clone().into())).collect(), seconds),
+        };
+        let invariants = &self.equations().invariants;
         let (compiled, metric) = (&self.varying.prepared().compiled, &self.metric);
         let names: Vec<String> = self.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let read = shared(options.threads, members.len(), 1, |take| {
-            let (compiled, metric) = (compiled.clone(), metric.clone());
-            let mut reader = Reader { names: &names, compiled, metric, times };
+            let (compiled, metric, watch) = (compiled.clone(), metric.clone(), watch.clone());
+            let mut reader = Reader { names: &names, compiled, metric, watch, invariants, instants: &instants };
             let mut done = Vec::new();
             while let Some(index) = take() {
                 if let Ok(run) = &runs[index] {
@@ -67,9 +81,13 @@ impl Ensemble {
             done
         });
         let joined = |(run, read): (Outcome, Option<Result<_, SolveError>>)| {
-            let run = run?;
-            let (outputs, estimate) = read.unwrap_or_else(|| Ok((Vec::new(), None)))?;
-            Ok(MemberMotion { outputs, estimate, run })
+            let mut run = run?;
+            let (outputs, estimate, doubt) = read.unwrap_or_else(|| Ok((Vec::new(), None, None)))?;
+            for values in [&mut run.states, &mut run.differences, &mut run.unknowns] {
+                let mut asked = instants.iter().map(|(_, asked)| *asked);
+                values.retain(|_| asked.next().unwrap_or(true));
+            }
+            Ok(MemberMotion { outputs, estimate, doubt, run })
         };
         (runs.into_iter().zip(read).map(joined).collect(), seconds)
     }
@@ -106,12 +124,35 @@ impl Ensemble {
     }
 }
 
+/// Instants within the time of all members at which their constraints are looked at.
+const WATCHED: usize = 8;
+
+/// The times asked for, in their order, and where an error is estimated, others between them.
+fn instants(members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions) -> Vec<(f64, bool)> {
+    let mut instants: Vec<(f64, bool)> = times.iter().map(|&t| (t, true)).collect();
+    let Some(first) = members.first().filter(|_| options.estimate) else { return instants };
+    let direction = (first.end - first.t).signum();
+    let latest = |of: &dyn Fn(&EnsembleMember) -> f64| members.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    // in the direction of time, from the last start to the first end
+    let (start, end) = (latest(&|m| direction * m.t), -latest(&|m| -direction * m.end));
+    if start < end && end.is_finite() && times.windows(2).all(|pair| direction * pair[0] <= direction * pair[1]) {
+        let between = |i: usize| direction * (start + (end - start) * i as f64 / (WATCHED + 1) as f64);
+        instants.extend((1..=WATCHED).map(|i| (between(i), false)));
+        instants.sort_by(|a, b| (direction * a.0).total_cmp(&(direction * b.0)));
+    }
+    instants
+}
+
 struct Reader<'a> {
     names: &'a [String],
     compiled: Compiled,
     metric: Metric,
-    times: &'a [f64],
+    watch: Watch,
+    invariants: &'a [Named],
+    instants: &'a [(f64, bool)],
 }
+
+type Read = (Vec<Outputs>, Option<ErrorEstimate>, Option<Doubt>);
 
 impl Reader<'_> {
     fn read(
@@ -119,23 +160,55 @@ impl Reader<'_> {
         member: &EnsembleMember,
         run: &MemberRun,
         options: &EnsembleOptions,
-    ) -> Result<(Vec<Outputs>, Option<ErrorEstimate>), SolveError> {
+    ) -> Result<Read, SolveError> {
         member.set(&mut self.compiled);
-        self.metric.set_parameters(&member.constants[member.constants.len() - self.metric.parameters()..]);
-        let start = outputs(&mut self.compiled, member.t, &member.y)?.coordinates;
-        let mut differences = Differences::from(self.names, &start);
+        let parameters = &member.constants[member.constants.len() - self.metric.parameters()..];
+        self.metric.set_parameters(parameters);
+        let start = outputs(&mut self.compiled, member.t, &member.y)?;
+        self.watch.begin(member.t, &start, parameters);
+        let mut differences = Differences::from(self.names, &start.coordinates);
         let mut read = Vec::with_capacity(run.states.len());
-        for (i, (&t, y)) in self.times.iter().zip(&run.states).enumerate() {
-            if let Some(unknowns) = run.unknowns.get(i) {
-                self.compiled.set_guess(unknowns);
+        let mut is_clear = true;
+        for (i, (&(t, asked), y)) in self.instants.iter().zip(&run.states).enumerate() {
+            let now = self.at(run, i, t, y);
+            let now = if asked { now? } else if let Ok(now) = now { now } else { continue };
+            is_clear &= !options.estimate || self.watch.is_clear(t, &now);
+            if !asked {
+                continue;
             }
-            let now = outputs(&mut self.compiled, t, y)?;
             if let Some(difference) = run.differences.get(i) {
                 let other = outputs(&mut self.compiled, t, &subtract(y, difference))?;
                 differences.add(&mut self.metric, t, &now, &other, t - member.t);
             }
             read.push(now);
         }
-        Ok((read, options.estimate.then(|| differences.estimate())))
+        let doubt = if is_clear { None } else { self.broken(member.t, run) };
+        Ok((read, options.estimate.then(|| differences.estimate()), doubt))
+    }
+
+    fn at(&mut self, run: &MemberRun, i: usize, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {
+        if let Some(unknowns) = run.unknowns.get(i) {
+            self.compiled.set_guess(unknowns);
+        }
+        outputs(&mut self.compiled, t, y)
+    }
+
+    /// Where something is off by more than the two runs leave open.
+    fn broken(&mut self, start: f64, run: &MemberRun) -> Option<Doubt> {
+        let mut from = start;
+        for (i, (&(t, _), y)) in self.instants.iter().zip(&run.states).enumerate() {
+            let kept = self.at(run, i, t, y).ok()?;
+            let looser = outputs(&mut self.compiled, t, &subtract(y, run.differences.get(i)?)).ok()?;
+            let mut moved = || {
+                let mut y = y.clone();
+                move_digits(&mut y, |_| UNITS);
+                self.compiled.outputs(t, &y).ok().map(|outputs| outputs.invariants)
+            };
+            if let Some(because) = self.watch.complaint(t, [&kept, &looser], self.invariants, &mut moved) {
+                return Some(Doubt { from, because });
+            }
+            from = t;
+        }
+        None
     }
 }
