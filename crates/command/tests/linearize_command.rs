@@ -26,7 +26,9 @@ fn every_format_has_the_same_numbers() {
     // m/s, the weave speed of the paper
     let weave = value["changes"][0]["value"].as_f64().expect("a change");
     assert!((weave - 4.292382536).abs() < 1e-9, "{weave}");
-    assert!(with("table").contains("Stability changes at v = 4.292382536"));
+    let said = "Stability to first order changes at v = 4.292382536";
+    assert!(with("table").contains(said));
+    assert!(with("table").contains("2 have a positive real part below this value, no eigenvalue has above"));
 }
 
 #[test]
@@ -54,4 +56,42 @@ fn what_is_not_steady_is_frozen_found_or_refused() {
     ] {
         refused(&[&disc[..], more].concat(), &[said]);
     }
+}
+
+/// `theta' = 0` and both spins, so the upright disc rolls on with what it has: the critical spin is that of the
+/// motion that was found, not that of the start.
+#[test]
+fn a_critical_value_is_that_of_the_motion_found() {
+    let sweep = ["linearize", "falling-disc", "--find", "--free", "theta", "--sweep", "psi'=2:3:2"];
+    let value: Value = serde_json::from_str(&answer(&[&sweep[..], &["--format", "json"]].concat(), 0).0).expect("JSON");
+    let change = &value["changes"][0];
+    let number = |name: &str| change[name].as_f64().expect("a number");
+    assert!((number("asked") - 2.5372).abs() < 1e-4 && (number("value") - 2.5606).abs() < 1e-4, "{change}");
+    let there = change["state"]["psi'"].as_f64().expect("a state");
+    assert!((there - number("value")).abs() <= number("width").max(1e-9), "{change}");
+    let page = answer(&sweep, 0).0;
+    assert!(page.contains("Steady motions that were found:") && page.contains("psi' = 2.5606"), "{page}");
+}
+
+#[test]
+fn what_first_order_leaves_open_is_said() {
+    let flat = answer(&["linearize", "sledge", "--set", "g=0"], 0).0;
+    assert!(flat.contains("Every eigenvalue is zero: to first order nothing is decided about stability."), "{flat}");
+    assert!(flat.contains("| undecided |"), "{flat}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("resonance.toml");
+    let scene = |feedback: &str| {
+        let text = "title = \"Two pendulums, one driven by the other\"\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n\
+                    [system]\nlagrangian = \"(x'^2 + y'^2)/2 - 1.1*(x^2 + y^2)\"\nforces = { x = \"D*y\", y = \"x\" }\n\
+                    [start.velocities]\n\"x'\" = 0\n\"y'\" = 0\n[run]\nduration = 1\n";
+        std::fs::write(&path, text.replace('D', feedback)).expect("written");
+        answer(&["linearize", path.to_str().expect("text")], 0).0
+    };
+    assert!(scene("0").contains("2 equal eigenvalues ±1.4832 i have one eigenvector: deviations grow like t."));
+    for feedback in ["1e-20", "(-1e-20)", "1e-14", "(-1e-14)"] {
+        let page = scene(feedback);
+        assert!(page.contains("| undecided |") && page.contains("then it is undecided"), "{feedback}: {page}");
+    }
+    // λ² = −2.2 ± √D: bounded, and growing
+    assert!(scene("1e-6").contains("| 0 | 0 |") && scene("(-1e-6)").contains("| 0 | 2 |"));
 }

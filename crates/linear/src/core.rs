@@ -44,7 +44,8 @@ impl Core {
 
     /// Discs of the eigenvalues, if the zeros are zero.
     pub(crate) fn discs(self) -> Discs {
-        Discs::new(&self.matrix, self.error, self.values)
+        let all = (0..self.matrix.nrows()).collect();
+        Discs::new(&self.matrix, self.error, self.values, vec![all])
     }
 }
 

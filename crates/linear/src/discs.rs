@@ -23,14 +23,21 @@ pub(crate) struct Discs {
     matrix: DMatrix<Complex<f64>>,
     error: DMatrix<f64>,
     values: Vec<Complex<f64>>,
+    /// Places that depend on one another, each set behind those on which it depends.
+    blocks: Vec<Vec<usize>>,
     /// No eigenvalue is further from 0.
     largest: f64,
 }
 
 impl Discs {
-    pub(crate) fn new(matrix: &DMatrix<f64>, error: DMatrix<f64>, values: Vec<Complex<f64>>) -> Discs {
+    pub(crate) fn new(
+        matrix: &DMatrix<f64>,
+        error: DMatrix<f64>,
+        values: Vec<Complex<f64>>,
+        blocks: Vec<Vec<usize>>,
+    ) -> Discs {
         let largest = matrix.norm() + error.norm();
-        Discs { matrix: matrix.map(Complex::from), error, values, largest }
+        Discs { matrix: matrix.map(Complex::from), error, values, blocks, largest }
     }
 
     /// Radius of a circle round `centre`, not under `least`, that no eigenvalue can cross.
@@ -83,11 +90,24 @@ impl Discs {
         circle(centre, radius, ROUND).iter().map(at).fold(0.0, f64::max)
     }
 
+    /// Block by block: elimination in all of the matrix would let round-off couple what is not coupled.
     fn resolvent(&self, z: Complex<f64>) -> Option<DMatrix<Complex<f64>>> {
-        // by elimination: up to four rows the library has formulas, in which digits cancel
-        let inverse =
-            (DMatrix::identity(self.matrix.nrows(), self.matrix.nrows()) * z - &self.matrix).lu().try_inverse()?;
-        inverse.iter().all(|x| x.is_finite()).then_some(inverse)
+        let n = self.matrix.nrows();
+        let mut found = DMatrix::<Complex<f64>>::zeros(n, n);
+        for places in &self.blocks {
+            let m = places.len();
+            let own = DMatrix::from_fn(m, m, |i, j| {
+                let diagonal = if i == j { z } else { Complex::default() };
+                diagonal - self.matrix[(places[i], places[j])]
+            });
+            // rows of this block are zero as yet
+            let mut rows = DMatrix::from_fn(m, n, |i, j| self.matrix.row(places[i]).transpose().dot(&found.column(j)));
+            places.iter().enumerate().for_each(|(i, &place)| rows[(i, place)] += 1.0);
+            // up to four rows the library inverts by formulas, in which digits cancel
+            let rows = own.lu().solve(&rows)?;
+            places.iter().enumerate().for_each(|(i, &place)| found.set_row(place, &rows.row(i)));
+        }
+        found.iter().all(|x| x.is_finite()).then_some(found)
     }
 
     /// The largest `j` with `N^j` not zero, by more than errors explain, where `N` is `A − centre` on the space of

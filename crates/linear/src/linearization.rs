@@ -222,6 +222,8 @@ pub struct Part {
 pub enum Growth {
     /// So many eigenvalues have a positive real part, beyond their errors.
     Exponential(usize),
+    /// So many at least: errors leave open what others do.
+    AtLeast(usize),
     /// Like this power of time, or faster: an eigenvalue on the imaginary axis has too few eigenvectors.
     Power(usize),
     /// Every eigenvalue is zero, or errors leave open what eigenvalues on the imaginary axis do.
@@ -238,11 +240,13 @@ impl Part {
 
     /// How deviations grow.
     pub fn growth(&self) -> Growth {
-        let power = self.chains.iter().filter(|chain| chain.is_exact).map(|chain| chain.power).max();
-        match (self.unstable(), power) {
-            (0, Some(power)) if self.chains.iter().all(|chain| chain.is_exact) => Growth::Power(power),
-            (0, _) if !self.chains.is_empty() || self.eigenvalues.is_empty() => Growth::Undecided,
-            (0, _) => Growth::None,
+        let is_open = self.chains.iter().any(|chain| !chain.is_exact);
+        match (self.unstable(), self.chains.iter().map(|chain| chain.power).max()) {
+            (0, _) if is_open => Growth::Undecided,
+            (0, Some(power)) => Growth::Power(power),
+            (0, None) if self.eigenvalues.is_empty() => Growth::Undecided,
+            (0, None) => Growth::None,
+            (count, _) if is_open => Growth::AtLeast(count),
             (count, _) => Growth::Exponential(count),
         }
     }
@@ -252,6 +256,7 @@ impl fmt::Display for Growth {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Growth::Exponential(count) => write!(f, "{count}"),
+            Growth::AtLeast(count) => write!(f, "{count} or more"),
             Growth::Power(1) => write!(f, "like t"),
             Growth::Power(power) => write!(f, "like t^{power}"),
             Growth::Undecided => write!(f, "undecided"),

@@ -109,9 +109,11 @@ impl Spectrum {
             DMatrix::from_fn(places.len(), places.len(), |i, j| m[(places[i], places[j])])
         };
         let given = matrix.zip_map(noise, |a, e| a != 0.0 || e != 0.0);
-        let whole = components(&given);
+        let whole = components(&reached(&given));
+        let reached = reached(&coupled);
+        let sets = components(&reached);
         let (mut blocks, mut own) = (Vec::new(), Vec::new());
-        for places in components(&coupled) {
+        for places in sets.iter().cloned() {
             let core = Core::of(part(&clean, &places), part(noise, &places))?;
             for (i, j) in (0..places.len()).flat_map(|i| (0..places.len()).map(move |j| (i, j))) {
                 error[(places[i], places[j])] += core.arithmetic[(i, j)];
@@ -130,7 +132,9 @@ impl Spectrum {
         let (balanced, error) = balanced(clean, error);
         let (zero_vectors, size) =
             (nullity(&SingularValues::of(&balanced), allowed(&balanced, &error)), balanced.norm());
-        let discs = Discs::new(&balanced, error, all().chain(zeros).collect());
+        let mut order = sets;
+        order.sort_by_key(|set| (0..n).filter(|&j| j == set[0] || reached[(set[0], j)]).count());
+        let discs = Discs::new(&balanced, error, all().chain(zeros).collect(), order);
         for (block, own) in blocks.iter_mut().zip(&own) {
             block.enclose(own.as_ref(), &discs, 4.0 * f64::EPSILON * fastest);
         }
@@ -207,8 +211,8 @@ impl Block {
     }
 }
 
-/// Sets of places that reach each other, by their first ones.
-fn components(coupled: &DMatrix<bool>) -> Vec<Vec<usize>> {
+/// Which places a place depends on, by way of others, too.
+fn reached(coupled: &DMatrix<bool>) -> DMatrix<bool> {
     let n = coupled.nrows();
     let mut reached = coupled.clone();
     for k in 0..n {
@@ -218,8 +222,13 @@ fn components(coupled: &DMatrix<bool>) -> Vec<Vec<usize>> {
             }
         }
     }
+    reached
+}
+
+/// Sets of places that reach each other, by their first ones.
+fn components(reached: &DMatrix<bool>) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
-    for i in 0..n {
+    for i in 0..reached.nrows() {
         match found.iter_mut().find(|set| reached[(i, set[0])] && reached[(set[0], i)]) {
             Some(set) => set.push(i),
             None => found.push(vec![i]),

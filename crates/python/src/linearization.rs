@@ -38,8 +38,13 @@ pub(crate) struct Linearization {
     zeros: usize,
     /// Independent eigenvectors of all zeros of J: fewer than these where deviations grow as powers of time.
     zero_vectors: usize,
+    /// How far these may be from zero.
+    zero_error: f64,
     /// How many eigenvalues have a real part above their error.
     unstable: usize,
+    /// The same in words: "like t" where an eigenvalue on the imaginary axis has too few eigenvectors, "undecided"
+    /// where errors leave it open or all eigenvalues are zero.
+    growing: String,
 }
 
 fn linearized(
@@ -93,7 +98,9 @@ impl Linearization {
             errors: array(py, moved, None, &[count])?.unbind(),
             zeros: part.zeros,
             zero_vectors: found.spectrum.zero_vectors,
+            zero_error: part.zero_error,
             unstable: part.unstable(),
+            growing: part.growth().to_string(),
         })
     }
 }
@@ -101,7 +108,7 @@ impl Linearization {
 #[pymethods]
 impl Linearization {
     fn __repr__(&self) -> String {
-        let Linearization { form, t, of, zeros, unstable, .. } = self;
-        format!("<deltaq.Linearization {form}, t = {t}, of {}: {zeros} zeros, {unstable} growing>", of.join(", "))
+        let Linearization { form, t, of, zeros, growing, .. } = self;
+        format!("<deltaq.Linearization {form}, t = {t}, of {}: {zeros} zeros, growing: {growing}>", of.join(", "))
     }
 }

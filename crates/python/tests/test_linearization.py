@@ -17,6 +17,7 @@ def test_a_pendulum_hangs_and_stands():
     np.testing.assert_allclose(hanging.eigenvalues, [3j, -3j], atol=1e-14)
     np.testing.assert_allclose(standing.eigenvalues, [3, -3], atol=1e-14)
     assert (hanging.unstable, standing.unstable) == (0, 1)
+    assert (hanging.growing, standing.growing) == ("0", "1")
     assert hanging.states == hanging.of == ["angle", "angle'"] and hanging.carried == {} and hanging.is_steady
     np.testing.assert_array_equal(hanging.matrix, [[0, 1], [-9, 0]])
     assert hanging.eigenvalues.dtype == np.complex128 and np.all(hanging.errors < 1e-13)
@@ -33,7 +34,7 @@ def test_a_sledge_turns_and_slides():
     )
     found = sledge.linearize()
     assert found.eigenvalues.shape == (0,) and found.zeros == 2 and set(found.carried) == {"x", "y", "phi"}
-    assert abs(found.carried["phi"] - 2) < 1e-15
+    assert abs(found.carried["phi"] - 2) < 1e-15 and found.growing == "undecided"
     with pytest.raises(deltaq.SolveError, match="no rate depends on `x`"):
         sledge.linearize(free=["x"])
 

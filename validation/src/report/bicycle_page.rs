@@ -59,7 +59,7 @@ impl BicycleReport {
     pub fn headline(&self) -> String {
         format!(
             "The bicycle of eight coordinates and five constraints, linearized by the program, has the 44 eigenvalues of the published \
-             linear equations at eleven speeds to {:.0e}, and is stable from {:.9} to {:.9} m/s.",
+             linear equations at eleven speeds to {:.0e}, and has no eigenvalue with a positive real part from {:.9} to {:.9} m/s.",
             self.largest(),
             self.changes[0].1,
             self.changes[1].1

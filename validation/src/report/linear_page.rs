@@ -37,7 +37,8 @@ pub fn sweep_text(scene: &Scene, sweep: &Sweep, found: bool) -> String {
         let error = point.part.eigenvalues.iter().fold(0.0_f64, |a, e| a.max(e.error));
         let padded = cells.into_iter().chain(std::iter::repeat(String::new())).take(width);
         let rest = [short(error), point.part.zeros.to_string(), point.part.growth().to_string()];
-        table.cells([short(point.value)].into_iter().chain(padded).chain(rest));
+        let value = if found { precise(point.value) } else { short(point.value) };
+        table.cells([value].into_iter().chain(padded).chain(rest));
     }
     let _ = write!(text, "\n{table}");
     if found {

@@ -28,7 +28,8 @@ pub struct LinearizeArguments {
     /// Equidistant values of a parameter, a start value or mu1, …, both ends included.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub sweep: Option<Range>,
-    /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit.
+    /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit, and
+    /// print it; critical values are those of the motions found.
     #[arg(long)]
     pub find: bool,
     /// Folder for a page and a picture of the eigenvalues over what varies.
@@ -42,9 +43,9 @@ pub struct LinearizeArguments {
 /// Output formats of eigenvalues.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableFormat {
-    /// A table, one line a value; digits as far as they are sure.
+    /// A table, one line per value; digits as far as they are sure.
     Table,
-    /// One line an eigenvalue other than zero, all digits.
+    /// One line per eigenvalue other than zero, all digits.
     Csv,
     /// One object.
     Json,

@@ -225,7 +225,9 @@ class Linearization:
     errors: Final[_Array]
     zeros: Final[int]
     zero_vectors: Final[int]
+    zero_error: Final[float]
     unstable: Final[int]
+    growing: Final[str]
 
 @final
 class Motion:
