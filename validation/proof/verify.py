@@ -609,7 +609,7 @@ def main(*files):
     scene = proof["scene"]
     start = {"t": scene["time"]} | {x: scene["positions"][x] for x in scene["coordinates"]} | scene["velocities"]
     open_ = [x + "'" for x in scene["coordinates"] if x + "'" not in scene["velocities"]]
-    everywhere = ", drawn at random, and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
+    everywhere = " and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
     print(f"verified: no mu_0 makes Chetaev's motion from this start{everywhere} vakonomic (order {proof['order']}, minor {proof['minor']} mod {P})")
     print("start:", ", ".join(f"{name} = {text}" for name, text in start.items()) + (f"; from the constraints: {' '.join(open_)}" if open_ else "") + remark)
     if proof["completed"]:
