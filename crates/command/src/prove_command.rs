@@ -50,7 +50,11 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
                 TextOrJson::Text => {
                     let what = "no μ₀ makes the vakonomic motion Chetaev's";
                     let start = if *almost_every { " from almost every start" } else { "" };
-                    format!("{}: {what}{start}: proved (order {order}); the certificate is in {}\n", scene.name, out.display())
+                    format!(
+                        "{}: {what}{start}: proved (order {order}); the certificate is in {}\n",
+                        scene.name,
+                        out.display()
+                    )
                 }
                 TextOrJson::Json => {
                     let value = json!({ "answer": "none", "proved": true, "order": order, "certificate": out });

@@ -41,7 +41,9 @@ impl PlainScene {
         let given = (0..n).filter(|i| !open.contains(i));
         Some(PlainScene {
             coordinates: (0..n).map(name).collect(),
-            parameters: parameters.map(|(p, x)| Some((g.name(p.symbol), x.exact()?.to_string()))).collect::<Option<_>>()?,
+            parameters: parameters
+                .map(|(p, x)| Some((g.name(p.symbol), x.exact()?.to_string())))
+                .collect::<Option<_>>()?,
             lagrangian: g.plain(system.lagrangian),
             constraints: system.constraints.iter().map(|&f| g.plain(f)).collect(),
             forces: forces.map(|(i, &force)| (name(i), g.plain(force))).collect(),
