@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use deltaq::{certificate, membership};
+use scene::Number;
 use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, pretty};
@@ -24,13 +25,14 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
             let value = json!({
                 "prime": certificate.prime,
                 "i": certificate.imaginary,
+                "zeta": certificate.root,
                 "N": certificate.parts,
                 "tau": certificate.turn,
                 "order": order,
                 "rows": certificate.rows,
                 "minor": certificate.minor,
                 "divided_by": named(certificate.divided_by.into_iter().map(|(what, x)| (what, x.into())).collect()),
-                "set": named(given.set.overrides.iter().map(|(name, x)| (name.clone(), (*x).into())).collect()),
+                "set": named(given.set.overrides.iter().map(|(name, x)| (name.clone(), written(x))).collect()),
                 "completed": certificate.completed,
                 "motion": named(certificate.motion.into_iter().map(|(name, jet)| (name, jet.into())).collect()),
                 "reactions": certificate.reactions,
@@ -67,4 +69,9 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
         Some(Err(error)) => format!("Whether some μ₀ gives Chetaev's motion is undecided: {error}."),
     };
     Ok(Answer { text, complaint: Some(format!("no certificate for {}: {reason}. {sentence}", scene.name)) })
+}
+
+/// A number as a certificate has it: a formula stays text.
+fn written(number: &Number) -> Value {
+    number.formula().map_or_else(|| number.value().into(), Value::from)
 }

@@ -16,7 +16,7 @@ fn a_no_is_proved_in_a_certificate() {
     let value: Value = serde_json::from_str(&certificate).expect("JSON");
     let (mut found, known) = (
         value.as_object().expect("an object").keys().map(String::as_str).collect::<Vec<_>>(),
-        "schema prime i N tau order rows minor divided_by set completed motion reactions"
+        "schema prime i zeta N tau order rows minor divided_by set completed motion reactions"
             .split(' ')
             .collect::<Vec<_>>(),
     );

@@ -1,6 +1,6 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{Jet, Modular, PRIME, inverse};
+use crate::exact::{Jet, Modular, inverse};
 use crate::family::CostateRate;
 use crate::proof::{Echelon, Question, Ranks};
 use crate::series::order;
@@ -17,7 +17,9 @@ pub struct Certificate {
     pub prime: u64,
     /// Image of `√−1`.
     pub imaginary: u64,
-    /// `N`, in decimals; angles at the start are multiples of `1/N`, quarter turns apart.
+    /// Image of `e^{iπ/720720}`.
+    pub root: u64,
+    /// `N`, in decimals; angles at the start are multiples of `1/N` and of `π/720720`.
     pub parts: String,
     /// `τ`.
     pub turn: u64,
@@ -56,9 +58,6 @@ impl Question<'_> {
                 "coefficients of less than full rank have no minor to show: the proof is one of ranks modulo p".into(),
             );
         }
-        if start.projected {
-            return Err("the velocities at the start are not those of the scene, but projected ones".into());
-        }
         let values = self.family().evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
         let instant = shape.instant(&values);
         let width = h * (last + 2) + 1;
@@ -95,8 +94,9 @@ impl Question<'_> {
         let jet = |i: usize| (0..last + 3).map(|k| curve.inputs[coordinates + i].coefficient(k).value()).collect();
         let (parts, turn) = Modular::turn();
         Ok(Certificate {
-            prime: PRIME,
+            prime: Modular::prime(),
             imaginary: Modular::imaginary().value(),
+            root: Modular::root_of_unity(1).value(),
             parts,
             turn: turn.value(),
             order: last,
