@@ -1,6 +1,6 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{Jet, Modular, ORDERS, PRIME, inverse};
+use crate::exact::{Jet, Modular, ORDERS, PARTS, inverse};
 use crate::family::{CostateRate, inputs};
 use crate::plain_scene::PlainScene;
 use crate::program::Program;
@@ -53,14 +53,11 @@ impl Question<'_> {
     /// The reason, in words.
     pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
         let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
-        if start.projected {
-            return Err("the velocities at the start are not those of the scene, but projected ones".into());
-        }
         // decimals stand in the place of velocities that are not determined by the constraints
         let decimal = |i: &usize| exact.velocities[*i].exact().is_some();
         let open = start.open(&completed);
         let open = if open.iter().any(decimal) { &[] } else { open };
-        self.certified(start, &exact, open, completed)
+        self.certified(start, &exact, open, completed, false)
     }
 
     /// The same from a start drawn at random, with whole numbers, or else from the scene's own: a minor that is
@@ -73,7 +70,7 @@ impl Question<'_> {
             let exact = start.random(seed).map_err(|fault| fault.to_string())?;
             let solved = |i: &usize| exact.velocities[*i].exact().is_none();
             let open: Vec<usize> = (0..exact.velocities.len()).filter(solved).collect();
-            self.certified(start, &exact, &open, Vec::new())
+            self.certified(start, &exact, &open, Vec::new(), true)
         };
         let found = (0..STARTS).map(at_random).chain([self.certificate(start)]).find(Result::is_ok);
         let found = found.unwrap_or_else(|| at_random(0));
@@ -86,6 +83,7 @@ impl Question<'_> {
         exact: &SeriesStart<Modular>,
         open: &[usize],
         completed: Vec<String>,
+        at_random: bool,
     ) -> Result<Certificate, String> {
         let (mut curve, series) = self.series(exact, self.orders()).map_err(|fault| fault.to_string())?;
         let refuted = Ranks::of(&series).refuted().ok_or("Taylor coefficients leave some μ₀")?;
@@ -151,12 +149,12 @@ impl Question<'_> {
         let program = Program::new(g, &inputs(system, &[]), &under_roots).map_err(|fault| fault.to_string())?;
         let mut radicands = program.evaluator::<Jet<Modular>>();
         let radicands = radicands.run(&curve.inputs).iter().filter_map(Jet::exact);
-        let scene = PlainScene::new(start, exact, open).ok_or("a parameter is no number that could be followed")?;
+        let scene = PlainScene::new(start, exact, open, at_random)?;
         Ok(Certificate {
             scene,
             almost_every_start: false,
-            prime: PRIME,
-            unity: (4, Modular::imaginary().value()),
+            prime: Modular::prime(),
+            unity: (2 * PARTS as u64, Modular::root_of_unity(1).value()),
             exponents: Modular::exponents(),
             roots: Modular::roots(radicands).into_iter().map(|(l, root)| (l.to_string(), root)).collect(),
             order: last,

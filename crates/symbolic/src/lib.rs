@@ -85,6 +85,7 @@ pub use graph::Graph;
 pub use identity::Vanishing;
 pub use lexer::names_in;
 pub use matrix::Matrix;
+pub use number::PI;
 pub use parse_error::{ParseError, ParseErrorKind};
 pub use random::{SplitMix, Xorshift};
 pub use range::Range;
