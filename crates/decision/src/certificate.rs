@@ -54,10 +54,12 @@ impl Question<'_> {
     pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
         let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
         // decimals stand in the place of velocities that are not determined by the constraints
-        let decimal = |i: &usize| exact.velocities[*i].exact().is_some();
-        let open = start.open(&completed);
-        let open = if open.iter().any(decimal) { &[] } else { open };
-        self.certified(start, &exact, open, completed, false)
+        let is_open = |i: &usize| match completed.is_empty() {
+            true => start.supplied.contains(i) && exact.velocities[*i].exact().is_none(),
+            false => completed.contains(&format!("{}'", self.names[*i])),
+        };
+        let open: Vec<usize> = (0..self.names.len()).filter(is_open).collect();
+        self.certified(start, &exact, &open, completed, false)
     }
 
     /// The same from a start drawn at random, with whole numbers, or else from the scene's own: a minor that is
