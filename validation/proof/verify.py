@@ -463,6 +463,7 @@ def verify(proof):
 def hold(table, proof):
     """Holds the plain scene, of which the certificate is verified, against the file."""
     scene, given, order = proof["scene"], proof["set"], proof["order"]
+    extra = []
     names, start, definitions, parameters = list(table["coordinates"]), table.get("start", {}), table.get("definitions", {}), table.get("parameters", {})
     removal = next(iter(table.get("removal", {}).values()), {})
     own = [x for x in removal.get("parameters", []) if x not in names] + list(removal.get("memory", {}))
@@ -491,12 +492,13 @@ def hold(table, proof):
         texts = start.get("velocities", {}) | {name: text for name, text in given.items() if name[-1] == "'"}
         readable(not start.get("project"), "velocities that are projected")
         rates = {name: value(text, dict(here), meaning) for name, text in texts.items()}
+        readable(all(name in leaves and name[-1] == "'" for name in rates), "a velocity of no coordinate")
         if any(name[:-1] not in names for name in rates):
             rates = by_removal(removal, here, rates, names, meaning)
+            readable(len(rates) == len(names), "a removal that does not give all velocities")
         for name, x in rates.items():
             demand(name in proof["completed"] or name in at and x.c[0] == at[name].c[0], f"{name} at the start is not that of the file")
         extra = [name for name in scene["velocities"] if name not in rates]
-        demand(not extra or len(scene["velocities"]) == len(names), f"{extra} at the start: not in the file")
         demand(set(proof["completed"]) <= set(rates), "what is completed")
         if proof["completed"]:
             near(scene, rates, texts)
@@ -520,6 +522,7 @@ def hold(table, proof):
     others = plain.run(scope)
     for place, mine, word in zip(file, own, words):
         demand(values[place].plain().c == others[mine].plain().c, f"{word} is not that of the file")
+    return f", which leaves {' '.join(extra)} to the constraints" if extra else ""
 
 def by_removal(removal, here, rates, names, meaning):
     """All velocities, where the start gives rates of parameters of the first removal."""
@@ -596,10 +599,9 @@ def main(*files):
             with open(files[0], "rb") as file:
                 table = tomllib.load(file, parse_float=str)
             try:
-                hold(table, proof)
+                held = f"; it is that of {files[0]}" + hold(table, proof)
             except (Unreadable, KeyError, TypeError, AttributeError) as fault:
                 raise Unreadable(f"{files[0]}: {fault}; the certificate is verified for its own plain scene")
-            held = f"; it is that of {files[0]}"
     except Forged as fault:
         return print(f"forged: {fault}") or 1
     except Unreadable as fault:
@@ -609,7 +611,7 @@ def main(*files):
     scene = proof["scene"]
     start = {"t": scene["time"]} | {x: scene["positions"][x] for x in scene["coordinates"]} | scene["velocities"]
     open_ = [x + "'" for x in scene["coordinates"] if x + "'" not in scene["velocities"]]
-    everywhere = ", drawn at random, and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
+    everywhere = " and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
     print(f"verified: no mu_0 makes Chetaev's motion from this start{everywhere} vakonomic (order {proof['order']}, minor {proof['minor']} mod {P})")
     print("start:", ", ".join(f"{name} = {text}" for name, text in start.items()) + (f"; from the constraints: {' '.join(open_)}" if open_ else "") + remark)
     if proof["completed"]:

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use scene::{Scene, SceneError};
+use scene::{Number, Scene, SceneError};
 
 use crate::trailer;
 
@@ -56,7 +56,7 @@ pub fn built_in() -> impl Iterator<Item = &'static (&'static str, &'static str)>
 ///
 /// # Errors
 /// [`NotFound`], with the place in the file where there is one.
-pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, NotFound> {
+pub fn find(name_or_path: &str, overrides: &[(String, Number)]) -> Result<Scene, NotFound> {
     Ok(read(name_or_path, &source(name_or_path)?, overrides)?)
 }
 
@@ -64,7 +64,7 @@ pub fn find(name_or_path: &str, overrides: &[(String, f64)]) -> Result<Scene, No
 ///
 /// # Errors
 /// As [`Scene::parse_with`].
-pub fn read(name_or_path: &str, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+pub fn read(name_or_path: &str, text: &str, overrides: &[(String, Number)]) -> Result<Scene, SceneError> {
     match name_or_path {
         "-" => Scene::parse_with("stdin", text, overrides),
         name if text_of(name).is_some() => Scene::parse_with(name, text, overrides),

@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
         if !set.is_empty() {
             catalogue::read(name, &text, set)?;
         }
-        let numbers: BTreeMap<_, _> = set.iter().cloned().collect();
+        let numbers: BTreeMap<_, _> = set.iter().map(|(name, number)| (name, number.value())).collect();
         let text = if is_built_in { None } else { Some(text) };
         let chosen = json!({ "name": name, "text": text, "set": numbers });
         // the text of a scene cannot end the element that it is in

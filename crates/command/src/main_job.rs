@@ -9,7 +9,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::{CommandFactory, ValueEnum};
 use deltaq::{Comparison, Fits, Settings, choices, compare_unfitted};
-use scene::Scene;
+use scene::{Number, Scene};
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, pretty};
@@ -338,7 +338,7 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
 /// References of all scenes over all processors, then measurements one after the other.
 pub(crate) fn bench_all(
     names: &[&str],
-    overrides: &[(String, f64)],
+    overrides: &[(String, Number)],
     effort: &Effort,
     quiet: bool,
 ) -> Result<Vec<Bench>> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::support::{answer, refused};
 
@@ -16,13 +16,17 @@ fn a_no_is_proved_in_a_certificate() {
     let value: Value = serde_json::from_str(&certificate).expect("JSON");
     let (mut found, known) = (
         value.as_object().expect("an object").keys().map(String::as_str).collect::<Vec<_>>(),
-        "schema prime i N tau order rows minor divided_by set completed motion reactions"
+        "schema scene digest almost_every_start prime unity exponents roots order rows minor divided_by set \
+         completed motion reactions"
             .split(' ')
             .collect::<Vec<_>>(),
     );
     found.sort_by_key(|key| known.iter().position(|name| name == key));
     assert_eq!(found, known);
-    assert_eq!(value["set"]["x"], 0.25);
+    let scene = &value["scene"];
+    assert_eq!((&value["set"]["x"], &scene["positions"]["x"]), (&json!("0.25"), &json!("0.25")));
+    assert_eq!(scene["constraints"], json!(["y'*cos(phi) - x'*sin(phi)"]));
+    assert_eq!(scene["velocities"], json!({ "phi'": "1.1", "x'": "cos(phi)/2" }));
     assert_eq!(answer(&["prove", "sledge", "--set", "x=0.25", "--out", "-"], 0).0, certificate);
     let told = answer(&["prove", "sledge", "--out", &path, "--format", "json"], 0).0;
     assert_eq!(serde_json::from_str::<Value>(&told).expect("JSON")["answer"], "none");
@@ -47,4 +51,52 @@ fn without_a_certificate_there_is_a_reason() {
     assert!(complaint.contains("a logarithm is taken at the start"), "{complaint}");
     assert!(!Path::new(&path).exists());
     refused(&["prove", "sledge", "--out", &file("no/such/folder")], &["cannot write", "no/such/folder"]);
+}
+
+#[test]
+fn a_scene_that_is_proved_is_plain() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("disc.toml").display().to_string();
+    std::fs::write(&file, include_str!("../src/template.toml")).expect("written");
+    let plain = |arguments: &[&str]| -> Value {
+        let told = answer(&[&["prove", &file, "--out", "-"], arguments].concat(), 0).0;
+        serde_json::from_str::<Value>(&told).expect("JSON")["scene"].take()
+    };
+    let scene = plain(&[]);
+    let formulas = format!("{} {}", scene["lagrangian"], scene["constraints"]);
+    assert!(["centre", "body", "slip", "rotation", "dot"].iter().all(|name| !formulas.contains(name)), "{formulas}");
+    assert_eq!(scene["parameters"], json!({ "a": "0.5", "g": "9.81", "m": "1", "slope": "pi/30" }));
+    // what the constraints supply is left to them; elsewhere the start has whole numbers
+    let anywhere = plain(&["--almost-every"]);
+    assert_eq!(anywhere["lagrangian"], scene["lagrangian"]);
+    for start in [&scene, &anywhere] {
+        let velocities = start["velocities"].as_object().expect("an object");
+        assert_eq!(velocities.len(), 3, "{velocities:?}");
+    }
+    assert!(
+        anywhere["positions"]
+            .as_object()
+            .expect("an object")
+            .values()
+            .all(|x| x.as_str().is_some_and(|x| x.parse::<u64>().is_ok()))
+    );
+}
+
+#[test]
+fn orders_are_written_as_far_as_they_are_proved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("flat.toml").display().to_string();
+    let particle = include_str!("../../../validation/scenes/particle.toml");
+    let flat = particle
+        .replace("z' - y*x'", "z' - (y + 1)^4*x'")
+        .replace("[removal", "[old")
+        .split("[old")
+        .next()
+        .map(|head| format!("{head}[run]\nduration = 1\n"));
+    std::fs::write(&file, flat.expect("a scene")).expect("written");
+    let told = answer(&["prove", &file, "--out", "-"], 0).0;
+    let certificate: Value = serde_json::from_str(&told).expect("JSON");
+    assert_eq!(certificate["order"], 7);
+    let motion = certificate["motion"].as_object().expect("an object");
+    assert!(motion.values().all(|series| series.as_array().is_some_and(|series| series.len() == 10)));
 }

@@ -1,6 +1,6 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{Jet, Modular, ORDERS, PRIME, inverse};
+use crate::exact::{Jet, Modular, ORDERS, PARTS, inverse};
 use crate::family::{CostateRate, inputs};
 use crate::plain_scene::PlainScene;
 use crate::program::Program;
@@ -17,7 +17,7 @@ use crate::start::ExactStart;
 pub struct Certificate {
     /// The system and the start.
     pub scene: PlainScene,
-    /// Whether that start was drawn at random.
+    /// Whether it is any start, and none but those of the scene are claimed of almost every one.
     pub almost_every_start: bool,
     /// `p`.
     pub prime: u64,
@@ -53,35 +53,30 @@ impl Question<'_> {
     /// The reason, in words.
     pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
         let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
-        if start.projected {
-            return Err("the velocities at the start are not those of the scene, but projected ones".into());
-        }
         // decimals stand in the place of velocities that are not determined by the constraints
-        let decimal = |i: &usize| exact.velocities[*i].exact().is_some();
-        let open = start.open(&completed);
-        let open = if open.iter().any(decimal) { &[] } else { open };
-        self.certified(start, &exact, open, completed)
+        let is_open = |i: &usize| match completed.is_empty() {
+            true => start.supplied.contains(i) && exact.velocities[*i].exact().is_none(),
+            false => completed.contains(&format!("{}'", self.names[*i])),
+        };
+        let open: Vec<usize> = (0..self.names.len()).filter(is_open).collect();
+        self.certified(start, &exact, &open, completed, false)
     }
 
-    /// The same from a start drawn at random, with whole numbers: so that there is none from almost every one.
+    /// The same from a start drawn at random, with whole numbers, or else from the scene's own: a minor that is
+    /// not zero at one start is zero at almost none.
     ///
     /// # Errors
     /// The reason, in words.
     pub fn almost_every_certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
-        let mut reason = String::new();
-        for seed in 0..STARTS {
-            let certificate = start.random(seed).map_err(|fault| fault.to_string()).and_then(|exact| {
-                let open: Vec<usize> =
-                    (0..exact.velocities.len()).filter(|&i| exact.velocities[i].exact().is_none()).collect();
-                let certificate = self.certified(start, &exact, &open, Vec::new())?;
-                Ok(Certificate { almost_every_start: true, ..certificate })
-            });
-            match certificate {
-                Err(why) => reason = why,
-                found => return found,
-            }
-        }
-        Err(reason)
+        let at_random = |seed: u64| {
+            let exact = start.random(seed).map_err(|fault| fault.to_string())?;
+            let solved = |i: &usize| exact.velocities[*i].exact().is_none();
+            let open: Vec<usize> = (0..exact.velocities.len()).filter(solved).collect();
+            self.certified(start, &exact, &open, Vec::new(), true)
+        };
+        let found = (0..STARTS).map(at_random).chain([self.certificate(start)]).find(Result::is_ok);
+        let found = found.unwrap_or_else(|| at_random(0));
+        found.map(|certificate| Certificate { almost_every_start: true, ..certificate })
     }
 
     fn certified(
@@ -90,6 +85,7 @@ impl Question<'_> {
         exact: &SeriesStart<Modular>,
         open: &[usize],
         completed: Vec<String>,
+        at_random: bool,
     ) -> Result<Certificate, String> {
         let (mut curve, series) = self.series(exact, self.orders()).map_err(|fault| fault.to_string())?;
         let refuted = Ranks::of(&series).refuted().ok_or("Taylor coefficients leave some μ₀")?;
@@ -155,12 +151,12 @@ impl Question<'_> {
         let program = Program::new(g, &inputs(system, &[]), &under_roots).map_err(|fault| fault.to_string())?;
         let mut radicands = program.evaluator::<Jet<Modular>>();
         let radicands = radicands.run(&curve.inputs).iter().filter_map(Jet::exact);
-        let scene = PlainScene::new(start, exact, open).ok_or("a parameter is no number that could be followed")?;
+        let scene = PlainScene::new(start, exact, open, at_random)?;
         Ok(Certificate {
             scene,
             almost_every_start: false,
-            prime: PRIME,
-            unity: (4, Modular::imaginary().value()),
+            prime: Modular::prime(),
+            unity: (2 * PARTS as u64, Modular::root_of_unity(1).value()),
             exponents: Modular::exponents(),
             roots: Modular::roots(radicands).into_iter().map(|(l, root)| (l.to_string(), root)).collect(),
             order: last,

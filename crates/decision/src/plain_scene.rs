@@ -27,29 +27,54 @@ pub struct PlainScene {
 }
 
 impl PlainScene {
-    /// `exact` is what `start` is in numbers, or a start drawn at random; velocities with places in `open` are
-    /// supplied by the constraints. `None` where a parameter is no number that was followed.
-    pub(crate) fn new(start: &ExactStart, exact: &SeriesStart<Modular>, open: &[usize]) -> Option<Self> {
+    /// `exact` is what `start` is in numbers, or one drawn `at_random`; velocities with places in `open` are
+    /// supplied by the constraints.
+    ///
+    /// # Errors
+    /// What cannot be written, in words.
+    pub(crate) fn new(
+        start: &ExactStart,
+        exact: &SeriesStart<Modular>,
+        open: &[usize],
+        at_random: bool,
+    ) -> Result<Self, String> {
         let system = &start.system;
-        let (g, n) = (&system.graph, system.dimension());
-        let values = exact.positions.iter().chain(&exact.velocities).zip(&start.written);
-        let texts: Vec<String> =
-            values.map(|(value, &e)| value.exact().map_or_else(|| g.plain(e), |x| x.to_string())).collect();
+        let (g, n, parameters) = (&system.graph, system.dimension(), system.parameters.len());
+        let values = [&exact.parameters[..], &[exact.time], &exact.positions, &exact.velocities].concat();
+        // what was drawn, and decimals in the place of velocities that are not determined, are written nowhere
+        let is_written = |i: usize| match i.checked_sub(parameters) {
+            None => true,
+            Some(i) => !at_random && i.checked_sub(n + 1).is_none_or(|i| !start.supplied.contains(&i)),
+        };
+        let text = |i: usize| match values[i].exact() {
+            Some(x) if !is_written(i) => x.to_string(),
+            _ => g.plain(start.written[i]),
+        };
         let name = |i: usize| system.coordinates[i].name.clone();
-        let parameters = system.parameters.iter().zip(&exact.parameters);
         let forces = system.forces.iter().enumerate().filter(|(_, force)| !g.is_zero(**force));
+        let place = parameters + 1;
         let given = (0..n).filter(|i| !open.contains(i));
-        Some(PlainScene {
+        let scene = PlainScene {
             coordinates: (0..n).map(name).collect(),
-            parameters: parameters
-                .map(|(p, x)| Some((g.name(p.symbol), x.exact()?.to_string())))
-                .collect::<Option<_>>()?,
+            parameters: (0..parameters).map(|i| (g.name(system.parameters[i].symbol), text(i))).collect(),
             lagrangian: g.plain(system.lagrangian),
             constraints: system.constraints.iter().map(|&f| g.plain(f)).collect(),
             forces: forces.map(|(i, &force)| (name(i), g.plain(force))).collect(),
-            time: exact.time.exact()?.to_string(),
-            positions: (0..n).map(|i| (name(i), texts[i].clone())).collect(),
-            velocities: given.map(|i| (format!("{}'", name(i)), texts[n + i].clone())).collect(),
-        })
+            time: text(parameters),
+            positions: (0..n).map(|i| (name(i), text(place + i))).collect(),
+            velocities: given.map(|i| (format!("{}'", name(i)), text(place + n + i))).collect(),
+        };
+        let named = [&scene.parameters, &scene.forces, &scene.positions, &scene.velocities];
+        let texts = named.into_iter().flatten().map(|(_, text)| text).chain(&scene.constraints);
+        if texts.chain([&scene.lagrangian, &scene.time]).any(|text| mixes_pi(text)) {
+            return Err("a sum of a fraction and a multiple of pi stands in a formula, which has no text".into());
+        }
+        Ok(scene)
     }
+}
+
+/// Whether a number in it is a quotient with the denominator of π, and no multiple of π.
+fn mixes_pi(text: &str) -> bool {
+    let mut integers = text.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse::<i128>().ok());
+    integers.any(|n| n != 0 && n % i128::from(symbolic::PI.1) == 0)
 }

@@ -23,7 +23,7 @@ impl ExactStart {
             x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
             x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
             let n = i128::from((x ^ (x >> 31)) % LARGEST) + 1;
-            let exact = Exact { numerator: n, denominator: 1, quarters: 0 };
+            let exact = Exact { numerator: n, ..Exact::ONE };
             Modular::of(exact).map(|value| Jet::constant(value, Some(exact)))
         };
         let n = self.system.dimension();

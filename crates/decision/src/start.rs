@@ -3,12 +3,15 @@
 use std::collections::HashMap;
 
 use mechanics::{Completion, Removal, State, System};
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Graph, Symbol};
 
 use crate::DecisionError;
 use crate::exact::{Exact, Flaw, Jet, Modular, inverse, subtract_product};
 use crate::program::Program;
 use crate::series::SeriesStart;
+
+/// A decimal of so many digits is that of its double, and of no other number of so many.
+const DIGITS: usize = 15;
 
 /// Why a start has no exact numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,6 +22,9 @@ pub enum NoExactStart {
     /// The velocities that the constraints supply are not rational functions of the given ones.
     #[error("the velocities that the constraints supply are no rational functions of the given ones")]
     Nonlinear,
+    /// The velocities at the start are projected ones.
+    #[error("the velocities at the start are not those of the scene, but projected ones")]
+    Projected,
     /// The constraints hold on several surfaces, and which of them the start is on is not seen in the field.
     #[error("the constraints are products, and at random starts it is not known which factor is zero")]
     Product,
@@ -36,12 +42,12 @@ pub enum NoExactStart {
 #[derive(Clone)]
 pub struct ExactStart {
     pub(crate) system: System,
-    time: f64,
-    /// Positions and velocities as written; these from parameters, time and positions; numbers among them,
-    /// which need no graph.
+    /// Parameters, time, positions and velocities as they are written.
     pub(crate) written: Vec<Expr>,
-    values: Program,
-    numbers: Vec<Option<f64>>,
+    /// Parameters, then time; from parameters.
+    given: Written,
+    /// Positions and velocities; from parameters, time and positions.
+    values: Written,
     /// Velocities that the constraints supply.
     pub(crate) supplied: Vec<usize>,
     /// All velocities as they were found.
@@ -52,8 +58,6 @@ pub struct ExactStart {
     pub(crate) slopes: Vec<f64>,
     pub(crate) constraints: Program,
     problem: Option<NoExactStart>,
-    /// Whether velocities are projected ones, not those written.
-    pub(crate) projected: bool,
 }
 
 impl ExactStart {
@@ -70,10 +74,19 @@ impl ExactStart {
         let g = &system.graph;
         let (q, v) = (system.positions(), system.velocities());
         let decimal = |x: &f64| g.number(*x);
+        let symbols: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
         let as_written = |symbol: &Symbol| completion.written.iter().find(|(s, _)| s == symbol).map(|(_, e)| *e);
         let positions = q.iter().zip(&state.q).map(|(s, x)| as_written(s).unwrap_or_else(|| decimal(x)));
-        let rates: Vec<(Symbol, Expr)> = completion.written.iter().filter(|(s, _)| !q.contains(s)).copied().collect();
-        let mut problem = None;
+        let is_rate = |s: &Symbol| *s != system.time && !q.contains(s) && !symbols.contains(s);
+        let rates: Vec<(Symbol, Expr)> = completion.written.iter().filter(|(s, _)| is_rate(s)).copied().collect();
+        let numbers = system.parameters.iter().map(|p| (p.symbol, p.value)).chain([(system.time, state.t)]);
+        let known = system.parameter_values();
+        // a number that was replaced since is no longer what was written
+        let formula = |s: &Symbol, x: f64| as_written(s).filter(|&e| g.evaluate(e, &known) == Ok(x));
+        let given: Vec<Expr> = numbers.map(|(s, x)| formula(&s, x).unwrap_or_else(|| decimal(&x))).collect();
+        let mut written = given.clone();
+        let given = Written::new(g, &symbols, &given)?;
+        let mut problem = completion.projected.map(|_| NoExactStart::Projected);
         let mut supplied = Vec::new();
         let velocities: Vec<Expr> = if rates.iter().any(|(s, _)| !v.contains(s)) {
             by_removal(system, removal, &rates).unwrap_or_else(|fault| {
@@ -88,34 +101,20 @@ impl ExactStart {
             supplied = (0..v.len()).filter(|&i| as_written(&v[i]).is_none()).collect();
             v.iter().map(|s| as_written(s).unwrap_or_else(|| g.zero())).collect()
         };
-        let mut inputs: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
+        let mut inputs = symbols;
         inputs.push(system.time);
         inputs.extend(&q);
         let values: Vec<Expr> = positions.chain(velocities).collect();
-        let numbers = values.iter().map(|&e| g.as_number(e)).collect();
-        let (written, values) = (values.clone(), Program::new(g, &inputs, &values)?);
+        written.extend(&values);
+        let values = Written::new(g, &inputs, &values)?;
         inputs.extend(&v);
         let mut outputs = system.constraints.clone();
         outputs.extend(g.jacobian(&system.constraints, &v).entries());
         let constraints = Program::new(g, &inputs, &outputs)?;
         let slopes = slopes(system, state, &constraints);
         let spare = independent_columns(&slopes, system.dimension());
-        let projected = completion.projected.is_some();
-        let (system, time, rounded) = (system.clone(), state.t, state.v.clone());
-        Ok(ExactStart {
-            system,
-            time,
-            written,
-            values,
-            numbers,
-            supplied,
-            rounded,
-            spare,
-            slopes,
-            constraints,
-            problem,
-            projected,
-        })
+        let (system, rounded) = (system.clone(), state.v.clone());
+        Ok(ExactStart { system, written, given, values, supplied, rounded, spare, slopes, constraints, problem })
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
@@ -128,14 +127,21 @@ impl ExactStart {
         let mut inputs = [&parameters[..], &[time]].concat();
         let first = inputs.len();
         inputs.resize(first + n, Jet::constant(Modular::ZERO, Some(Exact::ZERO)));
-        let mut evaluator = self.values.evaluator::<Jet<Modular>>();
-        let value = |i: usize, values: &[Jet<Modular>]| self.numbers[i].map_or(values[i], Jet::of);
         // each position may contain the earlier ones
         for i in 0..n {
-            inputs[first + i] = value(i, evaluator.run(&inputs));
+            inputs[first + i] = self.values.run(&inputs)[i];
         }
-        let values = evaluator.run(&inputs);
-        let values: Vec<Jet<Modular>> = (0..2 * n).map(|i| value(i, values)).collect();
+        let mut values = self.values.run(&inputs);
+        // velocities with all the digits of a double, no more than constraints, are supplied by these
+        let has_all_digits = |&i: &usize| values[n + i].own_flaw() == Some(Flaw::Number);
+        let rounded: Vec<usize> = (0..n).filter(has_all_digits).collect();
+        let choices = [&self.spare, &rounded].into_iter();
+        let mut choices = choices.filter(|choice| choice.len() == self.system.constraints.len());
+        let spare = choices.find(|choice| rounded.iter().all(|i| choice.contains(i))).unwrap_or(&self.spare);
+        if self.supplied.is_empty() {
+            let supplied = rounded.iter().filter(|i| spare.contains(i));
+            supplied.for_each(|&i| values[n + i] = Jet::constant(Modular::ZERO, None));
+        }
         if let Some(flaw) = values.iter().find_map(Jet::own_flaw) {
             return Err(flaw.into());
         }
@@ -149,10 +155,10 @@ impl ExactStart {
         let solved = self.solved(&parameters, time, q, v, &self.supplied);
         match solved {
             Ok(v) => Ok((start(v), Vec::new())),
-            Err(NoExactStart::Nonlinear) if self.supplied.is_empty() && !self.spare.is_empty() => {
+            Err(NoExactStart::Nonlinear) if self.supplied.is_empty() && !spare.is_empty() => {
                 let g = &self.system.graph;
-                let names = self.spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
-                Ok((start(self.solved(&parameters, time, q, v, &self.spare)?), names))
+                let names = spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
+                Ok((start(self.solved(&parameters, time, q, v, spare)?), names))
             }
             // what is supplied is not determined here: the decimals found count, if they fulfil the
             // constraints
@@ -165,13 +171,14 @@ impl ExactStart {
         }
     }
 
-    /// Places of velocities solved from the constraints, where [`Self::series`] `completed` these.
-    pub(crate) fn open(&self, completed: &[String]) -> &[usize] {
-        if completed.is_empty() { &self.supplied } else { &self.spare }
-    }
-
+    /// Parameters and time.
     pub(crate) fn given(&self) -> (Vec<Jet<Modular>>, Jet<Modular>) {
-        (self.system.parameters.iter().map(|p| Jet::of(p.value)).collect(), Jet::of(self.time))
+        let count = self.system.parameters.len();
+        let zeros = vec![Jet::constant(Modular::ZERO, Some(Exact::ZERO)); count];
+        let mut parameters = self.given.run(&zeros);
+        parameters.truncate(count);
+        let time = self.given.run(&parameters)[count];
+        (parameters, time)
     }
 
     /// `v` with the entries `open` replaced by what solves `f(q, v, t) = 0`, where that is linear in them.
@@ -207,6 +214,29 @@ impl ExactStart {
         }
         let rest = run(&v)?;
         if rest[..h].iter().all(|x| x.is_zero()) { Ok(v) } else { Err(NoExactStart::Nonlinear) }
+    }
+}
+
+/// Expressions as they are written, and the decimals among them that a graph has no room for.
+#[derive(Clone)]
+struct Written {
+    program: Program,
+    decimals: Vec<Option<f64>>,
+}
+
+impl Written {
+    fn new(g: &Graph, inputs: &[Symbol], values: &[Expr]) -> Result<Self, DecisionError> {
+        // more digits may be those of a formula that was rounded
+        let short = |x: f64| format!("{:e}", x.abs()).find('e').is_some_and(|digits| digits <= DIGITS + 1);
+        let is_decimal = |e: Expr, x: f64| g.as_ratio(e).is_none() && e == g.number(x) && short(x);
+        let decimal = |&e: &Expr| g.as_number(e).filter(|&x| is_decimal(e, x));
+        Ok(Written { program: Program::new(g, inputs, values)?, decimals: values.iter().map(decimal).collect() })
+    }
+
+    fn run(&self, inputs: &[Jet<Modular>]) -> Vec<Jet<Modular>> {
+        let mut evaluator = self.program.evaluator::<Jet<Modular>>();
+        let values = evaluator.run(inputs).iter().zip(&self.decimals);
+        values.map(|(value, decimal)| decimal.map_or(*value, Jet::of)).collect()
     }
 }
 

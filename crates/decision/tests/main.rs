@@ -3,6 +3,7 @@
 mod classics;
 mod closed_forms;
 mod floating;
+mod numbers;
 mod proofs;
 mod questions;
 mod rest;

@@ -5,7 +5,7 @@ use std::path::Path;
 use decision::{Decision, DecisionSettings, ExactStart, Family, Flow, Proof, Question, Section, decide_flow};
 use equations::{Derivation, Equations};
 use mechanics::{Removal, System};
-use scene::Scene;
+use scene::{Number, Scene};
 
 /// A built-in scene with other numbers.
 pub(crate) fn built_in(name: &str, overrides: &[(&str, f64)]) -> Scene {
@@ -14,10 +14,18 @@ pub(crate) fn built_in(name: &str, overrides: &[(&str, f64)]) -> Scene {
     Scene::load_with(&file, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// A built-in scene with other numbers, as they are written.
+pub(crate) fn as_written(name: &str, overrides: &[(&str, &str)]) -> Scene {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../validation/scenes/{name}.toml"));
+    let number = |text: &str| text.parse::<Number>().expect("a number");
+    let overrides: Vec<_> = overrides.iter().map(|&(name, text)| (name.to_owned(), number(text))).collect();
+    Scene::load_with(&file, &overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A system of the literature.
 pub(crate) fn beside(name: &str) -> Scene {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../validation/equivalence/{name}.toml"));
-    Scene::load_with(&file, &[]).unwrap_or_else(|error| panic!("{error}"))
+    Scene::load(&file).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A scene from its text, with other numbers.

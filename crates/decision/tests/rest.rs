@@ -1,14 +1,12 @@
 //! Curves at rest: algebra with constant coefficients. Answers by hand and by
 //! `validation/casadi/decision.py`.
 
-use std::f64::consts::FRAC_PI_2;
-
 use decision::{Decision, Finding, Proof, Verdict};
 use scene::Scene;
 
 use crate::closed_forms::COIN;
 use crate::questions::{
-    built_in, chetaev, chetaev_equations, decided, is_vakonomic, proved, proved_in, removed, written,
+    as_written, built_in, chetaev, chetaev_equations, decided, is_vakonomic, proved, proved_in, removed, written,
 };
 
 /// How many dimensions of constants are left; floating point and proof have to say the same.
@@ -31,10 +29,10 @@ fn multipliers(scene: &Scene) -> Option<usize> {
 #[test]
 fn constraints_without_a_curvature_there_bind_nothing() {
     assert_eq!(multipliers(&built_in("disc", &[("psi'", 0.0), ("phi'", 0.0)])), Some(2));
-    // held by the constraint; decimals that stand for pi/2 leave 6e-17 of the force
-    let across = [("psi'", 0.0), ("phi'", 0.0), ("phi", FRAC_PI_2)];
-    assert_eq!(multipliers(&written(COIN, &across)), Some(2));
-    let sledge = built_in("sledge", &[("x'", 0.0), ("phi'", 0.0), ("phi", FRAC_PI_2)]);
+    // held by the constraint; in floating point pi/2 leaves 6e-17 of the force
+    let across = COIN.replace("phi = { start = 0.4 }", "phi = { start = \"pi/2\" }");
+    assert_eq!(multipliers(&written(&across, &[("psi'", 0.0), ("phi'", 0.0)])), Some(2));
+    let sledge = as_written("sledge", &[("x'", "0"), ("phi'", "0"), ("phi", "pi/2")]);
     assert_eq!(multipliers(&sledge), Some(1));
     let family = removed(&sledge, &sledge.removals[0]);
     let proof = proved_in(&sledge, &chetaev_equations(&sledge), &[], &family).0;

@@ -1,6 +1,6 @@
 //! One point of a sweep: where two motions of a scene part, and whether they have to.
 
-use scene::Scene;
+use scene::{Number, Scene};
 
 use mechanics::ConstantsRule;
 
@@ -48,7 +48,7 @@ pub struct SweepPoint {
 pub struct Sweep {
     name: String,
     text: String,
-    overrides: Vec<(String, f64)>,
+    overrides: Vec<(String, Number)>,
     names: Vec<String>,
     formulations: [String; 2],
     settings: Settings,
@@ -61,10 +61,10 @@ impl Sweep {
     ///
     /// # Errors
     /// [`SolveError::Scene`], [`SolveError::Member`] where a name means nothing, as far as the scene tells.
-    pub fn new(
+    pub fn new<N: Clone + Into<Number>>(
         name: &str,
         text: &str,
-        overrides: &[(String, f64)],
+        overrides: &[(String, N)],
         names: &[String],
         formulations: Option<[String; 2]>,
         settings: &Settings,
@@ -77,7 +77,8 @@ impl Sweep {
             };
             [chetaev::FORMULATION.name, second].map(String::from)
         };
-        let (name, text, overrides, names) = (name.into(), text.into(), overrides.to_vec(), names.to_vec());
+        let overrides = overrides.iter().map(|(name, x)| (name.clone(), x.clone().into())).collect();
+        let (name, text, names) = (name.into(), text.into(), names.to_vec());
         let formulations = formulations.unwrap_or_else(usual);
         let sweep = Sweep { name, text, overrides, names, formulations, settings: settings.clone() };
         let scene = sweep.read(&[])?;
@@ -117,7 +118,9 @@ impl Sweep {
     }
 
     fn read(&self, others: &[(String, f64)]) -> Result<Scene, SolveError> {
-        let scene = Scene::parse_with(&self.name, &self.text, &[&self.overrides[..], others].concat());
+        let others = others.iter().map(|(name, x)| (name.clone(), Number::from(*x)));
+        let all: Vec<_> = self.overrides.iter().cloned().chain(others).collect();
+        let scene = Scene::parse_with(&self.name, &self.text, &all);
         scene.map_err(|error| SolveError::Scene(Box::new(error)))
     }
 

@@ -60,9 +60,13 @@ impl Context<'_> {
 
     /// What stands at `entry`, as it is written.
     pub(super) fn written(&self, entry: &Entry) -> Result<Expr, SceneError> {
-        match entry.value()? {
-            Value::Number(x) => Ok(self.system.graph.number(x)),
-            Value::Expression(text) => self.parse(&text),
+        self.expression(&entry.value()?)
+    }
+
+    pub(super) fn expression(&self, value: &Value) -> Result<Expr, SceneError> {
+        match value {
+            Value::Number(x) => Ok(self.system.graph.number(*x)),
+            Value::Expression(text) => self.parse(text),
         }
     }
 

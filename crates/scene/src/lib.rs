@@ -65,7 +65,7 @@ mod write;
 
 pub use error::{SceneError, SceneErrorKind};
 pub use load::SIZE_LIMIT;
-pub use number::number;
+pub use number::Number;
 pub use reasons::{NameFault, Unavailable};
 pub use scene::Scene;
 pub use starts::{Start, Starts};

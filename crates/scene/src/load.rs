@@ -10,7 +10,7 @@ use super::context::Context;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source};
 use super::{constants, removal, start, system, view};
-use crate::{Scene, SceneError, SceneErrorKind, format};
+use crate::{Number, Scene, SceneError, SceneErrorKind, format};
 
 /// Size of the largest scene file that is read, in bytes.
 pub const SIZE_LIMIT: u64 = 1 << 20;
@@ -46,17 +46,21 @@ impl Scene {
     /// # Ok::<(), scene::SceneError>(())
     /// ```
     pub fn parse(name: &str, text: &str) -> Result<Scene, SceneError> {
-        Scene::parse_with(name, text, &[])
+        Scene::parse_with::<f64>(name, text, &[])
     }
 
-    /// Like [`Scene::parse`], with numbers that override those of the text before anything is evaluated: a
+    /// Like [`Scene::parse`], with numbers ([`Number`], `f64`) that override those of the text before anything is evaluated: a
     /// parameter (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or rate, `time`, `duration`,
     /// or a multiplier (`mu1`, `mu2`, … in the order of the constraints). Parameters and coordinates of these
     /// names come first; the last override of a name counts.
     ///
     /// # Errors
     /// As [`Scene::parse`]; a fault of an override has line 0.
-    pub fn parse_with(name: &str, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+    pub fn parse_with<N: Clone + Into<Number>>(
+        name: &str,
+        text: &str,
+        overrides: &[(String, N)],
+    ) -> Result<Scene, SceneError> {
         load(name, name, text, overrides)
     }
 
@@ -65,14 +69,14 @@ impl Scene {
     /// # Errors
     /// As [`Scene::parse`]; [`SceneErrorKind`]s `Unreadable`, `TooLarge` and `NotUtf8`.
     pub fn load(path: &Path) -> Result<Scene, SceneError> {
-        Scene::load_with(path, &[])
+        Scene::load_with::<f64>(path, &[])
     }
 
     /// [`Scene::load`] with overrides as in [`Scene::parse_with`].
     ///
     /// # Errors
     /// As [`Scene::load`].
-    pub fn load_with(path: &Path, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+    pub fn load_with<N: Clone + Into<Number>>(path: &Path, overrides: &[(String, N)]) -> Result<Scene, SceneError> {
         Scene::parse_file(path, &Scene::read(path)?, overrides)
     }
 
@@ -113,16 +117,26 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::parse_with`].
-    pub fn parse_file(path: &Path, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+    pub fn parse_file<N: Clone + Into<Number>>(
+        path: &Path,
+        text: &str,
+        overrides: &[(String, N)],
+    ) -> Result<Scene, SceneError> {
         let file = path.display().to_string();
         let name = path.file_stem().map_or_else(|| file.clone(), |stem| stem.to_string_lossy().into_owned());
         load(&name, &file, text, overrides)
     }
 }
 
-fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+fn load<N: Clone + Into<Number>>(
+    name: &str,
+    file: &str,
+    text: &str,
+    overrides: &[(String, N)],
+) -> Result<Scene, SceneError> {
     let faults = RefCell::default();
-    let scene = read(name, Source { file, text, faults: &faults }, overrides);
+    let source = Source { file, text, faults: &faults };
+    let scene = Overrides::new(source, overrides).and_then(|overrides| read(name, source, overrides));
     let mut faults = faults.into_inner();
     let scene = scene.map_err(|fault| faults.push(fault));
     match (scene, SceneError::together(faults)) {
@@ -133,7 +147,7 @@ fn load(name: &str, file: &str, text: &str, overrides: &[(String, f64)]) -> Resu
 }
 
 /// Looks at as much as can be looked at: faults that leave the rest readable are noted.
-fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene, SceneError> {
+fn read(name: &str, source: Source, overrides: Overrides) -> Result<Scene, SceneError> {
     let Source { file, text, .. } = source;
     let size = text.len() as u64;
     if size > SIZE_LIMIT {
@@ -153,7 +167,7 @@ fn read(name: &str, source: Source, overrides: &[(String, f64)]) -> Result<Scene
     let title = source.note(root.require("title", "a string").and_then(|title| title.text("a string")));
     let run = root.require("run", "a table with the duration").and_then(|run| run.section());
     let run = source.note(run);
-    let mut context = system::build(source, root, Overrides::new(source, overrides)?)?;
+    let mut context = system::build(source, root, overrides)?;
     let duration = run.and_then(|run| {
         run.check_keys(format::RUN);
         if let Some(times) = run.get("breakpoints").and_then(|entry| source.note(breakpoints(&entry))) {

@@ -1,22 +1,84 @@
 //! Numbers outside of files.
 
+use std::fmt;
+use std::str::FromStr;
+
 use symbolic::{Graph, ParseErrorKind};
 
-/// The number that an expression without names stands for, as in `pi/3`; what is no expression but a number
-/// in words (`nan`, `inf`) is that, for whoever refuses it.
+/// A number in the place of one of a scene: a decimal, or a formula without names as in `pi/3`.
 ///
-/// # Errors
-/// What is wrong with the expression.
+/// What is proved of a scene is proved of its numbers as they are written; of a formula an `f64` is another.
 ///
 /// ```
-/// assert_eq!(scene::number("2*pi/4"), Ok(std::f64::consts::FRAC_PI_2));
-/// assert!(scene::number("2*q").is_err());
+/// use scene::Number;
+/// let angle: Number = "2*pi/4".parse().unwrap();
+/// assert_eq!((angle.value(), angle.formula()), (std::f64::consts::FRAC_PI_2, Some("2*pi/4")));
+/// assert_eq!(Number::from(0.1), "0.1".parse().unwrap());
+/// assert!("2*q".parse::<Number>().is_err());
 /// ```
-pub fn number(text: &str) -> Result<f64, ParseErrorKind> {
-    if let Ok(number) = text.trim().parse() {
-        return Ok(number);
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    value: f64,
+    formula: Option<String>,
+}
+
+impl Number {
+    /// It, rounded.
+    pub fn value(&self) -> f64 {
+        self.value
     }
-    let g = Graph::new();
-    let e = g.parse(text, &|_| None, &[]).map_err(|error| error.kind)?;
-    g.as_number(e).or_else(|| g.evaluate(e, &std::collections::HashMap::new()).ok()).ok_or(ParseErrorKind::NotFinite)
+
+    /// Its text, unless it is a decimal.
+    pub fn formula(&self) -> Option<&str> {
+        self.formula.as_deref()
+    }
+}
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.formula {
+            Some(formula) => f.write_str(formula),
+            None => write!(f, "{}", self.value),
+        }
+    }
+}
+
+impl From<f64> for Number {
+    fn from(value: f64) -> Self {
+        Number { value, formula: None }
+    }
+}
+
+impl FromStr for Number {
+    type Err = ParseErrorKind;
+
+    /// What is no formula but a number in words (`nan`, `inf`) is that, for whoever refuses it.
+    fn from_str(text: &str) -> Result<Self, ParseErrorKind> {
+        let text = text.trim();
+        let g = Graph::new();
+        if let Ok(value) = text.parse::<f64>() {
+            let rounded = value.is_finite() && !is_decimal_of(text, value);
+            return Ok(Number { value, formula: rounded.then(|| text.to_owned()) });
+        }
+        let e = g.parse(text, &|_| None, &[]).map_err(|error| error.kind)?;
+        let value = g.as_number(e).or_else(|| g.evaluate(e, &std::collections::HashMap::new()).ok());
+        Ok(Number { value: value.ok_or(ParseErrorKind::NotFinite)?, formula: Some(text.to_owned()) })
+    }
+}
+
+/// Whether the decimal `text` is the shortest of those that are rounded to `x`, and so not rounded itself.
+pub(crate) fn is_decimal_of(text: &str, x: f64) -> bool {
+    digits(text).is_some_and(|written| digits(&format!("{x:e}")) == Some(written))
+}
+
+/// Digits from the first that is not 0 to the last, and the power of ten of the last.
+fn digits(text: &str) -> Option<(String, i64)> {
+    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let all = format!("{}{fraction}", whole.trim_start_matches(['+', '-']));
+    let short = all.trim_end_matches('0');
+    let scale = exponent.parse::<i64>().ok()? - fraction.len() as i64 + (all.len() - short.len()) as i64;
+    let short = short.trim_start_matches('0').to_owned();
+    let is_zero = short.is_empty();
+    Some((short, if is_zero { 0 } else { scale }))
 }

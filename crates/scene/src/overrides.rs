@@ -3,30 +3,46 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::section::{Source, suggestion};
-use crate::{SceneError, SceneErrorKind};
+use super::section::{Source, Text, Value, suggestion};
+use crate::{Number, SceneError, SceneErrorKind};
 
 /// Overrides not asked for by anybody are misspelt: each name that is looked up is remembered.
 pub(super) struct Overrides {
-    values: BTreeMap<String, f64>,
+    values: BTreeMap<String, Number>,
     asked: RefCell<BTreeSet<String>>,
 }
 
 impl Overrides {
-    pub(super) fn new(source: Source, overrides: &[(String, f64)]) -> Result<Self, SceneError> {
-        for (name, value) in overrides {
+    pub(super) fn new<N: Clone + Into<Number>>(source: Source, overrides: &[(String, N)]) -> Result<Self, SceneError> {
+        let mut values = BTreeMap::new();
+        for (name, number) in overrides {
+            let number: Number = number.clone().into();
+            let value = number.value();
             if !value.is_finite() {
-                let kind = SceneErrorKind::NotFinite { what: format!("the override of `{name}`"), value: *value };
+                let kind = SceneErrorKind::NotFinite { what: format!("the override of `{name}`"), value };
                 return Err(SceneError::outside(source.file, kind));
             }
+            values.insert(name.clone(), number);
         }
-        Ok(Overrides { values: overrides.iter().cloned().collect(), asked: RefCell::default() })
+        Ok(Overrides { values, asked: RefCell::default() })
     }
 
     /// The override of `name`. A name asked for before belongs to whoever asked first.
     pub(super) fn get(&self, name: &str) -> Option<f64> {
+        self.asked(name).map(Number::value)
+    }
+
+    /// [`Self::get`] with its formula, where there is one.
+    pub(super) fn written(&self, name: &str) -> Option<Value> {
+        self.asked(name).map(|number| match number.formula() {
+            Some(text) => Value::Expression(Text { text: text.into(), span: 0..0 }),
+            None => Value::Number(number.value()),
+        })
+    }
+
+    fn asked(&self, name: &str) -> Option<&Number> {
         let first = self.asked.borrow_mut().insert(name.into());
-        self.values.get(name).copied().filter(|_| first)
+        self.values.get(name).filter(|_| first)
     }
 
     /// All overrides must have been asked for.

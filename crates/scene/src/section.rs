@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use crate::format::Key;
+use crate::number::is_decimal_of;
 use crate::{SceneError, SceneErrorKind};
 
 /// The text of a scene, where it came from, and what is wrong with it so far.
@@ -192,7 +193,19 @@ impl<'a> Entry<'a> {
     pub(super) fn value(&self) -> Result<Value, SceneError> {
         match self.value {
             DeValue::String(_) => Ok(Value::Expression(self.text("")?)),
-            DeValue::Integer(_) | DeValue::Float(_) => Ok(Value::Number(self.number()?)),
+            DeValue::Integer(_) | DeValue::Float(_) => {
+                let value = self.number()?;
+                let text = match self.value {
+                    DeValue::Float(x) => x.as_str(),
+                    DeValue::Integer(n) if n.radix() == 10 => n.as_str(),
+                    _ => return Ok(Value::Number(value)),
+                };
+                // digits that an f64 has not got stay text
+                match is_decimal_of(text, value) {
+                    true => Ok(Value::Number(value)),
+                    false => Ok(Value::Expression(Text { text: text.to_owned(), span: self.span.clone() })),
+                }
+            }
             _ => Err(self.wrong_type("a number or an expression in quotes")),
         }
     }

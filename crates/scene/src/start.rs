@@ -33,11 +33,11 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         }
     }
     for (name, symbol) in rate_names(&context.system, removals.first()) {
-        if let Some(value) = context.overrides.get(&name) {
+        if let Some(value) = context.overrides.written(&name) {
             given.retain(|(s, _)| *s != symbol);
-            given.push((symbol, value));
+            given.push((symbol, context.evaluate(&value, &name, &context.values_at_rest(), "numbers")?));
             written.retain(|(s, _)| *s != symbol);
-            written.push((symbol, context.system.graph.number(value)));
+            written.push((symbol, context.expression(&value)?));
         }
     }
     let data = StartData {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use symbolic::{Graph, Symbol};
+use symbolic::{Expr, Graph, Symbol};
 
 use super::context::Context;
 use super::names::{KAPPA, Names, Role};
@@ -20,8 +20,9 @@ pub(super) fn build<'a>(
 ) -> Result<Context<'a>, SceneError> {
     let graph = Graph::new();
     let mut names = Names::default();
+    let mut written = Vec::new();
     let parameters = match source.note(root.section("parameters")).flatten() {
-        Some(section) => parameters(&section, &overrides, &graph, &mut names),
+        Some(section) => parameters(&section, &overrides, &graph, &mut names, &mut written),
         None => Vec::new(),
     };
     let coordinates = root.require("coordinates", "a table with one entry a coordinate")?.section()?;
@@ -50,7 +51,7 @@ pub(super) fn build<'a>(
         names,
         system,
         positions: Vec::new(),
-        written: Vec::new(),
+        written,
         time: 0.0,
         places: Vec::new(),
         on_positions: Vec::new(),
@@ -66,7 +67,7 @@ pub(super) fn build<'a>(
     for (section, constant) in [("invariants", true), ("observables", false)] {
         source.note(watched(&mut context, section, constant));
     }
-    context.time = source.note(start_time(&context)).unwrap_or_default();
+    context.time = source.note(start_time(&mut context)).unwrap_or_default();
     positions(&mut context, &coordinates)?;
     Ok(context)
 }
@@ -83,14 +84,21 @@ fn unit(section: &Section) -> Result<String, SceneError> {
 }
 
 /// Parameters that are numbers. One that is given by others is an expression in them, and follows them.
-fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &mut Names) -> Vec<Parameter> {
+/// `formulas`: those that are written as formulas of numbers.
+fn parameters(
+    section: &Section,
+    overrides: &Overrides,
+    graph: &Graph,
+    names: &mut Names,
+    formulas: &mut Vec<(Symbol, Expr)>,
+) -> Vec<Parameter> {
     let source = section.source;
     let mut written = Vec::new();
     for entry in section.entries() {
         let checked = names.check(source, graph, (entry.key, &entry.key_span), Role::Parameter);
         let value = source.note(checked).and_then(|()| {
             let given = source.note(entry.value())?;
-            Some(overrides.get(entry.key).map_or(given, Value::Number))
+            Some(overrides.written(entry.key).unwrap_or(given))
         });
         match value {
             Some(value) => written.push((entry, value)),
@@ -104,6 +112,7 @@ fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &m
     let places: HashMap<&str, usize> = written.iter().enumerate().map(|(i, (e, _))| (e.key, i)).collect();
     let mut parameters = Vec::new();
     for (entry, value) in in_order(source, written, Role::Parameter, names) {
+        let is_formula = matches!(value, Value::Expression(_));
         let read = match value {
             Value::Number(x) => Ok(graph.number(x)),
             Value::Expression(text) => names.parse(source, graph, &text),
@@ -113,6 +122,9 @@ fn parameters(section: &Section, overrides: &Overrides, graph: &Graph, names: &m
         let value = if given_by_others { e } else { graph.variable(graph.symbol(entry.key)) };
         names.insert_parameter(entry.key, graph, value);
         if !given_by_others {
+            if is_formula {
+                formulas.push((graph.symbol(entry.key), e));
+            }
             let value = graph.evaluate(e, &HashMap::new()).unwrap_or(f64::NAN);
             parameters.push((places[entry.key], Parameter { symbol: graph.symbol(entry.key), value }));
         }
@@ -231,13 +243,21 @@ fn constraints(context: &mut Context, entry: &Entry) -> Result<(), SceneError> {
     Ok(())
 }
 
-fn start_time(context: &Context) -> Result<f64, SceneError> {
+fn start_time(context: &mut Context) -> Result<f64, SceneError> {
     let start = context.root.section("start")?;
     let given = match start.and_then(|s| s.get("time")) {
-        Some(entry) => context.constant(&entry)?,
-        None => 0.0,
+        Some(entry) => {
+            context.constant(&entry)?;
+            entry.value()?
+        }
+        None => Value::Number(0.0),
     };
-    Ok(context.overrides.get("time").unwrap_or(given))
+    let value = context.overrides.written("time").unwrap_or(given);
+    if let Value::Expression(text) = &value {
+        let written = (context.system.time, context.parse(text)?);
+        context.written.push(written);
+    }
+    context.evaluate(&value, "time", &context.system.parameter_values(), "parameters")
 }
 
 fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneError> {
@@ -248,10 +268,8 @@ fn positions(context: &mut Context, coordinates: &Section) -> Result<(), SceneEr
             let start = start.require("start", "a number, or an expression in parameters and earlier coordinates")?;
             let known = "parameters, t and the coordinates above";
             let value = start.value()?;
-            Ok(match context.overrides.get(entry.key) {
-                Some(x) => (x, context.system.graph.number(x)),
-                None => (context.evaluate(&value, &start.path, &values, known)?, context.written(&start)?),
-            })
+            let value = context.overrides.written(entry.key).unwrap_or(value);
+            Ok((context.evaluate(&value, &start.path, &values, known)?, context.expression(&value)?))
         };
         let (x, written) = match read() {
             Ok(read) => read,

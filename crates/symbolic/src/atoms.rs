@@ -96,7 +96,7 @@ impl Parser<'_> {
             return Ok(value);
         }
         let kind = if name == "pi" {
-            return Ok(Value::Scalar(self.graph.number(std::f64::consts::PI)));
+            return Ok(Value::Scalar(self.graph.pi()));
         } else if arity(name).is_some() {
             ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() }
         } else {

@@ -111,6 +111,25 @@ impl Graph {
         self.arena.borrow_mut().number(Number::from_f64(x))
     }
 
+    /// π, as the quotient [`PI`]: multiples of it stay what they are.
+    pub fn pi(&self) -> Expr {
+        self.arena.borrow_mut().number(Number::PI)
+    }
+
+    /// Numerator and denominator of `e`, if it is a number that nothing has rounded; π is the quotient [`PI`].
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// assert_eq!(g.as_ratio(g.number(9.81)), Some((981, 100)));
+    /// assert_eq!(g.as_ratio(g.number(0.1 + 0.2)), None);
+    /// ```
+    pub fn as_ratio(&self, e: Expr) -> Option<(i64, i64)> {
+        match self.arena.borrow().as_number(e) {
+            Some(Number::Exact(r)) => Some((r.numerator(), r.denominator())),
+            _ => None,
+        }
+    }
+
     /// The value of `e`, if it is a number. A division by zero among numbers is a number that is not finite.
     pub fn as_number(&self, e: Expr) -> Option<f64> {
         self.arena.borrow().as_number(e).map(Number::to_f64)

@@ -86,6 +86,7 @@ pub use graph::Graph;
 pub use identity::{Around, Vanishing};
 pub use lexer::names_in;
 pub use matrix::Matrix;
+pub use number::PI;
 pub use parse_error::{ParseError, ParseErrorKind};
 pub use random::{SplitMix, Xorshift};
 pub use range::Range;

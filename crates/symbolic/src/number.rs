@@ -7,6 +7,9 @@ use std::hash::{Hash, Hasher};
 /// Integers up to here are exact in `f64`, so a quotient of two of them is rounded once.
 const EXACT_IN_F64: i64 = 1 << 53;
 
+/// π as a quotient of two primes, off by 1e-18: so it is told apart from all that is written without it.
+pub const PI: (i64, i64) = (11_678_491_999, 3_717_379_459);
+
 /// A reduced fraction; compared and hashed by its two parts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Rational(Ratio<i64>);
@@ -169,6 +172,7 @@ impl Number {
     pub(crate) const ONE: Number = Number::Exact(Rational::ONE);
     pub(crate) const MINUS_ONE: Number = Number::Exact(Rational(Ratio::new_raw(-1, 1)));
     pub(crate) const UNDEFINED: Number = Number::Float(f64::NAN);
+    pub(crate) const PI: Number = Number::Exact(Rational(Ratio::new_raw(PI.0, PI.1)));
 
     pub(crate) fn integer(n: i64) -> Self {
         Self::ratio(n, 1)
@@ -177,7 +181,16 @@ impl Number {
     pub(crate) fn ratio(numerator: i64, denominator: i64) -> Self {
         match Rational::new(numerator, denominator) {
             Some(r) => Number::Exact(r),
-            None => Self::from_f64(numerator as f64 / denominator as f64),
+            None => Self::rounded(numerator as f64 / denominator as f64),
+        }
+    }
+
+    /// What arithmetic has rounded: never taken for an exact number again, but for zero.
+    pub(crate) fn rounded(x: f64) -> Self {
+        match x {
+            0.0 => Self::ZERO,
+            x if x.is_nan() => Self::UNDEFINED,
+            x => Number::Float(x),
         }
     }
 
@@ -205,7 +218,7 @@ impl Number {
         let x: f64 = literal.parse().ok()?;
         let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
         let lost = x == 0.0 && mantissa.bytes().any(|c| matches!(c, b'1'..=b'9'));
-        (x.is_finite() && !lost).then(|| Self::from_f64(x))
+        (x.is_finite() && !lost).then(|| Self::rounded(x))
     }
 
     pub(crate) fn to_f64(self) -> f64 {
@@ -249,7 +262,7 @@ impl Number {
         {
             return Number::Exact(r);
         }
-        Self::from_f64(float(self.to_f64(), other.to_f64()))
+        Self::rounded(float(self.to_f64(), other.to_f64()))
     }
 
     pub(crate) fn add(self, other: Self) -> Self {
@@ -263,7 +276,7 @@ impl Number {
     pub(crate) fn neg(self) -> Self {
         match self {
             Number::Exact(r) => Number::Exact(r.neg()),
-            Number::Float(x) => Self::from_f64(-x),
+            Number::Float(x) => Number::Float(-x),
         }
     }
 
@@ -279,7 +292,7 @@ impl Number {
         {
             return Number::Exact(power);
         }
-        Self::from_f64(match i32::try_from(exponent) {
+        Self::rounded(match i32::try_from(exponent) {
             Ok(n) => self.to_f64().powi(n),
             Err(_) => self.to_f64().powf(exponent as f64),
         })

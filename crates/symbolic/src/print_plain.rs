@@ -134,13 +134,12 @@ pub(crate) fn number_text(n: Number) -> (String, Option<String>) {
     }
 }
 
-/// `k` and `d` where the number is `k π/d` of small numbers, to the digit that π has here.
+/// `k` and `d` where the number is `k π/d`.
 fn multiple_of_pi(r: Rational) -> Option<(i64, i64)> {
-    const LARGEST: i64 = 360;
-    let Number::Exact(pi) = Number::from_f64(std::f64::consts::PI) else { return None };
+    let Number::Exact(pi) = Number::PI else { return None };
     let quotient = r.mul(pi.recip()?)?;
-    let (k, d) = (quotient.numerator(), quotient.denominator());
-    (k != 0 && k <= LARGEST && d <= LARGEST).then_some((k, d))
+    let is_multiple = r.numerator() % pi.numerator() == 0 && r.denominator() % pi.denominator() == 0;
+    is_multiple.then_some((quotient.numerator(), quotient.denominator()))
 }
 
 /// The shortest decimal that converts back to x

@@ -17,6 +17,10 @@ pub trait Scalar:
     fn from_f64(x: f64) -> Self;
     /// `numerator / denominator`, rounded in this type.
     fn from_ratio(numerator: i64, denominator: i64) -> Self;
+    /// A number of a formula that is known as this float only: beyond 64 bits, or rounded by arithmetic.
+    fn rounded(x: f64) -> Self {
+        Self::from_f64(x)
+    }
     /// √x
     fn sqrt(self) -> Self;
     /// sin x

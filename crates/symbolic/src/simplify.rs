@@ -241,13 +241,13 @@ impl Arena {
         let r = match n {
             Number::Exact(r) if !r.is_zero() && !r.is_negative() => r,
             _ => {
-                *coefficient = coefficient.mul(Number::from_f64(n.to_f64().powf(exponent.to_f64())));
+                *coefficient = coefficient.mul(Number::rounded(n.to_f64().powf(exponent.to_f64())));
                 return;
             }
         };
         let parts = [(r.numerator(), exponent), (r.denominator(), exponent.neg())];
         if parts.iter().any(|(part, e)| Rational::integer(*part).powi(e.floor()).is_none()) {
-            *coefficient = coefficient.mul(Number::from_f64(r.to_f64().powf(exponent.to_f64())));
+            *coefficient = coefficient.mul(Number::rounded(r.to_f64().powf(exponent.to_f64())));
             return;
         }
         for (part, exponent) in parts {
@@ -267,7 +267,7 @@ impl Arena {
         match (self.as_number(base), self.as_number(exponent)) {
             (_, Some(Number::Exact(r))) => self.power_product(Number::ONE, vec![(base, r)]),
             (Some(b), _) if b.is_one() => Self::ONE,
-            (Some(b), Some(x)) => self.number(Number::from_f64(b.to_f64().powf(x.to_f64()))),
+            (Some(b), Some(x)) => self.number(Number::rounded(b.to_f64().powf(x.to_f64()))),
             (Some(b), None) if !b.is_finite() => self.number(Number::UNDEFINED),
             (None, Some(x)) if !x.is_finite() => self.number(Number::UNDEFINED),
             _ => self.intern(Node::Power(base, exponent)),

@@ -90,7 +90,7 @@ impl Tape {
         for (register, n) in &self.constants {
             registers[*register as usize] = match n {
                 Number::Exact(r) => T::from_ratio(r.numerator(), r.denominator()),
-                Number::Float(x) => T::from_f64(*x),
+                Number::Float(x) => T::rounded(*x),
             };
         }
         run(&self.setup, &mut registers);

@@ -20,7 +20,7 @@ use anyhow::{Context, Result};
 use deltaq::{Choice, Settings, choices, derive_at, forms, setting};
 use integrate::{Method, Work};
 use mechanics::ConstantsRule;
-use scene::Scene;
+use scene::{Number, Scene};
 
 use crate::catalogue;
 
@@ -153,7 +153,7 @@ impl Measurements {
 /// A scene with a reference for each of its motions.
 pub struct Prepared {
     name: String,
-    overrides: Vec<(String, f64)>,
+    overrides: Vec<(String, Number)>,
     truths: Vec<(String, Result<Truth, String>)>,
 }
 
@@ -176,7 +176,7 @@ fn motion(choice: &Choice) -> String {
 ///
 /// # Errors
 /// Where the scene cannot be read.
-pub fn prepare(name: &str, overrides: &[(String, f64)]) -> Result<Prepared> {
+pub fn prepare(name: &str, overrides: &[(String, Number)]) -> Result<Prepared> {
     let scene = catalogue::find(name, overrides)?;
     let truth = |choice: &Choice| -> Result<Truth> {
         let equations = derive_at(&scene.system, &scene.start, choice)?;

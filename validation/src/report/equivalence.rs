@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use deltaq::{Answer, Contradicted, Finding, Membership, Pairing, Section, choices, membership};
 use mechanics::Removal;
 use random::{parallel, substitution};
-use scene::Scene;
+use scene::{Number, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -17,12 +17,30 @@ use deltaq::words::short;
 
 const DATA: &str = include_str!("../../equivalence/pages/systems.toml");
 
+/// A decimal, or a formula.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "toml::Value")]
+pub(super) struct Written(pub(super) Number);
+
+impl TryFrom<toml::Value> for Written {
+    type Error = String;
+
+    fn try_from(value: toml::Value) -> Result<Self, String> {
+        match value {
+            toml::Value::Integer(n) => Ok(Written((n as f64).into())),
+            toml::Value::Float(x) => Ok(Written(x.into())),
+            toml::Value::String(text) => text.parse().map(Written).map_err(|error| format!("`{text}`: {error}")),
+            other => Err(format!("{other:?} is no number")),
+        }
+    }
+}
+
 /// Whose motion is asked about: a scene with other numbers.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Asked {
     pub(super) scene: String,
     #[serde(default)]
-    set: BTreeMap<String, f64>,
+    set: BTreeMap<String, Written>,
     /// The motion with the constraint put into `L`, instead of Chetaev's.
     #[serde(default)]
     control: bool,
@@ -30,13 +48,13 @@ pub(super) struct Asked {
 
 impl Asked {
     /// The scene with what `set` adds.
-    pub(super) fn scene(&self, set: &BTreeMap<String, f64>) -> Result<Scene> {
-        let numbers: Vec<_> = self.set.iter().chain(set).map(|(name, value)| (name.clone(), *value)).collect();
+    pub(super) fn scene(&self, set: &BTreeMap<String, Written>) -> Result<Scene> {
+        let numbers: Vec<_> = self.set.iter().chain(set).map(|(name, value)| (name.clone(), value.0.clone())).collect();
         catalogue::find(&self.scene, &numbers).with_context(|| format!("scene `{}`", self.scene))
     }
 
     /// What is found at this start, and at almost every one.
-    pub(super) fn found(&self, set: &BTreeMap<String, f64>) -> Result<[Found; 2]> {
+    pub(super) fn found(&self, set: &BTreeMap<String, Written>) -> Result<[Found; 2]> {
         let scene = self.scene(set)?;
         let end = scene.start.t + scene.duration;
         let found = if self.control {
@@ -67,8 +85,8 @@ impl Asked {
 }
 
 /// `phi = 0, phi' = 1`.
-fn numbers(set: &BTreeMap<String, f64>) -> String {
-    set.iter().map(|(name, value)| format!("`{name} = {value}`")).collect::<Vec<_>>().join(", ")
+fn numbers(set: &BTreeMap<String, Written>) -> String {
+    set.iter().map(|(name, value)| format!("`{name} = {}`", value.0)).collect::<Vec<_>>().join(", ")
 }
 
 /// The set of multipliers in a word, and how it is known.
@@ -182,7 +200,7 @@ struct System {
 #[derive(Deserialize)]
 struct Start {
     at: String,
-    set: BTreeMap<String, f64>,
+    set: BTreeMap<String, Written>,
     is: String,
 }
 

@@ -9,7 +9,7 @@ use random::parallel;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::report::equivalence::{Asked, Found};
+use crate::report::equivalence::{Asked, Found, Written};
 use crate::report::{File, Table};
 use deltaq::words::short;
 
@@ -82,7 +82,7 @@ impl Case {
             return Ok(if self.almost_every_start { almost_everywhere } else { here });
         };
         let [from, to] = along.during;
-        let scene = self.asked.scene(&BTreeMap::from([("duration".into(), to)]))?;
+        let scene = self.asked.scene(&BTreeMap::from([("duration".into(), Written(to.into()))]))?;
         let choice = choices(&scene).into_iter().find(|choice| choice.formulation == along.formulation);
         let mut motion = solve_choice(&scene, &choice.context("no such formulation")?, &Settings::default())?;
         let (system, g) = (&scene.system, &scene.system.graph);

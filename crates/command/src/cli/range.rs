@@ -59,7 +59,7 @@ pub(super) fn range(text: &str) -> Result<Range, String> {
         Some((name, from, to, count))
     });
     let (name, from, to, count) = parts.ok_or_else(|| format!("`{text}` is not NAME=FROM:TO:COUNT"))?;
-    let number = |x: &str| match scene::number(x) {
+    let number = |x: &str| match x.parse::<scene::Number>().map(|number| number.value()) {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err(format!("`{x}` in `{text}` is not a finite number")),
         Err(error) => Err(format!("`{x}` in `{text}`: {error}")),

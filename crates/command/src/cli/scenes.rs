@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use scene::Scene;
+use scene::{Number, Scene};
 
 use super::TextOrJson;
 use validation::catalogue::{self, NotFound};
@@ -29,7 +29,7 @@ impl SceneArguments {
 pub struct Overrides {
     /// Replace a parameter (`g=1.6`), a start value (`x=pi/3`, `x'=2`) or `duration`.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
-    pub overrides: Vec<(String, f64)>,
+    pub overrides: Vec<(String, Number)>,
 }
 
 /// `deltaq new`.
@@ -98,8 +98,8 @@ impl From<CodeLanguage> for deltaq::Language {
     }
 }
 
-fn assignment(text: &str) -> Result<(String, f64), String> {
+fn assignment(text: &str) -> Result<(String, Number), String> {
     let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not NAME=VALUE"))?;
-    let number = scene::number(value).map_err(|error| format!("`{value}` in `{text}`: {error}"))?;
+    let number = value.parse().map_err(|error| format!("`{value}` in `{text}`: {error}"))?;
     Ok((name.trim().to_string(), number))
 }

@@ -4,7 +4,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use symbolic::{Function, Scalar};
 
-use super::rational::Exact;
+use super::rational::{Exact, PARTS};
 use super::{Coefficient, Flaw};
 
 /// Coefficients a series can have.
@@ -43,9 +43,12 @@ impl<C: Coefficient> Jet<C> {
 
     /// The decimal that `x` is written as.
     pub(crate) fn of(x: f64) -> Self {
-        match Exact::of(x).filter(|_| C::FOLLOWED) {
-            Some(exact) => Self::number(C::of(exact), Some(exact)),
-            None => Self::number(C::of_float(x), None),
+        if !C::FOLLOWED {
+            return Self::number(C::of_float(x), None);
+        }
+        match Exact::of(x) {
+            Ok(exact) => Self::number(C::of(exact), Some(exact)),
+            Err(flaw) => Self::flawed(flaw),
         }
     }
 
@@ -104,7 +107,7 @@ impl<C: Coefficient> Jet<C> {
             return Jet { terms: 1, ..result };
         }
         for k in 1..result.known {
-            let over = C::of(Exact { denominator: k as i128, numerator: 1, quarters: 0 });
+            let over = C::of(Exact { denominator: k as i128, ..Exact::ONE });
             match (next(k, &result.coefficients), over) {
                 (Some(x), Ok(over)) => result.coefficients[k] = x * over,
                 _ => return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..result },
@@ -115,7 +118,7 @@ impl<C: Coefficient> Jet<C> {
 
     /// Coefficients of `u'`, shifted: entry k is `k u_k`.
     fn slopes(&self) -> [C; ORDERS] {
-        std::array::from_fn(|k| match C::of(Exact { numerator: k as i128, denominator: 1, quarters: 0 }) {
+        std::array::from_fn(|k| match C::of(Exact { numerator: k as i128, ..Exact::ONE }) {
             Ok(k_times) if k < self.terms => self.coefficients[k] * k_times,
             _ => C::ZERO,
         })
@@ -126,12 +129,12 @@ impl<C: Coefficient> Jet<C> {
     }
 
     fn constant_one() -> Self {
-        let one = Exact { numerator: 1, denominator: 1, quarters: 0 };
+        let one = Exact::ONE;
         Self::number(C::of(one), Some(one))
     }
 
     fn half(self) -> Self {
-        let half = Exact { numerator: 1, denominator: 2, quarters: 0 };
+        let half = Exact { denominator: 2, ..Exact::ONE };
         self * Self::number(C::of(half), Some(half))
     }
 
@@ -145,7 +148,7 @@ impl<C: Coefficient> Jet<C> {
             // k u₀ y_k = α Σ_j j u_j y_{k−j} − Σ_{j<k} j y_j u_{k−j}
             let mut sum = alpha * C::convolution(&slopes[1..=k], &y[..k]);
             for (j, &before) in y.iter().enumerate().take(k).skip(1) {
-                let times = C::of(Exact { numerator: j as i128, denominator: 1, quarters: 0 }).ok()?;
+                let times = C::of(Exact { numerator: j as i128, ..Exact::ONE }).ok()?;
                 sum = sum - times * before * self.coefficients[k - j];
             }
             Some(sum * over)
@@ -244,27 +247,25 @@ impl<C: Coefficient> Div for Jet<C> {
 
 impl<C: Coefficient> Scalar for Jet<C> {
     fn from_f64(x: f64) -> Self {
-        // the graph keeps what is no fraction of moderate size as a float, which may be rounded already
-        let exact = Exact::of(x).filter(|exact| exact.denominator == 1);
-        match exact {
-            None if C::FOLLOWED => Self::flawed(Flaw::Number),
-            _ => Self::of(x),
-        }
+        if x == 1.0 { Self::constant_one() } else { Self::of(x) }
+    }
+
+    fn rounded(x: f64) -> Self {
+        if C::FOLLOWED { Self::flawed(Flaw::Number) } else { Self::of(x) }
     }
 
     fn from_ratio(numerator: i64, denominator: i64) -> Self {
-        // long decimals are looked at again: they may be multiples of π/2
-        match Exact::of(numerator as f64 / denominator as f64) {
-            Some(exact) if !exact.is_rational() => Self::number(C::of(exact), Some(exact)),
-            _ => match Exact::ratio(numerator.into(), denominator.into()) {
-                Some(exact) => Self::number(C::of(exact), Some(exact)),
-                None => Self::flawed(Flaw::Number),
-            },
+        if !C::FOLLOWED {
+            return Self::number(C::of_float(numerator as f64 / denominator as f64), None);
+        }
+        match Exact::of_formula(numerator, denominator) {
+            Ok(exact) => Self::number(C::of(exact), Some(exact)),
+            Err(flaw) => Self::flawed(flaw),
         }
     }
 
     fn sqrt(self) -> Self {
-        let half = Exact { numerator: 1, denominator: 2, quarters: 0 };
+        let half = Exact { denominator: 2, ..Exact::ONE };
         self.to_power(self.coefficients[0].root(self.exact), Self::number(C::of(half), Some(half)))
     }
 
@@ -285,16 +286,20 @@ impl<C: Coefficient> Scalar for Jet<C> {
         };
         let (mut sine, mut cosine) = (begun(|v| v.0), begun(|v| v.1));
         if let Some(x) = self.exact.filter(|x| x.numerator == 0) {
-            // multiples of π/2
-            let value = |turns: i32| [0, 1, 0, -1][turns.rem_euclid(4) as usize];
-            sine.exact = Exact::ratio(value(x.quarters), 1);
-            cosine.exact = Exact::ratio(value(x.quarters + 1), 1);
+            // twice the sine of multiples of π/6, where that is an integer
+            let value = |turns: i64| {
+                let sixths = Some(turns).filter(|turns| turns % (PARTS / 6) == 0)? / (PARTS / 6);
+                let twice = [Some(0), Some(1), None, Some(2), None, Some(1)][sixths.rem_euclid(6) as usize]?;
+                Exact::ratio(if sixths.rem_euclid(12) < 6 { twice } else { -twice }, 2)
+            };
+            sine.exact = value(x.turns);
+            cosine.exact = value(x.turns + PARTS / 2);
         }
         if self.terms == 1 {
             return (sine, cosine);
         }
         for k in 1..self.known {
-            let Ok(over) = C::of(Exact { numerator: 1, denominator: k as i128, quarters: 0 }) else { continue };
+            let Ok(over) = C::of(Exact { denominator: k as i128, ..Exact::ONE }) else { continue };
             let forward = C::convolution(&slopes[1..=k], &cosine.coefficients[..k]);
             let backward = C::convolution(&slopes[1..=k], &sine.coefficients[..k]);
             sine.coefficients[k] = forward * over;

@@ -7,14 +7,14 @@ mod rational;
 
 pub(crate) use jet::{Jet, ORDERS};
 pub(crate) use linear::{inverse, solve, subtract_product};
-pub(crate) use modular::{Modular, PRIME};
-pub(crate) use rational::Exact;
+pub(crate) use modular::Modular;
+pub(crate) use rational::{Exact, PARTS};
 
 /// Why a number has no image in the finite field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Flaw {
-    /// A number of the system that is no decimal fraction of moderate length.
+    /// A number that is no decimal fraction of moderate length, or was rounded.
     #[error("a number of the system is no fraction of moderate size")]
     Number,
     /// A trigonometric or exponential function of a number that is not rational, or not followed as one.
@@ -29,6 +29,12 @@ pub enum Flaw {
     /// An inverse function of a number at which its value is not known.
     #[error("an inverse trigonometric or hyperbolic function is taken at the start")]
     InverseFunction,
+    /// A decimal that is a multiple of π in the digits of a double: it may be meant as either.
+    #[error("a number is a multiple of pi rounded to a double: write it as a formula, as in \"pi/3\"")]
+    Rounded,
+    /// An angle that is too fine a part of π.
+    #[error("a multiple of pi is no multiple of pi/720720")]
+    Turn,
     /// π outside of trigonometric functions.
     #[error("the number pi stands outside of sines and cosines")]
     Pi,
@@ -116,11 +122,10 @@ impl Coefficient for Modular {
         use symbolic::Function::{Acos, Log};
         let unknown = if function == Log { Flaw::Logarithm } else { Flaw::InverseFunction };
         let x = exact.ok_or(unknown)?;
-        let quarter = Exact { quarters: 1, ..Exact::ZERO };
         let one = Exact::ratio(1, 1);
         match function {
             Log | Acos if Some(x) == one => Ok((Self::ZERO, Some(Exact::ZERO))),
-            Acos if x.is_zero() => Ok((Self::ZERO, Some(quarter))),
+            Acos if x.is_zero() => Ok((Self::ZERO, Some(Exact::QUARTER))),
             Log | Acos => Err(unknown),
             _ if x.is_zero() => Ok((Self::ZERO, Some(Exact::ZERO))),
             _ => Err(unknown),

@@ -171,7 +171,13 @@ impl Reader<'_> {
         let mut is_clear = true;
         for (i, (&(t, asked), y)) in self.instants.iter().zip(&run.states).enumerate() {
             let now = self.at(run, i, t, y);
-            let now = if asked { now? } else if let Ok(now) = now { now } else { continue };
+            let now = if asked {
+                now?
+            } else if let Ok(now) = now {
+                now
+            } else {
+                continue;
+            };
             is_clear &= !options.estimate || self.watch.is_clear(t, &now);
             if !asked {
                 continue;
