@@ -1,8 +1,8 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{Jet, Modular, inverse};
+use crate::exact::{FIELDS, Jet, Modular, in_field, inverse};
 use crate::family::CostateRate;
-use crate::proof::{Echelon, Question, Ranks};
+use crate::proof::{Echelon, Question};
 use crate::series::order;
 use crate::start::ExactStart;
 
@@ -45,9 +45,20 @@ impl Question<'_> {
     /// # Errors
     /// The reason, in words.
     pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
+        let mut fault = None;
+        for field in &FIELDS {
+            match in_field(field, || self.certificate_here(start)) {
+                Ok(certificate) => return Ok(certificate),
+                Err(reason) => fault = fault.or(Some(reason)),
+            }
+        }
+        Err(fault.unwrap_or_default())
+    }
+
+    fn certificate_here(&self, start: &ExactStart) -> Result<Certificate, String> {
         let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
-        let (curve, series) = self.series(&exact, self.orders()).map_err(|fault| fault.to_string())?;
-        let refuted = Ranks::of(&series).refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        let refuted = self.ranks(&exact, |_| false)?.refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        let (curve, _) = self.series(&exact, refuted.order + 3).map_err(|fault| fault.to_string())?;
         let shape = &self.family().shape;
         let (n, h, last) = (shape.coordinates, shape.constraints, refuted.order);
         if shape.rates.iter().any(|rate| matches!(rate, CostateRate::Explicit(_))) || curve.unknowns[0].len() != n + h {
@@ -55,7 +66,7 @@ impl Question<'_> {
         }
         if !refuted.full_rank {
             return Err(
-                "coefficients of less than full rank have no minor to show: the proof is one of ranks modulo p".into(),
+                "coefficients of less than full rank have no minor to show: there are only ranks modulo p".into()
             );
         }
         let values = self.family().evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();

@@ -72,6 +72,7 @@ mod decide;
 mod error;
 mod exact;
 mod family;
+mod identity;
 mod leading;
 mod lift;
 mod program;

@@ -55,6 +55,8 @@ pub struct ExactStart {
     /// `∂f/∂v` at the start, row by row.
     pub(crate) slopes: Vec<f64>,
     pub(crate) constraints: Program,
+    /// Whether something that varies stands under a root: then random starts are near this one.
+    pub(crate) has_branches: bool,
     problem: Option<NoExactStart>,
 }
 
@@ -109,8 +111,12 @@ impl ExactStart {
         let constraints = Program::new(g, &inputs, &outputs)?;
         let slopes = slopes(system, state, &constraints);
         let spare = independent_columns(&slopes, system.dimension());
+        let formulas = [&[system.lagrangian][..], &system.constraints, &system.forces].concat();
+        let rooted = [g.kinks(&formulas), g.radicands(&formulas)].concat();
+        let constant = |e: &Expr| g.symbols_of(*e).iter().all(|s| system.parameters.iter().any(|p| p.symbol == *s));
+        let has_branches = !rooted.iter().all(constant);
         let (system, rounded) = (system.clone(), state.v.clone());
-        Ok(ExactStart { system, given, values, supplied, rounded, spare, slopes, constraints, problem })
+        Ok(ExactStart { system, given, values, supplied, rounded, spare, slopes, constraints, has_branches, problem })
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.

@@ -3,6 +3,7 @@
 mod classics;
 mod closed_forms;
 mod floating;
+mod hypotheses;
 mod numbers;
 mod proofs;
 mod questions;
