@@ -2,6 +2,7 @@
 
 mod classics;
 mod closed_forms;
+mod drawn;
 mod floating;
 mod hypotheses;
 mod numbers;

@@ -166,7 +166,7 @@ fn vector(entries: Vec<String>) -> String {
 }
 
 /// Why later coefficients need not be looked at.
-const SETTLED: &str = "ranks grow no more";
+const SETTLED: &str = "ranks mod p grow no more";
 
 fn of_rank(rank: usize, constants: usize) -> String {
     match constants - rank {
