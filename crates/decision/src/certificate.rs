@@ -1,10 +1,11 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{Jet, Modular, ORDERS, PARTS, inverse};
+use crate::exact::{FIELDS, Jet, Modular, PARTS, in_field, inverse};
 use crate::family::{CostateRate, inputs};
 use crate::plain_scene::PlainScene;
 use crate::program::Program;
-use crate::proof::{Echelon, Question, Ranks};
+use crate::proof::{Echelon, Question};
+use crate::random_start::at_random;
 use crate::series::{SeriesStart, order};
 use crate::start::ExactStart;
 
@@ -52,6 +53,17 @@ impl Question<'_> {
     /// # Errors
     /// The reason, in words.
     pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
+        let mut fault = None;
+        for field in &FIELDS {
+            match in_field(field, || self.certificate_here(start)) {
+                Ok(certificate) => return Ok(certificate),
+                Err(reason) => fault = fault.or(Some(reason)),
+            }
+        }
+        Err(fault.unwrap_or_default())
+    }
+
+    fn certificate_here(&self, start: &ExactStart) -> Result<Certificate, String> {
         let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
         // decimals stand in the place of velocities that are not determined by the constraints
         let is_open = |i: &usize| match completed.is_empty() {
@@ -68,14 +80,15 @@ impl Question<'_> {
     /// # Errors
     /// The reason, in words.
     pub fn almost_every_certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
-        let at_random = |seed: u64| {
-            let exact = start.random(seed).map_err(|fault| fault.to_string())?;
-            let solved = |i: &usize| exact.velocities[*i].exact().is_none();
-            let open: Vec<usize> = (0..exact.velocities.len()).filter(solved).collect();
-            self.certified(start, &exact, &open, Vec::new(), true)
+        let drawn = |seed: u64| {
+            at_random(start, seed, |exact| {
+                let solved = |i: &usize| exact.velocities[*i].exact().is_none();
+                let open: Vec<usize> = (0..exact.velocities.len()).filter(solved).collect();
+                self.certified(start, &exact, &open, Vec::new(), true)
+            })
         };
-        let found = (0..STARTS).map(at_random).chain([self.certificate(start)]).find(Result::is_ok);
-        let found = found.unwrap_or_else(|| at_random(0));
+        let found = (0..STARTS).map(drawn).chain([self.certificate(start)]).find(Result::is_ok);
+        let found = found.unwrap_or_else(|| drawn(0));
         found.map(|certificate| Certificate { almost_every_start: true, ..certificate })
     }
 
@@ -87,8 +100,9 @@ impl Question<'_> {
         completed: Vec<String>,
         at_random: bool,
     ) -> Result<Certificate, String> {
-        let (mut curve, series) = self.series(exact, self.orders()).map_err(|fault| fault.to_string())?;
-        let refuted = Ranks::of(&series).refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        let refuted = self.ranks(exact, |_| false)?.refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        // the motion is written two orders further than the mismatch
+        let (curve, _) = self.series(exact, refuted.order + 3).map_err(|fault| fault.to_string())?;
         let shape = &self.family().shape;
         let (n, h, last) = (shape.coordinates, shape.constraints, refuted.order);
         if shape.rates.iter().any(|rate| matches!(rate, CostateRate::Explicit(_))) || curve.unknowns[0].len() != n + h {
@@ -96,7 +110,7 @@ impl Question<'_> {
         }
         if !refuted.full_rank {
             return Err(
-                "coefficients of less than full rank have no minor to show: the proof is one of ranks modulo p".into(),
+                "coefficients of less than full rank have no minor to show: there are only ranks modulo p".into()
             );
         }
         let system = &start.system;
@@ -105,13 +119,6 @@ impl Question<'_> {
         let slopes = g.jacobian(&system.constraints, &open.iter().map(velocity).collect::<Vec<_>>());
         if slopes.entries().iter().any(|&e| open.iter().any(|i| g.depends_on(e, velocity(i)))) {
             return Err("the constraints are not linear in the velocities that they supply".into());
-        }
-        // the motion is written two orders further than the mismatch
-        if last + 3 > ORDERS {
-            return Err(format!("the proof is of order {last}, and series have {ORDERS} coefficients"));
-        }
-        if last + 3 > self.orders() {
-            curve = self.series(exact, last + 3).map_err(|fault| fault.to_string())?.0;
         }
         let values = self.family().evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
         let instant = shape.instant(&values);
