@@ -77,6 +77,7 @@ mod lift;
 mod program;
 mod proof;
 mod random_start;
+mod scales;
 mod section;
 mod series;
 mod start;

@@ -170,8 +170,7 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
                 let found = rank_of(&fields);
                 // as long as there are no others, what is not zero adds a direction
                 let alone = rank == admissible.len() && found <= Some(rank);
-                let verdicts: Vec<Vanishing> =
-                    z.iter().filter(|_| alone).map(|&e| g.vanishes(e, &constants)).collect();
+                let verdicts: Vec<Vanishing> = z.iter().filter(|_| alone).map(|&e| g.vanishes(e, &constants)).collect();
                 if found > Some(rank) || verdicts.iter().any(|v| matches!(v, Vanishing::No { .. })) {
                     rank += 1;
                     added.push(z);
@@ -193,7 +192,9 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     Ok(match open {
         _ if integrals == 0 => Integrability::Nonintegrable { depth },
         None if integrals == h => Integrability::Integrable { exact: true },
-        Some(Undecided::AtPoints) | None if integrals < h => Integrability::PartlyIntegrable { integrals, constraints: h },
+        Some(Undecided::AtPoints) | None if integrals < h => {
+            Integrability::PartlyIntegrable { integrals, constraints: h }
+        }
         open => return undecided(open.unwrap_or(Undecided::AtPoints), depth, integrals),
     })
 }

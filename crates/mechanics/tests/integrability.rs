@@ -139,7 +139,9 @@ fn long_brackets_in_which_much_cancels_do_not_raise_the_rank() {
 
 #[test]
 fn brackets_that_are_too_long_leave_it_undecided() {
-    let Integrability::Undecided { why: Undecided::TooLong, depth, at_most, constraints } = train(3) else { panic!("decided") };
+    let Integrability::Undecided { why: Undecided::TooLong, depth, at_most, constraints } = train(3) else {
+        panic!("decided")
+    };
     assert!(depth >= 3 && at_most >= 6 && constraints == 10, "{depth}, {at_most}, {constraints}");
     assert!(!train(3).is_integrable());
 }

@@ -62,7 +62,7 @@ use equations::{
     Block, Chart, Derivation, DerivationError, Equations, Formulation, FreeConstant, Named, Role, StateVariable,
     Statement, refuse_forces,
 };
-use mechanics::{DisplacementParameter, Removal, System, Surroundings, fresh_symbol, generic_rank};
+use mechanics::{DisplacementParameter, Removal, Surroundings, System, fresh_symbol, generic_rank};
 use symbolic::{Expr, Graph, Symbol};
 
 /// Entry of the table of formulations.
