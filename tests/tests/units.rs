@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use deltaq::{Comparison, Extent, Settings, choices};
+use deltaq::{Comparison, Extent, Settings, SolveError, Verdict, choices, membership};
 use random::Scaling;
 use scene::Scene;
 use symbolic::SplitMix;
@@ -12,6 +12,8 @@ use validation::catalogue;
 const UNITS: [i32; 5] = [-9, -3, 0, 3, 9];
 /// One choice of units in so many is drawn; `UNITS=1` takes all.
 const ONE_IN: usize = 10;
+/// Likewise of choices in which the motions are compared.
+const MOTIONS_ONE_IN: usize = 200;
 
 /// The scene with metres, kilograms and seconds, as far as they are its own, replaced by others.
 fn in_units(scene: &Scene, [length, mass, time]: [i32; 3]) -> Scene {
@@ -22,87 +24,104 @@ fn in_units(scene: &Scene, [length, mass, time]: [i32; 3]) -> Scene {
     Scaling { lengths, time: power(time), action, constraint: 1.0 }.scene(scene)
 }
 
-/// What is said: kind of words and words.
+/// What is said of a scene: kind of words and words.
 fn words(scene: &Scene) -> Vec<(String, String)> {
-    let settings = Settings::default();
-    let mut comparison = match Comparison::new(scene.clone(), Extent::Answer, &settings) {
-        Ok(comparison) => comparison,
-        Err(error) => return vec![("refused".into(), error.to_string())],
-    };
-    let mut said = vec![("integrability".into(), comparison.integrability.to_string())];
-    for choice in choices(scene) {
-        if let Err(error) = comparison.solve(choice, &settings) {
-            said.push(("solve".into(), error.to_string()));
-        }
-    }
-    match comparison.membership() {
-        None => {}
-        Some(Err(error)) => said.push(("decision".into(), format!("undecided: {error}"))),
-        Some(Ok(membership)) => {
-            let answer = format!("{:?}", membership.answer());
-            let answer = answer.split(" { unproved").next().unwrap_or_default().to_owned();
-            said.push(("decision".into(), if answer == "Undecided" { "undecided".into() } else { answer }));
+    let text = |e: SolveError| format!("undecided: {e}");
+    let integrability = deltaq::integrability(scene).map_or_else(text, |found| found.to_string());
+    let mut said = vec![("integrability".into(), integrability)];
+    match membership(scene, scene.start.t + scene.duration) {
+        Ok(None) => {}
+        Err(error) => said.push(("proof".into(), text(error))),
+        Ok(Some(membership)) => {
             let decision = &membership.decision;
             let floating = format!("{:?}", decision.verdict).to_lowercase();
             let dimension = if floating == "contained" { decision.set.dimension() } else { 0 };
-            said.push(("floating".into(), floating));
-            said.push(("dimension".into(), dimension.to_string()));
+            said.push(("decision".into(), format!("{floating} {dimension}")));
+            let answer = format!("{:?}", membership.answer()).to_lowercase();
+            said.push(("proof".into(), answer.split(" { unproved").next().unwrap_or_default().into()));
         }
-    }
-    for pair in &comparison.pairs {
-        let [a, b] = [pair.first, pair.second].map(|i| comparison.runs[i].choice.label.clone());
-        let word = match &pair.gap.verdict {
-            deltaq::Verdict::Undecided { because } => format!("undecided: {because}"),
-            verdict => format!("{verdict:?}"),
-        };
-        said.push((format!("verdict {a} - {b}"), word));
     }
     said
 }
 
-#[test]
-fn units_change_no_word() {
-    let one_in: usize = std::env::var("UNITS").ok().and_then(|n| n.parse().ok()).unwrap_or(ONE_IN);
-    let only = std::env::var("SCENES").ok();
-    let mut random = SplitMix::new(4);
-    let mut counts: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
-    let mut wrong = Vec::new();
-    for (name, text) in catalogue::built_in() {
-        let scene = Scene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e}"));
-        if only.as_ref().is_some_and(|only| !only.split(',').any(|o| o == *name)) {
-            continue;
-        }
-        let own = words(&scene);
-        for units in UNITS.iter().flat_map(|l| UNITS.iter().flat_map(move |m| UNITS.map(|t| [*l, *m, t]))) {
-            if random.unit() * one_in as f64 >= 1.0 {
+/// What is said of its motions, in pairs.
+fn verdicts(scene: &Scene) -> Vec<(String, String)> {
+    let (settings, choices) = (Settings::default(), choices(scene));
+    let mut comparison = Comparison::new(scene.clone(), Extent::Answer, &settings).expect("it has a comparison");
+    for choice in choices {
+        comparison.solve(choice, &settings).expect("it is compared");
+    }
+    let name = |i: usize| comparison.runs[i].choice.label.clone();
+    let motions = comparison.runs.iter().map(|run| {
+        let word = run.outcome.as_ref().map_or_else(|error| format!("undecided: {error}"), |_| "runs".into());
+        (format!("motion: {}", run.choice.label), word)
+    });
+    let pairs = comparison.pairs.iter().map(|pair| {
+        let word = match &pair.gap.verdict {
+            Verdict::Undecided { because } => format!("undecided: {because}"),
+            verdict => verdict.word().into(),
+        };
+        (format!("verdict: {}, {}", name(pair.first), name(pair.second)), word)
+    });
+    motions.chain(pairs).collect()
+}
+
+/// Counts of words that are the same, that became or were undecided, and that are others.
+#[derive(Default)]
+struct Count(BTreeMap<String, [usize; 3]>, Vec<String>);
+
+impl Count {
+    fn add(&mut self, place: &str, own: &[(String, String)], found: &[(String, String)]) {
+        let is_open = |word: &str| word.starts_with("undecided");
+        for (what, word) in own {
+            let other = found.iter().find(|(of, _)| of == what).map_or("undecided: nothing is said", |(_, word)| word);
+            let kind = what.split(':').next().unwrap_or_default();
+            let count = self.0.entry(kind.into()).or_default();
+            if word == other || is_open(word) && is_open(other) {
+                count[0] += 1;
                 continue;
             }
-            let found = words(&in_units(&scene, units));
-            for (what, word) in &own {
-                let other = found.iter().find(|(of, _)| of == what).map_or("undecided: not said", |(_, word)| word);
-                let kind = what.split(' ').next().unwrap_or_default();
-                let count = counts
-                    .entry(match kind {
-                        "integrability" => "integrability",
-                        "decision" => "decision",
-                        "floating" => "floating",
-                        "dimension" => "dimension",
-                        _ => "verdict",
-                    })
-                    .or_default();
-                let is_open = |word: &str| word.starts_with("undecided");
-                if word == other || is_open(word) && is_open(other) {
-                    count[0] += 1;
-                } else if is_open(other) || is_open(word) {
-                    count[1] += 1;
-                    println!("{name} {units:?} {what}: {word} -> {other}");
-                } else {
-                    count[2] += 1;
-                    wrong.push(format!("{name} {units:?} {what}: {word} -> {other}"));
-                }
+            let line = format!("{place} {what}: {word} -> {other}");
+            println!("{line}");
+            if is_open(other) || is_open(word) {
+                count[1] += 1;
+            } else {
+                count[2] += 1;
+                self.1.push(line);
             }
         }
     }
-    println!("same, undecided, other: {counts:?}");
-    assert!(wrong.is_empty(), "{}\n{counts:?}", wrong.join("\n"));
+}
+
+/// All units of length, mass and time, one in so many of them.
+fn drawn(random: &mut SplitMix, one_in: usize) -> Vec<[i32; 3]> {
+    let all = UNITS.iter().flat_map(|l| UNITS.iter().flat_map(move |m| UNITS.map(|t| [*l, *m, t])));
+    all.filter(|_| random.unit() * (one_in as f64) < 1.0).collect()
+}
+
+#[test]
+fn units_change_no_word() {
+    let number = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<usize>().ok());
+    let only = std::env::var("UNITS_OF").ok();
+    let mut random = SplitMix::new(4);
+    let (mut count, start) = (Count::default(), std::time::Instant::now());
+    for (name, text) in catalogue::built_in() {
+        if only.as_ref().is_some_and(|only| !only.split(',').any(|o| o == *name)) {
+            continue;
+        }
+        let scene = Scene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e}"));
+        for (one_in, said) in [
+            (number("UNITS").unwrap_or(ONE_IN), words as fn(&Scene) -> _),
+            (number("UNITS_OF_MOTIONS").unwrap_or(MOTIONS_ONE_IN), verdicts),
+        ] {
+            let units = drawn(&mut random, one_in);
+            let own = if units.is_empty() { Vec::new() } else { said(&scene) };
+            for units in units {
+                count.add(&format!("{name} {units:?}"), &own, &said(&in_units(&scene, units)));
+            }
+        }
+        println!("{name}: {:.1} s so far", start.elapsed().as_secs_f64());
+    }
+    println!("same, undecided, other: {:?}", count.0);
+    assert!(count.1.is_empty(), "{}\n{:?}", count.1.join("\n"), count.0);
 }

@@ -34,6 +34,12 @@ pub trait Curve {
         Vec::new()
     }
 
+    /// Sizes that states are held to have, where coordinates have these `scales` in all the `time`; `None`
+    /// where what a state is at the start has to tell.
+    fn scales(&self, _scales: &[f64], _time: f64) -> Vec<Option<f64>> {
+        Vec::new()
+    }
+
     /// Gauges of functions that may change within little of their arguments: see
     /// [`integrate::Problem::gauges`].
     fn gauges(&self) -> &[Gauge] {
@@ -91,6 +97,8 @@ pub(crate) struct Dynamics {
     pub(crate) coordinates: usize,
     pub(crate) states: usize,
     pub(crate) unknowns: usize,
+    /// Which coordinate each state is, or the rate of which.
+    kinds: Vec<Option<(usize, bool)>>,
     /// Whether time stands in nothing of this.
     pub(crate) timeless: bool,
     /// `J` (N×N), then `R` at `z = 0`; from parameters, `t, y`.
@@ -148,7 +156,14 @@ impl Dynamics {
         rates.extend(&equations.velocities);
         rates.extend(g.total_derivatives(&equations.velocities, &flow(system, equations)));
         let starts: Vec<Expr> = equations.states.iter().map(|y| y.start).collect();
+        let (positions, velocities) = (system.positions(), system.velocities());
+        let place = |all: &[symbolic::Symbol], symbol| all.iter().position(|s| *s == symbol);
+        let kind = |y: symbolic::Symbol| {
+            let position = place(&positions, y).map(|i| (i, false));
+            position.or_else(|| place(&velocities, y).map(|i| (i, true)))
+        };
         Ok(Dynamics {
+            kinds: equations.states.iter().map(|y| kind(y.symbol)).collect(),
             coordinates: system.dimension(),
             states: equations.states.len(),
             unknowns: unknowns.len(),
@@ -207,6 +222,11 @@ impl Curve for Flow {
 
     fn states(&self) -> Vec<f64> {
         self.start.clone()
+    }
+
+    fn scales(&self, scales: &[f64], time: f64) -> Vec<Option<f64>> {
+        let scale = |(i, is_rate): (usize, bool)| if is_rate { scales[i] / time } else { scales[i] };
+        self.programs.kinds.iter().map(|kind| kind.map(scale)).collect()
     }
 
     fn gauges(&self) -> &[Gauge] {

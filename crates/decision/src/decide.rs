@@ -55,7 +55,8 @@ pub enum Verdict {
 /// Constants `point + span(directions)`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AffineSet {
-    /// The element of least norm; one far along a direction where only that leaves no mismatch.
+    /// The element of least norm, each constant in its scale; one far along a direction where only that leaves
+    /// no mismatch.
     pub point: Vec<f64>,
     /// Orthonormal directions; none for a single point, all for every choice.
     pub directions: Vec<Vec<f64>>,
@@ -101,6 +102,8 @@ pub struct Decision {
     /// Up to when this was judged, if not to the end: what comes after is too loud, or cannot be followed.
     pub until: Option<f64>,
     triangle: DMatrix<f64>,
+    /// What a constant of size 1 in the triangle is.
+    scales: Vec<f64>,
     sizes: Sizes,
 }
 
@@ -131,14 +134,17 @@ impl Sizes {
 impl Decision {
     /// The mismatch that the constants `c` leave.
     pub fn mismatch_at(&self, constants: &[f64]) -> f64 {
-        let mut c = DVector::from_column_slice(constants);
-        c = c.push(1.0);
-        (&self.triangle * c).norm()
+        (&self.triangle * self.scaled(constants).push(1.0)).norm()
+    }
+
+    /// Constants in their scales.
+    fn scaled(&self, constants: &[f64]) -> DVector<f64> {
+        DVector::from_iterator(constants.len(), constants.iter().zip(&self.scales).map(|(c, scale)| c / scale))
     }
 
     /// Whether the constants `c` leave no mismatch that stands out from the noise.
     pub fn admits(&self, constants: &[f64]) -> bool {
-        let reach = (1.0 + constants.iter().map(|c| c * c).sum::<f64>()).sqrt();
+        let reach = (1.0 + self.scaled(constants).norm_squared()).sqrt();
         self.mismatch_at(constants) <= CERTAIN * self.sizes.noise * reach
     }
 
@@ -148,7 +154,8 @@ impl Decision {
         let columns: Vec<usize> = kept.iter().copied().chain([last]).collect();
         let triangle = compressed(self.triangle.select_columns(&columns));
         let constants = kept.iter().map(|&i| self.constants[i].clone()).collect();
-        judge(triangle, self.sizes, self.until, constants)
+        let scales = kept.iter().map(|&i| self.scales[i]).collect();
+        judge(triangle, self.sizes, self.until, constants, scales)
     }
 }
 
@@ -170,7 +177,9 @@ pub fn decide(
     let mut found = Err(DecisionError::Curve { reason: String::new() });
     for (factor, steps) in ATTEMPTS {
         let tolerance = settings.tolerance * factor;
-        let paths = [fine.run(tolerance * settings.tighter, steps)?, coarse.run(tolerance, steps)?];
+        let own = fine.run(tolerance * settings.tighter, steps)?;
+        coarse.scales = fine.scales.clone();
+        let paths = [own, coarse.run(tolerance, steps)?];
         found = judged(&mut fine, &mut coarse, &paths);
         let short = paths.iter().any(|path| matches!(path.stop, Some(DecisionError::Steps { .. })));
         if !short || found.as_ref().is_ok_and(|found| settings.refuted || found.verdict != Verdict::Undecided) {
@@ -187,7 +196,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     let way = (own.end - start).abs().min((other.end - start).abs());
     let bounds = bounds(own, start, way.copysign(end - start));
     let panels = bounds.len() - 1;
-    let constants = fine.family.constants();
+    let (constants, scales) = (fine.family.constants(), fine.scales.constants.clone());
     let mut triangle = DMatrix::zeros(0, constants.len() + 1);
     let mut sums = Sizes::default();
     let (nodes, n) = (legendre(), fine.family.shape.coordinates);
@@ -222,7 +231,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             let sizes = sums.lengths(past, triangle.norm());
             let whole = panel + 1 == panels && way == (end - start).abs();
             let until = (!whole).then_some(bounds[panel + 1]);
-            found.push(judge(triangle.clone(), sizes, until, constants.to_vec()));
+            found.push(judge(triangle.clone(), sizes, until, constants.to_vec(), scales.clone()));
         }
         Ok(())
     };
@@ -257,7 +266,13 @@ pub fn decide_flow(family: &Family, flow: &Flow, settings: &DecisionSettings) ->
     decide(family, &mut flow.clone(), &mut flow.clone(), settings)
 }
 
-fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Vec<String>) -> Decision {
+fn judge(
+    triangle: DMatrix<f64>,
+    sizes: Sizes,
+    until: Option<f64>,
+    constants: Vec<String>,
+    scales: Vec<f64>,
+) -> Decision {
     let last = triangle.ncols() - 1;
     // as many rows as right singular vectors
     let padded = triangle.clone().resize_vertically(last.max(triangle.nrows()), 0.0);
@@ -280,7 +295,8 @@ fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Ve
         }
     }
     let free = (0..last).filter(|&k| svd.values[k] <= limit);
-    let directions = free.map(|k| svd.right.row(k).iter().copied().collect()).collect();
+    let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&scales).map(|(c, scale)| c * scale));
+    let directions = orthonormal(free.map(|k| own(svd.right.row(k).transpose())).collect());
     let noise = sizes.noise * reach;
     let motion = sizes.acceleration.hypot(sizes.speed);
     // where nothing moves, what balances is the scale
@@ -294,7 +310,7 @@ fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Ve
     };
     Decision {
         verdict,
-        set: AffineSet { point: point.as_slice().to_vec(), directions },
+        set: AffineSet { point: own(point).as_slice().to_vec(), directions },
         least,
         at_zero: goal.norm(),
         noise,
@@ -302,13 +318,29 @@ fn judge(triangle: DMatrix<f64>, sizes: Sizes, until: Option<f64>, constants: Ve
         constants,
         until,
         triangle,
+        scales,
         sizes,
     }
 }
 
+/// Orthonormal vectors with the same span.
+fn orthonormal(vectors: Vec<DVector<f64>>) -> Vec<Vec<f64>> {
+    let mut all: Vec<DVector<f64>> = Vec::new();
+    for mut vector in vectors {
+        vector /= vector.amax();
+        all.iter().for_each(|other| vector -= other * other.dot(&vector));
+        all.push(vector.normalize());
+    }
+    all.into_iter().map(|vector| vector.as_slice().to_vec()).collect()
+}
+
 /// The least of `|O c + y₀|` over all constants `c`, for rows `[O | y₀]`.
-pub(crate) fn least(rows: DMatrix<f64>) -> f64 {
-    judge(compressed(rows), Sizes::default(), None, Vec::new()).least
+pub(crate) fn least(mut rows: DMatrix<f64>) -> f64 {
+    let last = rows.ncols() - 1;
+    for mut column in rows.columns_mut(0, last).column_iter_mut().filter(|column| column.norm() > 0.0) {
+        column /= column.norm();
+    }
+    judge(compressed(rows), Sizes::default(), None, Vec::new(), vec![1.0; last]).least
 }
 
 /// The triangular factor: the same lengths in at most as many rows as columns.

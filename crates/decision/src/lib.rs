@@ -83,6 +83,7 @@ mod plain_scene;
 mod program;
 mod proof;
 mod random_start;
+mod scales;
 mod section;
 mod series;
 mod start;

@@ -13,11 +13,14 @@ use crate::exact::{solve, subtract_product};
 use crate::family::{CostateRate, Family, Instant, Shape};
 use crate::lift::Lift;
 use crate::program::Evaluator;
+use crate::scales::{self, Scales};
 
 /// `AᵀA` in the unit of `M` is added to it with the first of these weights that makes it positive.
 const WEIGHTS: [f64; 4] = [1.0, 1e2, 1e4, 1e6];
-/// The smallest size that a state is held to have.
+/// The smallest part of its scale that a state is held to have for its size.
 const SMALLEST: f64 = 1e-3;
+/// Singular values under this part of the largest count as zero.
+const SINGULAR: f64 = 1e-13;
 
 /// What one instant says: the mismatch of accelerations `O c + y₀`, and how long it is.
 pub(crate) struct Mismatch {
@@ -53,6 +56,7 @@ pub(crate) struct Transport<'a> {
     matrix: Vec<f64>,
     unknowns: Vec<f64>,
     point: Point,
+    pub(crate) scales: Scales,
 }
 
 struct LiftNumbers<'a> {
@@ -83,6 +87,7 @@ impl<'a> Transport<'a> {
             matrix: Vec::new(),
             unknowns: Vec::new(),
             point: Point::default(),
+            scales: Scales::default(),
             family,
         }
     }
@@ -106,8 +111,37 @@ impl<'a> Transport<'a> {
         let mut lifted = vec![0.0; size];
         self.load(t, &y, &mut lifted).map_err(fault)?;
         let begin = self.own + self.lifted();
-        y[begin..].copy_from_slice(&self.family.start(&self.inputs));
+        let mut columns = self.family.start(&self.inputs);
+        if self.scales.residuals.is_empty() {
+            self.scales = self.scales_at_start(&columns);
+        }
+        for row in columns.chunks_exact_mut(self.family.shape.constants + 1) {
+            row.iter_mut().zip(&self.scales.constants).for_each(|(x, scale)| *x *= scale);
+        }
+        y[begin..].copy_from_slice(&columns);
         Ok(Start { t, y })
+    }
+
+    /// The scales at the start, where the inputs are loaded.
+    fn scales_at_start(&mut self, costates: &[f64]) -> Scales {
+        let shape = &self.family.shape;
+        let bounded: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let bounded = self.bounded.run(&bounded);
+        // what round-off leaves of a zero says no size
+        let values: Vec<f64> = bounded.iter().map(|x| if x.may_be_zero() { 0.0 } else { x.value }).collect();
+        let terms: Vec<f64> = bounded.iter().map(|x| x.magnitude).collect();
+        let (start, end) = self.curve.span();
+        Scales::new(
+            shape,
+            &scales::Start {
+                instant: shape.instant(&values),
+                terms: shape.instant(&terms),
+                velocities: &self.point.v,
+                accelerations: &self.point.a,
+                costates,
+                time: (end - start).abs(),
+            },
+        )
     }
 
     fn lifted(&self) -> usize {
@@ -131,10 +165,11 @@ impl<'a> Transport<'a> {
         let slopes = DMatrix::from_row_slice(coordinates, parameters, &values[..coordinates * parameters]);
         let rest = DVector::from_column_slice(&values[coordinates * parameters..]);
         let slopes = SingularValues::of(&slopes);
-        let speeds = -slopes.solve(&rest, 1e-13);
+        let speeds = -slopes.solve(&rest, SINGULAR * slopes.values.max());
         self.inputs.extend(speeds.iter());
         let values = numbers.accelerations.run(&self.inputs);
-        let seconds = -slopes.solve(&DVector::from_column_slice(&values[..coordinates]), 1e-13);
+        let seconds =
+            -slopes.solve(&DVector::from_column_slice(&values[..coordinates]), SINGULAR * slopes.values.max());
         rates[self.own..self.own + parameters].copy_from_slice(speeds.as_slice());
         rates[self.own + parameters..end].copy_from_slice(&values[coordinates..]);
         self.inputs.extend(seconds.iter());
@@ -157,12 +192,20 @@ impl<'a> Transport<'a> {
         for (row, rest) in self.unknowns.chunks_exact_mut(width).zip(instant.rest) {
             row[width - 1] -= rest;
         }
+        let Scales { residuals, unknowns, .. } = &self.scales;
+        for (i, factor) in residuals.iter().enumerate() {
+            self.matrix[i * size..(i + 1) * size].iter_mut().zip(unknowns).for_each(|(x, scale)| *x *= factor * scale);
+            self.unknowns[i * width..(i + 1) * width].iter_mut().for_each(|x| *x *= factor);
+        }
         let solved = solve(&mut self.matrix, &mut self.unknowns, size, width, 1.0);
         if solved.is_none() || !self.unknowns.iter().all(|z| z.is_finite()) {
             return Err(broken(format!(
                 "the equations of the {} family are singular at t = {t}",
                 self.family.formulation
             )));
+        }
+        for (row, scale) in self.unknowns.chunks_exact_mut(width).zip(unknowns) {
+            row.iter_mut().for_each(|z| *z *= scale);
         }
         for (row, rate) in rates.chunks_exact_mut(width).zip(&shape.rates) {
             match *rate {
@@ -192,8 +235,14 @@ impl<'a> Transport<'a> {
         for (r, rest) in right.column_mut(last).iter_mut().zip(instant.rest) {
             *r += rest;
         }
-        let matrix = DMatrix::from_row_slice(size, size, shape.instant(&self.values).matrix);
-        matrix.try_inverse().map_or(right.clone(), |inverse| inverse.abs() * right)
+        // entries of an inverse are known to a part of the largest: all are of size 1
+        let Scales { residuals, unknowns, .. } = &self.scales;
+        let matrix = shape.instant(&self.values).matrix;
+        let scaled = DMatrix::from_fn(size, size, |r, z| residuals[r] * matrix[r * size + z] * unknowns[z]);
+        right.row_iter_mut().zip(residuals).for_each(|(mut row, factor)| row *= *factor);
+        let mut terms = scaled.try_inverse().map_or(right.clone(), |inverse| inverse.abs() * right);
+        terms.row_iter_mut().zip(unknowns).for_each(|(mut row, scale)| row *= *scale);
+        terms
     }
 
     /// Integrates to the end of the curve, or as far as it comes: no farther where more than so many steps
@@ -223,13 +272,24 @@ impl<'a> Transport<'a> {
         Ok(Path { end: solution.dense.end(), dense: Some(solution.dense), stop })
     }
 
-    /// Size of each state by its start and its rate there, if under 1; at least a thousandth, over round-off.
+    /// Size of each state by its start and its rate there, if under its scale; at least a thousandth of that.
     fn sizes(&mut self, start: &Start, end: f64) -> Result<Vec<f64>, DecisionError> {
         let mut rates = vec![0.0; start.y.len()];
         self.rates(start.t, &start.y, &mut rates).map_err(|e| DecisionError::Curve { reason: e.reason })?;
         let way = (end - start.t).abs();
-        let size = |(y, rate): (&f64, &f64)| (y.abs() + rate.abs() * way).clamp(SMALLEST, 1.0);
-        Ok(start.y.iter().zip(&rates).map(size).collect())
+        let own = self.curve.scales(&self.scales.coordinates, way);
+        let begin = self.own + self.lifted();
+        let width = self.family.shape.constants + 1;
+        let size = |(i, (y, rate)): (usize, (&f64, &f64))| {
+            let size = y.abs() + rate.abs() * way;
+            let scale = match i.checked_sub(begin) {
+                Some(place) => Some(self.scales.costates[place / width]),
+                None => own.get(i).copied().flatten(),
+            };
+            let size = scale.map_or(size, |scale| size.clamp(SMALLEST * scale, scale));
+            if size > 0.0 && size.is_finite() { size } else { 1.0 }
+        };
+        Ok(start.y.iter().zip(&rates).enumerate().map(size).collect())
     }
 
     /// The mismatch at `t` of what was integrated.
@@ -274,12 +334,18 @@ impl<'a> Transport<'a> {
 /// `√M` for mismatches: these lie in ker A, there alone M has to be positive, and `M + c AᵀA` is M.
 pub(crate) fn root_of_mass(shape: &Shape, instant: &Instant<f64>) -> Option<DMatrix<f64>> {
     let (n, h) = (shape.coordinates, shape.constraints);
-    let mass = DMatrix::from_row_slice(n, n, instant.mass);
-    let jacobian = DMatrix::from_row_slice(h, n, instant.jacobian);
+    // each velocity in the unit in which its mass is 1
+    let own = |i: usize| scales::power(instant.mass[i * n + i].abs().sqrt().recip());
+    let units: Vec<f64> = (0..n).map(own).collect();
+    let mass = DMatrix::from_fn(n, n, |i, j| units[i] * instant.mass[i * n + j] * units[j]);
+    let mut jacobian = DMatrix::from_fn(h, n, |i, j| instant.jacobian[i * n + j] * units[j]);
+    jacobian.row_iter_mut().for_each(|mut row| row *= scales::power(row.amax().recip()));
     let normal = jacobian.transpose() * &jacobian;
     let unit = if h == 0 { 0.0 } else { mass.norm() / normal.norm() };
     let factor = WEIGHTS.iter().find_map(|weight| (&mass + &normal * (unit * weight)).cholesky());
-    factor.map(|factor| factor.l().transpose())
+    let mut root = factor?.l().transpose();
+    root.column_iter_mut().zip(units).for_each(|(mut column, unit)| column /= unit);
+    Some(root)
 }
 
 impl Problem for Transport<'_> {
