@@ -1,10 +1,11 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{Jet, Modular, ORDERS, PARTS, inverse};
+use crate::exact::{FIELDS, Jet, Modular, PARTS, in_field, inverse};
 use crate::family::{CostateRate, inputs};
 use crate::plain_scene::PlainScene;
 use crate::program::Program;
-use crate::proof::{Echelon, Question, Ranks};
+use crate::proof::{Echelon, Question};
+use crate::random_start::at_random;
 use crate::series::{SeriesStart, order};
 use crate::start::ExactStart;
 
@@ -43,8 +44,14 @@ pub struct Certificate {
     pub reactions: Vec<Vec<u64>>,
 }
 
-/// Random starts that are tried: some have roots without an image.
-const STARTS: u64 = 32;
+/// Of random starts.
+const SEED: u64 = 0x5eed_0001;
+
+/// What comes of `compute` in the first field where it succeeds; else the reason in the first one.
+fn in_any_field<T>(mut compute: impl FnMut() -> Result<T, String>) -> Result<T, String> {
+    let first = in_field(&FIELDS[0], &mut compute);
+    first.or_else(|reason| FIELDS[1..].iter().find_map(|field| in_field(field, &mut compute).ok()).ok_or(reason))
+}
 
 impl Question<'_> {
     /// The certificate that no vakonomic motion, for any `μ₀`, is Chetaev's from `start`; else the reason.
@@ -52,31 +59,31 @@ impl Question<'_> {
     /// # Errors
     /// The reason, in words.
     pub fn certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
-        let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
-        // decimals stand in the place of velocities that are not determined by the constraints
-        let is_open = |i: &usize| match completed.is_empty() {
-            true => start.supplied.contains(i) && exact.velocities[*i].exact().is_none(),
-            false => completed.contains(&format!("{}'", self.names[*i])),
-        };
-        let open: Vec<usize> = (0..self.names.len()).filter(is_open).collect();
-        self.certified(start, &exact, &open, completed, false)
+        in_any_field(|| {
+            let (exact, completed) = start.series().map_err(|fault| fault.to_string())?;
+            // decimals stand in the place of velocities that are not determined by the constraints
+            let decimal = |i: &usize| exact.velocities[*i].exact().is_some();
+            let open = start.open(&completed);
+            let open = if open.iter().any(decimal) { &[] } else { open };
+            self.certified(start, &exact, open, completed, false)
+        })
     }
 
-    /// The same from a start drawn at random, with whole numbers, or else from the scene's own: a minor that is
-    /// not zero at one start is zero at almost none.
+    /// The same from a start drawn at random, of fractions, or else from the scene's own: a minor that is not
+    /// zero at one start is zero at almost none.
     ///
     /// # Errors
     /// The reason, in words.
     pub fn almost_every_certificate(&self, start: &ExactStart) -> Result<Certificate, String> {
-        let at_random = |seed: u64| {
-            let exact = start.random(seed).map_err(|fault| fault.to_string())?;
-            let solved = |i: &usize| exact.velocities[*i].exact().is_none();
-            let open: Vec<usize> = (0..exact.velocities.len()).filter(solved).collect();
-            self.certified(start, &exact, &open, Vec::new(), true)
-        };
-        let found = (0..STARTS).map(at_random).chain([self.certificate(start)]).find(Result::is_ok);
-        let found = found.unwrap_or_else(|| at_random(0));
-        found.map(|certificate| Certificate { almost_every_start: true, ..certificate })
+        let drawn = in_any_field(|| {
+            at_random(start, SEED, |exact| {
+                let solved = |i: &usize| exact.velocities[*i].exact().is_none();
+                let open: Vec<usize> = (0..exact.velocities.len()).filter(solved).collect();
+                self.certified(start, &exact, &open, Vec::new(), true)
+            })
+        });
+        let found = drawn.or_else(|reason| self.certificate(start).map_err(|_| reason))?;
+        Ok(Certificate { almost_every_start: true, ..found })
     }
 
     fn certified(
@@ -87,8 +94,8 @@ impl Question<'_> {
         completed: Vec<String>,
         at_random: bool,
     ) -> Result<Certificate, String> {
-        let (mut curve, series) = self.series(exact, self.orders()).map_err(|fault| fault.to_string())?;
-        let refuted = Ranks::of(&series).refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        let refuted = self.ranks(exact, |_| false)?.refuted().ok_or("Taylor coefficients leave some μ₀")?;
+        let (curve, _) = self.series(exact, refuted.order + 3).map_err(|fault| fault.to_string())?;
         let shape = &self.family().shape;
         let (n, h, last) = (shape.coordinates, shape.constraints, refuted.order);
         if shape.rates.iter().any(|rate| matches!(rate, CostateRate::Explicit(_))) || curve.unknowns[0].len() != n + h {
@@ -96,7 +103,7 @@ impl Question<'_> {
         }
         if !refuted.full_rank {
             return Err(
-                "coefficients of less than full rank have no minor to show: the proof is one of ranks modulo p".into(),
+                "coefficients of less than full rank have no minor to show: there are only ranks modulo p".into()
             );
         }
         let system = &start.system;
@@ -105,13 +112,6 @@ impl Question<'_> {
         let slopes = g.jacobian(&system.constraints, &open.iter().map(velocity).collect::<Vec<_>>());
         if slopes.entries().iter().any(|&e| open.iter().any(|i| g.depends_on(e, velocity(i)))) {
             return Err("the constraints are not linear in the velocities that they supply".into());
-        }
-        // the motion is written two orders further than the mismatch
-        if last + 3 > ORDERS {
-            return Err(format!("the proof is of order {last}, and series have {ORDERS} coefficients"));
-        }
-        if last + 3 > self.orders() {
-            curve = self.series(exact, last + 3).map_err(|fault| fault.to_string())?.0;
         }
         let values = self.family().evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
         let instant = shape.instant(&values);

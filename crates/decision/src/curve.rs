@@ -162,6 +162,13 @@ impl Dynamics {
     }
 }
 
+impl Dynamics {
+    /// Steps of one evaluation.
+    pub(crate) fn steps(&self) -> usize {
+        self.instant.len() + self.rates.len()
+    }
+}
+
 impl Flow {
     /// The motion of `equations`, derived for `system`, from `start` to `end` with free `constants`.
     ///

@@ -22,7 +22,9 @@ pub struct Family {
     pub(crate) timeless: bool,
     names: Vec<String>,
     parameters: Vec<f64>,
-    program: Program,
+    pub(crate) equations: Equations,
+    pub(crate) carries_forces: bool,
+    pub(crate) program: Program,
     start: Program,
     pub(crate) lift: Option<Lift>,
 }
@@ -88,7 +90,6 @@ impl Family {
             Some(removal) => Lift::new(system, removal, equations)?,
             None => None,
         };
-        let costate = |role: Role| matches!(role, Role::Multiplier | Role::MemoryCostate | Role::ParameterMomentum);
         let costates: Vec<Symbol> = equations.states.iter().filter(|y| costate(y.role)).map(|y| y.symbol).collect();
         if equations.states.iter().any(|y| y.role == Role::Costate) {
             return Err(unsuited("costates p stand in the place of velocities; take the form with multipliers".into()));
@@ -169,6 +170,8 @@ impl Family {
                 && !system.forces.iter().any(|&force| g.depends_on(force, system.time)),
             names: constants.iter().map(|&s| g.name(s)).collect(),
             parameters: system.parameters.iter().map(|p| p.value).collect(),
+            equations: equations.clone(),
+            carries_forces,
             program: Program::new(g, &inputs, &outputs)?,
             start,
             lift,
@@ -214,6 +217,11 @@ impl Shape {
     }
 }
 
+/// Whether a state is one of the `η`.
+pub(crate) fn costate(role: Role) -> bool {
+    matches!(role, Role::Multiplier | Role::MemoryCostate | Role::ParameterMomentum)
+}
+
 /// Parameters, `t, q, v, a`, and what a lift adds.
 pub(crate) fn inputs(system: &System, lifted: &[Symbol]) -> Vec<Symbol> {
     let mut inputs: Vec<Symbol> = system.parameters.iter().map(|p| p.symbol).collect();
@@ -249,7 +257,7 @@ fn system_matrices(g: &Graph, system: &System) -> Vec<Expr> {
 }
 
 /// `Q` beside `L_q`: `R_i −= Σ Q_j ∂q_j/∂x_i` where equation `i` balances `x_i`, `Ṗ_w −= Σ Q_j ∂q_j/∂w`.
-fn add_forces(
+pub(crate) fn add_forces(
     system: &System,
     removal: Option<&Removal>,
     residuals: &mut [Expr],

@@ -4,7 +4,7 @@ use mechanics::{State, System};
 use nalgebra::{DMatrix, DVector};
 
 use crate::decide::{NODES, least, legendre};
-use crate::exact::{Jet, Modular, ORDERS};
+use crate::exact::{Jet, Modular};
 use crate::proof::Question;
 use crate::series::{MismatchSeries, SeriesStart, order as at_order};
 use crate::start::ExactStart;
@@ -12,6 +12,8 @@ use crate::transport::root_of_mass;
 
 /// Orders that are looked at.
 const HIGHEST: usize = 12;
+/// And for the least mismatch.
+const TAYLOR: usize = 24;
 /// A coefficient under this part of its terms counts as zero, where no exact numbers decide.
 const VANISHES: f64 = 1e-9;
 /// So does one under this part of the curve's own accelerations, where terms are small that cancel in them.
@@ -77,7 +79,7 @@ impl Question<'_> {
     /// are no series, and for removals with variables of their own.
     pub fn least_by_series(&self, system: &System, state: &State, time: f64) -> Option<f64> {
         let family = self.family();
-        let (curve, series) = self.series(&rounded(system, state), ORDERS).ok()?;
+        let (curve, series) = self.series(&rounded(system, state), TAYLOR).ok()?;
         if family.lift.is_some() {
             return None;
         }
@@ -88,7 +90,7 @@ impl Question<'_> {
             series.accelerations.iter().map(|y| &root * DMatrix::from_row_slice(n, series.width, y)).collect();
         let size = |k: usize| terms[..k].iter().map(|term| term.norm()).fold(0.0, f64::max);
         let radius = |k: usize| (size(k) / terms[k].norm()).powf(1.0 / k as f64);
-        let reach = (1..ORDERS).map(radius).filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
+        let reach = (1..TAYLOR).map(radius).filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
         let width = time.min(FAST * reach) / SLICES as f64;
         let nodes = (0..SLICES).flat_map(|slice| legendre().map(|(x, weight)| (width * (slice as f64 + x), weight)));
         let mut rows = DMatrix::zeros(NODES * SLICES * n, series.width);

@@ -24,6 +24,11 @@ impl Program {
         Ok(Program { tape: Arc::new(graph.compile(inputs, outputs, &HashMap::new())?) })
     }
 
+    /// Steps of one evaluation.
+    pub(crate) fn len(&self) -> usize {
+        self.tape.len()
+    }
+
     pub(crate) fn evaluator<T: Scalar>(&self) -> Evaluator<T> {
         let values = vec![T::from_f64(0.0); self.tape.outputs()];
         Evaluator { registers: self.tape.workspace(), values, tape: self.tape.clone() }

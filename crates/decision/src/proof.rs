@@ -5,21 +5,27 @@ use mechanics::{State, System};
 
 use crate::DecisionError;
 use crate::curve::{Dynamics, Flow};
-use crate::exact::{Coefficient, Jet, Modular, ORDERS};
+use crate::exact::{Coefficient, FIELDS, Jet, Modular, ORDERS, in_field};
 use crate::family::{Family, inputs};
 use crate::program::Program;
+use crate::random_start::at_random;
 use crate::series::{CurveSeries, MismatchSeries, NoSeries, SeriesStart};
 use crate::start::ExactStart;
 
-/// Seeds of the random starts: a rank that two of them agree on is the generic one, but for an accident.
-const SEEDS: [u64; 2] = [0x5eed_0001, 0x5eed_0002];
+/// Seeds of the random starts, one a field: a rank that two of them agree on is the generic one, but for an
+/// accident.
+const SEEDS: [u64; FIELDS.len()] = [0x5eed_0001, 0x5eed_0002, 0x5eed_0003, 0x5eed_0004];
+/// Orders for which a certificate has room for its series.
+const MOST: usize = ORDERS - 3;
+/// Steps of programs times cubes of orders that take half a second or so.
+const WORK: usize = 100_000_000;
 
 /// What the jets of the mismatch say about a start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
     /// No constants give this motion.
     None(NoConstants),
-    /// Some do: the rank of `[O | o]` is that of `O` at every order, and grows no more.
+    /// Some do, by ranks modulo two primes: that of `[O | o]` is that of `O` at every order, and grows no more.
     Contained {
         /// The rank of `O`: so many constants are fixed.
         rank: usize,
@@ -42,8 +48,8 @@ pub enum Finding {
 pub struct NoConstants {
     /// The order of the derivative of the mismatch at which the last choice is gone.
     pub order: usize,
-    /// Whether a minor of full size is not zero. Without full rank of `O` there is none; then the proof rests
-    /// on ranks modulo `p`, those of the real numbers but for an accident of probability 1e-17 or so.
+    /// Whether a minor of full size is not zero: a proof. Without full rank of `O` there is none, and it rests
+    /// on ranks modulo two primes, those of the real numbers but for an accident.
     pub full_rank: bool,
 }
 
@@ -54,6 +60,9 @@ pub struct Proof {
     pub this_start: Finding,
     /// About all starts on the constraint but a set of measure zero.
     pub almost_every_start: Finding,
+    /// Whether something varies under roots: then what is said of almost every start is said of the branch that
+    /// this start is on.
+    pub one_branch: bool,
     /// Velocities given as decimals that miss the constraints by round-off, solved from these here.
     pub completed: Vec<String>,
 }
@@ -122,6 +131,7 @@ impl Ranks {
 pub struct Question<'a> {
     family: &'a Family,
     dynamics: Dynamics,
+    pub(crate) curve: Equations,
     constants: Vec<f64>,
     /// Names of the coordinates.
     pub(crate) names: Vec<String>,
@@ -147,6 +157,7 @@ impl<'a> Question<'a> {
         Ok(Question {
             family,
             dynamics: Dynamics::new(system, curve)?,
+            curve: curve.clone(),
             constants: constants.to_vec(),
             names: system.coordinates.iter().map(|c| c.name.clone()).collect(),
             denominators: Program::new(g, &inputs(system, &[]), &divisors)?,
@@ -163,9 +174,11 @@ impl<'a> Question<'a> {
         self.family
     }
 
-    /// Orders that are looked at: `2h + 4`, and a few more.
+    /// Orders that are looked at: `2h + 7`, and as many more as take no second.
     pub(crate) fn orders(&self) -> usize {
-        (2 * self.family.shape.constants + 7).min(ORDERS)
+        let work = |orders: usize| (self.dynamics.steps() + self.family.program.len()) * orders.pow(3);
+        let usual = (2 * self.family.shape.constants + 7).min(MOST);
+        (usual..=MOST).rev().find(|&orders| work(orders) <= WORK).unwrap_or(usual)
     }
 
     pub(crate) fn series<C: Coefficient>(
@@ -185,28 +198,33 @@ impl<'a> Question<'a> {
     /// Proves what can be proved about `start` and about almost every start.
     pub fn prove(&self, start: &ExactStart) -> Proof {
         let almost_every_start = self.generic(start);
-        let (this_start, completed) = match start.series() {
-            Ok((exact, completed)) => (self.particular(&exact, &almost_every_start), completed),
-            Err(fault) => (Finding::NotApplicable(fault.to_string()), Vec::new()),
+        let mut completed = Vec::new();
+        let ranks = agreed(|_| {
+            let (exact, names) = start.series().map_err(|fault| fault.to_string())?;
+            completed = names;
+            self.ranks(&exact, |ranks| is_generic(ranks, &almost_every_start))
+        });
+        let this_start = match ranks {
+            Ok(ranks) => self.particular(&ranks, &almost_every_start),
+            Err(reason) => Finding::NotApplicable(reason),
         };
-        Proof { this_start, almost_every_start, completed }
+        Proof { this_start, almost_every_start, completed, one_branch: start.has_branches }
     }
 
-    /// Ranks at few orders where these are `enough`, else at all.
-    fn ranks(&self, start: &SeriesStart<Modular>, enough: impl Fn(&Ranks) -> bool) -> Result<Ranks, NoSeries> {
-        let few = Ranks::of(&self.series(start, (self.family.shape.constants + 3).min(ORDERS))?.1);
-        if few.refuted().is_some() || enough(&few) {
-            return Ok(few);
+    /// Ranks at few orders where these are `enough`, else at more, else at all.
+    pub(crate) fn ranks(&self, start: &SeriesStart<Modular>, enough: impl Fn(&Ranks) -> bool) -> Result<Ranks, String> {
+        let h = self.family.shape.constants;
+        let all = self.orders();
+        for orders in [h + 3, 2 * h + 7] {
+            let ranks = Ranks::of(&self.series(start, orders.min(all)).map_err(|fault| fault.to_string())?.1);
+            if orders >= all || ranks.refuted().is_some() || enough(&ranks) {
+                return Ok(ranks);
+            }
         }
-        Ok(Ranks::of(&self.series(start, self.orders())?.1))
+        Ok(Ranks::of(&self.series(start, all).map_err(|fault| fault.to_string())?.1))
     }
 
-    fn particular(&self, start: &SeriesStart<Modular>, generic: &Finding) -> Finding {
-        let is_generic = |ranks: &Ranks| matches!(generic, Finding::Contained { rank, .. } if *rank == ranks.last());
-        let ranks = match self.ranks(start, is_generic) {
-            Ok(ranks) => ranks,
-            Err(fault) => return Finding::NotApplicable(fault.to_string()),
-        };
+    fn particular(&self, ranks: &Ranks, generic: &Finding) -> Finding {
         if let Some(none) = ranks.refuted() {
             return Finding::None(none);
         }
@@ -217,28 +235,40 @@ impl<'a> Question<'a> {
         // where the rank is the generic one it stays so nearby, and the jets obey one linear equation
         match generic {
             _ if at_rest => Finding::Contained { rank: ranks.last(), order: enough },
-            Finding::Contained { .. } if is_generic(&ranks) => generic.clone(),
+            Finding::Contained { .. } if is_generic(ranks, generic) => generic.clone(),
             _ => Finding::ThroughOrder { rank: ranks.last(), order: ranks.by_order.len() - 1 },
         }
     }
 
     fn generic(&self, start: &ExactStart) -> Finding {
-        let mut found: Vec<Ranks> = Vec::new();
-        for seed in SEEDS {
-            let ranks = match start.random(seed) {
-                Ok(exact) => self.ranks(&exact, |ranks| ranks.settled().is_some()),
-                Err(fault) => return Finding::NotApplicable(fault.to_string()),
-            };
-            match ranks.map(|ranks| (ranks.refuted(), ranks)) {
-                Ok((Some(none), _)) => return Finding::None(none),
-                Ok((None, ranks)) => found.push(ranks),
-                Err(fault) => return Finding::NotApplicable(fault.to_string()),
-            }
-        }
-        let ranks = &found[0];
-        match ranks.settled() {
-            Some(order) if found.iter().all(|other| other == ranks) => Finding::Contained { rank: ranks.last(), order },
-            _ => Finding::ThroughOrder { rank: ranks.last(), order: ranks.by_order.len() - 1 },
+        let ranks =
+            agreed(|seed| at_random(start, seed, |exact| self.ranks(&exact, |ranks| ranks.settled().is_some())));
+        match ranks.map(|ranks| (ranks.refuted(), ranks.settled(), ranks)) {
+            Err(reason) => Finding::NotApplicable(reason),
+            Ok((Some(none), ..)) => Finding::None(none),
+            Ok((None, Some(order), ranks)) => Finding::Contained { rank: ranks.last(), order },
+            Ok((None, None, ranks)) => Finding::ThroughOrder { rank: ranks.last(), order: ranks.by_order.len() - 1 },
         }
     }
+}
+
+/// Whether ranks are those of almost every start, where that has constants.
+fn is_generic(ranks: &Ranks, generic: &Finding) -> bool {
+    matches!(generic, Finding::Contained { rank, .. } if *rank == ranks.last())
+}
+
+/// Ranks that two fields agree on, each with a seed; a minor that is not zero needs one field only.
+fn agreed(mut ranks: impl FnMut(u64) -> Result<Ranks, String>) -> Result<Ranks, String> {
+    let mut found: Vec<Ranks> = Vec::new();
+    let mut fault = None;
+    for (field, seed) in FIELDS.iter().zip(SEEDS) {
+        match in_field(field, || ranks(seed)) {
+            Ok(ranks) if found.contains(&ranks) || ranks.refuted().is_some_and(|none| none.full_rank) => {
+                return Ok(ranks);
+            }
+            Ok(ranks) => found.push(ranks),
+            Err(reason) => fault = fault.or(Some(reason)),
+        }
+    }
+    Err(fault.unwrap_or_else(|| "no two fields agree on the ranks".into()))
 }

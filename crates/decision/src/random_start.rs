@@ -1,20 +1,44 @@
 //! Starts drawn at random on the constraint, for what holds at almost every start.
 
-use crate::exact::{Coefficient, Exact, Jet, Modular};
+use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
 use crate::series::SeriesStart;
 use crate::start::{ExactStart, NoExactStart};
 
-/// Random positions and velocities are integers up to this one.
-const LARGEST: u64 = 1 << 20;
+/// Random times, positions and velocities are integers of either sign up to 2 to one of these powers: exact
+/// numbers have to fit, of which functions are taken.
+const BITS: [u32; 3] = [20, 8, 3];
+/// Where roots have branches they are so many of these parts away from the start.
+const PART: i128 = 1 << 30;
 /// Draws until the constraints have roots: where they are squares, each has one for every second draw.
 const DRAWS: usize = 256;
 
+/// `compute` at a random start, of the largest numbers with which that succeeds.
+///
+/// # Errors
+/// Why it does not with the largest.
+pub(crate) fn at_random<T>(
+    start: &ExactStart,
+    seed: u64,
+    mut compute: impl FnMut(SeriesStart<Modular>) -> Result<T, String>,
+) -> Result<T, String> {
+    let mut fault = None;
+    for bits in BITS {
+        let found = start.random(seed, bits).map_err(|fault| fault.to_string()).and_then(&mut compute);
+        match found {
+            Ok(found) => return Ok(found),
+            Err(reason) => fault = fault.or(Some(reason)),
+        }
+    }
+    Err(fault.unwrap_or_default())
+}
+
 impl ExactStart {
-    /// Random integers for positions and velocities, the others from the constraints, on the surface that the
-    /// start is on: roots in a constant ratio keep the ratio that they have there. Any other square must once
+    /// Random integers for time, positions and velocities, the others from the constraints, on the surface that
+    /// the start is on: near the start, on its branch, if something varies under roots; roots in a constant ratio keep the ratio that they have there. Any other square must once
     /// have no root. The square of a function always has one; without such the surface is in one piece.
-    pub(crate) fn random(&self, seed: u64) -> Result<SeriesStart<Modular>, NoExactStart> {
-        let (parameters, time) = self.given();
+    pub(crate) fn random(&self, seed: u64, bits: u32) -> Result<SeriesStart<Modular>, NoExactStart> {
+        let (parameters, _) = self.given();
+        let near = if self.has_branches { Some(self.series()?.0) } else { None };
         let mut state = seed;
         let mut draw = || {
             // SplitMix64
@@ -22,18 +46,25 @@ impl ExactStart {
             let mut x = state;
             x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
             x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            let n = i128::from((x ^ (x >> 31)) % LARGEST) + 1;
-            let exact = Exact { numerator: n, ..Exact::ONE };
+            let x = x ^ (x >> 31);
+            let n = i128::from(x % (1 << bits)) + 1;
+            let numerator = if x >> 63 == 0 { n } else { -n };
+            let exact = Exact::ratio(numerator, if near.is_some() { PART } else { 1 }).ok_or(Flaw::Number)?;
             Modular::of(exact).map(|value| Jet::constant(value, Some(exact)))
         };
         let n = self.system.dimension();
+        let mut draws = |centre: Option<&[Jet<Modular>]>| -> Result<Vec<Jet<Modular>>, Flaw> {
+            (0..n).map(|i| draw().map(|x| centre.map_or(x, |centre| centre[i] + x))).collect()
+        };
+        let times = vec![self.given().1; n];
         let choices = [&self.supplied, &self.spare];
         let usual = choices.into_iter().find(|choice| choice.len() == self.system.constraints.len());
         let mut rootless = vec![false; self.system.constraints.len()];
         let mut found = None;
         for _ in 0..DRAWS {
-            let q = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
-            let v = (0..n).map(|_| draw()).collect::<Result<Vec<_>, _>>()?;
+            let q = draws(near.as_ref().map(|near| &near.positions[..]))?;
+            let v = draws(near.as_ref().map(|near| &near.velocities[..]))?;
+            let time = draws(near.as_ref().map(|_| &times[..]))?[0];
             let velocities = match self.solved(&parameters, time, &q, &v, usual.unwrap_or(&self.spare)) {
                 Err(NoExactStart::Nonlinear) => self.with_roots(&parameters, time, &q, &v)?,
                 solved => Solved::At { velocities: solved?, free: Vec::new() },

@@ -6,19 +6,21 @@ use mechanics::{State, System};
 use symbolic::{Expr, Symbol};
 
 use crate::DecisionError;
-use crate::exact::{Exact, Jet, Modular};
+use crate::exact::{Exact, FIELDS, Jet, Modular, in_field};
 use crate::family::{CostateRate, Family, inputs};
+use crate::identity::is_identity;
 use crate::program::Program;
 use crate::proof::{Echelon, Question};
+use crate::random_start::at_random;
 use crate::start::ExactStart;
 
-/// Points at which an identity is tried again after it was found.
+/// Points of a second field at which an identity is tried again after it was found.
 const TRIALS: u64 = 4;
 
 /// Constants with which every start on the constraint has the motion in question.
 ///
 /// `c_j = Σ a_{jb} B_b(q, v)` with fractions `a_{jb}` and as `B_b` the momenta `∂L/∂v`, 1 and the velocities.
-/// Solved for `a` at random points of the finite field, they hold at four more: a chance under 1 in 10^50.
+/// Solved for `a` at random points of one finite field, they hold at four of another. That is no proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// Names of the constants.
@@ -27,6 +29,10 @@ pub struct Section {
     pub expressions: Vec<String>,
     /// Their values at the start in question.
     pub values: Vec<f64>,
+    /// Whether the equations with `φ` put in are zero symbolically, on all of `f = 0`: a proof.
+    pub proved: bool,
+    /// Whether they are so with every `η`: all constants are proved to do.
+    pub every: bool,
 }
 
 /// The system with the functions that constants are sought among.
@@ -65,8 +71,10 @@ impl Question<'_> {
         let (k, count) = (family.shape.constants, ansatz.functions.len());
         let mut values: HashMap<Symbol, f64> = system.parameter_values();
         values.extend(system.values_at(state));
+        let constants = family.constants().to_vec();
         let mut section =
-            Section { constants: family.constants().to_vec(), expressions: Vec::new(), values: Vec::new() };
+            Section { constants, expressions: Vec::new(), values: Vec::new(), proved: false, every: false };
+        let mut formulas = Vec::new();
         for j in 0..k {
             let terms = ansatz.functions.iter().zip(&coefficients[j * count..(j + 1) * count]).map(|(&b, a)| {
                 let (n, d) = (i64::try_from(a.numerator).unwrap_or(0), i64::try_from(a.denominator).unwrap_or(1));
@@ -75,7 +83,10 @@ impl Question<'_> {
             let expression = g.sum(&terms.collect::<Vec<_>>());
             section.values.push(g.evaluate(expression, &values)?);
             section.expressions.push(g.plain(expression));
+            formulas.push(expression);
         }
+        section.every = is_identity(system, &self.curve, family, None);
+        section.proved = section.every || is_identity(system, &self.curve, family, Some(&formulas));
         Ok(Some(section))
     }
 }
@@ -84,8 +95,25 @@ impl Ansatz<'_> {
     /// Coefficients that solve the equations at random points, as fractions, and hold at further ones.
     fn solve(&self, start: &ExactStart) -> Option<Vec<Exact>> {
         let unknowns = self.family.shape.constants * self.functions.len();
-        let mut echelon = Echelon::default();
         let points = (unknowns / self.family.shape.coordinates + 4) as u64;
+        let [first, second, ..] = &FIELDS;
+        let fractions = in_field(first, || self.fractions(start, points, unknowns))?;
+        in_field(second, || {
+            let solution: Vec<Modular> = fractions.iter().map(|&x| Modular::fraction(x)).collect::<Option<_>>()?;
+            for seed in points..points + TRIALS {
+                for row in self.rows(start, seed)? {
+                    let sum = row.iter().zip(&solution).fold(Modular::ZERO, |sum, (&r, &a)| sum + r * a);
+                    if sum != row[unknowns] {
+                        return None;
+                    }
+                }
+            }
+            Some(fractions)
+        })
+    }
+
+    fn fractions(&self, start: &ExactStart, points: u64, unknowns: usize) -> Option<Vec<Exact>> {
+        let mut echelon = Echelon::default();
         for seed in 0..points {
             for row in self.rows(start, seed)? {
                 // a pivot in the last column: 0 = 1
@@ -104,22 +132,15 @@ impl Ansatz<'_> {
             }
             solution[pivot] = value;
         }
-        let fractions: Vec<Exact> = solution.iter().map(|&x| x.small_fraction()).collect::<Option<_>>()?;
-        for seed in points..points + TRIALS {
-            for row in self.rows(start, seed)? {
-                let sum = row.iter().zip(&solution).fold(Modular::ZERO, |sum, (&r, &a)| sum + r * a);
-                if sum != row[unknowns] {
-                    return None;
-                }
-            }
-        }
-        Some(fractions)
+        solution.iter().map(|&x| x.small_fraction()).collect()
     }
 
     /// What the equations of the family say about the coefficients at a random point.
     fn rows(&self, start: &ExactStart, seed: u64) -> Option<Rows> {
-        let point = start.random(seed.wrapping_mul(0x51ed) ^ 0xa11).ok()?;
-        let (curve, _) = self.question.series(&point, 2).ok()?;
+        let (curve, _) = at_random(start, seed.wrapping_mul(0x51ed) ^ 0xa11, |point| {
+            self.question.series(&point, 2).map_err(|fault| fault.to_string())
+        })
+        .ok()?;
         let functions = self.program.evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
         let values = self.family.evaluator::<Jet<Modular>>().run(&curve.inputs).to_vec();
         if functions.iter().chain(&values).any(|x| x.flaw().is_some()) {

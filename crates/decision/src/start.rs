@@ -10,9 +10,6 @@ use crate::exact::{Exact, Flaw, Jet, Modular, inverse, subtract_product};
 use crate::program::Program;
 use crate::series::SeriesStart;
 
-/// A decimal of so many digits is that of its double, and of no other number of so many.
-const DIGITS: usize = 15;
-
 /// Why a start has no exact numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoExactStart {
@@ -57,6 +54,8 @@ pub struct ExactStart {
     /// `∂f/∂v` at the start, row by row.
     pub(crate) slopes: Vec<f64>,
     pub(crate) constraints: Program,
+    /// Whether something that varies stands under a root: then random starts are near this one.
+    pub(crate) has_branches: bool,
     problem: Option<NoExactStart>,
 }
 
@@ -81,8 +80,9 @@ impl ExactStart {
         let rates: Vec<(Symbol, Expr)> = completion.written.iter().filter(|(s, _)| is_rate(s)).copied().collect();
         let numbers = system.parameters.iter().map(|p| (p.symbol, p.value)).chain([(system.time, state.t)]);
         let known = system.parameter_values();
+        let unknown = |e: Expr| g.as_number(e).is_some_and(f64::is_nan);
         // a number that was replaced since is no longer what was written
-        let formula = |s: &Symbol, x: f64| as_written(s).filter(|&e| g.evaluate(e, &known) == Ok(x));
+        let formula = |s: &Symbol, x: f64| as_written(s).filter(|&e| unknown(e) || g.evaluate(e, &known) == Ok(x));
         let given: Vec<Expr> = numbers.map(|(s, x)| formula(&s, x).unwrap_or_else(|| decimal(&x))).collect();
         let mut written = given.clone();
         let given = Written::new(g, &symbols, &given)?;
@@ -113,8 +113,24 @@ impl ExactStart {
         let constraints = Program::new(g, &inputs, &outputs)?;
         let slopes = slopes(system, state, &constraints);
         let spare = independent_columns(&slopes, system.dimension());
+        let formulas = [&[system.lagrangian][..], &system.constraints, &system.forces].concat();
+        let rooted = [g.kinks(&formulas), g.radicands(&formulas)].concat();
+        let constant = |e: &Expr| g.symbols_of(*e).iter().all(|s| system.parameters.iter().any(|p| p.symbol == *s));
+        let has_branches = !rooted.iter().all(constant);
         let (system, rounded) = (system.clone(), state.v.clone());
-        Ok(ExactStart { system, written, given, values, supplied, rounded, spare, slopes, constraints, problem })
+        Ok(ExactStart {
+            system,
+            written,
+            given,
+            values,
+            supplied,
+            rounded,
+            spare,
+            slopes,
+            constraints,
+            has_branches,
+            problem,
+        })
     }
 
     /// Names of given velocities solved from the constraints, which their decimals miss by round-off.
@@ -131,17 +147,7 @@ impl ExactStart {
         for i in 0..n {
             inputs[first + i] = self.values.run(&inputs)[i];
         }
-        let mut values = self.values.run(&inputs);
-        // velocities with all the digits of a double, no more than constraints, are supplied by these
-        let has_all_digits = |&i: &usize| values[n + i].own_flaw() == Some(Flaw::Number);
-        let rounded: Vec<usize> = (0..n).filter(has_all_digits).collect();
-        let choices = [&self.spare, &rounded].into_iter();
-        let mut choices = choices.filter(|choice| choice.len() == self.system.constraints.len());
-        let spare = choices.find(|choice| rounded.iter().all(|i| choice.contains(i))).unwrap_or(&self.spare);
-        if self.supplied.is_empty() {
-            let supplied = rounded.iter().filter(|i| spare.contains(i));
-            supplied.for_each(|&i| values[n + i] = Jet::constant(Modular::ZERO, None));
-        }
+        let values = self.values.run(&inputs);
         if let Some(flaw) = values.iter().find_map(Jet::own_flaw) {
             return Err(flaw.into());
         }
@@ -155,10 +161,10 @@ impl ExactStart {
         let solved = self.solved(&parameters, time, q, v, &self.supplied);
         match solved {
             Ok(v) => Ok((start(v), Vec::new())),
-            Err(NoExactStart::Nonlinear) if self.supplied.is_empty() && !spare.is_empty() => {
+            Err(NoExactStart::Nonlinear) if self.supplied.is_empty() && !self.spare.is_empty() => {
                 let g = &self.system.graph;
-                let names = spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
-                Ok((start(self.solved(&parameters, time, q, v, spare)?), names))
+                let names = self.spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
+                Ok((start(self.solved(&parameters, time, q, v, &self.spare)?), names))
             }
             // what is supplied is not determined here: the decimals found count, if they fulfil the
             // constraints
@@ -169,6 +175,11 @@ impl ExactStart {
             }
             Err(fault) => Err(fault),
         }
+    }
+
+    /// Places of velocities solved from the constraints, where [`Self::series`] `completed` these.
+    pub(crate) fn open(&self, completed: &[String]) -> &[usize] {
+        if completed.is_empty() { &self.supplied } else { &self.spare }
     }
 
     /// Parameters and time.
@@ -226,11 +237,12 @@ struct Written {
 
 impl Written {
     fn new(g: &Graph, inputs: &[Symbol], values: &[Expr]) -> Result<Self, DecisionError> {
-        // more digits may be those of a formula that was rounded
-        let short = |x: f64| format!("{:e}", x.abs()).find('e').is_some_and(|digits| digits <= DIGITS + 1);
-        let is_decimal = |e: Expr, x: f64| g.as_ratio(e).is_none() && e == g.number(x) && short(x);
+        // what was written and is not known is NaN
+        let is_decimal = |e: Expr, x: f64| x.is_nan() || (g.as_ratio(e).is_none() && e == g.number(x));
         let decimal = |&e: &Expr| g.as_number(e).filter(|&x| is_decimal(e, x));
-        Ok(Written { program: Program::new(g, inputs, values)?, decimals: values.iter().map(decimal).collect() })
+        let decimals: Vec<Option<f64>> = values.iter().map(decimal).collect();
+        let rest = values.iter().zip(&decimals).map(|(&e, x)| if x.is_some() { g.zero() } else { e });
+        Ok(Written { program: Program::new(g, inputs, &rest.collect::<Vec<_>>())?, decimals })
     }
 
     fn run(&self, inputs: &[Jet<Modular>]) -> Vec<Jet<Modular>> {

@@ -2,7 +2,9 @@
 
 mod classics;
 mod closed_forms;
+mod drawn;
 mod floating;
+mod hypotheses;
 mod numbers;
 mod proofs;
 mod questions;

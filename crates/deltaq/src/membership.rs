@@ -21,7 +21,7 @@ pub struct Membership {
     pub decision: Decision,
     /// What the Taylor coefficients of the mismatch prove.
     pub proof: Proof,
-    /// `c = φ(q, v)` for every start, where that was found and verified.
+    /// `c = φ(q, v)` for every start, where that was found; it says whether it is proved.
     pub section: Option<Section>,
 }
 
@@ -38,31 +38,43 @@ pub enum Answer {
         /// Why that is not proved.
         unproved: String,
     },
-    /// It is not empty: an identity shows it, or ranks that grow no more.
+    /// It is not empty: an identity shows it, checked symbolically.
     SomeProved,
     /// It is not empty, as far as it was looked at.
     Some {
         /// Taylor coefficients agree up to this order; `None` where there are none.
         order: Option<usize>,
+        /// Whether ranks of these, modulo two primes, grow no more. That is no proof.
+        settled: bool,
     },
     /// Round-off hides it.
     Undecided,
 }
 
 impl Membership {
+    /// Whether there is a section, and that is proved.
+    fn is_identity(&self) -> bool {
+        self.section.as_ref().is_some_and(|section| section.proved)
+    }
+
     /// The answer. A proof is about the numbers as they are written, and has the last word.
     pub fn answer(&self) -> Answer {
         let (order, unproved) = match &self.proof.this_start {
-            Finding::None(none) => return Answer::NoneProved { order: none.order },
-            Finding::Contained { .. } => return Answer::SomeProved,
+            Finding::None(none) if none.full_rank => return Answer::NoneProved { order: none.order },
+            Finding::None(none) => {
+                let reason = "no minor of full size shows it: ranks modulo two primes do";
+                return Answer::None { unproved: format!("{reason} (order {})", none.order) };
+            }
+            Finding::Contained { .. } if self.is_identity() => return Answer::SomeProved,
+            Finding::Contained { order, .. } => return Answer::Some { order: Some(*order), settled: true },
             Finding::ThroughOrder { order, .. } => {
                 (Some(*order), format!("Taylor coefficients agree through order {order}"))
             }
             Finding::NotApplicable(reason) => (None, reason.clone()),
         };
         match self.decision.verdict {
-            Verdict::Contained if self.section.is_some() => Answer::SomeProved,
-            Verdict::Contained => Answer::Some { order },
+            Verdict::Contained if self.is_identity() => Answer::SomeProved,
+            Verdict::Contained => Answer::Some { order, settled: false },
             Verdict::NotContained => Answer::None { unproved },
             Verdict::Undecided => Answer::Undecided,
         }

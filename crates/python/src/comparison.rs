@@ -151,7 +151,7 @@ impl Decided {
             Ok(Answer::NoneProved { order }) => ("none", true, Some(order), None),
             Ok(Answer::None { unproved }) => ("none", false, None, Some(unproved)),
             Ok(Answer::SomeProved) => ("some", true, None, None),
-            Ok(Answer::Some { order }) => ("some", false, order, None),
+            Ok(Answer::Some { order, .. }) => ("some", false, order, None),
             Ok(Answer::Undecided) => ("undecided", false, None, Some("round-off hides it".into())),
         };
         let membership = outcome.ok();

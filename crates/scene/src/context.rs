@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use mechanics::System;
-use symbolic::{Expr, Symbol};
+use symbolic::{Expr, Graph, Symbol};
 
 use super::names::{Names, check_symbols};
 use super::overrides::Overrides;
@@ -66,7 +66,7 @@ impl Context<'_> {
     pub(super) fn expression(&self, value: &Value) -> Result<Expr, SceneError> {
         match value {
             Value::Number(x) => Ok(self.system.graph.number(*x)),
-            Value::Expression(text) => self.parse(text),
+            Value::Expression(text) => Ok(unrounded(&self.system.graph, self.parse(text)?)),
         }
     }
 
@@ -88,4 +88,9 @@ impl Context<'_> {
         values.extend(self.system.positions().into_iter().zip(self.positions.iter().copied()));
         values
     }
+}
+
+/// A formula as it is written; where arithmetic has rounded it to a number, it is none that is known.
+pub(super) fn unrounded(g: &Graph, e: Expr) -> Expr {
+    if g.as_number(e).is_some() && g.as_ratio(e).is_none() { g.number(f64::NAN) } else { e }
 }

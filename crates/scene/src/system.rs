@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use symbolic::{Expr, Graph, Symbol};
 
-use super::context::Context;
+use super::context::{Context, unrounded};
 use super::names::{Names, Role};
 use super::order::in_order;
 use super::overrides::Overrides;
@@ -126,7 +126,7 @@ fn parameters(
         names.insert_parameter(entry.key, graph, value);
         if !given_by_others {
             if is_formula {
-                formulas.push((graph.symbol(entry.key), e));
+                formulas.push((graph.symbol(entry.key), unrounded(graph, e)));
             }
             let value = graph.evaluate(e, &HashMap::new()).unwrap_or(f64::NAN);
             parameters.push((places[entry.key], Parameter { symbol: graph.symbol(entry.key), value }));
@@ -257,7 +257,7 @@ fn start_time(context: &mut Context) -> Result<f64, SceneError> {
     };
     let value = context.overrides.written("time").unwrap_or(given);
     if let Value::Expression(text) = &value {
-        let written = (context.system.time, context.parse(text)?);
+        let written = (context.system.time, unrounded(&context.system.graph, context.parse(text)?));
         context.written.push(written);
     }
     context.evaluate(&value, "time", &context.system.parameter_values(), "parameters")

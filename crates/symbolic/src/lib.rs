@@ -30,6 +30,7 @@
 //! ```
 
 mod abbreviate;
+mod adopt;
 mod apply;
 mod arena;
 mod atoms;

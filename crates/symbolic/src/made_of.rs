@@ -57,6 +57,12 @@ impl Graph {
         bases.into_iter().filter(|b| arena.as_number(*b).is_none()).collect()
     }
 
+    /// Whether every number in `es` is a fraction that nothing has rounded.
+    pub fn are_exact(&self, es: &[Expr]) -> bool {
+        let arena = self.arena.borrow();
+        !es.iter().any(|&e| arena.contains_float(e))
+    }
+
     /// Every distinct base of an even power under a root in `es`, not a number: `√(a²) = |a|` has a kink
     /// where `a` is zero, and its radicand does not change its sign there.
     ///

@@ -106,9 +106,7 @@ impl Found {
             (Finding::None(found), _) => return none(found.order, found.full_rank),
             (_, Answer::None { unproved }) => return Found::new("none", format!("in floating point: {unproved}")),
             (_, Answer::Undecided) => return Found::new("undecided", "round-off"),
-            (Finding::Contained { rank, .. } | Finding::ThroughOrder { rank, .. }, Answer::SomeProved)
-                if membership.section.is_some() =>
-            {
+            (Finding::Contained { rank, .. } | Finding::ThroughOrder { rank, .. }, Answer::SomeProved) => {
                 (*rank, "identity".into())
             }
             (Finding::Contained { rank, .. }, _) => (*rank, SETTLED.into()),
@@ -130,7 +128,10 @@ impl Found {
                 none(found.order, found.full_rank)
             }
             (Finding::Contained { rank, .. }, _, section) => {
-                let identity = |section: &Section| format!("identity, `{}`", vector(section.expressions.clone()));
+                let identity = |section: &Section| {
+                    let how = if section.proved { "identity" } else { "at random starts modulo two primes" };
+                    format!("{how}, `{}`", vector(section.expressions.clone()))
+                };
                 let how = section.as_ref().map_or(SETTLED.into(), identity);
                 Found { what: of_rank(*rank, membership.decision.constants.len()), how }
             }
@@ -165,7 +166,7 @@ fn vector(entries: Vec<String>) -> String {
 }
 
 /// Why later coefficients need not be looked at.
-const SETTLED: &str = "ranks grow no more";
+const SETTLED: &str = "ranks mod p grow no more";
 
 fn of_rank(rank: usize, constants: usize) -> String {
     match constants - rank {

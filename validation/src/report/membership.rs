@@ -19,9 +19,10 @@ pub(crate) fn words(comparison: &Comparison) -> String {
         Some(Ok(membership)) => match membership.answer() {
             Answer::NoneProved { order } => format!("**none**: proved (order {order})"),
             Answer::None { .. } => "**none**, not proved".into(),
-            Answer::SomeProved if membership.section.is_some() => format!("**{}**: identity", which(membership)),
-            Answer::SomeProved => format!("**{}**: proved", which(membership)),
-            Answer::Some { order } => format!("**{}**, {}", which(membership), how_far(membership, order)),
+            Answer::SomeProved => format!("**{}**: identity", which(membership)),
+            Answer::Some { order, settled } => {
+                format!("**{}**, {}", which(membership), how_far(membership, order, settled))
+            }
             Answer::Undecided => "undecided".into(),
         },
     }
@@ -60,7 +61,7 @@ pub fn value(outcome: Option<&Result<Membership, SolveError>>) -> Value {
         Answer::NoneProved { order } => json!({ "answer": "none", "proved": true, "order": order }),
         Answer::None { unproved } => json!({ "answer": "none", "proved": false, "because": unproved }),
         Answer::SomeProved => json!({ "answer": "some", "proved": true, "dimension": dimension }),
-        Answer::Some { order } => {
+        Answer::Some { order, .. } => {
             json!({ "answer": "some", "proved": false, "order": order, "dimension": dimension })
         }
         Answer::Undecided => json!({ "answer": "undecided" }),

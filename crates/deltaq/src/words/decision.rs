@@ -68,14 +68,22 @@ fn reason(membership: &Membership) -> String {
         Answer::None { unproved } => {
             format!("{mismatch}{}; there is no proof, since {unproved}", up_to(decision.until))
         }
-        Answer::SomeProved => {
-            membership.section.as_ref().map_or("proved by ranks that grow no more".into(), |section| {
-                format!("an identity, ({}), for all starts", section.expressions.join(", "))
-            })
-        }
-        Answer::Some { order } => how_far(membership, order),
+        Answer::SomeProved => identity(membership),
+        Answer::Some { order, settled } => how_far(membership, order, settled),
         Answer::Undecided => format!("round-off hides it, {mismatch}{}", up_to(decision.until)),
     }
+}
+
+/// What is proved where there is an identity.
+fn identity(membership: &Membership) -> String {
+    let Some(section) = &membership.section else { return String::new() };
+    let which = if section.every { String::new() } else { format!(", ({}),", section.expressions.join(", ")) };
+    let dimension = match membership.decision.set.dimension() {
+        0 => "",
+        _ if section.every => "",
+        _ => "; the dimension by ranks modulo two primes",
+    };
+    format!("an identity{which} for all starts: proved{dimension}")
 }
 
 /// Up to when the numbers were judged, where that is not the end.
@@ -96,7 +104,15 @@ fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
 }
 
 /// How far it was looked, for a yes that is not proved.
-pub fn how_far(membership: &Membership, order: Option<usize>) -> String {
+pub fn how_far(membership: &Membership, order: Option<usize>, settled: bool) -> String {
+    let branch = if membership.proof.one_branch { ", near this start" } else { "" };
+    if let Some(section) = &membership.section {
+        let section = section.expressions.join(", ");
+        return format!("({section}) at random starts modulo two primes{branch}, which is no proof");
+    }
+    if settled {
+        return format!("ranks modulo two primes grow no more{branch}, which is no proof");
+    }
     let decision = &membership.decision;
     let part = decision.least.max(decision.noise) / decision.acceleration;
     let part =

@@ -66,7 +66,7 @@ pub struct Completion {
     pub projected: Option<f64>,
     /// Positions and given velocities or rates as they were written, in parameters, time and earlier
     /// positions, then parameters and the time of formulas: exact where state and values are rounded. Empty
-    /// where there are numbers only.
+    /// where there are numbers only; NaN for a formula that arithmetic has rounded.
     pub written: Vec<(Symbol, Expr)>,
     /// Guesses of the others likewise, in parameters, time and positions.
     pub guessed: Vec<(Symbol, Expr)>,

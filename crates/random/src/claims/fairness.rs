@@ -47,7 +47,8 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     if case.recipe.kind.is_integrable() {
         let every = decision.verdict == Verdict::Contained && dimension == h;
         case.found.require(9, "integrable constraints leave every mu0", every, &note);
-        case.found.require(9, "and that is proved", found.answer() == Answer::SomeProved, &note);
+        let by_ranks = matches!(found.answer(), Answer::SomeProved | Answer::Some { settled: true, .. });
+        case.found.require(9, "and ranks say so", by_ranks, &note);
     } else if case.recipe.integrals() > 0 {
         case.found.require(9, "integrals leave a mu0 each", dimension >= case.recipe.integrals(), &note);
     }
