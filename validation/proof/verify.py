@@ -13,7 +13,7 @@ algebraic numbers: Lindemann, Weierstrass), and roots of primes. [M, z] says e^(
 e^i and e is 1, so e^(n/d) has an image where r and d have no common factor. A root goes to a root, in the field of e^(2 pi i/M) to its Gauss
 sum. This is a homomorphism on all quotients whose divisors do not go to 0: what is not 0 mod p is not 0, whoever has chosen p, z, r. p is a
 prime over 2^50 and over K + 2, by which series divide. Doubt is left in two places: that f = 0 at a start with all velocities given is found
-exactly where all numbers are fractions, else mod p; and the scene file is held against the plain scene by Taylor coefficients of L, f and Q
+exactly where all numbers are fractions, else mod p and in decimals; and the scene file is held against the plain scene by Taylor coefficients of L, f and Q
 along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of f = 0, if this is a
 connected analytic manifold, as the minor is analytic on it."""
 
@@ -187,6 +187,7 @@ class Formulas:
             elif kind == "number":
                 values.append(Series.of(args[0]))
             elif kind == "rate":
+                readable(rates, "a time derivative in a plain scene")
                 slopes = slopes_of(values[args[0]], [x for x, _ in rates])
                 values.append(Series([sum(c) % P for c in zip(*[convolve(slope, x.c) for slope, (_, x) in zip(slopes, rates)])]))
             else:
@@ -437,7 +438,9 @@ def verify(proof):
     divided = {UNIQUE[0]: determinant([[A[i][j][0] for j in free] for i in range(h)] if free else [])}
     if not free:
         demand(all(values[place].first in (None, (0, 0)) for place in f), "the constraints at the start")
-        remark = "" if all(values[place].first for place in f) else " (that the constraints hold there was found mod p)"
+        if not all(values[place].first for place in f):
+            near(scene, scene["velocities"])
+            remark = "; the constraints hold there mod p and to 1e-6"
     # the motion is unique: L_v moves by L_vv where v moves
     resize(2)
     matrix = [[0] * n + [-A[j][i][0] for j in range(h)] for i in range(n)] + [[x[0] for x in row] + [0] * h for row in A]
@@ -501,7 +504,7 @@ def hold(table, proof):
         extra = [name for name in scene["velocities"] if name not in rates]
         demand(set(proof["completed"]) <= set(rates), "what is completed")
         if proof["completed"]:
-            near(scene, rates, texts)
+            near(scene, texts)
     # Taylor coefficients along a random curve
     curves = lambda firsts: [[x, *(secrets.randbelow(P) for _ in range(SIZE - 1))] for x in firsts]
     q, v = (curves(proof["motion"][x][k] for x in names) for k in (0, 1))
@@ -538,8 +541,8 @@ def by_removal(removal, here, rates, names, meaning):
         rates[x + "'"] = formulas.run(at, pairs)[place]
     return {name: x for name, x in rates.items() if name[:-1] in names}
 
-def near(scene, rates, texts):
-    """Velocities that are completed have to fulfil the constraints but for round-off."""
+def near(scene, texts):
+    """Demands of velocities that they fulfil the constraints but for round-off."""
     at = {}
     for name, text in [*scene["parameters"].items(), ("t", scene["time"]), *((x, scene["positions"][x]) for x in scene["coordinates"]), *texts.items()]:
         formulas = Formulas()
@@ -550,7 +553,7 @@ def near(scene, rates, texts):
     values = formulas.in_decimals(at)
     for place in f:
         moves = sum(abs(formulas.in_decimals(at | {name: 0.0})[place] - values[place]) for name in texts)
-        demand(abs(values[place]) <= 1e-6 * moves, "what is completed misses the constraints by more than round-off")
+        demand(abs(values[place]) <= 1e-6 * moves, "velocities miss the constraints by more than round-off")
 
 # Reading ----------------------------------------------------------------------------------------------------------------------------------
 
@@ -579,8 +582,9 @@ def checked(proof):
     R, E_I, E = exponents["order"], exponents["e^i"], exponents["e"]
     demand(is_prime(P) and P > max(2**50, proof["order"] + 2), "p is no prime over 2^50")
     readable(0 < M < 2**32, "M")
-    factors = [l for l in range(2, 2**16) if M % l == 0 and is_prime(l)] 
-    demand(M % 4 == 0 and pow(z, M, P) == 1 and all(pow(z, M // l, P) != 1 for l in factors), "the image of e^(2 pi i/M)")
+    small = [l for l in range(2, 2**16) if M % l == 0 and is_prime(l)]
+    large = [M // d for d in range(1, 2**16) if M % d == 0 and is_prime(M // d)]
+    demand(M % 4 == 0 and pow(z, M, P) == 1 and all(pow(z, M // l, P) != 1 for l in small + large), "the image of e^(2 pi i/M)")
     demand(R > 0 and pow(E_I, R, P) == pow(E, R, P) == 1, "the images of e^i and e")
     demand(all(i < len(names) and k <= proof["order"] for k, i in proof["rows"]), "the rows")
     demand(all(x < P for c in [*proof["motion"].values(), *proof["reactions"]] for x in c), "a coefficient that is not under p")
