@@ -54,7 +54,7 @@ impl PlainScene {
             return Err("the start that was drawn has numbers that are no fractions".into());
         }
         let text = |i: usize| match values[i].exact() {
-            Some(x) if !is_written(i) => x.to_string(),
+            Some(x) if !is_written(i) || mixes_pi(&g.plain(start.written[i])) => x.to_string(),
             _ => g.plain(start.written[i]),
         };
         let name = |i: usize| system.coordinates[i].name.clone();
