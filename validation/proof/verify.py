@@ -9,16 +9,17 @@ vakonomic if and only if some mu = mu_0 + mu_1 t + ... solves A' mu' + (d/dt A' 
 are linear equations S x = b for x = (mu_0 .. mu_(K+1)). If the named rows of [S | -b] have a determinant that is not 0, no x solves them.
 
 What is computed here are images mod p of numbers made from fractions, e^(2 pi i/M), e^(ia) and e^a for fractions a (independent over the
-algebraic numbers: Lindemann, Weierstrass), and roots of primes. [M, z] says e^(2 pi i/M) -> z, of order M mod p. The power r of the images of
-e^i and e is 1, so e^(n/d) has an image where r and d have no common factor. A root goes to a root, in the field of e^(2 pi i/M) to its Gauss
-sum. This is a homomorphism on all quotients whose divisors do not go to 0: what is not 0 mod p is not 0, whoever has chosen p, z, r. p is a
-prime over 2^50 and over K + 2, by which series divide. Doubt is left in two places: that f = 0 at a start with all velocities given is found
-exactly where all numbers are fractions, else mod p; and the scene file is held against the plain scene by Taylor coefficients of L, f and Q
-along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece of f = 0, if this is a
-connected analytic manifold, as the minor is analytic on it."""
+algebraic numbers: Lindemann, Weierstrass), and roots of primes. [M, z] says e^(2 pi i/M) -> z, of order M mod p. The power r of the images
+of e^i and e is 1, so e^(n/d) has an image where r and d have no common factor. A root goes to a root, in the field of e^(2 pi i/M) to its
+Gauss sum. This is a homomorphism on all quotients whose divisors do not go to 0: what is not 0 mod p is not 0, whoever has chosen p, z, r.
+p is a prime over 2^50 and over K + 2, by which series divide. Doubt is left in two places: that f = 0 at a start with all velocities given
+is found exactly where all numbers are fractions, else mod p and in decimals; and the scene file is held against the plain scene by Taylor
+coefficients of L, f and Q along a random curve mod p. From a start drawn at random follows the same for almost every start on that piece
+of f = 0, if this is a connected analytic manifold, as the minor is analytic on it."""
 
 import hashlib, json, math, operator, re, secrets, sys, tomllib
 from fractions import Fraction
+from functools import reduce
 from itertools import product
 
 class Forged(Exception): pass
@@ -68,10 +69,7 @@ class Formulas:
     def over(self, a, b):
         return self.times(a, self.put("^", b, self.number(-1)))
     def dot(self, a, b):
-        sum, *rest = [self.times(x, y) for x, y in zip(a, b, strict=True)]
-        for x in rest:
-            sum = self.add(sum, x)
-        return sum
+        return reduce(self.add, [self.times(x, y) for x, y in zip(a, b, strict=True)])
     def rate(self, a):
         return [self.rate(x) for x in a] if isinstance(a, list) else self.put("rate", a)
     def turn(self, n, angle):
@@ -82,7 +80,8 @@ class Formulas:
         return [[self.add(along(i, j), other(i, j)) for j in range(3)] for i in range(3)]
     def call(self, name, a):
         x, minus, over, put = a[0], self.minus, self.over, self.put
-        one, half, up, down = self.number(1), self.number("1/2"), lambda x: put("exp", x), lambda x: put("exp", self.times(self.number(-1), x))
+        one, half, up = self.number(1), self.number("1/2"), lambda x: put("exp", x)
+        down = lambda x: up(self.times(self.number(-1), x))
         tanh = lambda x: over(minus(up(x), down(x)), self.add(up(x), down(x)))
         transposed, spin = lambda m: [list(row) for row in zip(*m)], lambda m: [m[2][1], m[0][2], m[1][0]]
         written = {
@@ -141,9 +140,8 @@ class Formulas:
                 value = self.known[word]
             elif word == "rotation" and set(tokens[1][1]) <= set("xyz") and tokens[2][0] == ",":
                 axes, _, angles = (take("("), take("name"))[1], take(","), listed(")")
-                value, *turns = [self.turn([self.number(int(x == axis)) for x in "xyz"], angle) for axis, angle in zip(axes, angles, strict=True)]
-                for turn in turns:
-                    value = self.times(value, turn)
+                turns = [self.turn([self.number(int(x == axis)) for x in "xyz"], angle) for axis, angle in zip(axes, angles, strict=True)]
+                value = reduce(self.times, turns)
             else:
                 value = self.call(word, (take("("), listed(")"))[1])
             while tokens[0][0] == "'" or re.fullmatch(r"\.[xyz]+", tokens[0][0]):
@@ -187,6 +185,7 @@ class Formulas:
             elif kind == "number":
                 values.append(Series.of(args[0]))
             elif kind == "rate":
+                readable(rates, "a time derivative in a plain scene")
                 slopes = slopes_of(values[args[0]], [x for x, _ in rates])
                 values.append(Series([sum(c) % P for c in zip(*[convolve(slope, x.c) for slope, (_, x) in zip(slopes, rates)])]))
             else:
@@ -194,7 +193,8 @@ class Formulas:
         return values
 
     def in_decimals(self, scope):
-        values, known = [], {"+": operator.add, "*": operator.mul, "^": operator.pow, "number": float, "name": scope.get, "pi": lambda: math.pi}
+        values, known = [], {"+": operator.add, "*": operator.mul, "^": operator.pow, "number": float}
+        known |= {"name": scope.get, "pi": lambda: math.pi}
         for kind, *args in self.operations:
             values.append((known.get(kind) or getattr(math, kind))(*[values[a] if isinstance(a, int) else a for a in args]))
         return values
@@ -403,8 +403,8 @@ def started(scene):
 def along(names, at, q, v, t):
     """What formulas may contain, q, v and t being series that slopes are taken by."""
     first = lambda name: at[name].first if name in at else None
-    curve = {x: Series(c, first(x), leaf=True) for x, c in zip(names, q)} | {x + "'": Series(c, first(x + "'"), leaf=True) for x, c in zip(names, v)}
-    return at | curve | {"t": Series(t, first("t"), leaf=True)}
+    curve = [*zip(names, q), *((x + "'", c) for x, c in zip(names, v)), ("t", t)]
+    return at | {name: Series(c, first(name), leaf=True) for name, c in curve}
 
 UNIQUE = "constraints at the start", "equations of motion"
 
@@ -418,7 +418,8 @@ def verify(proof):
         demand(len(c) == SIZE and at[x].c[0] == c[0] and (x + "'" not in at or at[x + "'"].plain().c[0] == c[1]), f"{x} at the start")
     formulas = Formulas()
     L, f = formulas.read(scene["lagrangian"]), [formulas.read(text) for text in scene["constraints"]]
-    Q, divisors = [formulas.read(scene["forces"].get(x, "0")) for x in names], {text: formulas.read(text) for text in proof["divided_by"] if text not in UNIQUE}
+    Q = [formulas.read(scene["forces"].get(x, "0")) for x in names]
+    divisors = {text: formulas.read(text) for text in proof["divided_by"] if text not in UNIQUE}
     scope = along(names, at, q, v, [at["t"].c[0], 1])
     values, leaves = formulas.run(scope), [scope[x] for x in names] + [scope[x + "'"] for x in names]
     slopes, h = slopes_of(values[L].plain(), leaves), len(f)
@@ -437,7 +438,9 @@ def verify(proof):
     divided = {UNIQUE[0]: determinant([[A[i][j][0] for j in free] for i in range(h)] if free else [])}
     if not free:
         demand(all(values[place].first in (None, (0, 0)) for place in f), "the constraints at the start")
-        remark = "" if all(values[place].first for place in f) else " (that the constraints hold there was found mod p)"
+        if not all(values[place].first for place in f):
+            near(scene, scene["velocities"])
+            remark = "; the constraints hold there mod p and to 1e-6"
     # the motion is unique: L_v moves by L_vv where v moves
     resize(2)
     matrix = [[0] * n + [-A[j][i][0] for j in range(h)] for i in range(n)] + [[x[0] for x in row] + [0] * h for row in A]
@@ -463,8 +466,8 @@ def verify(proof):
 def hold(table, proof):
     """Holds the plain scene, of which the certificate is verified, against the file."""
     scene, given, order = proof["scene"], proof["set"], proof["order"]
-    extra = []
-    names, start, definitions, parameters = list(table["coordinates"]), table.get("start", {}), table.get("definitions", {}), table.get("parameters", {})
+    names, extra = list(table["coordinates"]), []
+    start, definitions, parameters = [table.get(section, {}) for section in ("start", "definitions", "parameters")]
     removal = next(iter(table.get("removal", {}).values()), {})
     own = [x for x in removal.get("parameters", []) if x not in names] + list(removal.get("memory", {}))
     leaves = {x + dash for x in names + own for dash in ("", "'")} | {"t"}
@@ -478,7 +481,8 @@ def hold(table, proof):
     demand(names == scene["coordinates"], "the coordinates are not those of the file")
     elsewhere = r"duration|kappa|mu\d+|P0_\w+"
     for name in given:
-        demand(name in parameters or name in leaves or name == "time" or re.fullmatch(elsewhere, name), f"what is set: the file has no {name}")
+        known = name in parameters or name in leaves or name == "time" or re.fullmatch(elsewhere, name)
+        demand(known, f"what is set: the file has no {name}")
     resize(order + 3)
     at, same = started(scene), lambda a, b: a.c == b.c and a.first == b.first
     for name in parameters:
@@ -501,7 +505,7 @@ def hold(table, proof):
         extra = [name for name in scene["velocities"] if name not in rates]
         demand(set(proof["completed"]) <= set(rates), "what is completed")
         if proof["completed"]:
-            near(scene, rates, texts)
+            near(scene, texts)
     # Taylor coefficients along a random curve
     curves = lambda firsts: [[x, *(secrets.randbelow(P) for _ in range(SIZE - 1))] for x in firsts]
     q, v = (curves(proof["motion"][x][k] for x in names) for k in (0, 1))
@@ -538,10 +542,11 @@ def by_removal(removal, here, rates, names, meaning):
         rates[x + "'"] = formulas.run(at, pairs)[place]
     return {name: x for name, x in rates.items() if name[:-1] in names}
 
-def near(scene, rates, texts):
-    """Velocities that are completed have to fulfil the constraints but for round-off."""
+def near(scene, texts):
+    """Demands of velocities that they fulfil the constraints but for round-off."""
     at = {}
-    for name, text in [*scene["parameters"].items(), ("t", scene["time"]), *((x, scene["positions"][x]) for x in scene["coordinates"]), *texts.items()]:
+    positions = [(x, scene["positions"][x]) for x in scene["coordinates"]]
+    for name, text in [*scene["parameters"].items(), ("t", scene["time"]), *positions, *texts.items()]:
         formulas = Formulas()
         place = formulas.read(text)
         at[name] = formulas.in_decimals(at)[place]
@@ -550,37 +555,44 @@ def near(scene, rates, texts):
     values = formulas.in_decimals(at)
     for place in f:
         moves = sum(abs(formulas.in_decimals(at | {name: 0.0})[place] - values[place]) for name in texts)
-        demand(abs(values[place]) <= 1e-6 * moves, "what is completed misses the constraints by more than round-off")
+        demand(abs(values[place]) <= 1e-6 * moves, "velocities miss the constraints by more than round-off")
 
 # Reading ----------------------------------------------------------------------------------------------------------------------------------
 
 def checked(proof):
     """The certificate, where every field is of its kind."""
     global P, I, R, E, E_I, UNITY, ROOTS
-    whole, word = lambda x: type(x) is int and 0 <= x < 2**64, lambda x: type(x) is str
+    whole, word, truth = lambda x: type(x) is int and 0 <= x < 2**64, lambda x: type(x) is str, lambda x: type(x) is bool
     many, named = lambda kind: lambda x: type(x) is list and all(map(kind, x)), lambda kind: lambda x: type(x) is dict and all(map(kind, x.values()))
-    scene = {"coordinates": many(word), "parameters": named(word), "lagrangian": word, "constraints": many(word), "forces": named(word), "time": word, "positions": named(word), "velocities": named(word)}
+    pair, exactly = lambda x: many(whole)(x) and len(x) == 2, lambda kinds: lambda x: (
+        type(x) is dict and x.keys() == kinds.keys() and all(kind(x[key]) for key, kind in kinds.items())
+    )
+    scene = {"coordinates": many(word), "constraints": many(word), "lagrangian": word, "time": word}
+    scene |= {name: named(word) for name in ("parameters", "forces", "positions", "velocities")}
     fields = {
-        "schema": word, "scene": lambda x: type(x) is dict and all(kind(x.get(key)) for key, kind in scene.items()) and x.keys() == scene.keys(), "digest": word,
-        "almost_every_start": lambda x: type(x) is bool, "prime": whole, "unity": lambda x: many(whole)(x) and len(x) == 2, "exponents": lambda x: named(whole)(x) and x.keys() == {"order", "e^i", "e"},
-        "roots": named(whole), "order": lambda x: whole(x) and x < 200, "rows": many(lambda x: many(whole)(x) and len(x) == 2), "minor": whole, "divided_by": named(whole),
-        "set": named(word), "completed": many(word), "motion": named(many(whole)), "reactions": many(many(whole)),
+        "schema": word, "scene": exactly(scene), "digest": word, "almost_every_start": truth, "prime": whole, "unity": pair,
+        "exponents": exactly({"order": whole, "e^i": whole, "e": whole}), "roots": named(whole), "order": lambda x: whole(x) and x < 200,
+        "rows": many(pair), "minor": whole, "divided_by": named(whole), "set": named(word), "completed": many(word),
+        "motion": named(many(whole)), "reactions": many(many(whole)),
     }
     readable(type(proof) is dict and proof.get("schema") == "deltaq/certificate/2", "the schema")
     for name, kind in fields.items():
         readable(kind(proof.get(name)), f"the field {name}")
     readable(proof.keys() == fields.keys(), f"the fields {proof.keys() - fields.keys()}")
     plain, names = proof["scene"], set(proof["scene"]["coordinates"])
-    demand(proof["motion"].keys() == names == plain["positions"].keys() and len(names) == len(plain["coordinates"]) and plain["forces"].keys() <= names and {x + "'" for x in names} >= plain["velocities"].keys(), "the coordinates")
-    demand(not plain["parameters"].keys() & (names | {x + "'" for x in names} | {"t", "pi"}), "a name that is used twice")
+    rates = {x + "'" for x in names}
+    demand(proof["motion"].keys() == names == plain["positions"].keys() and len(names) == len(plain["coordinates"]), "the coordinates")
+    demand(plain["forces"].keys() <= names and plain["velocities"].keys() <= rates, "a force on or velocity of no coordinate")
+    demand(not plain["parameters"].keys() & (names | rates | {"t", "pi"}), "a name that is used twice")
     digest = hashlib.sha256(json.dumps(plain, separators=(",", ":"), ensure_ascii=False).encode()).hexdigest()
     demand(proof["digest"] == "sha256:" + digest, "the digest of the scene")
     P, UNITY, ROOTS, (M, z), exponents = proof["prime"], proof["unity"], proof["roots"], proof["unity"], proof["exponents"]
     R, E_I, E = exponents["order"], exponents["e^i"], exponents["e"]
     demand(is_prime(P) and P > max(2**50, proof["order"] + 2), "p is no prime over 2^50")
     readable(0 < M < 2**32, "M")
-    factors = [l for l in range(2, 2**16) if M % l == 0 and is_prime(l)] 
-    demand(M % 4 == 0 and pow(z, M, P) == 1 and all(pow(z, M // l, P) != 1 for l in factors), "the image of e^(2 pi i/M)")
+    small = [l for l in range(2, 2**16) if M % l == 0 and is_prime(l)]
+    large = [M // d for d in range(1, 2**16) if M % d == 0 and is_prime(M // d)]
+    demand(M % 4 == 0 and pow(z, M, P) == 1 and all(pow(z, M // l, P) != 1 for l in small + large), "the image of e^(2 pi i/M)")
     demand(R > 0 and pow(E_I, R, P) == pow(E, R, P) == 1, "the images of e^i and e")
     demand(all(i < len(names) and k <= proof["order"] for k, i in proof["rows"]), "the rows")
     demand(all(x < P for c in [*proof["motion"].values(), *proof["reactions"]] for x in c), "a coefficient that is not under p")
@@ -612,8 +624,10 @@ def main(*files):
     start = {"t": scene["time"]} | {x: scene["positions"][x] for x in scene["coordinates"]} | scene["velocities"]
     open_ = [x + "'" for x in scene["coordinates"] if x + "'" not in scene["velocities"]]
     everywhere = " and from almost every one on its piece of the constraints" if proof["almost_every_start"] else ""
-    print(f"verified: no mu_0 makes Chetaev's motion from this start{everywhere} vakonomic (order {proof['order']}, minor {proof['minor']} mod {P})")
-    print("start:", ", ".join(f"{name} = {text}" for name, text in start.items()) + (f"; from the constraints: {' '.join(open_)}" if open_ else "") + remark)
+    of = f"(order {proof['order']}, minor {proof['minor']} mod {P})"
+    print(f"verified: no mu_0 makes Chetaev's motion from this start{everywhere} vakonomic {of}")
+    supplied = f"; from the constraints: {' '.join(open_)}" if open_ else ""
+    print("start:", ", ".join(f"{name} = {text}" for name, text in start.items()) + supplied + remark)
     if proof["completed"]:
         print(f"completed: {' '.join(proof['completed'])}, which decimals of the scene miss by round-off")
     if proof["set"]:

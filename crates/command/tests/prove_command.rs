@@ -83,6 +83,22 @@ fn a_scene_that_is_proved_is_plain() {
 }
 
 #[test]
+fn what_has_no_text_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("sledge.toml").display().to_string();
+    let sledge = include_str!("../../../validation/scenes/sledge.toml");
+    let told = answer(&["prove", "sledge", "--set", "phi=pi/3 + 0.1", "--out", "-"], 0).0;
+    let certificate: Value = serde_json::from_str(&told).expect("JSON");
+    assert_eq!(certificate["set"], json!({ "phi": "pi/3 + 0.1" }));
+    assert_eq!(certificate["scene"]["positions"]["phi"], "1/10 + 1*pi/3");
+    let turned = sledge.replace("x*sin(alpha)", "x*sin(alpha + pi/3 + 0.1)");
+    assert_ne!(turned, sledge);
+    std::fs::write(&file, turned).expect("written");
+    let (_, complaint) = answer(&["prove", &file, "--out", "-"], 3);
+    assert!(complaint.contains("a sum of a fraction and a multiple of pi"), "{complaint}");
+}
+
+#[test]
 fn orders_are_written_as_far_as_they_are_proved() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("flat.toml").display().to_string();

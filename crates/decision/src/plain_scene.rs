@@ -46,13 +46,19 @@ impl PlainScene {
             None => true,
             Some(i) => !at_random && i.checked_sub(n + 1).is_none_or(|i| !start.supplied.contains(&i)),
         };
+        let place = parameters + 1;
+        let drawn = if at_random { parameters..place + n } else { 0..0 };
+        if drawn.into_iter().any(|i| values[i].exact().is_none())
+            || ![0, system.constraints.len()].contains(&open.len())
+        {
+            return Err("the start that was drawn has numbers that are no fractions".into());
+        }
         let text = |i: usize| match values[i].exact() {
-            Some(x) if !is_written(i) => x.to_string(),
+            Some(x) if !is_written(i) || mixes_pi(&g.plain(start.written[i])) => x.to_string(),
             _ => g.plain(start.written[i]),
         };
         let name = |i: usize| system.coordinates[i].name.clone();
         let forces = system.forces.iter().enumerate().filter(|(_, force)| !g.is_zero(**force));
-        let place = parameters + 1;
         let given = (0..n).filter(|i| !open.contains(i));
         let scene = PlainScene {
             coordinates: (0..n).map(name).collect(),

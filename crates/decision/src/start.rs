@@ -147,17 +147,7 @@ impl ExactStart {
         for i in 0..n {
             inputs[first + i] = self.values.run(&inputs)[i];
         }
-        let mut values = self.values.run(&inputs);
-        // velocities with all the digits of a double, no more than constraints, are supplied by these
-        let has_all_digits = |&i: &usize| values[n + i].own_flaw() == Some(Flaw::Number);
-        let rounded: Vec<usize> = (0..n).filter(has_all_digits).collect();
-        let choices = [&self.spare, &rounded].into_iter();
-        let mut choices = choices.filter(|choice| choice.len() == self.system.constraints.len());
-        let spare = choices.find(|choice| rounded.iter().all(|i| choice.contains(i))).unwrap_or(&self.spare);
-        if self.supplied.is_empty() {
-            let supplied = rounded.iter().filter(|i| spare.contains(i));
-            supplied.for_each(|&i| values[n + i] = Jet::constant(Modular::ZERO, None));
-        }
+        let values = self.values.run(&inputs);
         if let Some(flaw) = values.iter().find_map(Jet::own_flaw) {
             return Err(flaw.into());
         }
@@ -171,10 +161,10 @@ impl ExactStart {
         let solved = self.solved(&parameters, time, q, v, &self.supplied);
         match solved {
             Ok(v) => Ok((start(v), Vec::new())),
-            Err(NoExactStart::Nonlinear) if self.supplied.is_empty() && !spare.is_empty() => {
+            Err(NoExactStart::Nonlinear) if self.supplied.is_empty() && !self.spare.is_empty() => {
                 let g = &self.system.graph;
-                let names = spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
-                Ok((start(self.solved(&parameters, time, q, v, spare)?), names))
+                let names = self.spare.iter().map(|&i| g.name(self.system.coordinates[i].velocity)).collect();
+                Ok((start(self.solved(&parameters, time, q, v, &self.spare)?), names))
             }
             // what is supplied is not determined here: the decimals found count, if they fulfil the
             // constraints
@@ -185,6 +175,11 @@ impl ExactStart {
             }
             Err(fault) => Err(fault),
         }
+    }
+
+    /// Places of velocities solved from the constraints, where [`Self::series`] `completed` these.
+    pub(crate) fn open(&self, completed: &[String]) -> &[usize] {
+        if completed.is_empty() { &self.supplied } else { &self.spare }
     }
 
     /// Parameters and time.

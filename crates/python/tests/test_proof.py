@@ -237,6 +237,23 @@ def test_no_certificate_is_verified_where_there_are_multipliers(tmp_path):
     assert verdict(tmp_path, forged, scene) == (FORGED, "forged: the minor\n")
 
 
+def test_what_is_said_of_the_field_is_looked_at(tmp_path):
+    scene = scene_file(tmp_path, PARTICLE % ("sin(y)*z", "z' - sin(y)*x'"))
+    true = written(tmp_path, scene)
+    plain, (M, z) = true["scene"], true["unity"]
+    i = pow(z, M // 4, true["prime"])
+    assert verdict(tmp_path, true | {"unity": [4, i]}, scene)[0] == VERIFIED
+    for unity in ([1, 1], [8, i], [4 * 1000003, i], [4, i + 1], [4, 1]):
+        assert verdict(tmp_path, true | {"unity": unity}, scene)[0] == FORGED
+    # a derivative is none of the plain formulas, though that of x/x is 0
+    code, said = verdict(tmp_path, signed(true | {"scene": plain | {"lagrangian": plain["lagrangian"] + " + (x/x)'"}}), scene)
+    assert code == UNREADABLE and "time derivative" in said
+    # one that holds mod p, but is not so
+    with pytest.raises(verify.Forged, match="round-off"):
+        verify.near(plain, {"x'": "1", "y'": "0.5", "z'": "0.1"})
+    verify.near(plain, {"x'": "1", "y'": "0.5", "z'": "sin(-1)"})
+
+
 def changes(value, path=()):
     """Single changes of a JSON value: the path to a field, and what stands there instead; None for nothing."""
     yield path, None
