@@ -9,3 +9,4 @@ mod pulses;
 mod reference_motions;
 mod references;
 mod stability;
+mod zero;
