@@ -10,3 +10,4 @@ mod reference_motions;
 mod references;
 mod stability;
 mod units;
+mod zero;

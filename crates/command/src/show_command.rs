@@ -109,6 +109,10 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
         if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation) {
             let _ = writeln!(derived, "- integrated as {name}, unless another form is asked for: {why}");
         }
+        let by_hand = scene.removals.iter().find(|own| choice.removal.as_ref().is_some_and(|r| r.name == own.name));
+        if by_hand.is_some_and(|removal| removal.verify(&scene.system) == Ok(false)) {
+            derived += "- by hand: it satisfies the constraints at random points, and that is no proof for all\n";
+        }
         let _ = write!(text, "\n## {}\n\n{derived}", choice.label);
     }
     Ok(text)

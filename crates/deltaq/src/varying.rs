@@ -50,7 +50,7 @@ impl Varying {
         let (varied, fixed): (Vec<_>, Vec<_>) =
             system.parameters.iter().cloned().partition(|p| varied.contains(&p.symbol));
         let general = System { parameters: fixed, ..system.clone() };
-        choice.removal.as_ref().map_or(Ok(()), |removal| removal.verify(&general))?;
+        choice.removal.as_ref().map(|removal| removal.verify(&general)).transpose()?;
         let mut equations = derived(scene, choice, &varied, settings.form)?;
         let mut constants = vec![0.0; equations.free_constants.len()];
         for Parameter { symbol, value } in &varied {

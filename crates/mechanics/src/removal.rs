@@ -114,24 +114,31 @@ impl Removal {
         system.graph.substitute(e, &map)
     }
 
-    /// Substitutes the parametrization into every constraint; each must vanish identically.
+    /// Substitutes the parametrization into every constraint; each must vanish identically. Whether all are
+    /// seen to do so exactly, and not only at random points ([`symbolic::Graph::vanishes`]).
     ///
     /// # Errors
     /// [`RemovalError::ConstraintRemains`] with its residual and bound; [`RemovalError::NotCheckable`] where
-    /// it is finite at no point tried; [`RemovalError::WrongCount`] without `n − h` parameters.
-    pub fn verify(&self, system: &System) -> Result<(), RemovalError> {
+    /// it is finite at too few of the points tried; [`RemovalError::WrongCount`] without `n − h` parameters.
+    pub fn verify(&self, system: &System) -> Result<bool, RemovalError> {
         let expected = system.dimension().saturating_sub(system.constraints.len());
         if self.parameters.len() != expected {
             let (removal, found) = (self.name.clone(), self.parameters.len());
             return Err(RemovalError::WrongCount { removal, found, expected });
         }
-        let constants = system.parameter_values();
+        let (g, constants) = (&system.graph, system.parameter_values());
+        let mut exactly = true;
         for (index, &f) in system.constraints.iter().enumerate() {
-            let verdict = system.graph.vanishes(self.rewrite(system, f), &constants);
+            let rest = self.rewrite(system, f);
+            if g.vanishes_exactly(rest) {
+                continue;
+            }
+            let verdict = g.vanishes(rest, &constants);
+            exactly &= verdict == Vanishing::Exactly;
             if verdict.is_zero() {
                 continue;
             }
-            let (removal, constraint, text) = (self.name.clone(), index + 1, system.graph.plain(f));
+            let (removal, constraint, text) = (self.name.clone(), index + 1, g.plain(f));
             return Err(match verdict {
                 Vanishing::No { value: residual, bound: limit } => {
                     RemovalError::ConstraintRemains { removal, constraint, text, residual, limit }
@@ -139,6 +146,6 @@ impl Removal {
                 _ => RemovalError::NotCheckable { removal, constraint, text },
             });
         }
-        Ok(())
+        Ok(exactly)
     }
 }

@@ -47,9 +47,9 @@ pub enum RemovalError {
         /// Smallest pivot that is accepted.
         limit: f64,
     },
-    /// A constraint with the parametrization put in has no finite value at any of the points tried.
+    /// A constraint with the parametrization put in has a finite value at too few of the points tried.
     #[error(
-        "removal `{removal}`: constraint {constraint} ({text}) is finite at no point tried, so it cannot be checked"
+        "removal `{removal}`: constraint {constraint} ({text}) is finite at too few of the points tried, so it cannot be checked"
     )]
     NotCheckable {
         /// Name of the removal.

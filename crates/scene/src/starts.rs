@@ -97,7 +97,7 @@ impl Starts {
         let varied: Vec<Symbol> = parameters.iter().map(|(s, _)| *s).collect();
         let fixed = system.parameters.iter().filter(|p| !varied.contains(&p.symbol)).cloned().collect();
         let general = System { parameters: fixed, ..system.clone() };
-        scene.removals.iter().try_for_each(|removal| removal.verify(&general)).map_err(SceneErrorKind::Removal)?;
+        scene.removals.iter().try_for_each(|r| r.verify(&general).map(|_| ())).map_err(SceneErrorKind::Removal)?;
 
         let Completion { written, guessed, projected, .. } = &scene.completion;
         let inputs = [&varied[..], &[system.time], &system.positions()].concat();
