@@ -4,7 +4,7 @@ use engine::{Contacts, EngineError, Ladder, Mapping, Run, Study, Surface};
 use validation::catalogue::find;
 
 fn tends_to_chetaev(name: &str, duration: f64, ladder: Ladder) -> Study {
-    let scene = find(name, &[("duration".into(), duration)]).unwrap();
+    let scene = find(name, &[("duration".into(), duration.into())]).unwrap();
     let study = Study::of_scene(&scene, ladder).unwrap();
     assert_eq!(study.targets[0].formulation, "chetaev");
     for formulation in ["vakonomic", "removed-constraint"] {
