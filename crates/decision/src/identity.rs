@@ -78,7 +78,9 @@ fn remainders(
             for (&phi, &rate) in section.iter().zip(&explicit) {
                 let along = g.total_derivative(phi, &flow);
                 match is_unknown(rate) {
-                    Some(unknown) => drop(put_in.insert(unknown, along)),
+                    Some(unknown) => {
+                        put_in.insert(unknown, along);
+                    }
                     None => residuals.push(g.sub(rate, along)),
                 }
             }
