@@ -116,3 +116,27 @@ fn orders_are_written_as_far_as_they_are_proved() {
     let motion = certificate["motion"].as_object().expect("an object");
     assert!(motion.values().all(|series| series.as_array().is_some_and(|series| series.len() == 10)));
 }
+
+#[test]
+fn the_words_say_what_is_proved_and_what_is_not() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("particle.toml").display().to_string();
+    let out = folder.path().join("certificate.json").display().to_string();
+    let particle = |constraint: &str, x: &str| {
+        let scene = include_str!("../../../validation/scenes/particle.toml");
+        let scene = scene.replace("z' - y*x'", constraint).replace("x = { unit = \"m\", start = 0", x);
+        assert!(scene.contains(constraint) && scene.contains(x), "{scene}");
+        std::fs::write(&path, scene).expect("written");
+    };
+    particle("z' - t^6*y*x'", "x = { unit = \"m\", start = 0");
+    assert!(answer(&["prove", &path, "--out", &out], 0).0.contains("proved (order 11)"));
+    particle("z' - (x - sqrt(x^2))*y'", "x = { unit = \"m\", start = 20");
+    let complaint = answer(&["prove", &path, "--out", &out], 3).1;
+    assert!(complaint.contains("modulo two primes, near this start, which is no proof"), "{complaint}");
+    let complaint = answer(&["prove", "disc", "--out", &out], 3).1;
+    assert!(complaint.contains("an identity, (-m*x', -m*y'), for all starts: proved"), "{complaint}");
+    let complaint = answer(&["prove", "disc", "--set", "phi=1.0471975511965976", "--out", &out], 3).1;
+    assert!(complaint.contains("write it as a formula"), "{complaint}");
+    let certificate = answer(&["prove", "sledge", "--set", "phi=pi/3", "--out", "-"], 0).0;
+    assert_eq!(serde_json::from_str::<Value>(&certificate).expect("JSON")["set"]["phi"], "pi/3");
+}

@@ -1,4 +1,5 @@
-//! Is a section an identity? Asked of expressions, with an exact normal form: where that says zero it is proved.
+//! Is a section an identity? Asked of expressions, with an exact normal form: where that says zero it is
+//! proved.
 
 use std::collections::{HashMap, HashSet};
 
@@ -11,13 +12,14 @@ use crate::family::{Family, add_forces, costate};
 /// Nodes over which an elimination is given up.
 const LARGEST: usize = 20_000;
 
-/// Whether the family's equations hold along every motion of `curve` with `η = section`, or with every `η` where
-/// that is `None`; wherever both are regular.
+/// Whether the family's equations hold along every motion of `curve` with `η = section`, or with every `η`
+/// where that is `None`; wherever both are regular.
 ///
-/// Along such a motion `ẏ` and the unknowns `z` of an instant are those of `curve`, and `f = 0`. So `η̇` is the
-/// derivative of the section along them, or an unknown beside `z`. Velocities are put in from `f = 0`; with all
-/// unknowns eliminated, which stand linearly, what is left of every equation has to be the number zero. Pivots
-/// are not zero identically: what is shown where they differ from zero holds on all of `f = 0` by continuity.
+/// Along such a motion `ẏ` and the unknowns `z` of an instant are those of `curve`, and `f = 0`. So `η̇` is
+/// the derivative of the section along them, or an unknown beside `z`. Velocities are put in from `f = 0`;
+/// with all unknowns eliminated, which stand linearly, what is left of every equation has to be the number
+/// zero. Pivots are not zero identically: what is shown where they differ from zero holds on all of `f = 0`
+/// by continuity.
 pub(crate) fn is_identity(system: &System, curve: &Equations, family: &Family, section: Option<&[Expr]>) -> bool {
     remainders(system, curve, family, section)
         .is_some_and(|(g, rest)| g.are_exact(&rest) && rest.iter().all(|&e| vanishes(&g, e)))
@@ -76,7 +78,9 @@ fn remainders(
             for (&phi, &rate) in section.iter().zip(&explicit) {
                 let along = g.total_derivative(phi, &flow);
                 match is_unknown(rate) {
-                    Some(unknown) => drop(put_in.insert(unknown, along)),
+                    Some(unknown) => {
+                        put_in.insert(unknown, along);
+                    }
                     None => residuals.push(g.sub(rate, along)),
                 }
             }
@@ -103,8 +107,8 @@ fn remainders(
     Some((g, rest))
 }
 
-/// Velocities in terms of the others on `f = 0`, one a constraint, in the order in which they are put in; where
-/// constraints are squares, for both signs of every root.
+/// Velocities in terms of the others on `f = 0`, one a constraint, in the order in which they are put in;
+/// where constraints are squares, for both signs of every root.
 fn on_constraints(g: &Graph, constraints: &[Expr], v: &[Symbol]) -> Option<Vec<Vec<(Symbol, Expr)>>> {
     let Some((&first, others)) = constraints.split_first() else { return Some(vec![Vec::new()]) };
     let slope = |&s: &Symbol| {

@@ -40,25 +40,25 @@
 //! least-norm element is the first guess for fits.
 //!
 //! **Proved over a finite field** ([`Question::prove`]). Taylor coefficients `y_k = O_k c + y₀_k` at the
-//! start are algebraic in the scene's numbers. For fractions, roots of unity and sines, cosines, exponentials of
-//! fractions they lie in `Q(ζ)(T, S)`, `T = e^{i/N}`, `S = e^{1/N}` independent (Lindemann, Weierstrass); `T ↦ τ`,
-//! `S ↦ σ`, `ζ = e^{iπ/720720} ↦ z` into the field of `p ≈ 2^60` elements is a homomorphism where nothing divided
-//! by is 0. A minor of `[O | y₀]` not zero there is not zero. So rank `[O | y₀]` = h + 1 at some order proves that
-//! *this very start* has no constants and, as the minor is analytic on `f = 0`, that *almost no* start of its
-//! branch has ([`Question::certificate`], for others to check). What is zero in one field is looked at in a
-//! second one, and still is no proof: where both ranks stay from one order to the next at random `(q, v, t)`, all
-//! later coefficients follow, and almost every start *has* constants; so has this one, if its rank is that one.
-//! At rest, where time stands nowhere, `η̇` is linear in `η` with constant coefficients: coefficients of `y`
-//! follow from as many as there are costates, and one.
+//! start are algebraic in the scene's numbers. For fractions, roots of unity and sines, cosines, exponentials
+//! of fractions they lie in `Q(ζ)(T, S)`, `T = e^{i/N}`, `S = e^{1/N}` independent (Lindemann, Weierstrass);
+//! `T ↦ τ`, `S ↦ σ`, `ζ = e^{iπ/720720} ↦ z` into the field of `p ≈ 2^60` elements is a homomorphism where
+//! nothing divided by is 0. A minor of `[O | y₀]` not zero there is not zero. So rank `[O | y₀]` = h + 1 at
+//! some order proves that *this very start* has no constants and, as the minor is analytic on `f = 0`, that
+//! *almost no* start of its branch has ([`Question::certificate`], for others to check). What is zero in one
+//! field is looked at in a second one, and still is no proof: where both ranks stay from one order to the
+//! next at random `(q, v, t)`, all later coefficients follow, and almost every start *has* constants; so has
+//! this one, if its rank is that one. At rest, where time stands nowhere, `η̇` is linear in `η` with constant
+//! coefficients: coefficients of `y` follow from as many as there are costates, and one.
 //!
 //! **Numbers** are those that are written: decimals, formulas of them, multiples of π in sines and cosines;
-//! square roots of products of small primes. A double is no formula. Logarithms, other roots, π elsewhere have no
-//! images, nor have numbers that were rounded: [`Finding::NotApplicable`] says why.
+//! square roots of products of small primes. A double is no formula. Logarithms, other roots, π elsewhere
+//! have no images, nor have numbers that were rounded: [`Finding::NotApplicable`] says why.
 //!
 //! **An identity** ([`Question::section`]). `c = φ(q, v)`, sought among combinations of momenta, constants
 //! and velocities at random points of one field, tried at others of a second: `μ = −L_ṡ`, say. Put into the
-//! equations along the curve it is proved where these become the number zero ([`Section::proved`]). It holds on
-//! `f = 0`.
+//! equations along the curve it is proved where these become the number zero ([`Section::proved`]). It holds
+//! on `f = 0`.
 //!
 //! **The first difference** ([`Question::leading_difference`]), for any constants: the first `y_k ≠ 0` gives
 //!

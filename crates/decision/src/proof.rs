@@ -25,7 +25,8 @@ const WORK: usize = 100_000_000;
 pub enum Finding {
     /// No constants give this motion.
     None(NoConstants),
-    /// Some do, by ranks modulo two primes: that of `[O | o]` is that of `O` at every order, and grows no more.
+    /// Some do, by ranks modulo two primes: that of `[O | o]` is that of `O` at every order, and grows no
+    /// more.
     Contained {
         /// The rank of `O`: so many constants are fixed.
         rank: usize,
@@ -48,8 +49,8 @@ pub enum Finding {
 pub struct NoConstants {
     /// The order of the derivative of the mismatch at which the last choice is gone.
     pub order: usize,
-    /// Whether a minor of full size is not zero: a proof. Without full rank of `O` there is none, and it rests
-    /// on ranks modulo two primes, those of the real numbers but for an accident.
+    /// Whether a minor of full size is not zero: a proof. Without full rank of `O` there is none, and it
+    /// rests on ranks modulo two primes, those of the real numbers but for an accident.
     pub full_rank: bool,
 }
 
@@ -60,8 +61,8 @@ pub struct Proof {
     pub this_start: Finding,
     /// About all starts on the constraint but a set of measure zero.
     pub almost_every_start: Finding,
-    /// Whether something varies under roots: then what is said of almost every start is said of the branch that
-    /// this start is on.
+    /// Whether something varies under roots: then what is said of almost every start is said of the branch
+    /// that this start is on.
     pub one_branch: bool,
     /// Velocities given as decimals that miss the constraints by round-off, solved from these here.
     pub completed: Vec<String>,

@@ -33,9 +33,10 @@ pub(crate) fn at_random<T>(
 }
 
 impl ExactStart {
-    /// Random integers for time, positions and velocities, the others from the constraints, on the surface that
-    /// the start is on: near the start, on its branch, if something varies under roots; roots in a constant ratio keep the ratio that they have there. Any other square must once
-    /// have no root. The square of a function always has one; without such the surface is in one piece.
+    /// Random integers for time, positions and velocities, the others from the constraints, on the surface
+    /// that the start is on: near the start, on its branch, if something varies under roots; roots in a
+    /// constant ratio keep the ratio that they have there. Any other square must once have no root. The
+    /// square of a function always has one; without such the surface is in one piece.
     pub(crate) fn random(&self, seed: u64, bits: u32) -> Result<SeriesStart<Modular>, NoExactStart> {
         let (parameters, _) = self.given();
         let near = if self.has_branches { Some(self.series()?.0) } else { None };

@@ -1,5 +1,5 @@
-//! Drawn systems: a yes is none where floating point says no, and other words for a system get the same words.
-//! `DRAWN=N` draws so many; `DRAWN_TO=FILE` keeps the systems and what was said, for a referee.
+//! Drawn systems: a yes is none where floating point says no, and other words for a system get the same
+//! words. `DRAWN=N` draws so many; `DRAWN_TO=FILE` keeps the systems and what was said, for a referee.
 
 use std::io::Write;
 
@@ -116,7 +116,8 @@ fn driven_classic(draw: &mut Draw) -> String {
         include_str!("../../../validation/scenes/appell-hamel.toml"),
         include_str!("../../../validation/equivalence/generalized-heisenberg.toml"),
     ]);
-    let term = if classic.contains("\nz ") || !term.contains('z') { term } else { term.replace('z', "x") };
+    let term = if classic.contains("x1 ") { term.replace('x', "x1").replace('y', "y1") } else { term };
+    let term = if classic.contains("psi") { term.replace('z', "x") } else { term };
     let line = classic.lines().find(|line| line.trim_start().starts_with("lagrangian")).expect("a Lagrangian");
     let end = line.rfind('"').expect("a quote");
     classic.replace(line, &format!("{} + {term}{}", &line[..end], &line[end..]))
@@ -195,7 +196,7 @@ fn other_words_for_a_system_get_the_same_words() {
         }
         let mut other = system.clone();
         if let [first, second] = &mut other.constraints[..] {
-            (*first, *second) = (format!("{first} + 2*({second})"), format!("{second} - x*({first})"));
+            (*first, *second) = (format!("{first} + 2*({second})"), format!("{second} - x^2*({first})"));
             check("recombined", &other);
         }
         let mut other = system.clone();

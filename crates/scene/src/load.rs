@@ -49,10 +49,10 @@ impl Scene {
         Scene::parse_with::<f64>(name, text, &[])
     }
 
-    /// Like [`Scene::parse`], with numbers ([`Number`], `f64`) that override those of the text before anything is evaluated: a
-    /// parameter (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or rate, `time`, `duration`,
-    /// or a multiplier (`mu1`, `mu2`, … in the order of the constraints). Parameters and coordinates of these
-    /// names come first; the last override of a name counts.
+    /// Like [`Scene::parse`], with numbers ([`Number`], `f64`) that override those of the text before
+    /// anything is evaluated: a parameter (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or
+    /// rate, `time`, `duration`, or a multiplier (`mu1`, `mu2`, … in the order of the constraints).
+    /// Parameters and coordinates of these names come first; the last override of a name counts.
     ///
     /// # Errors
     /// As [`Scene::parse`]; a fault of an override has line 0.

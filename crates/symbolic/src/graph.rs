@@ -116,7 +116,8 @@ impl Graph {
         self.arena.borrow_mut().number(Number::PI)
     }
 
-    /// Numerator and denominator of `e`, if it is a number that nothing has rounded; π is the quotient [`PI`].
+    /// Numerator and denominator of `e`, if it is a number that nothing has rounded; π is the quotient
+    /// [`PI`].
     ///
     /// ```
     /// let g = symbolic::Graph::new();

@@ -7,8 +7,9 @@ use std::hash::{Hash, Hasher};
 /// Integers up to here are exact in `f64`, so a quotient of two of them is rounded once.
 const EXACT_IN_F64: i64 = 1 << 53;
 
-/// π as a quotient of two primes, off by 1e-18: so it is told apart from all that is written without it.
-pub const PI: (i64, i64) = (11_678_491_999, 3_717_379_459);
+/// The π of `f64` as a quotient of two primes, off by 4e-18: so it is told apart from all that is written
+/// without.
+pub const PI: (i64, i64) = (29_111_083_649, 9_266_345_723);
 
 /// A reduced fraction; compared and hashed by its two parts.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -211,8 +212,11 @@ impl Number {
     }
 
     /// A decimal literal such as `9.81` or `1e-3`; `None` where it is beyond the range of `f64`.
+    ///
+    /// The digits before `e0` are those of a float that was rounded, as it is printed.
     pub(crate) fn from_decimal(literal: &str) -> Option<Self> {
-        if let Some(r) = exact_decimal(literal) {
+        let rounded = literal.ends_with("e0");
+        if let Some(r) = exact_decimal(literal).filter(|_| !rounded) {
             return Some(Number::Exact(r));
         }
         let x: f64 = literal.parse().ok()?;
@@ -266,10 +270,16 @@ impl Number {
     }
 
     pub(crate) fn add(self, other: Self) -> Self {
+        if self.is_zero() || other.is_zero() {
+            return if self.is_zero() { other } else { self };
+        }
         self.combine(other, Rational::add, |a, b| a + b)
     }
 
     pub(crate) fn mul(self, other: Self) -> Self {
+        if self.is_one() || other.is_one() {
+            return if self.is_one() { other } else { self };
+        }
         self.combine(other, Rational::mul, |a, b| a * b)
     }
 
@@ -291,6 +301,11 @@ impl Number {
             && let Some(power) = r.powi(exponent)
         {
             return Number::Exact(power);
+        }
+        match exponent {
+            0 => return Self::ONE,
+            1 => return self,
+            _ => {}
         }
         Self::rounded(match i32::try_from(exponent) {
             Ok(n) => self.to_f64().powi(n),

@@ -130,6 +130,8 @@ pub(crate) fn number_text(n: Number) -> (String, Option<String>) {
                 (r.numerator().to_string(), Some(r.denominator().to_string()))
             }
         }
+        // never read back as an exact number
+        Number::Float(x) if x.is_finite() && Number::from_f64(x) != n => (format!("{x}e0"), None),
         Number::Float(x) => (float_text(x), None),
     }
 }

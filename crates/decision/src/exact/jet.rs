@@ -8,7 +8,7 @@ use super::rational::{Exact, PARTS};
 use super::{Coefficient, Flaw};
 
 /// Coefficients a series can have.
-pub(crate) const ORDERS: usize = 32;
+pub(crate) const ORDERS: usize = 48;
 
 /// `Σ c_k s^k`, known up to `s^{known − 1}`, with no coefficient but zero from `terms` on.
 ///
