@@ -78,7 +78,7 @@ fn a_scene_that_is_proved_is_plain() {
             .as_object()
             .expect("an object")
             .values()
-            .all(|x| x.as_str().is_some_and(|x| x.parse::<u64>().is_ok()))
+            .all(|x| x.as_str().is_some_and(|x| x.parse::<i64>().is_ok()))
     );
 }
 
