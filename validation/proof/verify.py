@@ -331,7 +331,9 @@ def root_of_prime(l):
     d = 8 if l == 2 else l
     if UNITY[0] % d == 0:
         z = pow(UNITY[1], UNITY[0] // d, P)
-        return (z + invert(z) if l == 2 else sum(pow(z, k * k, P) for k in range(l)) * (1 if l % 4 == 1 else -I)) % P
+        gauss = (z + invert(z) if l == 2 else sum(pow(z, k * k, P) for k in range(l)) * (1 if l % 4 == 1 else -I)) % P
+        demand(ROOTS.get(str(l), gauss) == gauss, f"the root of {l}")
+        return gauss
     readable(str(l) in ROOTS, f"the root of {l}: it has no image")
     demand(pow(ROOTS[str(l)], 2, P) == l % P, f"the root of {l}")
     return ROOTS[str(l)]

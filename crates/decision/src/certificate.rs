@@ -1,6 +1,8 @@
 //! What somebody else needs to check a proof.
 
-use crate::exact::{FIELDS, Jet, Modular, PARTS, in_field, inverse};
+use std::collections::BTreeSet;
+
+use crate::exact::{Exact, FIELDS, Jet, Modular, PARTS, TRIED, in_field, inverse};
 use crate::family::{CostateRate, inputs};
 use crate::plain_scene::PlainScene;
 use crate::program::Program;
@@ -51,6 +53,22 @@ const SEED: u64 = 0x5eed_0001;
 fn in_any_field<T>(mut compute: impl FnMut() -> Result<T, String>) -> Result<T, String> {
     let first = in_field(&FIELDS[0], &mut compute);
     first.or_else(|reason| FIELDS[1..].iter().find_map(|field| in_field(field, &mut compute).ok()).ok_or(reason))
+}
+
+/// The primes under roots of these fractions, with the images of their roots.
+fn roots(radicands: impl Iterator<Item = Exact>) -> Vec<(String, u64)> {
+    let mut primes = BTreeSet::new();
+    for x in radicands.filter(|x| x.is_rational()) {
+        let mut rest = x.numerator.saturating_mul(x.denominator).abs();
+        for prime in 2..TRIED {
+            while rest > 1 && rest % prime == 0 {
+                rest /= prime;
+                primes.insert(prime);
+            }
+        }
+        primes.extend((1 < rest && rest < TRIED * TRIED).then_some(rest));
+    }
+    primes.into_iter().filter_map(|p| Some((p.to_string(), Modular::root_of_prime(p)?.value()))).collect()
 }
 
 impl Question<'_> {
@@ -158,7 +176,7 @@ impl Question<'_> {
             prime: Modular::prime(),
             unity: (2 * PARTS as u64, Modular::root_of_unity(1).value()),
             exponents: Modular::exponents(),
-            roots: Modular::roots(radicands).into_iter().map(|(l, root)| (l.to_string(), root)).collect(),
+            roots: roots(radicands),
             order: last,
             rows,
             minor: minor.value(),

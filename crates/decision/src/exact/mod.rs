@@ -7,7 +7,7 @@ mod rational;
 
 pub(crate) use jet::{Jet, ORDERS};
 pub(crate) use linear::{inverse, solve, subtract_product};
-pub(crate) use modular::{FIELDS, Modular, in_field};
+pub(crate) use modular::{FIELDS, Modular, TRIED, in_field};
 pub(crate) use rational::{Exact, PARTS};
 
 /// Why a number has no image in the finite field.

@@ -11,7 +11,6 @@
 //! and what is zero is looked at in a second one. [`in_field`] says in which field a computation is.
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
@@ -92,7 +91,7 @@ const TWOS: u32 = 5;
 /// Primes whose roots are sums of roots of unity.
 const CYCLOTOMIC: [i128; 6] = [2, 3, 5, 7, 11, 13];
 /// Prime factors under this are looked for under roots.
-const TRIED: i128 = 4096;
+pub(crate) const TRIED: i128 = 4096;
 /// Numerators and denominators of small fractions are at most this.
 const SMALL: i128 = 1_000_000;
 
@@ -149,26 +148,6 @@ impl Modular {
     pub(crate) fn exponents() -> (u64, u64, u64) {
         let circle = Self::new(field().circle);
         (field().order, circle.value(), circle.power(NEPER).value())
-    }
-
-    /// Images of roots of primes that [`Self::root`] of any of these takes and that are no Gauss sums.
-    pub(crate) fn roots(radicands: impl Iterator<Item = Exact>) -> BTreeMap<i128, u64> {
-        let mut roots = BTreeMap::new();
-        for x in radicands.filter(|x| x.is_rational()) {
-            let mut rest = x.numerator.saturating_mul(x.denominator).abs();
-            let tried = (2..TRIED).filter(|prime| {
-                let before = rest;
-                while rest > 1 && rest % prime == 0 {
-                    rest /= prime;
-                }
-                rest < before
-            });
-            let mut primes: Vec<i128> = tried.collect();
-            primes.push(rest);
-            primes.retain(|&prime| 1 < prime && prime < TRIED * TRIED && !CYCLOTOMIC.contains(&prime));
-            roots.extend(primes.into_iter().filter_map(|prime| Some((prime, Self::root_of_prime(prime)?.value()))));
-        }
-        roots
     }
 
     pub(crate) fn is_zero(self) -> bool {
@@ -283,7 +262,7 @@ impl Modular {
     }
 
     /// The root of a prime: a Gauss sum where that lies among the roots of unity that have images.
-    fn root_of_prime(prime: i128) -> Option<Self> {
+    pub(crate) fn root_of_prime(prime: i128) -> Option<Self> {
         if !CYCLOTOMIC.contains(&prime) {
             return Self::integer(prime).square_root();
         }
