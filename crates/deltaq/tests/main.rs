@@ -3,4 +3,5 @@
 mod errors;
 mod estimates;
 mod examples;
+mod fits;
 mod gaps;
