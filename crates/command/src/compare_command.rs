@@ -112,7 +112,7 @@ fn compared(
     Ok(comparison)
 }
 
-/// The verdicts on a scene, with largest gaps and error estimates.
+/// The verdicts on a scene, with largest gaps, error estimates and what fits came to.
 fn json_of(comparison: &Comparison) -> Value {
     let mut value = verdicts(std::slice::from_ref(comparison));
     let mut scene = value["scenes"][&comparison.scene.name].take();
@@ -120,6 +120,12 @@ fn json_of(comparison: &Comparison) -> Value {
     for (i, pair) in comparison.pairs.iter().enumerate() {
         let found = &mut scene["pairs"][i];
         (found["largest"], found["estimates"]) = (json!(pair.gap.largest), json!(pair.gap.estimates));
+    }
+    for (i, fit) in comparison.fits.iter().enumerate() {
+        let Some(fitted) = &fit.fitted else { continue };
+        let found = &mut scene["fits"][i];
+        found["constants"] = fitted.constants.iter().map(|(name, c)| (name.clone(), json!(c))).collect();
+        (found["largest"], found["starts"]) = (json!(fitted.gap.largest), json!(fitted.starts));
     }
     scene
 }

@@ -147,8 +147,8 @@ impl Comparison {
         Ok(())
     }
 
-    /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: fits minimize
-    /// the sum of squares, not the largest gap, and a search is no reason to go farther away.
+    /// Puts the constants that a run has in the place of fitted ones that leave a larger gap: a search is no
+    /// reason to go farther away.
     fn keep_closer(&mut self) {
         for fit in &mut self.fits {
             let (first, second) = (fit.run.min(fit.target), fit.run.max(fit.target));

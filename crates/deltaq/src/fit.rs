@@ -1,35 +1,39 @@
-//! Fairness: the free constants with which one motion comes closest to another.
+//! Fairness: the free constants with which one motion comes close to another.
 //!
-//! "Different" means different for *every* choice of free constants (T9), so a comparison searches the best.
+//! "Different" means different for *every* choice of free constants (T9), so a comparison searches for others.
 
 use equations::Equations;
-use integrate::{BoundaryError, ShootOptions, fit};
+use integrate::{BoundaryError, ShootOptions, Shot, fit};
 use mechanics::ConstantsRule;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, solve};
 
-/// Instants at which the fit compares.
+/// Instants at which the sum of squares is taken.
 const INSTANTS: usize = 40;
 
-/// Tolerance of the integrations while the best constants are searched, and the limits on the search.
+/// Tolerance of the integrations while constants are searched, and the limits on the search.
 const SEARCH_TOLERANCE: f64 = 1e-7;
 const SEARCH_STEPS: usize = 5_000;
 const SEARCH_ITERATIONS: usize = 30;
 /// The coarse search is done where an iteration brings less than this part.
 const SEARCH_GAIN: f64 = 1e-4;
 
+/// Readings that take as long as a step.
+const READINGS: usize = 4;
+
 /// Where the search comes this close, relative to the length of the way, it is refined at the full tolerance.
 const CLOSE: f64 = 1e-4;
 
-/// Integrates `equations` with the free constants whose coordinates come closest to those of `target`:
+/// Integrates `equations` with free constants for which the sum of squares
 ///
 /// ```text
-/// minimize Σ_k Δqᵀ M Δq ,   Δq = q(t_k; C) − q_target(t_k) ,   over C .
+/// Σ_k Δqᵀ |M| Δq ,   Δq = q(t_k; C) − q_target(t_k) ,
 /// ```
 ///
-/// Searches at a coarse tolerance from that of `guesses` which is closest, and refines what comes close: then
-/// it may be exact. `None` where there is no free constant, or no guess leads to a motion.
+/// over 40 instants has a minimum near that of `guesses` which is closest: searched at a coarse tolerance,
+/// and refined where it comes close, for then it may be exact. `None` where there is no free constant, or no
+/// guess leads to a motion.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be started or `target` cannot be read off.
@@ -44,37 +48,10 @@ pub fn best_fit(
     if equations.free_constants.is_empty() {
         return Ok(None);
     }
-    let n = setting.system.dimension();
-    let (start, end) = (target.start(), target.end());
-    let mut goal = Vec::new();
-    for k in 1..=INSTANTS {
-        let t = start + (end - start) * k as f64 / INSTANTS as f64;
-        let outputs = target.at(t)?;
-        let factor = metric.factor(t, &outputs.coordinates, &outputs.velocities);
-        goal.push((t, DVector::from_vec(outputs.coordinates), factor));
-    }
-    let origin = DVector::from_vec(target.at(start)?.coordinates);
-    let way = goal.iter().map(|(_, q, factor)| (factor * (q - &origin)).norm_squared()).sum::<f64>().sqrt();
-    let mut prepared = Prepared::new(setting, equations.clone(), settings)?;
-    let settings = &Settings { method: Some(prepared.method.method), ..settings.clone() };
-    let mut difference = |tolerance: f64, limits: &Settings, constants: &[f64], residual: &mut [f64]| {
-        let broken = |reason: String| BoundaryError::Residual { reason };
-        prepared.set_constants(constants);
-        let run = prepared.integrate(end, &limits.options(tolerance)).map_err(|e| broken(e.to_string()))?;
-        run.solution.completed()?;
-        for ((t, q, factor), residual) in goal.iter().zip(residual.chunks_exact_mut(n)) {
-            let outputs = run.at(&mut prepared.compiled, *t).map_err(|e| broken(e.to_string()))?;
-            let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
-            residual.copy_from_slice(difference.as_slice());
-        }
-        Ok(())
-    };
-    let coarse = Settings { max_steps: SEARCH_STEPS, ..settings.clone() };
-    let mut apart = vec![0.0; INSTANTS * n];
-    let mut begun = |guess: &Vec<f64>| -> f64 {
-        difference(SEARCH_TOLERANCE, &coarse, guess, &mut apart)
-            .map_or(f64::INFINITY, |()| apart.iter().map(|d| d * d).sum())
-    };
+    let end = target.end();
+    let mut differences = Differences::new(setting, equations, target, INSTANTS, metric, settings)?;
+    let mut begun =
+        |guess: &Vec<f64>| -> f64 { differences.at(guess, 1.0, 1).map_or(f64::INFINITY, |apart| apart.norm_squared()) };
     let closest = match guesses {
         [only] => Some(only),
         several => {
@@ -82,25 +59,143 @@ pub fn best_fit(
             several.iter().zip(distances).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(guess, _)| guess)
         }
     };
-    let mut search = |tolerance: f64, least_gain: f64, limits: &Settings, guess: &[f64]| {
-        let full = ShootOptions::with_tolerance(tolerance * way);
-        let least_gain = least_gain.max(full.least_gain);
-        let options = ShootOptions { max_iterations: SEARCH_ITERATIONS, least_gain, ..full };
-        fit(
-            &mut |constants: &[f64], residual: &mut [f64]| difference(tolerance, limits, constants, residual),
-            INSTANTS * n,
-            guess,
-            &options,
-        )
-    };
-    let mut best = closest.and_then(|guess| search(SEARCH_TOLERANCE, SEARCH_GAIN, &coarse, guess).ok());
-    if let Some(found) = &best
-        && found.residual < CLOSE * way
-        && let Ok(refined) = search(settings.tolerance * TIGHTER, 0.0, settings, &found.unknowns)
-    {
-        best = Some(refined);
-    }
-    let Some(best) = best else { return Ok(None) };
-    let rule = ConstantsRule::Given(best.unknowns);
+    let Some(constants) = closest.and_then(|guess| differences.squares(guess, settings)) else { return Ok(None) };
+    let rule = ConstantsRule::Given(constants);
     Ok(Some(solve(Setting { end, ..setting }, equations.clone(), &rule, settings)?))
+}
+
+/// Differences to a motion at equidistant instants, as functions of the free constants of another.
+pub(crate) struct Differences {
+    prepared: Prepared,
+    coarse: Settings,
+    /// Time, coordinates and a factor of the metric, at each instant.
+    goal: Vec<(f64, DVector<f64>, DMatrix<f64>)>,
+    origin: DVector<f64>,
+    start: f64,
+    end: f64,
+    /// Steps and readings so far, times the operations of an evaluation.
+    pub(crate) work: usize,
+}
+
+impl Differences {
+    pub(crate) fn new(
+        setting: Setting,
+        equations: &Equations,
+        target: &mut Motion,
+        instants: usize,
+        metric: &mut Metric,
+        settings: &Settings,
+    ) -> Result<Differences, SolveError> {
+        let (start, end) = (target.start(), target.end());
+        let mut goal = Vec::new();
+        for k in 1..=instants {
+            let t = start + (end - start) * k as f64 / instants as f64;
+            let outputs = target.at(t)?;
+            let factor = metric.factor(t, &outputs.coordinates, &outputs.velocities);
+            goal.push((t, DVector::from_vec(outputs.coordinates), factor));
+        }
+        let origin = DVector::from_vec(target.at(start)?.coordinates);
+        let prepared = Prepared::new(setting, equations.clone(), settings)?;
+        let method = Some(prepared.method.method);
+        let coarse = Settings { max_steps: SEARCH_STEPS.min(settings.max_steps), method, ..settings.clone() };
+        Ok(Differences { prepared, coarse, goal, origin, start, end, work: 0 })
+    }
+
+    /// Motions may take no more than this many times the steps of those with these constants.
+    pub(crate) fn limit_steps(&mut self, constants: &[f64], times: usize) {
+        let options = self.coarse.options(SEARCH_TOLERANCE);
+        self.prepared.set_constants(constants);
+        if let Ok(run) = self.prepared.integrate(self.end, &options) {
+            let steps = run.solution.work.steps + run.solution.work.rejected;
+            self.coarse.max_steps = self.coarse.max_steps.min(times * steps.max(10));
+        }
+    }
+
+    /// Number of coordinates.
+    pub(crate) fn dimension(&self) -> usize {
+        self.origin.len()
+    }
+
+    /// Every `stride`-th instant up to this part of the motion.
+    fn instants(&self, part: f64, stride: usize) -> usize {
+        (self.goal.len() as f64 * part) as usize / stride
+    }
+
+    /// The Euclidean length of the way of the target to these instants.
+    pub(crate) fn way(&self, part: f64, stride: usize) -> f64 {
+        let to = (1..=self.instants(part, stride)).map(|k| &self.goal[k * stride - 1]);
+        to.map(|(_, q, factor)| (factor * (q - &self.origin)).norm_squared()).sum::<f64>().sqrt()
+    }
+
+    /// Whether what is left of differences is so small that it may be nothing.
+    pub(crate) fn is_close(&self, largest: f64) -> bool {
+        largest < CLOSE * self.way(1.0, 1) / (self.goal.len() as f64).sqrt()
+    }
+
+    /// All differences with these constants, or why there are none.
+    fn fill(
+        &mut self,
+        constants: &[f64],
+        part: f64,
+        stride: usize,
+        tolerance: f64,
+        limits: &Settings,
+    ) -> Result<DVector<f64>, BoundaryError> {
+        let broken = |reason: String| BoundaryError::Residual { reason };
+        let (n, count) = (self.dimension(), self.instants(part, stride));
+        let Differences { prepared, goal, .. } = self;
+        prepared.set_constants(constants);
+        let end = self.start + (self.end - self.start) * part;
+        let options = Settings { method: Some(prepared.method.method), ..limits.clone() }.options(tolerance);
+        let run = prepared.integrate(end, &options).map_err(|e| broken(e.to_string()))?;
+        let done = run.solution.work;
+        self.work += (done.steps + done.rejected + count / READINGS) * prepared.compiled.cost()[1].operations();
+        run.solution.completed()?;
+        let mut differences = DVector::zeros(count * n);
+        for k in 1..=count {
+            let (t, q, factor) = &goal[k * stride - 1];
+            let outputs = run.at(&mut prepared.compiled, *t).map_err(|e| broken(e.to_string()))?;
+            let difference = factor * (DVector::from_vec(outputs.coordinates) - q);
+            differences.rows_mut((k - 1) * n, n).copy_from(&difference);
+        }
+        Ok(differences)
+    }
+
+    /// All differences with these constants, coarsely; `None` without a motion.
+    pub(crate) fn at(&mut self, constants: &[f64], part: f64, stride: usize) -> Option<DVector<f64>> {
+        let coarse = self.coarse.clone();
+        self.fill(constants, part, stride, SEARCH_TOLERANCE, &coarse).ok()
+    }
+
+    /// The largest gap at these instants, coarsely; infinite without a motion.
+    pub(crate) fn largest(&mut self, constants: &[f64], part: f64, stride: usize) -> f64 {
+        let n = self.dimension();
+        let lengths = |all: DVector<f64>| {
+            let squares = all.as_slice().chunks_exact(n).map(|d| d.iter().map(|x| x * x).sum::<f64>());
+            squares.fold(0.0, f64::max).sqrt()
+        };
+        self.at(constants, part, stride).map_or(f64::INFINITY, lengths)
+    }
+
+    /// The constants of a minimum of the sum of squares over 40 instants near `guess`.
+    pub(crate) fn squares(&mut self, guess: &[f64], settings: &Settings) -> Option<Vec<f64>> {
+        let stride = self.goal.len() / INSTANTS;
+        let (way, n, count) = (self.way(1.0, stride), self.dimension(), self.instants(1.0, stride));
+        let coarse = self.coarse.clone();
+        let mut search = |tolerance: f64, least_gain: f64, limits: &Settings, guess: &[f64]| -> Option<Shot> {
+            let full = ShootOptions::with_tolerance(tolerance * way);
+            let least_gain = least_gain.max(full.least_gain);
+            let options = ShootOptions { max_iterations: SEARCH_ITERATIONS, least_gain, ..full };
+            let mut residuals = |constants: &[f64], residual: &mut [f64]| {
+                let differences = self.fill(constants, 1.0, stride, tolerance, limits)?;
+                residual.copy_from_slice(differences.as_slice());
+                Ok(())
+            };
+            fit(&mut residuals, count * n, guess, &options).ok()
+        };
+        let found = search(SEARCH_TOLERANCE, SEARCH_GAIN, &coarse, guess)?;
+        let close = found.residual < CLOSE * way;
+        let refined = if close { search(settings.tolerance * TIGHTER, 0.0, settings, &found.unknowns) } else { None };
+        Some(refined.unwrap_or(found).unknowns)
+    }
 }

@@ -4,13 +4,16 @@ use equations::FreeConstant;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
-use crate::fit::best_fit;
 use crate::gap::{Gap, Verdict, compare_motions};
+use crate::gap_search::{Closest, WORK, closest};
 use crate::runs::{Decided, Pair, Run};
 use crate::{
     Answer, Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of,
     setting, solve,
 };
+
+/// The vakonomic motion is searched for Chetaev's by this many times the work of other searches.
+const LESS: usize = 4;
 
 /// Which free constants are fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +26,7 @@ pub enum Fits {
     All,
 }
 
-/// The best that free constants can do.
+/// What free constants can do, as far as was found.
 pub struct Fit {
     /// Index of the run whose constants were fitted.
     pub run: usize,
@@ -41,6 +44,8 @@ pub struct FittedMotion {
     pub constants: Vec<(String, f64)>,
     /// The gap that remains.
     pub gap: Gap,
+    /// From how many values of the constants its largest value was searched; 0 for an identity.
+    pub starts: usize,
 }
 
 /// Fits one run's free constants to another wherever the two differ: vakonomic to Chetaev, the first removed
@@ -75,8 +80,9 @@ pub(crate) fn fits(
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
         if pairs.iter().find(pair).is_some_and(|p| p.gap.certain_from.is_some()) {
-            let mut known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
+            let known = by_identity(scene, &runs[run].choice, &runs[target], &fits)?;
             let by_identity = known.is_some();
+            let mut known = known.map(|costates| (costates, 0));
             if let (None, Some(&first)) = (&known, vakonomic.first()) {
                 known = by_multipliers(scene, runs, [first, run, target], metric, settings)?;
             }
@@ -129,7 +135,7 @@ fn by_multipliers(
     [vakonomic, run, target]: [usize; 3],
     metric: &mut Metric,
     settings: &Settings,
-) -> Result<Option<Vec<f64>>, SolveError> {
+) -> Result<Option<(Vec<f64>, usize)>, SolveError> {
     let (Some(removal), Ok(family)) = (runs[run].choice.removal.clone(), &runs[vakonomic].outcome) else {
         return Ok(None);
     };
@@ -139,14 +145,15 @@ fn by_multipliers(
     }
     let (equations, guesses) = (family.equations.clone(), [zero, family.constants.clone()]);
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
-    let found = best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?;
-    found.map_or(Ok(None), |motion| costates_of(scene, &removal, &motion.constants))
+    let found = closest(setting(scene), &equations, goal, &guesses, WORK / LESS, metric, settings)?;
+    let Some(Closest { motion, starts }) = found else { return Ok(None) };
+    Ok(costates_of(scene, &removal, &motion.constants)?.map(|costates| (costates, starts)))
 }
 
 /// Where the constants of a fit come from.
 enum Start {
-    /// They are these, one a memory variable.
-    Known(Vec<f64>),
+    /// They are these, one a memory variable, found from so many starts.
+    Known((Vec<f64>, usize)),
     /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
     /// where nothing was decided; or from those of the run, where these are closer.
     Search(Option<Vec<f64>>),
@@ -179,20 +186,24 @@ fn fit_run(
     if constants.is_empty() {
         return Ok(None);
     }
+    let is_principal = [run, target].map(|i| runs[i].choice.formulation) == ["vakonomic", "chetaev"];
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
     let found = match start {
-        Start::Known(values) => {
+        Start::Known((values, starts)) => {
             let within = Setting { end: goal.end(), ..setting(scene) };
-            Some(solve(within, equations, &ConstantsRule::Given(values), settings)?)
+            let motion = solve(within, equations, &ConstantsRule::Given(values), settings)?;
+            Some(Closest { motion, starts })
         }
         Start::Search(nearest) => {
             let nearest = nearest.filter(|nearest| nearest.len() == constants.len());
             let guesses = [nearest.unwrap_or_else(|| vec![0.0; constants.len()]), constants];
-            best_fit(setting(scene), &equations, goal, &guesses, metric, settings)?
+            let limit = if is_principal { WORK } else { WORK / LESS };
+            closest(setting(scene), &equations, goal, &guesses, limit, metric, settings)?
         }
     };
-    let Some(mut motion) = found else { return Ok(Some(None)) };
+    let Some(Closest { mut motion, starts }) = found else { return Ok(Some(None)) };
     let gap = compare_motions(goal, &mut motion, metric)?;
     let names = constant_names(&motion.equations);
-    Ok(Some(Some(FittedMotion { constants: names.into_iter().zip(motion.constants.clone()).collect(), gap })))
+    let constants = names.into_iter().zip(motion.constants.clone()).collect();
+    Ok(Some(Some(FittedMotion { constants, gap, starts })))
 }

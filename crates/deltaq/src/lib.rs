@@ -11,7 +11,7 @@
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
 //! - [`prepare`]: the equations compiled and started, for other integrators; [`code()`]: as source text.
 //! - [`Ensemble`]: many starts and parameters of one system at once.
-//! - [`compare`]: a scene in every formulation, pair by pair, with the best fit of the free constants.
+//! - [`compare`]: a scene in every formulation, pair by pair, with fits of the free constants.
 //! - [`membership()`]: whether the motion of one formulation is one of another for *some* free constants.
 //!
 //! **When two motions differ.** Their gap is a length in the kinetic metric, `M = ∂²L/∂v²` (n×n), in `√E·T`
@@ -75,6 +75,7 @@ mod fit;
 mod fits;
 mod form;
 mod gap;
+mod gap_search;
 mod growth;
 mod integrability;
 mod later_chart;

@@ -4,4 +4,5 @@ mod contradictions;
 mod errors;
 mod estimates;
 mod examples;
+mod fits;
 mod gaps;

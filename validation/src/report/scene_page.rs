@@ -68,8 +68,8 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<Stri
     }
     let fits = tables::fits(comparison);
     if !fits.is_empty() {
-        let _ = writeln!(page, "\n### With the best free constants\n\n{fits}");
-        page += "Two formulations differ as theories only if they do so for every choice of the constants that the start leaves free. By identity: for a removal by \
+        let _ = writeln!(page, "\n### With other free constants\n\n{fits}");
+        page += "What is minimized is the largest gap of the run; smaller ones than were reached may exist. Two formulations differ as theories only if they do so for every choice of the constants that the start leaves free. By identity: for a removal by \
                  coordinates $P(t_0) = -\\partial(L + \\mu_0\\cdot f)/\\partial\\dot w$ gives the vakonomic motion, and nothing is searched.\n";
     }
     if !comparison.decided.is_empty() {

@@ -119,9 +119,9 @@ pub(crate) fn growth(comparison: &Comparison) -> Table {
     table
 }
 
-/// What the best free constants leave of a gap.
+/// What free constants that a search has found leave of a gap.
 pub(crate) fn fits(comparison: &Comparison) -> Table {
-    let columns = ["motion", "fitted to", "by", "best free constants", "largest gap before", "largest gap left"];
+    let columns = ["motion", "fitted to", "by", "free constants", "largest gap before", "largest gap reached"];
     let mut table = Table::new(columns.into_iter().chain(["verdict after"]));
     for fit in &comparison.fits {
         let label = |i: usize| comparison.runs[i].choice.label.clone();
@@ -134,7 +134,11 @@ pub(crate) fn fits(comparison: &Comparison) -> Table {
                 (constants.join(", "), short(fitted.gap.largest), verdict_words(&fitted.gap))
             }
         };
-        let how = if fit.by_identity { "identity" } else { "search" };
+        let how = match &fit.fitted {
+            _ if fit.by_identity => "identity".into(),
+            Some(fitted) => format!("search from {} starts", fitted.starts),
+            None => "search".into(),
+        };
         table.row(&[&label(fit.run), &label(fit.target), &how, &constants, &or_dash(before), &left, &verdict]);
     }
     table

@@ -11,7 +11,7 @@ pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
         Ok(membership) => membership,
     };
     let mut sentences = vec![sentence(membership)];
-    sentences.extend(least_gap(comparison, &membership.answer()));
+    sentences.extend(gap_reached(comparison, &membership.answer()));
     sentences
 }
 
@@ -94,8 +94,8 @@ fn up_to(until: Option<f64>) -> String {
     until.map_or(String::new(), |t| format!(" up to t = {}, after which round-off is too loud", precise(t)))
 }
 
-/// What a search over `μ₀` leaves of the gap, where there is none that leaves nothing.
-fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
+/// What a search over `μ₀` has come to, where there is none that leaves nothing: smaller gaps may exist.
+fn gap_reached(comparison: &Comparison, answer: &Answer) -> Option<String> {
     if matches!(answer, Answer::SomeProved | Answer::Some { .. }) {
         return None;
     }
@@ -103,7 +103,10 @@ fn least_gap(comparison: &Comparison, answer: &Answer) -> Option<String> {
     let fitted = comparison.fits.iter().find(|f| f.run == run && f.target == target)?.fitted.as_ref()?;
     let constants: Vec<String> = fitted.constants.iter().map(|(_, c)| precise(*c)).collect();
     let (constants, gap) = (constants.join(", "), short(fitted.gap.largest));
-    Some(format!("The least gap that a search found is {gap}, at μ₀ = ({constants})."))
+    Some(format!(
+        "A gap of {gap} was reached, the largest of the run, at μ₀ = ({constants}), from {} starts.",
+        fitted.starts
+    ))
 }
 
 /// How far it was looked, for a yes that is not proved.
