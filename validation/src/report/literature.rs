@@ -146,9 +146,9 @@ impl Case {
 }
 
 impl Claim {
-    /// *confirmed*: found as claimed throughout; *qualified*: just where the condition holds; *contradicted*: not
-    /// throughout, in the reading given; *refuted*: not so, and the full statement was read; *open*: nothing to
-    /// compute.
+    /// *confirmed*: found as claimed throughout; *qualified*: just where the condition holds; *contradicted*:
+    /// not throughout, in the reading given; *refuted*: not so, and the full statement was read; *open*:
+    /// nothing to compute.
     fn follows(&self, found: &[Found]) -> &'static str {
         let as_claimed: Vec<bool> = self.case.iter().zip(found).map(|(case, found)| found.is(&case.claimed)).collect();
         let by_condition = || self.case.iter().zip(&as_claimed).all(|(case, yes)| *yes != case.outside);
