@@ -100,7 +100,7 @@ pub enum Command {
     Solve(SolveArguments),
     /// Integrate many starts or parameters of a scene at once, by Taylor series, in one formulation.
     Ensemble(EnsembleArguments),
-    /// Linearize a steady motion: its eigenvalues, with errors, and over a parameter where stability to first order changes.
+    /// Linearize a steady motion: eigenvalues with errors, and where stability to first order changes.
     Linearize(LinearizeArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),

@@ -58,8 +58,7 @@ fn what_is_not_steady_is_frozen_found_or_refused() {
     }
 }
 
-/// `theta' = 0` and both spins, so the upright disc rolls on with what it has: the critical spin is that of the
-/// motion that was found, not that of the start.
+/// The critical spin is that of the motion that was found, not that of the start.
 #[test]
 fn a_critical_value_is_that_of_the_motion_found() {
     let sweep = ["linearize", "falling-disc", "--find", "--free", "theta", "--sweep", "psi'=2:3:2"];

@@ -87,8 +87,8 @@ pub(crate) fn structural_rank(entries: &DMatrix<bool>) -> usize {
     (0..entries.nrows()).filter(|&i| place(i, entries, &mut vec![false; entries.ncols()], &mut row_of)).count()
 }
 
-/// `Q₁ᵀ B Q₁` with `Q₁` orthogonal to the null space of `B`, until there is none: one zero less per vector. And
-/// the same of errors, by their sizes.
+/// `Q₁ᵀ B Q₁` with `Q₁` orthogonal to the null space of `B`, until there is none: one zero less per vector.
+/// And the same of errors, by their sizes.
 fn without_null_space(mut block: DMatrix<f64>, mut noise: DMatrix<f64>, error: f64) -> [DMatrix<f64>; 2] {
     loop {
         let svd = SingularValues::of(&block);
@@ -102,8 +102,8 @@ fn without_null_space(mut block: DMatrix<f64>, mut noise: DMatrix<f64>, error: f
     }
 }
 
-/// Eigenvalues, and how far from the matrix that has them exactly the given one is: the QR algorithm in its own
-/// axes, or, where it does not converge, in turned ones.
+/// Eigenvalues, and how far from the matrix that has them exactly the given one is: the QR algorithm in its
+/// own axes, or, where it does not converge, in turned ones.
 fn eigenvalues(matrix: DMatrix<f64>) -> Option<(Vec<Complex<f64>>, f64)> {
     let n = matrix.nrows();
     if n == 0 {

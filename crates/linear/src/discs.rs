@@ -110,9 +110,9 @@ impl Discs {
         found.iter().all(|x| x.is_finite()).then_some(found)
     }
 
-    /// The largest `j` with `N^j` not zero, by more than errors explain, where `N` is `A − centre` on the space of
-    /// the eigenvalues within `within` of `centre`, `size` in number: `N^j` is the contour integral of
-    /// `(z − centre)^j (z − A)⁻¹` over 2πi. `None` where others are too close for a contour.
+    /// The largest `j` with `N^j` not zero, by more than errors explain, where `N` is `A − centre` on the
+    /// space of the eigenvalues within `within` of `centre`, `size` in number: `N^j` is the contour integral
+    /// of `(z − centre)^j (z − A)⁻¹` over 2πi. `None` where others are too close for a contour.
     pub(crate) fn power(&self, centre: Complex<f64>, within: f64, size: usize) -> Option<usize> {
         if self.largest == 0.0 {
             return Some(0);

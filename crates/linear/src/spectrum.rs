@@ -63,8 +63,8 @@ pub struct Chain {
 /// Errors: entries are off by what is given, by themselves where they were left out, and within a block,
 /// balanced, by ε of its norm and what the QR algorithm leaves. The error of an eigenvalue is the radius of a
 /// circle round it that none crosses while all entries of the matrix move so far, and at least 4 ε of the
-/// largest eigenvalue. Of `k` eigenvalues close to a multiple one it is about the `k`-th root of that. Only zeros
-/// that every matrix with entries in these places has stay where they are.
+/// largest eigenvalue. Of `k` eigenvalues close to a multiple one it is about the `k`-th root of that. Only
+/// zeros that every matrix with entries in these places has stay where they are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Blocks, by their first places.
@@ -187,8 +187,8 @@ impl Spectrum {
 }
 
 impl Block {
-    /// Finds the errors; no error is below `least`, and what is not above its error is zero. `own` are the discs
-    /// of this block, where it has just these zeros.
+    /// Finds the errors; no error is below `least`, and what is not above its error is zero. `own` are the
+    /// discs of this block, where it has just these zeros.
     fn enclose(&mut self, own: Option<&Discs>, all: &Discs, least: f64) {
         let discs = own.unwrap_or(all);
         let of = |value: Complex<f64>| discs.radius(Complex::new(value.re, value.im.abs()), least);

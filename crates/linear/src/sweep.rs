@@ -172,8 +172,8 @@ fn change(at: At, first: SweepPoint, last: SweepPoint) -> Result<(Change, SweepP
     Ok((Change { value, width, asked, state: high.state.clone(), unstable, frequency }, high))
 }
 
-/// The point nearest to `edge`, on the way to `end`, at which errors leave as much open as there; `edge` where
-/// there is none close by.
+/// The point nearest to `edge`, on the way to `end`, at which errors leave as much open as there; `edge`
+/// where there is none close by.
 fn settled(at: At, edge: &SweepPoint, end: &SweepPoint) -> Result<SweepPoint, LinearError> {
     let open = |part: &Part| (part.unstable(), not_decaying(part), part.chains.len());
     let way = end.asked - edge.asked;

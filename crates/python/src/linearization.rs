@@ -42,8 +42,8 @@ pub(crate) struct Linearization {
     zero_error: f64,
     /// How many eigenvalues have a real part above their error.
     unstable: usize,
-    /// The same in words: "like t" where an eigenvalue on the imaginary axis has too few eigenvectors, "undecided"
-    /// where errors leave it open or all eigenvalues are zero.
+    /// The same in words: "like t" where an eigenvalue on the imaginary axis has too few eigenvectors,
+    /// "undecided" where errors leave it open or all eigenvalues are zero.
     growing: String,
 }
 

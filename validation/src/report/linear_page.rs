@@ -11,8 +11,8 @@ use crate::report::Table;
 use deltaq::words::{enumerate, precise, short};
 use picture::{Axis, Curve, Panel, Picture, Style};
 
-/// What was linearized, a table with one line per value, the states that were `found`, what first order leaves
-/// open, and where stability changes.
+/// What was linearized, a table with one line per value, the states that were `found`, what first order
+/// leaves open, and where stability changes.
 pub fn sweep_text(scene: &Scene, sweep: &Sweep, found: bool) -> String {
     let mut text = format!("# {}\n\n", scene.title);
     let Some(SweepPoint { linearization, part, .. }) = sweep.points.first() else { return text };

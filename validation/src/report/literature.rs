@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
 use deltaq::{Settings, choices, solve_choice};
-use random::parallel;
+use random::{parallel, substitution};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -33,6 +33,9 @@ struct Claim {
     read: String,
     about: String,
     says: String,
+    /// The full statement was read, not an abstract or what is remembered.
+    #[serde(default)]
+    in_full: bool,
     /// The word that the computation is expected to lead to.
     word: String,
     /// The condition under which the claim holds, where it does not hold throughout.
@@ -56,6 +59,9 @@ struct Case {
     #[serde(default = "yes")]
     claimed: String,
     along: Option<Along>,
+    /// Asked is whether Lagrange's equations of `L` with the constraint put into it have Chetaev's motion.
+    #[serde(default)]
+    put_in: bool,
     /// The condition of the claim does not hold here.
     #[serde(default)]
     outside: bool,
@@ -77,6 +83,9 @@ fn yes() -> String {
 
 impl Case {
     fn found(&self) -> Result<Found> {
+        if self.put_in {
+            return self.found_put_in();
+        }
         let Some(along) = &self.along else {
             let [here, almost_everywhere] = self.asked.found(&BTreeMap::new())?;
             return Ok(if self.almost_every_start { almost_everywhere } else { here });
@@ -101,10 +110,31 @@ impl Case {
         Ok(Found::new(if inside { "yes" } else { "no" }, "integrated"))
     }
 
+    /// Whether the control has Chetaev's motion, up to the end.
+    fn found_put_in(&self) -> Result<Found> {
+        let scene = self.asked.scene(&BTreeMap::new())?;
+        let (choices, settings) = (choices(&scene), Settings::default());
+        let chetaev = choices.iter().find(|choice| choice.formulation == "chetaev").context("no such formulation")?;
+        let control = substitution::run(&scene, &choices, &settings).context("no control")?;
+        let [mut one, mut other] = [solve_choice(&scene, chetaev, &settings)?, control.outcome?];
+        let end = scene.start.t + scene.duration;
+        ensure!(one.end() >= end && other.end() >= end, "a motion ends before {end}");
+        let mut apart = 0.0_f64;
+        for i in 0..=INSTANTS {
+            let t = scene.start.t + scene.duration * i as f64 / INSTANTS as f64;
+            let [one, other] = [one.at(t.min(end))?, other.at(t.min(end))?].map(|at| at.coordinates);
+            let size = one.iter().fold(1.0_f64, |a, x| a.max(x.abs()));
+            apart = one.iter().zip(&other).fold(apart, |a, (x, y)| a.max((x - y).abs() / size));
+        }
+        let how = format!("integrated, {} apart", if apart < 1e-7 { "under 1e-7".into() } else { short(apart) });
+        Ok(Found::new(if apart < 1e-7 { "yes" } else { "no" }, how))
+    }
+
     /// What is asked.
     fn question(&self) -> String {
         let link = self.asked.link();
         match &self.along {
+            None if self.put_in => format!("{link}: does $L$ with the constraint put into it give Chetaev's motion?"),
             None if self.almost_every_start => format!("{link}: almost every start"),
             None => format!("{link}: this start"),
             Some(Along { formulation, quantity, during: [from, to], between }) => {
@@ -116,8 +146,9 @@ impl Case {
 }
 
 impl Claim {
-    /// *confirmed*: found as claimed throughout; *qualified*: just where the condition holds; *refuted*: not
-    /// throughout; *open*: nothing to compute.
+    /// *confirmed*: found as claimed throughout; *qualified*: just where the condition holds; *contradicted*:
+    /// not throughout, in the reading given; *refuted*: not so, and the full statement was read; *open*:
+    /// nothing to compute.
     fn follows(&self, found: &[Found]) -> &'static str {
         let as_claimed: Vec<bool> = self.case.iter().zip(found).map(|(case, found)| found.is(&case.claimed)).collect();
         let by_condition = || self.case.iter().zip(&as_claimed).all(|(case, yes)| *yes != case.outside);
@@ -127,8 +158,10 @@ impl Claim {
             "confirmed"
         } else if self.condition.is_some() && by_condition() {
             "qualified"
-        } else {
+        } else if self.in_full {
             "refuted"
+        } else {
+            "contradicted"
         }
     }
 
@@ -166,10 +199,12 @@ impl LiteratureReport {
 
     /// The first line of the page.
     pub fn headline(&self) -> String {
-        let [confirmed, refuted, qualified, open] = ["confirmed", "refuted", "qualified", "open"]
-            .map(|word| self.claims.iter().filter(|claim| claim.word == word).count());
+        let [confirmed, contradicted, refuted, qualified, open] =
+            ["confirmed", "contradicted", "refuted", "qualified", "open"]
+                .map(|word| self.claims.iter().filter(|claim| claim.word == word).count());
         format!(
-            "Of {} published claims, as abstracts or memory have them, {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, {refuted} are refuted, {open} are open.",
+            "Of {} published claims, as abstracts or memory have them, {confirmed} are confirmed on the scenes here, {qualified} hold under a condition, \
+             {contradicted} are contradicted in the reading given here, {refuted} are refuted, {open} are open.",
             self.claims.len()
         )
     }
@@ -187,6 +222,7 @@ impl LiteratureReport {
         for (i, (claim, found)) in self.claims.iter().zip(&self.found).enumerate() {
             let Claim { source, read, about, says, word, remark, .. } = claim;
             all.row(&[&(i + 1), source, about, &format!("**{word}**")]);
+            let word = if word == "contradicted" { "contradicted in the reading given here" } else { word };
             let condition = claim.condition.as_ref().map_or(String::new(), |condition| format!(" where {condition}"));
             let word = format!("**{word}**{condition}. {remark}");
             let _ = writeln!(each, "\n## {}. {source}: {about}\n\n{says} {read}\n\n{}", i + 1, word.trim_end());
@@ -226,10 +262,11 @@ mod tests {
         let mixed = case("disc", "some", false) + &case("sledge", "some", true);
         assert_eq!(claim("open", ""), Ok(()));
         assert_eq!(claim("confirmed", &case("disc", "one", false)), Ok(()));
-        assert_eq!(claim("refuted", &case("sledge", "some", false)), Ok(()));
-        assert_eq!(claim("refuted", &mixed), Ok(()));
+        assert_eq!(claim("contradicted", &case("sledge", "some", false)), Ok(()));
+        assert_eq!(claim("contradicted", &mixed), Ok(()));
+        assert_eq!(claim("refuted", &format!("in_full = true\n{mixed}")), Ok(()));
         assert_eq!(claim("qualified", &format!("condition = ''\n{mixed}")), Ok(()));
         let told = claim("confirmed", &mixed).expect_err("a word that does not follow");
-        assert!(told.contains("it is refuted"), "{told}");
+        assert!(told.contains("it is contradicted"), "{told}");
     }
 }

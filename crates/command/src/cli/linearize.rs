@@ -28,8 +28,8 @@ pub struct LinearizeArguments {
     /// Equidistant values of a parameter, a start value or mu1, …, both ends included.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub sweep: Option<Range>,
-    /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit, and
-    /// print it; critical values are those of the motions found.
+    /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit,
+    /// and print it; critical values are those of the motions found.
     #[arg(long)]
     pub find: bool,
     /// Folder for a page and a picture of the eigenvalues over what varies.
