@@ -59,7 +59,8 @@ impl SolvedConstraints {
         for _ in 0..h {
             let (p, c) = choose_pivot(candidates(&matrix, &pivots, n))?;
             let Some(Pivot { entry: pivot, row: undivided, column }) = matrix.take(p, c) else { break };
-            let divided = |entry: &Entry| Entry { number: entry.number / pivot.number, ..known(g.div(entry.e, pivot.e)) };
+            let divided =
+                |entry: &Entry| Entry { number: entry.number / pivot.number, ..known(g.div(entry.e, pivot.e)) };
             let row: BTreeMap<usize, Entry> = undivided.iter().map(|(&j, entry)| (j, divided(entry))).collect();
             quotients.extend(row.range(..n).map(|(_, entry)| entry.e));
             for (i, factor) in column {

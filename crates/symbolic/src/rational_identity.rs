@@ -78,7 +78,8 @@ fn power(base: u64, exponent: Rational, root: u64) -> Option<u64> {
     let (whole, part) = (exponent.floor(), exponent.numerator().rem_euclid(exponent.denominator()));
     let positive = raised(base, whole.unsigned_abs());
     let whole = if whole < 0 { inverse(positive)? } else { positive };
-    let root = if part == 0 { 1 } else { raised(random(root, exponent.denominator().unsigned_abs()), part.unsigned_abs()) };
+    let root =
+        if part == 0 { 1 } else { raised(random(root, exponent.denominator().unsigned_abs()), part.unsigned_abs()) };
     Some(times(whole, root))
 }
 
