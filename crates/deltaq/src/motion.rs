@@ -158,22 +158,28 @@ impl Motion {
         let times = self.grid(WATCHED);
         watch.begin(times[0], &self.at(times[0]).ok()?, &[]);
         let kept: Vec<Outputs> = times.iter().map_while(|&t| self.at(t).ok()).collect();
-        if times.iter().zip(&kept).all(|(&t, kept)| watch.is_clear(t, kept)) {
-            return None;
-        }
         let invariants = self.equations.invariants.clone();
-        let mut before = times[0];
-        for (&t, kept) in times.iter().zip(&kept) {
-            let looser = self.looser.outputs(&mut self.compiled, t).ok()?;
-            let mut moved = || {
-                let mut state = self.kept.state(&mut self.compiled, t).ok()?;
-                move_digits(&mut state, |_| UNITS);
-                self.compiled.outputs(t, &state).ok().map(|outputs| outputs.invariants)
-            };
-            if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut moved) {
-                return Some(Doubt { from: before, because });
+        let (mut before, mut clear) = (times[0], true);
+        for pass in [true, false] {
+            for (&t, kept) in times.iter().zip(&kept) {
+                let looser = if pass { None } else { Some(self.looser.outputs(&mut self.compiled, t).ok()?) };
+                let mut moved = || {
+                    let mut state = self.kept.state(&mut self.compiled, t).ok()?;
+                    move_digits(&mut state, |_| UNITS);
+                    self.compiled.outputs(t, &state).ok().map(|outputs| outputs.invariants)
+                };
+                let Some(looser) = looser else {
+                    clear &= watch.is_clear(t, kept, &mut moved);
+                    continue;
+                };
+                if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut moved) {
+                    return Some(Doubt { from: before, because });
+                }
+                before = t;
             }
-            before = t;
+            if clear {
+                break;
+            }
         }
         None
     }

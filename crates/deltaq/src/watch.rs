@@ -12,6 +12,9 @@ use crate::single_run::UNITS;
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
 
+/// Gives the invariants with the last digits of the state changed.
+pub(crate) type Moved<'a> = &'a mut dyn FnMut() -> Option<Vec<f64>>;
+
 /// Holds `f = 0` and the invariants against the error estimate.
 #[derive(Clone)]
 pub(crate) struct Watch {
@@ -20,6 +23,8 @@ pub(crate) struct Watch {
     inputs: Vec<Bounded>,
     /// `|f|` and the invariants at the start.
     start: (Vec<f64>, Vec<f64>),
+    /// What was added up to each invariant, where it is known to be more than its value.
+    sizes: Vec<f64>,
     /// Largest differences of the two runs so far: of `(q, v)`, and of the invariants.
     differences: (Vec<f64>, Vec<f64>),
 }
@@ -33,7 +38,8 @@ impl Watch {
         values.retain(|symbol, _| !parameters.contains(symbol));
         let constraints = Evaluator::new(system.graph.compile(&inputs, &system.constraints, &values)?);
         let inputs = vec![Bounded::from_f64(0.0); inputs.len()];
-        Ok(Watch { constraints, inputs, start: Default::default(), differences: Default::default() })
+        let (start, sizes, differences) = Default::default();
+        Ok(Watch { constraints, inputs, start, sizes, differences })
     }
 
     /// A motion begins, with these values of the parameters that vary.
@@ -43,36 +49,46 @@ impl Watch {
         self.put(t, start);
         let residuals = self.constraints.evaluate(&self.inputs).iter().map(|f| f.value.abs()).collect();
         self.start = (residuals, start.invariants.clone());
+        self.sizes = start.invariants.iter().map(|x| x.abs()).collect();
         self.differences = (vec![0.0; 2 * start.coordinates.len()], vec![0.0; start.invariants.len()]);
     }
 
-    /// Whether nothing is off by more than round-off: no error estimate is needed.
-    pub(crate) fn is_clear(&mut self, t: f64, kept: &Outputs) -> bool {
+    /// Whether nothing is off by more than round-off: no error estimate is needed. `moved` gives the invariants
+    /// with the last digits of the state changed, which tells what was added up to them.
+    pub(crate) fn is_clear(&mut self, t: f64, kept: &Outputs, moved: Moved) -> bool {
         self.put(t, kept);
-        let holds = |f: &Bounded| f.may_be_zero() || !f.is_finite();
-        let constant = |(now, then): (&f64, &f64)| (now - then).abs() <= ROUND_OFF * then.abs();
-        self.constraints.evaluate(&self.inputs).iter().all(holds)
-            && kept.invariants.iter().zip(&self.start.1).all(constant)
+        if !self.constraints.evaluate(&self.inputs).iter().all(|f| f.may_be_zero() || !f.is_finite()) {
+            return false;
+        }
+        if self.is_constant(kept) {
+            return true;
+        }
+        let Some(moved) = moved() else { return true };
+        for (size, change) in self.sizes.iter_mut().zip(subtract(&moved, &kept.invariants)) {
+            *size = size.max(change.abs() / (UNITS * f64::EPSILON));
+        }
+        self.is_constant(kept)
     }
 
-    /// What is off by more than the two runs, at `t` and before, leave open. `moved` gives the invariants with
-    /// the last digits of the state changed.
+    fn is_constant(&self, kept: &Outputs) -> bool {
+        let drifts = subtract(&kept.invariants, &self.start.1);
+        drifts.iter().zip(&self.sizes).all(|(drift, size)| drift.abs() <= ROUND_OFF * size)
+    }
+
+    /// What is off by more than the two runs, at `t` and before, leave open; `moved` as in [`Watch::is_clear`].
     pub(crate) fn complaint(
         &mut self,
         t: f64,
         [kept, looser]: [&Outputs; 2],
         invariants: &[Named],
-        moved: &mut dyn FnMut() -> Option<Vec<f64>>,
+        moved: Moved,
     ) -> Option<String> {
         let place = subtract(&kept.coordinates, &looser.coordinates);
         let differences = place.into_iter().chain(subtract(&kept.velocities, &looser.velocities));
         self.differences.0.iter_mut().zip(differences).for_each(|(d, now)| *d = d.max(now.abs()));
         let differences = subtract(&kept.invariants, &looser.invariants);
         self.differences.1.iter_mut().zip(differences).for_each(|(d, now)| *d = d.max(now.abs()));
-        if self.is_clear(t, kept) {
-            return None;
-        }
-        self.broken(t).or_else(|| self.drifting(t, kept, invariants, moved))
+        if self.is_clear(t, kept, moved) { None } else { self.broken(t).or_else(|| self.drifting(t, kept, invariants)) }
     }
 
     fn broken(&mut self, t: f64) -> Option<String> {
@@ -96,23 +112,11 @@ impl Watch {
         residuals.iter().enumerate().find_map(over)
     }
 
-    fn drifting(
-        &self,
-        t: f64,
-        kept: &Outputs,
-        invariants: &[Named],
-        moved: &mut dyn FnMut() -> Option<Vec<f64>>,
-    ) -> Option<String> {
+    fn drifting(&self, t: f64, kept: &Outputs, invariants: &[Named]) -> Option<String> {
         let drifts = subtract(&kept.invariants, &self.start.1);
-        let large = |i: usize| drifts[i].abs() > CERTAINTY * self.differences.1[i] + ROUND_OFF * self.start.1[i].abs();
-        if !(0..drifts.len()).any(large) {
-            return None;
-        }
-        let digits = moved()?;
-        (0..drifts.len()).filter(|&i| large(i)).find_map(|i| {
-            let terms = (digits[i] - kept.invariants[i]).abs() / (UNITS * f64::EPSILON);
-            let estimate = self.differences.1[i] + ROUND_OFF * (terms + kept.invariants[i].abs());
-            let (drift, name) = (drifts[i].abs(), &invariants[i].name);
+        drifts.iter().enumerate().find_map(|(i, drift)| {
+            let estimate = self.differences.1[i] + ROUND_OFF * self.sizes[i];
+            let (drift, name) = (drift.abs(), &invariants[i].name);
             (drift > CERTAINTY * estimate).then(|| {
                 format!("{name} is not constant: it has changed by {drift:.1e} at t = {t:.6}, with an error estimate of {estimate:.1e}")
             })

@@ -1,6 +1,7 @@
 //! Numbers that stay known exactly: `a + b π` with fractions `a` and `b`, the angles among them.
 
 use std::f64::consts::PI;
+use std::fmt;
 
 use super::Flaw;
 
@@ -166,6 +167,17 @@ pub(crate) fn inverse(a: i128, p: i128) -> i128 {
         s = (s.1, s.0 - quotient * s.1);
     }
     s.0.rem_euclid(p)
+}
+
+impl fmt::Display for Exact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (n, d) = (self.numerator, self.denominator);
+        match Exact::ratio(self.turns.into(), PARTS.into()) {
+            Some(pi) if self.turns != 0 => write!(f, "{n}/{d} + {}*pi/{}", pi.numerator, pi.denominator),
+            _ if d == 1 => write!(f, "{n}"),
+            _ => write!(f, "{n}/{d}"),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -178,7 +178,8 @@ impl Reader<'_> {
             } else {
                 continue;
             };
-            is_clear &= !options.estimate || self.watch.is_clear(t, &now);
+            let mut moved = || moved(&mut self.compiled, t, y);
+            is_clear &= !options.estimate || self.watch.is_clear(t, &now, &mut moved);
             if !asked {
                 continue;
             }
@@ -205,11 +206,7 @@ impl Reader<'_> {
         for (i, (&(t, _), y)) in self.instants.iter().zip(&run.states).enumerate() {
             let kept = self.at(run, i, t, y).ok()?;
             let looser = outputs(&mut self.compiled, t, &subtract(y, run.differences.get(i)?)).ok()?;
-            let mut moved = || {
-                let mut y = y.clone();
-                move_digits(&mut y, |_| UNITS);
-                self.compiled.outputs(t, &y).ok().map(|outputs| outputs.invariants)
-            };
+            let mut moved = || moved(&mut self.compiled, t, y);
             if let Some(because) = self.watch.complaint(t, [&kept, &looser], self.invariants, &mut moved) {
                 return Some(Doubt { from, because });
             }
@@ -217,4 +214,11 @@ impl Reader<'_> {
         }
         None
     }
+}
+
+/// The invariants with the last digits of the state changed.
+fn moved(compiled: &mut Compiled, t: f64, y: &[f64]) -> Option<Vec<f64>> {
+    let mut y = y.to_vec();
+    move_digits(&mut y, |_| UNITS);
+    compiled.outputs(t, &y).ok().map(|outputs| outputs.invariants)
 }
