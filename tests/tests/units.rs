@@ -197,7 +197,8 @@ fn the_unit_of_the_lagrangian_is_no_matter() {
 
 #[test]
 fn a_large_disc_and_a_short_hitch() {
-    let set = |name: &str, key: &str, value| catalogue::find(name, &[(key.into(), value)]).expect("a scene");
+    let set =
+        |name: &str, key: &str, value: f64| catalogue::find(name, &[(key.into(), value.into())]).expect("a scene");
     for (name, key, values, depth) in [("disc", "R", [5e8, 5e-8], 2), ("trailer", "d", [1e-7, 1e7], 4)] {
         for value in values {
             let scene = set(name, key, value);

@@ -218,7 +218,7 @@ pub fn solve(
     let steps = [motion.kept.step_times(), motion.looser.step_times()];
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), by);
-    if motion.doubt.is_none() {
+    if motion.doubt.is_none() && !settings.plain {
         motion.doubt = motion.broken(Watch::new(setting.system, &[])?);
     }
     Ok(motion)

@@ -46,7 +46,8 @@ pub struct Settings {
     /// In which form [`crate::solve_choice`] and ensembles take the equations.
     pub form: Form,
     /// All unknowns of an instant by LU factorization, as derived; otherwise in the form that
-    /// [`equations::Plan::choose`] finds cheapest. The motion is the same to round-off.
+    /// [`equations::Plan::choose`] finds cheapest. The motion is the same to round-off, and is not held
+    /// against the system's own constraints: its outputs may be coordinates of another one.
     pub plain: bool,
     /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
     pub interrupt: Option<Interrupt>,

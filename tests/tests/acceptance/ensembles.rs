@@ -27,6 +27,10 @@ fn guards(equations: &Equations) -> Vec<String> {
     equations.guards.iter().map(|&guard| equations.graph.plain(guard)).collect()
 }
 
+fn written(overrides: &[(String, f64)]) -> Vec<(String, scene::Number)> {
+    overrides.iter().map(|(name, x)| (name.clone(), (*x).into())).collect()
+}
+
 /// The scene with other values of a parameter and of a coordinate at the start, as far as it allows that.
 fn members(name: &str, base: &Scene, parameter: Option<&str>) -> Vec<Scene> {
     let value = |name: &str| {
@@ -39,7 +43,8 @@ fn members(name: &str, base: &Scene, parameter: Option<&str>) -> Vec<Scene> {
         let place = i % base.system.dimension();
         let moved = (base.system.coordinates[place].name.clone(), base.start.q[place] + 0.04 * i as f64);
         let with = [&overrides[..], &[moved]].concat();
-        find(name, &with).or_else(|_| find(name, &overrides)).ok()
+        let read = |overrides: &[(String, f64)]| find(name, &written(overrides));
+        read(&with).or_else(|_| read(&overrides)).ok()
     };
     (0..MEMBERS).filter_map(member).collect()
 }
@@ -153,7 +158,7 @@ fn starts_from_compiled_expressions_are_those_of_the_text_in_every_scene() {
             {
                 let row = [&[(varied.clone(), value)], beside].concat();
                 let (names, numbers): (Vec<&str>, Vec<f64>) = row.iter().map(|(name, x)| (name.as_str(), *x)).unzip();
-                let read = find(name, &row);
+                let read = find(name, &written(&row));
                 let here = base.starts(&names).map_err(|error| error.to_string());
                 let here = here.and_then(|mut starts| starts.at(&numbers).map_err(|fault| fault.to_string()));
                 match (read, here) {

@@ -50,7 +50,7 @@ pub fn for_all_linear(seed: u64, test: impl Fn(&Scene) -> Result<(), TestCaseErr
 
 /// A built-in scene with other numbers.
 pub fn scene(name: &str, overrides: &[(&str, f64)]) -> Scene {
-    let overrides: Vec<(String, f64)> = overrides.iter().map(|&(n, x)| (n.to_string(), x)).collect();
+    let overrides: Vec<_> = overrides.iter().map(|&(n, x)| (n.to_string(), x.into())).collect();
     validation::catalogue::find(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -83,7 +83,7 @@ fn chetaev_has_its_orders() {
     measure_all("ball-in-cone", 0.2, "chetaev", None);
     measure_all("particle", 4.0, "chetaev", None);
     // a nonlinear constraint, in the potential −x y, so that the run bends
-    let mut hamel = find("appell-hamel", &[("duration".into(), 0.5)]).unwrap();
+    let mut hamel = find("appell-hamel", &[("duration".into(), 0.5.into())]).unwrap();
     let bend = hamel.system.expression("x*y").unwrap();
     hamel.system.lagrangian = hamel.system.graph.add(hamel.system.lagrangian, bend);
     let choice = choice(&hamel, "chetaev", None);

@@ -150,7 +150,7 @@ fn faults_are_noticed() {
     // a graph is not shared between threads
     let of_scene = |i: usize| match SCENES.get(i) {
         Some((name, numbers, guards)) => {
-            let numbers: Vec<(String, f64)> = numbers.iter().map(|&(name, x)| (name.into(), x)).collect();
+            let numbers: Vec<_> = numbers.iter().map(|&(name, x)| (name.into(), x.into())).collect();
             faults(&validation::catalogue::find(name, &numbers).expect("a scene"), *guards, a_place)
         }
         None => {
