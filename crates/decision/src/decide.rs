@@ -242,7 +242,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     match (longest.or(found.len().checked_sub(1)), stopped) {
         (Some(i), _) => Ok(found.swap_remove(i)),
         (None, Some(stop)) => Err(own.stop.clone().unwrap_or(stop)),
-        (None, None) => unreachable!("every part was judged"),
+        (None, None) => Err(DecisionError::Curve { reason: "it ends where it starts".into() }),
     }
 }
 

@@ -6,10 +6,7 @@ use integrate::find_root;
 
 use crate::error_estimate::relative_to;
 use crate::metric::{Metric, subtract};
-use crate::{Ending, Motion, SolveError};
-
-/// A gap has to be this many times the sum of the two error estimates to count as a difference.
-pub const CERTAINTY: f64 = 10.0;
+use crate::{CERTAINTY, Ending, Motion, SolveError};
 
 /// The difference of one coordinate has to be this many times the limit that *same* asks for to count as a
 /// difference by itself: the errors of single coordinates are estimated less well than the length of all.

@@ -121,9 +121,7 @@ pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates
 pub use fit::best_fit;
 pub use fits::{Fit, Fits, FittedMotion};
 pub use form::{ChosenForm, FORM_WORDS, Form, derive_in_form, formulation_in};
-pub use gap::{
-    CERTAINTY, Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by,
-};
+pub use gap::{Gap, GapPoint, SAME_ESTIMATE, Sampling, THRESHOLDS, Verdict, compare_motions, compare_motions_by};
 pub use growth::{Growth, LeadingTerm, growth};
 pub use integrability::{integrability, integrals_by_ranks};
 pub use membership::{Answer, Membership, Pairing, certificate, costates_of, membership, multipliers_of};
@@ -132,7 +130,7 @@ pub use metric::Metric;
 pub use motion::{FormReport, Motion, Seconds, solve, solve_choice, solve_from};
 pub use prepared::Prepared;
 pub use runs::{Decided, Pair, Run};
-pub use settings::{Setting, Settings, TIGHTER, setting};
+pub use settings::{CERTAINTY, Setting, Settings, TIGHTER, setting};
 pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
 pub use sweep::{Sweep, SweepPoint};

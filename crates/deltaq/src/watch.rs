@@ -5,8 +5,8 @@ use equations::{Named, Outputs};
 use mechanics::System;
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
-use crate::gap::CERTAINTY;
 use crate::metric::subtract;
+use crate::settings::CERTAINTY;
 use crate::single_run::UNITS;
 
 /// A drift under this part of the terms of an invariant is round-off.

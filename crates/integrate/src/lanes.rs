@@ -185,7 +185,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             move || {
                 let ends = once(ends);
                 let defect = ends.defect(absolute, relative);
-                (finite(coefficients), from_fn(|l| defect.component(l).is_none()))
+                (finite(coefficients), from_fn(|l| defect.component(l).is_none() && !defect.is_far(l)))
             },
         );
         if self.events.is_empty() {

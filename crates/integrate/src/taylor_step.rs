@@ -124,11 +124,14 @@ pub(crate) struct Defect<const N: usize> {
 }
 
 impl<const N: usize> Defect<N> {
-    /// The component whose rates are not those of the polynomial, if there is one, or that a projection moved
-    /// too far.
+    /// Whether a projection moved the end farther than errors of steps are.
+    pub(crate) fn is_far(&self, lane: usize) -> bool {
+        self.moved[lane] > 1.0
+    }
+
+    /// The component whose rates are not those of the polynomial, if there is one.
     pub(crate) fn component(&self, lane: usize) -> Option<usize> {
-        let moved = self.moved[lane];
-        (self.worst[lane] > 1.0 + DEFECT * moved || moved > 1.0).then_some(self.component[lane])
+        (self.worst[lane] > 1.0 + DEFECT * self.moved[lane]).then_some(self.component[lane])
     }
 }
 

@@ -14,7 +14,7 @@ use crate::taylor_step::{DEFECT, ROUND_OFF};
 /// So many times in a row is a step that cannot be evaluated halved.
 pub(crate) const HALVINGS: usize = 60;
 /// A move of a projection that as many halvings do not halve is none of a step.
-const PERSISTENT: usize = 20;
+const PERSISTENT: usize = 6;
 
 /// Integrates with `stepper`, or reports that it could not be set up.
 pub(crate) fn drive<S: Stepper>(
@@ -157,7 +157,7 @@ impl Record<'_, '_> {
         }
         *shorter += 1;
         if *shorter > PERSISTENT && worst > 0.5 * *last {
-            (*allowed, *shorter) = (2.0 * worst, 0);
+            (*allowed, *shorter) = (4.0 * worst, 0);
             return Ok(());
         }
         *last = worst;

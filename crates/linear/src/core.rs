@@ -4,7 +4,7 @@ use mechanics::SingularValues;
 use nalgebra::{Complex, DMatrix, DVector, Schur, linalg::balancing::balance_parlett_reinsch};
 
 use crate::discs::Discs;
-use crate::spectrum::Weyl;
+use crate::weyl::Weyl;
 
 /// Iterations of the QR algorithm for each eigenvalue.
 const ITERATIONS: usize = 200;

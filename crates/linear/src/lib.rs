@@ -57,6 +57,7 @@ mod linearization;
 mod point;
 mod spectrum;
 mod sweep;
+mod weyl;
 
 pub use error::LinearError;
 pub use find::find_steady;

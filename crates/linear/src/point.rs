@@ -6,7 +6,7 @@ use integrate::Method;
 use nalgebra::DMatrix;
 
 use crate::LinearError;
-use crate::spectrum::Weyl;
+use crate::weyl::Weyl;
 
 /// Compiled equations and a point `(t, y)`.
 pub(crate) struct Point {

@@ -15,6 +15,12 @@ impl<P: LaneProblem> Lanes<'_, P> {
             let work = self.riders[l].as_ref().map(|rider| rider.run.work);
             work.map_or(0.0, |work| GOLDEN * (work.steps + work.rejected) as f64)
         });
+        let relative = self.options.relative_tolerance.max(ROUND_OFF);
+        let mut forgiven = [1.0_f64; LANES];
+        for ((y, reached), absolute) in self.candidate.iter().zip(&self.reached).zip(&self.absolute_tolerances) {
+            let moved = |l: usize| (y[l] - reached[l]).abs() / (absolute[l] + relative * y[l].abs());
+            forgiven = from_fn(|l| forgiven[l].max(1.0 + moved(l)));
+        }
         let count = if free.contains(&true) { MANY } else { usize::from(under_way.contains(&true)) };
         for i in 0..count {
             place = place.map(|place| (place + GOLDEN).fract());
@@ -37,12 +43,11 @@ impl<P: LaneProblem> Lanes<'_, P> {
                 },
             );
             self.problem.rates(&t, &self.inner, &mut self.inner_rates);
-            let relative = self.options.relative_tolerance.max(ROUND_OFF);
             let values = self.inner.iter().zip(&self.inner_slope).zip(&self.inner_rates);
             for (((y, slope), rate), absolute) in values.zip(&self.absolute_tolerances) {
                 for l in 0..LANES {
                     let allowed = DEFECT * (absolute[l] + relative * y[l].abs().max(slope[l].abs()));
-                    let agrees = (slope[l] - rate[l] * self.taken[l]).abs() <= allowed;
+                    let agrees = (slope[l] - rate[l] * self.taken[l]).abs() <= allowed * forgiven[l];
                     self.smooth[l] &= agrees || !under_way[l] || i > 0 && !free[l];
                 }
             }

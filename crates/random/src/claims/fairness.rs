@@ -53,7 +53,16 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
             Answer::None { unproved } if matches!(found.proof.this_start, Finding::NotApplicable(_)) => {
                 case.found.count(9, "no mu0, and the start has no image in the field", unproved.contains("root"));
             }
-            answer => case.found.count(9, "no mu0, and that is proved", matches!(answer, Answer::NoneProved { .. })),
+            answer => {
+                let proved = matches!(answer, Answer::NoneProved { .. });
+                let by_ranks = matches!(&found.proof.this_start, Finding::None(none) if !none.full_rank);
+                case.found.count(
+                    9,
+                    "no mu0, and that is proved, or shown by ranks modulo two primes",
+                    proved || by_ranks,
+                );
+                case.found.count(9, "no mu0, and that is proved", proved);
+            }
         },
     }
     if !case.recipe.kind.is_integrable() {
