@@ -41,6 +41,9 @@ fn least(sizes: impl Iterator<Item = f64>) -> Option<f64> {
     sizes.filter(|x| *x > 0.0 && x.is_finite()).reduce(f64::min)
 }
 
+/// Under this part of what balances the equations, a rate at the start says no size.
+const SMALL: f64 = 1e-9;
+
 impl Scales {
     pub(crate) fn new(shape: &Shape, start: &Start) -> Scales {
         let (n, size, k, time) = (shape.coordinates, shape.unknowns, shape.costates, start.time);
@@ -79,7 +82,10 @@ impl Scales {
             CostateRate::Unknown(z) => balance(&|r| matrix[(r, z)]).map(|rate| rate * time),
             CostateRate::Explicit(place) => {
                 let own = start.terms.explicit[place * (k + 1) + k] * time;
-                least([own].into_iter()).or_else(|| balance(&|r| start.instant.by_costate[r * k + i]))
+                let other = balance(&|r| start.instant.by_costate[r * k + i]);
+                // a rate that is round-off at the start says no size
+                let own = least([own].into_iter()).filter(|own| other.is_none_or(|other| *own > SMALL * other));
+                own.or(other)
             }
         });
         let costates: Vec<f64> = costates.map(|size| power(size.unwrap_or(1.0))).collect();

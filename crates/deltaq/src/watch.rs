@@ -12,6 +12,9 @@ use crate::single_run::UNITS;
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
 
+/// What round-off leaves of a coordinate or velocity that should be zero, over the largest one.
+const DIGITS: f64 = 1e-15;
+
 /// Gives the invariants with the last digits of the state changed.
 pub(crate) type Moved<'a> = &'a mut dyn FnMut() -> Option<Vec<f64>>;
 
@@ -94,9 +97,12 @@ impl Watch {
     fn broken(&mut self, t: f64) -> Option<String> {
         let residuals = self.constraints.evaluate(&self.inputs).to_vec();
         let mut estimates = vec![0.0_f64; residuals.len()];
+        let n = self.differences.0.len() / 2;
+        let largest = |kind: usize| self.inputs[1 + kind * n..][..n].iter().fold(0.0_f64, |a, x| a.max(x.value.abs()));
+        let digits = [0, 1].map(|kind| DIGITS * largest(kind));
         for (i, d) in self.differences.0.iter().enumerate() {
             let here = self.inputs[1 + i];
-            self.inputs[1 + i] = Bounded::from_f64(here.value + d);
+            self.inputs[1 + i] = Bounded::from_f64(here.value + d.max(digits[i / n]));
             let there = self.constraints.evaluate(&self.inputs);
             let changes = there.iter().zip(&residuals).map(|(a, b)| (a.value - b.value).abs());
             estimates.iter_mut().zip(changes).for_each(|(estimate, change)| *estimate += change);

@@ -221,7 +221,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
     fn judge(&mut self, lane: usize, done: Done) -> bool {
         let Some(rider) = &mut self.riders[lane] else { return false };
         if self.finite[lane] {
-            rider.run.work.evaluations += if rider.fresh { 1 } else { 2 };
+            rider.run.work.evaluations += 1;
             rider.run.work.orders += self.orders - 1;
         }
         if !self.trusted[lane] || self.moved[lane].is_nan() {

@@ -16,8 +16,8 @@ const SLACK: f64 = 1e3;
 /// round-off is read as that.
 pub(crate) const DEFECT: f64 = 100.0;
 pub(crate) const ROUND_OFF: f64 = 1e-14;
-/// Places inside steps at which polynomials are checked, in turn: these parts of a step; many in a step that
-/// is this many times shorter than terms allow, as they do not tell how much happens in it.
+/// A step that is this many times shorter than its terms allow is checked at many places inside, as these do
+/// not tell how much happens in it: at multiples of this part of it, modulo 1.
 pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 pub(crate) const MANY: usize = 16;
 pub(crate) const UNLIMITED: f64 = 100.0;

@@ -6,8 +6,8 @@ use super::{LANES, Lane, LaneProblem, Lanes};
 use crate::taylor_step::{DEFECT, GOLDEN, MANY, ROUND_OFF, UNLIMITED};
 
 impl<P: LaneProblem> Lanes<'_, P> {
-    /// As for a single motion: at one place in each step, and at many where terms do not limit the step. The
-    /// place depends on the motion's own attempts only.
+    /// As for a single motion: at many places where terms do not limit the step, which depend on the motion's
+    /// own attempts only.
     pub(super) fn look_inside(&mut self) {
         let under_way: [bool; LANES] = from_fn(|l| self.riders[l].as_ref().is_some_and(|rider| !rider.fresh));
         let free: [bool; LANES] = from_fn(|l| under_way[l] && UNLIMITED * self.taken[l].abs() < self.step[l]);
@@ -21,8 +21,8 @@ impl<P: LaneProblem> Lanes<'_, P> {
             let moved = |l: usize| (y[l] - reached[l]).abs() / (absolute[l] + relative * y[l].abs());
             forgiven = from_fn(|l| forgiven[l].max(1.0 + moved(l)));
         }
-        let count = if free.contains(&true) { MANY } else { usize::from(under_way.contains(&true)) };
-        for i in 0..count {
+        let count = if free.contains(&true) { MANY } else { 0 };
+        for _ in 0..count {
             place = place.map(|place| (place + GOLDEN).fract());
             let t: Lane = from_fn(|l| self.t[l] + place[l] * self.taken[l]);
             let theta: Lane = from_fn(|l| self.taken[l] / self.unit[l]);
@@ -48,7 +48,7 @@ impl<P: LaneProblem> Lanes<'_, P> {
                 for l in 0..LANES {
                     let allowed = DEFECT * (absolute[l] + relative * y[l].abs().max(slope[l].abs()));
                     let agrees = (slope[l] - rate[l] * self.taken[l]).abs() <= allowed * forgiven[l];
-                    self.smooth[l] &= agrees || !under_way[l] || i > 0 && !free[l];
+                    self.smooth[l] &= agrees || !free[l];
                 }
             }
         }
