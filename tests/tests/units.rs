@@ -118,7 +118,8 @@ fn units_change_no_word() {
         }
         let scene = Scene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e}"));
         let one_in = if *name == LONG.0 { LONG.1 } else { ONE_IN };
-        // verdicts on motions hang on their error estimates, which are judged elsewhere: where they are asked for
+        // verdicts on motions hang on their error estimates, which are judged elsewhere: where they are
+        // asked for
         for (one_in, said) in [
             (number("UNITS").unwrap_or(one_in), words as fn(&Scene) -> _),
             (number("UNITS_OF_MOTIONS").unwrap_or(0), verdicts),

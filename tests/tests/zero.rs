@@ -324,7 +324,7 @@ fn a_removal_by_hand_that_forgets_what_begins_is_refused() {
              [start.velocities]\n\"x'\" = 4\n\"y'\" = 1\n[run]\nduration = 3\n"
         )
     };
-    let error = Scene::parse("hand", &text(constraint)).err().expect("a constraint remains").to_string();
+    let error = Scene::parse("hand", &text(constraint)).expect_err("a constraint remains").to_string();
     assert!(error.contains("does not satisfy constraint 1"), "{error}");
     // far away: no random point finds it, and the motion runs into it
     let mut scene = Scene::parse("hand", &text("z' - x' - x'*exp(-((x - 801)/20)^2)")).unwrap();

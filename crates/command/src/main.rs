@@ -1,7 +1,7 @@
 //! The `deltaq` command. Exit code 1 where the answer cannot be written, 2 for bad input; `solve` gives 0
 //! only for a trajectory to trust, 3 where the integration had to stop or its error estimate is too large;
-//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate; 4 where results contradict each other, which is a fault of
-//! the program.
+//! `ensemble` likewise, for any member; `prove` gives 3 without a certificate; 4 where results contradict
+//! each other, which is a fault of the program.
 
 mod answer;
 mod bench_command;

@@ -26,7 +26,8 @@ pub struct Certificate {
     pub prime: u64,
     /// `M` and the image of `e^{2πi/M}`.
     pub unity: (u64, u64),
-    /// A prime `r`, and images of `e^i` and `e` of this order: those of `e^{ia}` and `e^a` for a fraction `a`.
+    /// A prime `r`, and images of `e^i` and `e` of this order: those of `e^{ia}` and `e^a` for a fraction
+    /// `a`.
     pub exponents: (u64, u64, u64),
     /// Images of the roots of primes that are used.
     pub roots: Vec<(String, u64)>,

@@ -55,8 +55,8 @@ pub enum Verdict {
 /// Constants `point + span(directions)`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AffineSet {
-    /// The element of least norm, each constant in its scale; one far along a direction where only that leaves
-    /// no mismatch.
+    /// The element of least norm, each constant in its scale; one far along a direction where only that
+    /// leaves no mismatch.
     pub point: Vec<f64>,
     /// Orthonormal directions; none for a single point, all for every choice.
     pub directions: Vec<Vec<f64>>,
@@ -135,6 +135,11 @@ impl Decision {
     /// The mismatch that the constants `c` leave.
     pub fn mismatch_at(&self, constants: &[f64]) -> f64 {
         (&self.triangle * self.scaled(constants).push(1.0)).norm()
+    }
+
+    /// Whether the curve moves, or accelerates, by more than round-off.
+    pub fn moves(&self) -> bool {
+        self.sizes.moves
     }
 
     /// Constants in their scales.

@@ -41,7 +41,8 @@ impl PlainScene {
         let system = &start.system;
         let (g, n, parameters) = (&system.graph, system.dimension(), system.parameters.len());
         let values = [&exact.parameters[..], &[exact.time], &exact.positions, &exact.velocities].concat();
-        // what was drawn, and decimals in the place of velocities that are not determined, are written nowhere
+        // what was drawn, and decimals in the place of velocities that are not determined, are written
+        // nowhere
         let is_written = |i: usize| match i.checked_sub(parameters) {
             None => true,
             Some(i) => !at_random && i.checked_sub(n + 1).is_none_or(|i| !start.supplied.contains(&i)),

@@ -144,8 +144,10 @@ impl ExactStart {
         let first = inputs.len();
         inputs.resize(first + n, Jet::constant(Modular::ZERO, Some(Exact::ZERO)));
         // each position may contain the earlier ones
-        for i in 0..n {
-            inputs[first + i] = self.values.run(&inputs)[i];
+        for (i, place) in (first..first + n).enumerate() {
+            // each from those before
+            let value = self.values.run(&inputs)[i];
+            inputs[place] = value;
         }
         let values = self.values.run(&inputs);
         if let Some(flaw) = values.iter().find_map(Jet::own_flaw) {

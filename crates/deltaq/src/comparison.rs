@@ -60,8 +60,8 @@ impl Comparison {
         self.add(Run { choice, outcome })
     }
 
-    /// Adds a run, and compares it with those before, where that is worth it. A motion that cannot be read off
-    /// at its start is none; one that cannot later on is stopped there.
+    /// Adds a run, and compares it with those before, where that is worth it. A motion that cannot be read
+    /// off at its start is none; one that cannot later on is stopped there.
     ///
     /// # Errors
     /// [`SolveError::Compile`] where `L` or `f` contain a symbol that is not defined.

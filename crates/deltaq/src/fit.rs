@@ -1,6 +1,7 @@
 //! Fairness: the free constants with which one motion comes close to another.
 //!
-//! "Different" means different for *every* choice of free constants (T9), so a comparison searches for others.
+//! "Different" means different for *every* choice of free constants (T9), so a comparison searches for
+//! others.
 
 use equations::Equations;
 use integrate::{BoundaryError, ShootOptions, Shot, fit};

@@ -302,8 +302,8 @@ impl Gap {
         (self.proved, self.verdict) = (true, Verdict::Different);
     }
 
-    /// Whether the gap itself passes its limit: of motions that differ in coordinates of hardly any inertia, or
-    /// only by proof, it does not.
+    /// Whether the gap itself passes its limit: of motions that differ in coordinates of hardly any inertia,
+    /// or only by proof, it does not.
     pub fn shows(&self) -> bool {
         self.points.iter().any(|p| p.gap > p.limit)
     }

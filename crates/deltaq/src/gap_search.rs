@@ -76,7 +76,7 @@ pub(crate) fn closest(
     let end = target.end();
     let differences = Differences::new(setting, equations, target, INSTANTS, metric, settings)?;
     let mut search = Search { differences, limit, random: 0x9E37_79B9_7F4A_7C15, starts: 0 };
-    let Some(mut found) = search.from_guesses(guesses, settings) else { return Ok(None) };
+    let Some(mut found) = search.best_guess(guesses, settings) else { return Ok(None) };
     if !search.differences.is_close(found.1) {
         found = search.globally(found);
         if search.differences.is_close(found.1)
@@ -103,7 +103,7 @@ struct Search {
 
 impl Search {
     /// The closest of the guesses, and of what the sum of squares has near it.
-    fn from_guesses(&mut self, guesses: &[Vec<f64>], settings: &Settings) -> Option<Value> {
+    fn best_guess(&mut self, guesses: &[Vec<f64>], settings: &Settings) -> Option<Value> {
         let mut all: Vec<Value> = guesses.iter().map(|guess| (guess.clone(), self.gap(guess, FINE))).collect();
         self.starts += all.len();
         all.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -119,7 +119,7 @@ impl Search {
         let zero = vec![0.0; sizes.len()];
         let mut values: Vec<Vec<f64>> = if sizes.len() == 1 { self.along(&zero, &sizes, 0, SWEEP) } else { Vec::new() };
         while values.len() < SWEEP {
-            let center = if values.len() % 2 == 0 { &zero } else { &first.0 };
+            let center = if values.len().is_multiple_of(2) { &zero } else { &first.0 };
             values.push(self.around(center, &sizes));
         }
         let whole = self.limit;

@@ -152,8 +152,8 @@ impl Motion {
         Ok(names.zip(start).zip(drift).map(|((name, start), drift)| (name, start, drift)).collect())
     }
 
-    /// The doubt that begins where the scene's own constraints, or what is listed as constant, are off by more
-    /// than the error estimate. What cannot be read off is another matter.
+    /// The doubt that begins where the scene's own constraints, or what is listed as constant, are off by
+    /// more than the error estimate. What cannot be read off is another matter.
     fn broken(&mut self, mut watch: Watch) -> Option<Doubt> {
         let times = self.grid(WATCHED);
         watch.begin(times[0], &self.at(times[0]).ok()?, &[]);

@@ -12,7 +12,7 @@ use crate::single_run::UNITS;
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
 
-/// What round-off leaves of a coordinate or velocity that should be zero, over the largest one.
+/// What round-off leaves of a coordinate, velocity or invariant that should be zero, over the largest one.
 const DIGITS: f64 = 1e-15;
 
 /// Gives the invariants with the last digits of the state changed.
@@ -52,12 +52,13 @@ impl Watch {
         self.put(t, start);
         let residuals = self.constraints.evaluate(&self.inputs).iter().map(|f| f.value.abs()).collect();
         self.start = (residuals, start.invariants.clone());
-        self.sizes = start.invariants.iter().map(|x| x.abs()).collect();
+        let largest = start.invariants.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+        self.sizes = start.invariants.iter().map(|x| x.abs().max(DIGITS / ROUND_OFF * largest)).collect();
         self.differences = (vec![0.0; 2 * start.coordinates.len()], vec![0.0; start.invariants.len()]);
     }
 
-    /// Whether nothing is off by more than round-off: no error estimate is needed. `moved` gives the invariants
-    /// with the last digits of the state changed, which tells what was added up to them.
+    /// Whether nothing is off by more than round-off: no error estimate is needed. `moved` gives the
+    /// invariants with the last digits of the state changed, which tells what was added up to them.
     pub(crate) fn is_clear(&mut self, t: f64, kept: &Outputs, moved: Moved) -> bool {
         self.put(t, kept);
         if !self.constraints.evaluate(&self.inputs).iter().all(|f| f.may_be_zero() || !f.is_finite()) {
@@ -78,7 +79,8 @@ impl Watch {
         drifts.iter().zip(&self.sizes).all(|(drift, size)| drift.abs() <= ROUND_OFF * size)
     }
 
-    /// What is off by more than the two runs, at `t` and before, leave open; `moved` as in [`Watch::is_clear`].
+    /// What is off by more than the two runs, at `t` and before, leave open; `moved` as in
+    /// [`Watch::is_clear`].
     pub(crate) fn complaint(
         &mut self,
         t: f64,

@@ -19,9 +19,9 @@
 //! A series does not see past a branch point: that of √(1 + y) along y = (1 − t/2)² − 1 goes on as 1 − t/2
 //! where the root is t/2 − 1. So the slope of the polynomial at the end of the step is compared with the
 //! rates there, which the next expansion needs anyway; if they differ, the step is halved. Where that came to
-//! pass, it is likely to again: the rates are then computed alone first, for a small part of an expansion. The
-//! same is done at places inside a step that no term limits: a force (4t(1 − t))⁴⁰ is zero to order 39 at both
-//! ends of [0, 1].
+//! pass, it is likely to again: the rates are then computed alone first, for a small part of an expansion.
+//! The same is done at places inside a step that no term limits: a force (4t(1 − t))⁴⁰ is zero to order 39
+//! at both ends of [0, 1].
 //!
 //! Source: À. Jorba, M. Zou, *A software package for the numerical integration of ODEs by means of high-order
 //! Taylor methods*, Experimental Mathematics 14 (2005), section 3.

@@ -136,10 +136,10 @@ impl Record<'_, '_> {
         Ok(())
     }
 
-    /// A step's error is of the size of the tolerance: a projection that moves much farther hides another one.
-    /// What shorter steps do not make smaller is no error of a step, but round-off of constraints that are
-    /// nearly dependent, and is allowed from then on. What several steps of a multistep method have added up
-    /// is no error of one.
+    /// A step's error is of the size of the tolerance: a projection that moves much farther hides another
+    /// one. What shorter steps do not make smaller is no error of a step, but round-off of constraints that
+    /// are nearly dependent, and is allowed from then on. What several steps of a multistep method have
+    /// added up is no error of one.
     fn check_move(&mut self, candidate: &[f64]) -> Result<(), Failure> {
         let relative = self.options.relative_tolerance.max(ROUND_OFF);
         let (mut component, mut worst) = (0, 0.0);

@@ -5,8 +5,11 @@ use nalgebra::{Complex, DMatrix};
 
 const FEEDBACK: [f64; 9] = [1e-20, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12];
 
+/// Eigenvalues with their errors, growth and chains.
+type Found = (Vec<(Complex<f64>, f64)>, Growth, Vec<Chain>);
+
 /// All eigenvalues with their errors, zeros among them; how deviations grow; and the chains.
-fn spectrum(matrix: &DMatrix<f64>) -> (Vec<(Complex<f64>, f64)>, Growth, Vec<Chain>) {
+fn spectrum(matrix: &DMatrix<f64>) -> Found {
     let n = matrix.nrows();
     let found = Spectrum::of(matrix, &DMatrix::zeros(n, n)).expect("converges");
     let eigenvalues: Vec<_> = found.blocks.iter().flat_map(|block| block.eigenvalues.clone()).collect();

@@ -79,7 +79,7 @@ impl SolvedConstraints {
                     // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
                     let terms = before.number.abs() + (factor.number * entry.number).abs();
                     let cancels = was_zero || rest.number.abs() <= CANCELLED * terms;
-                    let stays = !g.is_zero(rest.e) && !(cancels && g.vanishes_exactly(rest.e));
+                    let stays = !(g.is_zero(rest.e) || cancels && g.vanishes_exactly(rest.e));
                     if was_zero || cancels && g.is_round_off(rest.e, &values) {
                         rest.number = 0.0;
                     }

@@ -111,13 +111,13 @@ impl Graph {
         self.arena.borrow_mut().number(Number::from_f64(x))
     }
 
-    /// π, as the quotient [`PI`]: multiples of it stay what they are.
+    /// π, as the quotient [`crate::PI`]: multiples of it stay what they are.
     pub fn pi(&self) -> Expr {
         self.arena.borrow_mut().number(Number::PI)
     }
 
     /// Numerator and denominator of `e`, if it is a number that nothing has rounded; π is the quotient
-    /// [`PI`].
+    /// [`crate::PI`].
     ///
     /// ```
     /// let g = symbolic::Graph::new();

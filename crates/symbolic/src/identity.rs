@@ -53,8 +53,8 @@ impl Vanishing {
 impl Graph {
     /// Is `e` identically zero? Exact by expansion where that succeeds, else by evaluation at random points
     /// (fixed seed; both signs, sizes from 0.01 to 100) against the round-off bound of the evaluation itself.
-    /// `constants` are numbers to put in first; where they do not stay exact, what they cancel to is round-off
-    /// as well.
+    /// `constants` are numbers to put in first; where they do not stay exact, what they cancel to is
+    /// round-off as well.
     ///
     /// ```
     /// use std::collections::HashMap;
@@ -81,8 +81,8 @@ impl Graph {
     }
 
     /// Whether `e` is zero as a rational function of its symbols, sines, roots and other functions, or by its
-    /// normal form, whatever the values of its symbols: what may be taken out of equations. `false` where that
-    /// cannot be told.
+    /// normal form, whatever the values of its symbols: what may be taken out of equations. `false` where
+    /// that cannot be told.
     ///
     /// ```
     /// let g = symbolic::Graph::new();
@@ -165,8 +165,8 @@ impl Graph {
     }
 }
 
-/// In turns: around the start, if there is one; in [0.2, 1.3], where roots and logarithms are finite; the same
-/// with random signs; of sizes from 0.01 to 100.
+/// In turns: around the start, if there is one; in [0.2, 1.3], where roots and logarithms are finite; the
+/// same with random signs; of sizes from 0.01 to 100.
 fn coordinate(random: &mut SplitMix, tried: usize, around: Option<&[f64; 2]>) -> f64 {
     let bits = random.bits();
     let part = (bits >> 11) as f64 / (1_u64 << 53) as f64;

@@ -121,7 +121,10 @@ pub fn how_far(membership: &Membership, order: Option<usize>, settled: bool) -> 
     }
     let decision = &membership.decision;
     let part = decision.least.max(decision.noise) / decision.acceleration;
-    let part =
-        if part < 1.0 { format!("to 1e{:.0}{}", part.log10().ceil(), up_to(decision.until)) } else { "at rest".into() };
+    let part = match part < 1.0 {
+        true => format!("to 1e{:.0}{}", part.log10().ceil(), up_to(decision.until)),
+        false if decision.moves() => "without acceleration".into(),
+        false => "at rest".into(),
+    };
     order.map_or(part.clone(), |order| format!("through order {order} and {part}"))
 }

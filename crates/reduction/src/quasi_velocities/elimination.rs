@@ -242,8 +242,8 @@ impl<'a> Elimination<'a> {
         self.steps.push(vec![DependentVelocity { symbol, coordinate, terms, offset }]);
     }
 
-    /// Adds to a coefficient what is zero at the start if `is_zero`. What cancels exactly is taken out; what is
-    /// round-off at the start stays as 0 there, and so is no pivot.
+    /// Adds to a coefficient what is zero at the start if `is_zero`. What cancels exactly is taken out; what
+    /// is round-off at the start stays as 0 there, and so is no pivot.
     fn add(&mut self, row: usize, column: usize, e: Expr, is_zero: bool) {
         let g = self.g;
         let old = self.matrix.rows()[row].get(&column).copied();
