@@ -278,3 +278,45 @@ fn every_method_and_ensembles_end_a_step_at_breakpoints() {
     let error = solve_by_steps(&scene, choice, steps, &Settings::default()).err().expect("refused");
     assert!(matches!(error, SolveError::Breakpoint { t: 5.5 | 5.0, .. }), "{error}");
 }
+
+/// A high power of time is zero to a high order where steps begin: x(1) by every method, and of two members.
+fn flat(scene: &str, coordinate: usize, right: f64) {
+    let scene = Scene::parse("flat", scene).expect("a scene");
+    let (choice, mut completed) = (&choices(&scene)[0], 0);
+    for method in Method::ALL.into_iter().map(Some).chain([None]) {
+        let mut motion = solve_choice(&scene, choice, &Settings { method, ..Settings::default() }).expect("a motion");
+        let Ending::Completed = motion.ending else { continue };
+        completed += 1;
+        let found = motion.at(1.0).expect("the end").coordinates[coordinate];
+        let allowed = if method == Some(Method::Bdf) { ALLOWED } else { 1e-7 };
+        assert!((found - right).abs() < allowed, "{method:?}: {found} instead of {right}");
+    }
+    assert!(completed > 5, "{completed} methods complete it");
+    let mut ensemble = Ensemble::new(&scene, choice, &[], &Settings::default()).expect("an ensemble");
+    let members = vec![ensemble.member(&[]).expect("a member"); 2];
+    for run in ensemble.run(&members, &[1.0], &EnsembleOptions::default()) {
+        let found = run.expect("a run").states[0][coordinate];
+        assert!((found - right).abs() < 1e-9, "in lanes: {found} instead of {right}");
+    }
+}
+
+#[test]
+fn a_force_that_is_flat_at_both_ends_is_not_passed() {
+    // x(1) = ∫ (1 − t) (4 t (1 − t))⁴⁰ dt = 4⁴⁰ (40!)²/81! / 2
+    let right = (1..=40).fold(0.5 / 81.0, |product, k| product * 4.0 * f64::from(k) / f64::from(40 + k));
+    let scene = "title = 'flat'\n[coordinates]\nx = { start = 0 }\n[system]\nlagrangian = \"x'^2/2\"\n\
+                 forces = { x = '(4*t*(1-t))^40' }\n[start]\nvelocities = { \"x'\" = 0 }\n[run]\nduration = 1\n";
+    flat(scene, 0, right);
+}
+
+#[test]
+fn a_constraint_that_is_flat_at_the_start_is_kept() {
+    // straight on at the speed √(1 + t⁴⁰), by the midpoint rule
+    let parts = 200_000;
+    let speed = |i: i32| (1.0 + ((f64::from(i) + 0.5) / f64::from(parts)).powi(40)).sqrt();
+    let right = 0.6 * (0..parts).map(speed).sum::<f64>() / f64::from(parts);
+    let scene = "title = 'flat'\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n[system]\n\
+                 lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"x'^2 + y'^2 - 1 - t^40\"]\n\
+                 [start]\nvelocities = { \"x'\" = 0.6, \"y'\" = 0.8 }\n[run]\nduration = 1\n";
+    flat(scene, 0, right);
+}
