@@ -1,7 +1,7 @@
 //! `deltaq prove`.
 
 use anyhow::{Context, Result};
-use deltaq::{PlainScene, certificate, membership};
+use deltaq::{Contradicted, PlainScene, certificate, membership};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -20,6 +20,12 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
     let reason = match certificate(&scene, *almost_every)? {
         Err(reason) => reason,
         Ok(certificate) => {
+            // the numbers share little with the proof, and have no say but against it
+            if let Ok(Some(found)) = membership(&scene, scene.start.t + scene.duration)
+                && let Some(found) = found.contradiction()
+            {
+                return Err(Contradicted(vec![format!("{}: {found}", scene.name)]).into());
+            }
             let order = certificate.order;
             let plain = plain(certificate.scene);
             let digest = digest(&plain);

@@ -61,6 +61,11 @@ impl Membership {
         self.section.as_ref().is_some_and(|section| section.proved)
     }
 
+    /// Whether what holds on the branch of the start does not hold up to the end.
+    fn leaves_its_branch(&self) -> bool {
+        self.proof.one_branch && self.decision.verdict == Verdict::NotContained
+    }
+
     /// The answer. A proof is about the numbers as they are written, and has the last word, unless what is
     /// computed in floating point excludes it: then one of the two is wrong, and there is no answer.
     pub fn answer(&self) -> Answer {
@@ -72,6 +77,9 @@ impl Membership {
             Finding::None(none) => {
                 let reason = "no minor of full size shows it: ranks modulo two primes do";
                 return Answer::None { unproved: format!("{reason} (order {})", none.order) };
+            }
+            Finding::Contained { .. } if self.leaves_its_branch() => {
+                return Answer::None { unproved: "near the start some do, on a branch that the motion leaves".into() };
             }
             Finding::Contained { .. } if self.is_identity() => return Answer::SomeProved,
             Finding::Contained { order, .. } => return Answer::Some { order: Some(*order), settled: true },

@@ -69,6 +69,17 @@ fn a_proof_that_some_do_beside_a_mismatch() {
 }
 
 #[test]
+fn a_motion_that_leaves_the_branch_of_its_start() {
+    let scene = "title = 'branch'\n[coordinates]\nx = { start = 1 }\ny = { start = 0.3 }\nz = { start = 0 }\n[system]\n\
+                 lagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"z' - (x - sqrt(x^2))*y'\"]\n\
+                 [start]\nvelocities = { \"x'\" = -1, \"y'\" = 0.7 }\n[run]\nduration = 3\n";
+    let mut branch = compared("branch", scene);
+    assert_eq!(branch.contradictions(), Vec::new());
+    let answer = decided(&mut branch).answer();
+    assert!(matches!(&answer, deltaq::Answer::None { unproved } if unproved.contains("branch")), "{answer:?}");
+}
+
+#[test]
 fn a_proof_that_none_do_beside_a_formula_and_beside_no_mismatch() {
     let mut disc = disc();
     decided(&mut disc).proof.this_start = no_constants();
