@@ -40,7 +40,7 @@ pub struct SweepPoint {
 /// # let text = include_str!("../../scene/sledge.toml");
 /// use deltaq::{Settings, Sweep};
 /// let names = ["phi".to_string()];
-/// let sweep = Sweep::new("sledge", text, &[], &names, None, &Settings::default())?;
+/// let sweep = Sweep::new::<f64>("sledge", text, &[], &names, None, &Settings::default())?;
 /// assert_eq!(sweep.point(&[0.5]).answer, "none proved");
 /// # Ok::<(), deltaq::SolveError>(())
 /// ```
