@@ -11,10 +11,12 @@ use validation::catalogue;
 
 /// Units in those of the scene, powers of ten.
 const UNITS: [i32; 5] = [-9, -3, 0, 3, 9];
-/// One choice of units in so many is drawn; `UNITS=1` takes all.
+/// One choice of units in so many is drawn; `UNITS=1` takes all, `UNITS_OF_MOTIONS=1` for verdicts on motions.
 const ONE_IN: usize = 10;
 /// The answer of one scene takes a second: its brackets are too long.
 const LONG: (&str, usize) = ("bicycle", 60);
+/// Among so many words one may become undecided.
+const OPEN: usize = 50;
 
 /// The scene with metres, kilograms and seconds, as far as they are its own, replaced by others.
 fn in_units(scene: &Scene, [length, mass, time]: [i32; 3]) -> Scene {
@@ -118,11 +120,9 @@ fn units_change_no_word() {
         }
         let scene = Scene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e}"));
         let one_in = if *name == LONG.0 { LONG.1 } else { ONE_IN };
-        // verdicts on motions hang on their error estimates, which are judged elsewhere: where they are
-        // asked for
         for (one_in, said) in [
             (number("UNITS").unwrap_or(one_in), words as fn(&Scene) -> _),
-            (number("UNITS_OF_MOTIONS").unwrap_or(0), verdicts),
+            (number("UNITS_OF_MOTIONS").unwrap_or(one_in), verdicts),
         ] {
             let units = drawn(&mut random, one_in);
             let own = if units.is_empty() { Vec::new() } else { said(&scene) };
@@ -134,6 +134,8 @@ fn units_change_no_word() {
     }
     println!("same, undecided, other: {:?}", count.0);
     assert!(count.1.is_empty(), "{}\n{:?}", count.1.join("\n"), count.0);
+    let verdicts = count.0.get("verdict").copied().unwrap_or_default();
+    assert!(OPEN * verdicts[1] <= verdicts.iter().sum(), "{:?}", count.0);
 }
 
 /// A blade that slides and turns on a slope, everything times a mass and a length.

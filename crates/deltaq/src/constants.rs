@@ -80,7 +80,7 @@ pub fn constant_names(equations: &Equations) -> Vec<String> {
     equations.free_constants.iter().map(|c| equations.graph.name(c.symbol)).collect()
 }
 
-/// Residual at the horizon that is accepted, over the tolerance of the integration.
+/// Residual at the horizon that is accepted, over the tolerance of the integration and the costate's size.
 const RESIDUAL: f64 = 1e3;
 
 /// Steps that a run of the search may take on average, over those of the run from the guess: beside a
@@ -89,7 +89,8 @@ const LONGER: usize = 4;
 
 /// Finds the constants `C` that make every [`equations::FreeConstant::natural`] vanish at `horizon`.
 ///
-/// Single shooting from `near`, or zero: unknowns are the constants, residuals the quantities at the horizon.
+/// Single shooting from `near`, or zero: unknowns are the constants, residuals the quantities at the horizon,
+/// both over the sizes that the quantities have on the motion from there.
 /// All runs together may take [`LONGER`] times the first one's steps, for each run that the search may make.
 fn natural_constants(
     prepared: &mut Prepared,
@@ -117,6 +118,11 @@ fn natural_constants(
         .collect();
     let Some(places) = places else { return Err(SolveError::NoNaturalCondition { formulation: formulation() }) };
     let guess = near.map_or(vec![0.0; constants.len()], <[f64]>::to_vec);
+    prepared.set_constants(&guess);
+    let of_states = prepared.sizes(horizon);
+    let sizes: Vec<f64> = places.iter().map(|&place| of_states[place]).collect();
+    let guess: Vec<f64> = guess.iter().zip(&sizes).map(|(c, size)| c / size).collect();
+    let in_units = |scaled: &[f64]| -> Vec<f64> { scaled.iter().zip(&sizes).map(|(c, size)| c * size).collect() };
     let tolerance = settings.tolerance * TIGHTER;
     let options = ShootOptions::with_tolerance(RESIDUAL * tolerance);
     let runs = options.max_iterations * (2 * guess.len() + 2);
@@ -134,7 +140,7 @@ fn natural_constants(
         if left == 0 {
             return Err(refuse(SolveError::Search { horizon, steps: taken }));
         }
-        prepared.set_constants(constants);
+        prepared.set_constants(&in_units(constants));
         if let Some(cause) = of_all.interrupt.as_ref().and_then(Interrupt::cause) {
             return Err(refuse(SolveError::Ended { horizon, cause }));
         }
@@ -150,14 +156,14 @@ fn natural_constants(
         }
         let mut end = vec![0.0; prepared.start.len()];
         run.solution.dense.evaluate(horizon, &mut end);
-        for (r, &place) in residual.iter_mut().zip(&places) {
-            *r = end[place];
+        for ((r, &place), size) in residual.iter_mut().zip(&places).zip(&sizes) {
+            *r = end[place] / size;
         }
         Ok(())
     };
     let shot = shoot(&mut residual, &guess, &options);
     match (shot, failure) {
-        (Ok(shot), _) => Ok(shot.unknowns),
+        (Ok(shot), _) => Ok(in_units(&shot.unknowns)),
         (Err(_), Some(error)) => Err(error),
         (Err(error), None) => Err(SolveError::Boundary { horizon, error }),
     }

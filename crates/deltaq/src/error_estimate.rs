@@ -11,8 +11,7 @@ const SAMPLES: usize = 200;
 /// Relative error estimate over which a motion is not trusted, nor a single coordinate.
 pub const TRUSTED: f64 = 1e-3;
 
-/// Differences of a coordinate under this part of the largest coordinate are round-off, whatever its own
-/// size.
+/// Differences of a coordinate under this part of [`Metric::round_off_sizes`] are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
 /// Largest differences of the two runs of a motion, over the time up to some instant.
@@ -102,10 +101,10 @@ pub fn error_estimates(
         read = Some(t);
         differences.add(&mut metric, t, &kept, &looser, 0.0);
         if let Some(i) = asked {
-            so_far[i] = differences.estimate();
+            so_far[i] = differences.estimate(&metric);
         }
     }
-    Ok((so_far, differences.estimate()))
+    Ok((so_far, differences.estimate(&metric)))
 }
 
 /// Differences of two runs, gathered over time.
@@ -117,14 +116,17 @@ pub(crate) struct Differences<'a> {
     coordinates: Vec<f64>,
     sizes: Vec<f64>,
     multipliers: Vec<f64>,
+    /// Largest kinetic length of the coordinates themselves, and of the unit of each at the first instant.
+    length: f64,
+    inertia: Vec<f64>,
 }
 
 impl<'a> Differences<'a> {
     /// Of motions from these coordinates, with their names.
     pub(crate) fn from(names: &'a [String], start: &'a [f64]) -> Self {
         let zeros = vec![0.0; start.len()];
-        let (coordinates, sizes, multipliers) = (zeros.clone(), zeros, Vec::new());
-        Differences { names, start, absolute: 0.0, scale: 0.0, coordinates, sizes, multipliers }
+        let (coordinates, sizes, multipliers, inertia) = (zeros.clone(), zeros, Vec::new(), Vec::new());
+        Differences { names, start, absolute: 0.0, scale: 0.0, coordinates, sizes, multipliers, length: 0.0, inertia }
     }
 
     /// What the two runs are at `t`. Of a motion that is looked at rarely, its velocities times `reach` tell
@@ -134,6 +136,10 @@ impl<'a> Differences<'a> {
         let difference = subtract(q, &looser.coordinates);
         self.absolute = larger(self.absolute, metric.length(t, q, v, &difference));
         self.scale = larger(self.scale, metric.distance(t, q, v, self.start));
+        self.length = larger(self.length, metric.length(t, q, v, q));
+        if self.inertia.is_empty() {
+            self.inertia = metric.inertia(t, q, v).0;
+        }
         for (i, size) in self.sizes.iter_mut().enumerate() {
             let now = q[i].abs().max((q[i] - self.start[i]).abs()).max((v[i] * reach).abs());
             *size = larger(*size, now);
@@ -146,11 +152,12 @@ impl<'a> Differences<'a> {
     }
 
     /// The estimate so far.
-    pub(crate) fn estimate(&self) -> ErrorEstimate {
-        let least = ROUND_OFF * self.sizes.iter().copied().fold(0.0, larger);
-        let counts = |d: f64| d > least || d.is_nan();
-        let each = self.names.iter().zip(self.coordinates.iter().zip(&self.sizes)).filter(|(_, (d, _))| counts(**d));
-        let worst = each.map(|(name, (d, size))| (name, d / size)).max_by(|a, b| a.1.total_cmp(&b.1));
+    pub(crate) fn estimate(&self, metric: &Metric) -> ErrorEstimate {
+        let round_off = metric.round_off_sizes(&self.inertia, &self.sizes, self.length.max(self.scale));
+        let (d, sizes) = (&self.coordinates, &self.sizes);
+        let counts = |i: &usize| d[*i] > ROUND_OFF * round_off[*i] || d[*i].is_nan();
+        let each = (0..d.len()).filter(counts).map(|i| (&self.names[i], d[i] / sizes[i]));
+        let worst = each.max_by(|a, b| a.1.total_cmp(&b.1));
         ErrorEstimate {
             absolute: self.absolute,
             relative: relative_to(self.scale, self.absolute),

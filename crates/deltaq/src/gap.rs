@@ -177,11 +177,10 @@ pub fn compare_motions_by(
             own[i] = own[i].max(first_error[i].abs() + second_error[i].abs());
             sizes[i] = sizes[i].max(q[i].abs()).max((v[i] * (t - t0)).abs());
         }
-        // a coordinate of no size of its own has the round-off of the others: in length or in number
-        let common = sizes.iter().copied().fold(0.0, f64::max);
-        let (units, negative) = metric.inertia(t, q, v);
+        let (inertia, negative) = metric.inertia(t, q, v);
         indefinite |= negative;
-        let size = |i: usize| sizes[i].max(common.min(largest_length / units[i]));
+        let round_off_sizes = metric.round_off_sizes(&inertia, &sizes, largest_length);
+        let size = |i: usize| round_off_sizes[i];
         imprecise = (0..n).map(|i| (own[i] / size(i), i)).filter(|(part, _)| *part >= SAME_ESTIMATE).max_by(larger);
         coordinates
             .push((0..n).map(|i| Difference { by: difference[i].abs(), limit: limit(own[i], size(i)) }).collect());

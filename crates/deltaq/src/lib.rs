@@ -87,6 +87,7 @@ mod prepared;
 mod runs;
 mod settings;
 mod single_run;
+mod sizes;
 mod start_values;
 mod steps;
 mod sweep;

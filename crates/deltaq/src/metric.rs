@@ -12,6 +12,8 @@ use symbolic::{CompileError, Evaluator, Symbol};
 pub struct Metric {
     /// Names of the coordinates.
     pub(crate) names: Vec<String>,
+    /// Of each coordinate the first one that has its unit.
+    units: Vec<usize>,
     program: Evaluator<f64>,
     dimension: usize,
     inputs: Vec<f64>,
@@ -38,8 +40,10 @@ impl Metric {
         let mut values = system.parameter_values();
         values.retain(|symbol, _| !parameters.contains(symbol));
         let program = Evaluator::new(system.graph.compile(&inputs, &outputs, &values)?);
-        let names = system.coordinates.iter().map(|c| c.name.clone()).collect();
-        Ok(Metric { names, program, dimension: system.dimension(), inputs: vec![0.0; inputs.len()] })
+        let names: Vec<String> = system.coordinates.iter().map(|c| c.name.clone()).collect();
+        let unit = |i: usize| &system.coordinates[i].unit;
+        let units = (0..names.len()).map(|i| (0..i).find(|&j| unit(j) == unit(i)).unwrap_or(i)).collect();
+        Ok(Metric { names, units, program, dimension: system.dimension(), inputs: vec![0.0; inputs.len()] })
     }
 
     /// Values of the parameters that vary.
@@ -104,6 +108,18 @@ impl Metric {
                 (units, negative)
             }
         }
+    }
+
+    /// What the round-off of each coordinate is a part of: its own size; where that is less, the largest one in
+    /// its unit, or the way of that kinetic length in it, whichever is less.
+    pub(crate) fn round_off_sizes(&self, inertia: &[f64], sizes: &[f64], length: f64) -> Vec<f64> {
+        let same_unit = |i: usize| (0..sizes.len()).filter(move |&j| j != i && self.units[j] == self.units[i]);
+        let size = |i: usize| {
+            let way = inertia.get(i).map(|unit| length / unit).filter(|way| way.is_finite());
+            let others = same_unit(i).map(|j| sizes[j]).reduce(f64::max);
+            sizes[i].max([way, others].into_iter().flatten().reduce(f64::min).unwrap_or(0.0))
+        };
+        (0..sizes.len()).map(size).collect()
     }
 
     /// `max |fᵢ(t, q, v)|`, 0 where there is no constraint.

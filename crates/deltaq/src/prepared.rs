@@ -2,11 +2,13 @@
 
 use equations::{Compiled, Equations, Plan, Role};
 use integrate::{Method, Options, Start};
+use symbolic::Symbol;
 
 use crate::method::{Chosen, suited};
 use crate::single_run::{SingleRun, UNITS, chart_size, move_digits};
+use crate::sizes::sizes;
 use crate::start_values::StartValues;
-use crate::{Setting, Settings, SolveError};
+use crate::{Metric, Setting, Settings, SolveError};
 
 /// Equations compiled and started: what every run of the same motion shares.
 #[derive(Clone)]
@@ -30,6 +32,8 @@ pub struct Prepared {
     /// The unknowns of the instant at the start, for [`Compiled::set_guess`]; empty if not derived.
     pub guess: Vec<f64>,
     pub(crate) values: StartValues,
+    /// For the sizes of states.
+    metric: Metric,
     /// [`mechanics::System::breakpoints`].
     breakpoints: Vec<f64>,
     /// Where the second run starts, unless where the first does.
@@ -70,6 +74,8 @@ impl Prepared {
         let asked = |method| Chosen { method, why: "asked for".into() };
         let method = settings.method.map_or_else(|| suited(&equations), asked);
         let (start, guess) = (Vec::new(), Vec::new());
+        let varied: Vec<Symbol> = equations.free_constants.iter().map(|c| c.symbol).collect();
+        let metric = Metric::varying(setting.system, &varied[varied.len() - parameters..])?;
         let (other_start, largest, breakpoints) = (None, None, setting.system.breakpoints.clone());
         let mut prepared = Prepared {
             equations,
@@ -82,10 +88,12 @@ impl Prepared {
             start,
             guess,
             values,
+            metric,
             breakpoints,
             other_start,
             largest,
         };
+        prepared.metric.set_parameters(&prepared.constants[prepared.constants.len() - parameters..]);
         prepared.start_anew();
         if prepared.compiled.has_chart() {
             prepared.largest = Some(GROWTH * chart_size(&mut prepared.compiled, t, &prepared.start).max(1.0));
@@ -123,6 +131,7 @@ impl Prepared {
     pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
         let own = self.constants.len() - self.parameters;
         self.constants[own..].copy_from_slice(parameters);
+        self.metric.set_parameters(parameters);
     }
 
     /// The start, as the constants have it.
@@ -156,6 +165,12 @@ impl Prepared {
         self.run_from(self.start.clone(), end, options, self.largest)
     }
 
+    /// [`Options::sizes`] of a run from the start to `end`.
+    pub(crate) fn sizes(&mut self, end: f64) -> Vec<f64> {
+        self.set_compiled();
+        sizes(&mut self.compiled, &mut self.metric, self.t, &self.start, end - self.t)
+    }
+
     fn run_from(
         &mut self,
         y: Vec<f64>,
@@ -166,7 +181,7 @@ impl Prepared {
         self.set_compiled();
         let mut options = options.clone();
         options.breakpoints.extend(&self.breakpoints);
-        SingleRun::new(&mut self.compiled, &Start { t: self.t, y }, end, options, largest)
+        SingleRun::new(&mut self.compiled, &mut self.metric, &Start { t: self.t, y }, end, options, largest)
     }
 
     /// The run that estimates the error of `kept`, no farther than that one came. Its start has its last

@@ -3,7 +3,8 @@
 use equations::{Compiled, EvaluationFailure, Outputs};
 use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
-use crate::SolveError;
+use crate::sizes::sizes;
+use crate::{Metric, SolveError};
 
 /// What a single run came to. Alone it says nothing of its error but what its tolerance does.
 #[derive(Clone)]
@@ -25,6 +26,7 @@ impl SingleRun {
     /// Ends where the size of the chart comes to `largest`, if one is given.
     pub(crate) fn new(
         compiled: &mut Compiled,
+        metric: &mut Metric,
         start: &Start,
         end: f64,
         mut options: Options,
@@ -38,7 +40,7 @@ impl SingleRun {
         let mut rates = vec![0.0; start.y.len()];
         compiled.rates(start.t, &start.y, &mut rates).map_err(SolveError::AtStart)?;
         if options.sizes.is_empty() {
-            options.sizes = sizes(&start.y, &rates, end - start.t);
+            options.sizes = sizes(compiled, metric, start.t, &start.y, end - start.t);
         }
         let before = compiled.fallbacks();
         let mut runner = Runner { compiled, anchors, largest };
@@ -109,18 +111,6 @@ pub(crate) fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
         let part = units(i) * f64::EPSILON;
         *x *= if state & 1 == 0 { 1.0 + part } else { 1.0 - part };
     }
-}
-
-/// Parts of the largest size under which a size is round-off.
-const NO_SIZE: f64 = 1e-14;
-
-/// Size of each state, the factor of the absolute tolerance: what it is at the start or what its rate there
-/// makes of it within the run, if under 1. So a motion of 10⁻¹² m is resolved as well as one of 1 m. A state
-/// that starts as round-off of the others, or at rest in zero, tells no size, and has 1.
-pub(crate) fn sizes(y: &[f64], rates: &[f64], length: f64) -> Vec<f64> {
-    let reach: Vec<f64> = y.iter().zip(rates).map(|(y, rate)| y.abs().max((rate * length).abs())).collect();
-    let least = NO_SIZE * reach.iter().copied().fold(0.0, f64::max);
-    reach.into_iter().map(|size| if size > least { size.min(1.0) } else { 1.0 }).collect()
 }
 
 /// Compiled equations as the time integrator sees them.

@@ -12,7 +12,7 @@ use crate::single_run::UNITS;
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
 
-/// What round-off leaves of a coordinate, velocity or invariant that should be zero, over the largest one.
+/// What round-off leaves of a coordinate or velocity that should be zero, over the largest one in its unit.
 const DIGITS: f64 = 1e-15;
 
 /// Gives the invariants with the last digits of the state changed.
@@ -24,6 +24,8 @@ pub(crate) struct Watch {
     /// `f(t, q, v)` and parameters that vary.
     constraints: Evaluator<Bounded>,
     inputs: Vec<Bounded>,
+    /// Units of the coordinates.
+    units: Vec<String>,
     /// `|f|` and the invariants at the start.
     start: (Vec<f64>, Vec<f64>),
     /// What was added up to each invariant, where it is known to be more than its value.
@@ -42,7 +44,8 @@ impl Watch {
         let constraints = Evaluator::new(system.graph.compile(&inputs, &system.constraints, &values)?);
         let inputs = vec![Bounded::from_f64(0.0); inputs.len()];
         let (start, sizes, differences) = Default::default();
-        Ok(Watch { constraints, inputs, start, sizes, differences })
+        let units = system.coordinates.iter().map(|c| c.unit.clone()).collect();
+        Ok(Watch { constraints, inputs, units, start, sizes, differences })
     }
 
     /// A motion begins, with these values of the parameters that vary.
@@ -52,8 +55,7 @@ impl Watch {
         self.put(t, start);
         let residuals = self.constraints.evaluate(&self.inputs).iter().map(|f| f.value.abs()).collect();
         self.start = (residuals, start.invariants.clone());
-        let largest = start.invariants.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-        self.sizes = start.invariants.iter().map(|x| x.abs().max(DIGITS / ROUND_OFF * largest)).collect();
+        self.sizes = start.invariants.iter().map(|x| x.abs()).collect();
         self.differences = (vec![0.0; 2 * start.coordinates.len()], vec![0.0; start.invariants.len()]);
     }
 
@@ -100,11 +102,14 @@ impl Watch {
         let residuals = self.constraints.evaluate(&self.inputs).to_vec();
         let mut estimates = vec![0.0_f64; residuals.len()];
         let n = self.differences.0.len() / 2;
-        let largest = |kind: usize| self.inputs[1 + kind * n..][..n].iter().fold(0.0_f64, |a, x| a.max(x.value.abs()));
-        let digits = [0, 1].map(|kind| DIGITS * largest(kind));
+        let largest = |i: usize| {
+            let alike = (0..n).filter(|&j| self.units[j] == self.units[i % n]);
+            alike.map(|j| self.inputs[1 + i - i % n + j].value.abs()).fold(0.0, f64::max)
+        };
+        let digits: Vec<f64> = (0..2 * n).map(|i| DIGITS * largest(i)).collect();
         for (i, d) in self.differences.0.iter().enumerate() {
             let here = self.inputs[1 + i];
-            self.inputs[1 + i] = Bounded::from_f64(here.value + d.max(digits[i / n]));
+            self.inputs[1 + i] = Bounded::from_f64(here.value + d.max(digits[i]));
             let there = self.constraints.evaluate(&self.inputs);
             let changes = there.iter().zip(&residuals).map(|(a, b)| (a.value - b.value).abs());
             estimates.iter_mut().zip(changes).for_each(|(estimate, change)| *estimate += change);

@@ -64,6 +64,7 @@ mod removal_error;
 mod shape;
 mod singular_values;
 mod solved_constraints;
+mod speeds;
 mod start;
 mod system;
 mod view;

@@ -28,6 +28,12 @@ pub struct Singular {
 /// Pivots under this fraction of the scaled matrix are taken for zero.
 pub const PIVOT_LIMIT: f64 = 1e-13;
 
+/// A smaller pivot may be the work of units.
+const DOUBTFUL: f64 = 1e-6;
+
+/// Sweeps over rows and columns that bring all entries near 1.
+const BALANCES: usize = 4;
+
 /// LU factors of an n×n matrix, row-major, partial pivoting; rows and columns scaled against units.
 #[derive(Clone, Debug)]
 pub struct Factors<T = f64> {
@@ -47,11 +53,36 @@ impl<T: Entry> Factors<T> {
         Factors { n, lu, rows, row_scale: vec![one; n], column_scale: vec![one; n], work: vec![zero; n] }
     }
 
-    /// Factorizes `matrix` (row-major, n×n).
+    /// Factorizes `matrix` (row-major, n×n). Where a pivot is small with rows and columns scaled to a largest
+    /// entry of 1, all entries are brought as near to 1 as can be: other units may make it large.
     pub fn factorize(&mut self, matrix: &[T]) -> Result<(), Singular> {
-        let n = self.n;
+        let first = self.factorize_scaled(matrix, false);
+        if first.as_ref().is_ok_and(|least| *least >= DOUBTFUL) {
+            return Ok(());
+        }
+        let balanced = self.factorize_scaled(matrix, true);
+        let least = |found: &Result<f64, Singular>| found.as_ref().ok().copied().unwrap_or(0.0);
+        if balanced.is_ok() && least(&balanced) >= least(&first) {
+            return Ok(());
+        }
+        first.and_then(|_| self.factorize_scaled(matrix, false)).map(|_| ())
+    }
+
+    /// The smallest pivot.
+    fn factorize_scaled(&mut self, matrix: &[T], balanced: bool) -> Result<f64, Singular> {
         self.lu.copy_from_slice(matrix);
+        self.column_scale.fill(T::from_f64(1.0));
+        self.row_scale.fill(T::from_f64(1.0));
+        if balanced {
+            self.balance();
+        }
         self.scale()?;
+        self.eliminate()
+    }
+
+    fn eliminate(&mut self) -> Result<f64, Singular> {
+        let n = self.n;
+        let mut least = f64::INFINITY;
         for (i, row) in self.rows.iter_mut().enumerate() {
             *row = i;
         }
@@ -66,6 +97,7 @@ impl<T: Entry> Factors<T> {
             if best.1.is_nan() || best.1 < PIVOT_LIMIT {
                 return Err(Singular { reciprocal: best.1 });
             }
+            least = least.min(best.1);
             if best.0 != k {
                 self.rows.swap(k, best.0);
                 for j in 0..n {
@@ -85,7 +117,26 @@ impl<T: Entry> Factors<T> {
                 }
             }
         }
-        Ok(())
+        Ok(least)
+    }
+
+    /// Scales rows and columns by powers of 2 so that their largest and smallest entries are as far from 1.
+    fn balance(&mut self) {
+        let n = self.n;
+        for sweep in 0..2 * BALANCES {
+            for i in 0..n {
+                let place = |j: usize| if sweep % 2 == 0 { i * n + j } else { j * n + i };
+                let sizes = || (0..n).map(|j| self.lu[place(j)].size()).filter(|size| *size > 0.0);
+                let (least, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+                let scale = (-0.5 * (least.log2() + largest.log2())).round().exp2();
+                if scale.is_normal() {
+                    let scale = T::from_f64(scale);
+                    let by = if sweep % 2 == 0 { &mut self.row_scale } else { &mut self.column_scale };
+                    by[i] = by[i] * scale;
+                    (0..n).for_each(|j| self.lu[place(j)] = self.lu[place(j)] * scale);
+                }
+            }
+        }
     }
 
     /// Scales columns, then rows, to a largest entry of 1.
@@ -96,20 +147,22 @@ impl<T: Entry> Factors<T> {
             if largest == 0.0 || !largest.is_finite() {
                 return Err(Singular { reciprocal: if largest == 0.0 { 0.0 } else { f64::NAN } });
             }
-            self.column_scale[j] = T::from_f64(1.0 / largest);
+            let scale = T::from_f64(1.0 / largest);
+            self.column_scale[j] = self.column_scale[j] * scale;
+            (0..n).for_each(|i| self.lu[i * n + j] = self.lu[i * n + j] * scale);
         }
         for (i, row) in self.lu.chunks_exact_mut(n).enumerate() {
             let mut largest = 0.0_f64;
-            for (x, s) in row.iter_mut().zip(&self.column_scale) {
-                *x = *x * *s;
+            for x in row.iter() {
                 largest = largest.max(x.size());
             }
             if largest == 0.0 || !largest.is_finite() {
                 return Err(Singular { reciprocal: if largest == 0.0 { 0.0 } else { f64::NAN } });
             }
-            self.row_scale[i] = T::from_f64(1.0 / largest);
+            let scale = T::from_f64(1.0 / largest);
+            self.row_scale[i] = self.row_scale[i] * scale;
             for x in row {
-                *x = *x * self.row_scale[i];
+                *x = *x * scale;
             }
         }
         Ok(())
@@ -153,6 +206,18 @@ mod tests {
             f.solve(&mut b);
             assert!((b[0] - 2.0 / 3.0).abs() < 1e-14 && (b[1] - 7.0 / 3.0).abs() < 1e-14);
             assert!((b[2] * unit - 1.0 / 3.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn inertia_may_be_any_part_of_the_constraints() {
+        // [ m 0 1; 0 m 1; 1 1 0 ] z = (m, 2m, 3): z = (1, 2, 0)
+        for m in [1e-18, 1e18] {
+            let mut f = Factors::new(3);
+            f.factorize(&[m, 0.0, 1.0, 0.0, m, 1.0, 1.0, 1.0, 0.0]).unwrap();
+            let mut b = [m, 2.0 * m, 3.0];
+            f.solve(&mut b);
+            assert!((b[0] - 1.0).abs() < 1e-14 && (b[1] - 2.0).abs() < 1e-14 && b[2].abs() < 1e-14 * m, "{b:?}");
         }
     }
 

@@ -45,7 +45,9 @@ impl SolvedConstraints {
         let constants = system.parameter_values();
         let mut values = constants.clone();
         values.extend(system.values_at(state));
-        let LinearForms { mut rows, offsets } = system.linear_constraints()?;
+        let forms = system.linear_constraints()?;
+        let speeds = system.speeds(&forms, state);
+        let LinearForms { mut rows, offsets } = forms;
         // [A | b]
         for (row, &offset) in rows.iter_mut().zip(&offsets).filter(|(_, b)| !g.is_zero(**b)) {
             row.insert(n, offset);
@@ -57,7 +59,7 @@ impl SolvedConstraints {
         let mut quotients = Vec::new();
         let mut terms_left = TERMS;
         for _ in 0..h {
-            let (p, c) = choose_pivot(candidates(&matrix, &pivots, n))?;
+            let (p, c) = choose_pivot(candidates(&matrix, &pivots, &speeds))?;
             let Some(Pivot { entry: pivot, row: undivided, column }) = matrix.take(p, c) else { break };
             let divided =
                 |entry: &Entry| Entry { number: entry.number / pivot.number, ..known(g.div(entry.e, pivot.e)) };
@@ -130,14 +132,15 @@ impl SolvedConstraints {
     }
 }
 
-/// What is no pivot yet, with its size in its row and the length of its expression.
-fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, columns: usize) -> Vec<Candidate> {
+/// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of its
+/// expression.
+fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, speeds: &[f64]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for (i, row) in matrix.rows().iter().enumerate().filter(|(i, _)| !taken.values().any(|p| p == i)) {
-        let entries = || row.range(..columns);
-        let scale = entries().fold(0.0_f64, |a, (_, entry)| a.max(entry.number.abs()));
-        for (&j, entry) in entries() {
-            let size = if scale > 0.0 { entry.number.abs() / scale } else { 0.0 };
+        let size = |(&j, entry): (&usize, &Entry)| entry.number.abs() * speeds[j];
+        let scale = row.range(..speeds.len()).map(size).fold(0.0, f64::max);
+        for (&j, entry) in row.range(..speeds.len()) {
+            let size = if scale > 0.0 { size((&j, entry)) / scale } else { 0.0 };
             if size.is_finite() && size > 0.0 {
                 candidates.push(Candidate { size, cost: entry.size, place: (i, j) });
             }

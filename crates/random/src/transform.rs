@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use equations::Equations;
-use mechanics::{Removal, State, System};
+use mechanics::{ConstantsRule, Removal, State, System};
 use scene::Scene;
 use symbolic::{Expr, Matrix, Symbol};
 
@@ -86,25 +86,43 @@ impl Scaling {
         State { t: state.t / self.time, q: scaled(&state.q, 1.0), v: scaled(&state.v, self.time) }
     }
 
-    /// A removal all of whose coordinates are parameters or memory, in the new units; of the `scaled` system.
+    /// A removal in the new units, of the `scaled` system. Parameters and memory that are no coordinates keep
+    /// their unit but for time; costates `P` are scaled where one is given for each memory variable.
     pub fn removal(&self, scaled: &System, removal: &Removal) -> Removal {
         let g = &scaled.graph;
         let mut map = self.map(scaled);
-        for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
-            map.insert(u.rate, g.mul(g.number(1.0 / self.time), g.variable(u.rate)));
+        let mut over_time = |s: Symbol, by: f64| map.insert(s, g.mul(g.number(by), g.variable(s)));
+        for (c, a) in scaled.coordinates.iter().zip(&self.lengths) {
+            over_time(c.acceleration, a / self.time.powi(2));
         }
+        let own: Vec<_> = removal.parameters.iter().filter(|u| u.coordinate.is_none()).collect();
+        for u in &own {
+            over_time(u.rate, 1.0 / self.time);
+            over_time(u.second_rate, 1.0 / self.time.powi(2));
+        }
+        let rewritten = |factor: f64, e: Expr| g.mul(g.number(factor), g.substitute(e, &map));
         let mut removal = removal.clone();
         for w in &mut removal.memory {
-            let length = w.coordinate.map_or(1.0, |i| self.lengths[i]);
-            w.rate = g.mul(g.number(self.time / length), g.substitute(w.rate, &map));
+            w.rate = rewritten(self.time / w.coordinate.map_or(1.0, |i| self.lengths[i]), w.rate);
         }
-        removal.chart = g.substitute_all(&removal.chart, &map);
-        for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
-            // what the parameter's own rate is at the start has the new unit of time too
-            if let Some(start) = removal.start.get_mut(&u.rate) {
-                *start = g.mul(g.number(self.time), g.substitute(*start, &map));
+        for ((e, own), a) in removal.coordinates.iter_mut().zip(scaled.positions()).zip(&self.lengths) {
+            if *e != g.variable(own) {
+                *e = rewritten(1.0 / a, *e);
             }
         }
+        removal.chart = g.substitute_all(&removal.chart, &map);
+        for (s, start) in &mut removal.start {
+            // what the parameter's own rate is at the start has the new unit of time too
+            *start = rewritten(if own.iter().any(|u| u.rate == *s) { self.time } else { 1.0 }, *start);
+        }
+        removal.constants = match &removal.constants {
+            ConstantsRule::Zero => ConstantsRule::Zero,
+            ConstantsRule::Given(values) if values.len() == removal.memory.len() => {
+                ConstantsRule::Given(self.costates(&removal, values))
+            }
+            ConstantsRule::Given(values) => ConstantsRule::Given(values.clone()),
+            ConstantsRule::Natural { horizon } => ConstantsRule::Natural { horizon: horizon / self.time },
+        };
         removal
     }
 

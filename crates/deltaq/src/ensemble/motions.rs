@@ -190,7 +190,7 @@ impl Reader<'_> {
             read.push(now);
         }
         let doubt = if is_clear { None } else { self.broken(member.t, run) };
-        Ok((read, options.estimate.then(|| differences.estimate()), doubt))
+        Ok((read, options.estimate.then(|| differences.estimate(&self.metric)), doubt))
     }
 
     fn at(&mut self, run: &MemberRun, i: usize, t: f64, y: &[f64]) -> Result<Outputs, SolveError> {

@@ -8,8 +8,9 @@ use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, Project
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
 use crate::metric::subtract;
-use crate::single_run::{SingleRun, UNITS, move_digits, sizes};
-use crate::{Ending, SolveError, TIGHTER};
+use crate::single_run::{SingleRun, UNITS, move_digits};
+use crate::sizes::sizes;
+use crate::{Ending, Metric, SolveError, TIGHTER};
 
 /// How an ensemble is run.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +82,7 @@ impl Ensemble {
             origin,
             options: &options,
             compiled: &self.varying.prepared().compiled,
+            metric: &self.metric,
             lanes: self.lanes.as_ref(),
             words: &self.words,
             left: Mutex::default(),
@@ -135,6 +137,7 @@ struct Task<'a> {
     origin: Origin,
     options: &'a Options,
     compiled: &'a Compiled,
+    metric: &'a Metric,
     lanes: Result<&'a LaneEquations, &'a String>,
     words: &'a Mutex<Equations>,
     /// Those that have to go alone, and why: for whichever thread has no lanes to fill any more.
@@ -203,6 +206,12 @@ impl Task<'_> {
         y
     }
 
+    fn metric_of(&self, member: &EnsembleMember) -> Metric {
+        let mut metric = self.metric.clone();
+        metric.set_parameters(&member.constants[member.constants.len() - metric.parameters()..]);
+        metric
+    }
+
     fn start(&self, compiled: &mut Compiled, index: usize) -> Result<LaneStart, SolveError> {
         let member = &self.members[index];
         let y = self.states(index);
@@ -210,7 +219,8 @@ impl Task<'_> {
         member.set(compiled);
         let mut rates = vec![0.0; y.len()];
         compiled.rates(member.t, &y, &mut rates).map_err(SolveError::AtStart)?;
-        let sizes = sizes(&y, &rates, member.end - member.t);
+        let mut metric = self.metric_of(member);
+        let sizes = sizes(compiled, &mut metric, member.t, &y, member.end - member.t);
         Ok(LaneStart { t: member.t, y, end: member.end, sizes })
     }
 
@@ -218,7 +228,8 @@ impl Task<'_> {
         let member = &self.members[index];
         member.set(compiled);
         let start = Start { t: member.t, y: self.states(index) };
-        let run = SingleRun::new(compiled, &start, member.end, self.options.clone(), None)?;
+        let run =
+            SingleRun::new(compiled, &mut self.metric_of(member), &start, member.end, self.options.clone(), None)?;
         let solution = &run.solution;
         let (reached, direction) = (run.end(), member.end - member.t);
         let passed = self.times.iter().take_while(|&&t| (t - reached) * direction <= 0.0);
