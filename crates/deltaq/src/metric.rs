@@ -113,13 +113,20 @@ impl Metric {
     /// What the round-off of each coordinate is a part of: its own size; where that is less, the largest one in
     /// its unit, or the way of that kinetic length in it, whichever is less.
     pub(crate) fn round_off_sizes(&self, inertia: &[f64], sizes: &[f64], length: f64) -> Vec<f64> {
-        let same_unit = |i: usize| (0..sizes.len()).filter(move |&j| j != i && self.units[j] == self.units[i]);
-        let size = |i: usize| {
-            let way = inertia.get(i).map(|unit| length / unit).filter(|way| way.is_finite());
-            let others = same_unit(i).map(|j| sizes[j]).reduce(f64::max);
-            sizes[i].max([way, others].into_iter().flatten().reduce(f64::min).unwrap_or(0.0))
-        };
+        let is_alone = |i: usize| (0..sizes.len()).all(|j| j == i || self.units[j] != self.units[i]);
+        let others = |i: usize| if is_alone(i) { vec![0.0; sizes.len()] } else { sizes.to_vec() };
+        let size = |i: usize| sizes[i].max(self.likely_size(i, inertia, &others(i), length).unwrap_or(0.0));
         (0..sizes.len()).map(size).collect()
+    }
+
+    /// What a coordinate may come to that tells no size itself: the largest of `sizes` in its unit, or the way
+    /// of that kinetic length in it, whichever is less.
+    pub(crate) fn likely_size(&self, i: usize, inertia: &[f64], sizes: &[f64], length: f64) -> Option<f64> {
+        let same_unit = (0..sizes.len()).filter(|&j| self.units[j] == self.units[i]).map(|j| sizes[j]);
+        let way = inertia.get(i).map(|unit| length / unit);
+        let positive = |size: &f64| *size > 0.0 && size.is_finite();
+        let largest = same_unit.filter(positive).reduce(f64::max);
+        [largest, way.filter(positive)].into_iter().flatten().reduce(f64::min)
     }
 
     /// `max |fᵢ(t, q, v)|`, 0 where there is no constraint.

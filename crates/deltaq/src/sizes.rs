@@ -22,9 +22,10 @@ const SEEN: f64 = 1.0 / (1 << 30) as f64;
 /// or becomes by its rate within the time `τ ≤ length` for which Euler's step is right. So it is in the
 /// state's own unit, and a motion of 10⁻¹² m is resolved as well as one of 1 m.
 ///
-/// What is zero or round-off has the size that changes the velocities, or the coordinates within `τ`, by what
-/// the energy allows: `Δvᵀ|M|Δv = E`, `Δqᵀ|M|Δq = E τ²`, with `E = max(vᵀ|M|v, τ² v̇ᵀ|M|v̇)`; a state that
-/// neither depends on, what changes those that have a size by it within `τ`. It is 1 where nothing does.
+/// What is zero or round-off has the size that changes a coordinate by as much as the energy allows it within
+/// `τ`, `|M_ii| Δqᵢ² = E τ²` with `E = max(vᵀ|M|v, τ² v̇ᵀ|M|v̇)`, or as the largest one in its unit moves, if that
+/// is less; or else a velocity, `Δqᵢ/τ`. A state that neither depends on has the size that changes those that
+/// have one by it within `τ`; 1 where nothing does.
 pub(crate) fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], length: f64) -> Vec<f64> {
     let mut rates = vec![0.0; y.len()];
     let found = compiled.rates(t, y, &mut rates).and_then(|()| compiled.outputs(t, y));
@@ -79,13 +80,15 @@ impl Probe<'_> {
 
     /// The sizes that the energy tells; 0 where it tells none.
     fn of_energy(&mut self, time: f64) -> Vec<f64> {
-        let speed = self.speed(time);
+        let (place, velocity) = self.likely(time.abs());
         let mut sizes = vec![0.0; self.y.len()];
-        if !(speed > 0.0 && speed.is_finite()) {
-            return sizes;
-        }
+        let mut share = |probe: &mut Self, y: &[f64]| {
+            let there = probe.compiled.outputs(probe.t, y).ok()?;
+            let places = largest_part(&seen(&there.coordinates, &probe.here.coordinates), &place);
+            places.or_else(|| largest_part(&seen(&there.velocities, &probe.here.velocities), &velocity))
+        };
         for j in 0..sizes.len() {
-            sizes[j] = self.moved(j, time, &mut |probe, y| probe.share(y, speed, time)).unwrap_or(0.0);
+            sizes[j] = self.moved(j, time, &mut share).unwrap_or(0.0);
         }
         // what velocities and coordinates do not depend on, by those rates that do
         while let Some(found) = self.behind(&sizes, time) {
@@ -94,24 +97,26 @@ impl Probe<'_> {
         sizes
     }
 
-    /// The larger of the speed and of what the forces make of it.
-    fn speed(&mut self, time: f64) -> f64 {
+    /// What coordinates and velocities may come to within a time; 0 where nothing tells.
+    fn likely(&mut self, time: f64) -> (Vec<f64>, Vec<f64>) {
         let step = MOVE * time;
         let later = self.later(step);
-        let there = self.compiled.outputs(self.t + step, &later);
-        let change = there.map_or(0.0, |there| self.length(&subtract(&there.velocities, &self.here.velocities)));
-        let speed = self.length(&self.here.velocities.clone());
-        speed.max(Some(change / MOVE).filter(|x| x.is_finite()).unwrap_or(0.0))
-    }
-
-    /// Which part of the energy it takes to come to `y`: 1 for all of it; `None` if nothing is seen to move.
-    fn share(&mut self, y: &[f64], speed: f64, time: f64) -> Option<f64> {
-        let there = self.compiled.outputs(self.t, y).ok()?;
-        let place = seen(&there.coordinates, &self.here.coordinates);
-        let velocity = seen(&there.velocities, &self.here.velocities);
-        let place = self.length(&place) / (speed * time.abs());
-        let part = if place > 0.0 { place } else { self.length(&velocity) / speed };
-        (part > 0.0 && part.is_finite()).then_some(part)
+        let (q, v) = (self.here.coordinates.clone(), self.here.velocities.clone());
+        let there = self.compiled.outputs(self.t + step, &later).map_or(v.clone(), |there| there.velocities);
+        let change: Vec<f64> = subtract(&there, &v).iter().map(|d| d / MOVE).collect();
+        let n = self.metric.names.len();
+        // outputs may be fewer than the coordinates of the system
+        let full = |x: &[f64]| -> Vec<f64> { x.iter().copied().chain(std::iter::repeat(0.0)).take(n).collect() };
+        let (point, [speed, change]) = ((full(&q), full(&v)), [full(&v), full(&change)]);
+        let inertia = self.metric.inertia(self.t, &point.0, &point.1).0;
+        let of = |metric: &mut Metric, x: &[f64]| metric.length(self.t, &point.0, &point.1, x);
+        let energy = of(self.metric, &speed).max(of(self.metric, &change));
+        let speeds: Vec<f64> = speed.iter().zip(&change).map(|(v, d)| v.abs().max(d.abs())).collect();
+        let places: Vec<f64> = point.0.iter().zip(&speeds).map(|(q, v)| q.abs().max(v * time)).collect();
+        let likely = |sizes: &[f64], length: f64| -> Vec<f64> {
+            (0..q.len()).map(|i| self.metric.likely_size(i, &inertia, sizes, length).unwrap_or(0.0)).collect()
+        };
+        (likely(&places, energy * time), likely(&speeds, energy))
     }
 
     /// The sizes with those that rates of sized states tell; `None` if there are no more.
@@ -120,10 +125,8 @@ impl Probe<'_> {
         for j in (0..sizes.len()).filter(|&j| sizes[j] == 0.0) {
             let mut share = |probe: &mut Self, y: &[f64]| {
                 let there = probe.rates_at(probe.t, y)?;
-                let changes = seen(&there, &probe.rates);
-                let parts = changes.iter().zip(sizes).filter(|(_, size)| **size > 0.0);
-                let part = parts.map(|(change, size)| (change * time / size).abs()).fold(0.0, f64::max);
-                (part > 0.0 && part.is_finite()).then_some(part)
+                let changes: Vec<f64> = seen(&there, &probe.rates).iter().map(|change| change * time).collect();
+                largest_part(&changes, sizes)
             };
             found[j] = self.moved(j, time, &mut share).unwrap_or(0.0);
         }
@@ -149,11 +152,6 @@ impl Probe<'_> {
         self.y.iter().zip(&self.rates).map(|(y, f)| y + step * f).collect()
     }
 
-    fn length(&mut self, difference: &[f64]) -> f64 {
-        let (q, v) = (self.here.coordinates.clone(), self.here.velocities.clone());
-        self.metric.length(self.t, &q, &v, difference)
-    }
-
     fn rates_at(&mut self, t: f64, y: &[f64]) -> Option<Vec<f64>> {
         let mut rates = vec![0.0; y.len()];
         self.compiled.rates(t, y, &mut rates).ok()?;
@@ -165,4 +163,10 @@ impl Probe<'_> {
 fn seen(there: &[f64], here: &[f64]) -> Vec<f64> {
     let is_seen = |(there, here): (&f64, &f64)| Some(there - here).filter(|d| d.abs() > SEEN * here.abs());
     there.iter().zip(here).map(|pair| is_seen(pair).unwrap_or(0.0)).collect()
+}
+
+/// The largest part that differences are of sizes; `None` where it is none.
+fn largest_part(differences: &[f64], sizes: &[f64]) -> Option<f64> {
+    let known = differences.iter().zip(sizes).filter(|(_, size)| **size > 0.0);
+    known.map(|(d, size)| (d / size).abs()).filter(|part| *part > 0.0 && part.is_finite()).reduce(f64::max)
 }
