@@ -138,7 +138,7 @@ impl Dynamics {
             let (rates, point) = values.split_at(self.states);
             if k < orders {
                 sound(rates)?;
-                let over = C::of(Exact { denominator: k as i128, ..Exact::ONE })?;
+                let over = C::of(Exact::over(k)?)?;
                 for (y, rate) in states.iter_mut().zip(rates) {
                     y.push(rate.coefficient(k - 1) * over);
                 }
@@ -219,7 +219,7 @@ impl Family {
             };
             let rest: Vec<C> = instant.explicit.chunks_exact(k + 1).map(|row| row[k].coefficient(at)).collect();
             let explicit = along(&costates, &explicit, &rest, at);
-            let over = C::of(Exact { denominator: at as i128 + 1, ..Exact::ONE })?;
+            let over = C::of(Exact::over(at + 1)?)?;
             let mut next = Vec::with_capacity(k * width);
             for rate in &shape.rates {
                 let (from, place) = match *rate {

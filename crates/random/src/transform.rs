@@ -44,11 +44,13 @@ impl Scaling {
         let mut scaled = system.clone();
         let g = &scaled.graph;
         let map = self.map(&scaled);
-        let rewritten = |factor: f64, e: Expr| g.mul(g.number(factor), g.substitute(e, &map));
+        let by = |factor: Expr, e: Expr| g.mul(factor, g.substitute(e, &map));
+        let rewritten = |factor: f64, e: Expr| by(g.number(factor), e);
         let lagrangian = rewritten(self.action, system.lagrangian);
         let constraints = system.constraints.iter().map(|&f| rewritten(self.constraint, f)).collect();
         // virtual work Q dq is an L, too
-        let forces = system.forces.iter().zip(&self.lengths).map(|(&q, &a)| rewritten(self.action * a, q)).collect();
+        let work = |(&q, &a): (&Expr, &f64)| by(g.mul(g.number(self.action), g.number(a)), q);
+        let forces = system.forces.iter().zip(&self.lengths).map(work).collect();
         (scaled.lagrangian, scaled.constraints, scaled.forces) = (lagrangian, constraints, forces);
         scaled.breakpoints.iter_mut().for_each(|t| *t /= self.time);
         for watched in &mut scaled.watched {
