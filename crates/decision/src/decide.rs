@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
+use crate::scales::power;
 use crate::transport::{Path, Transport};
 
 /// Gauss nodes a panel, and the least number of panels.
@@ -107,27 +108,51 @@ pub struct Decision {
     sizes: Sizes,
 }
 
-/// What a mismatch is compared with; squares of lengths while these are added up.
+/// What a mismatch is compared with.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sizes {
-    /// What the rows are known to.
+    /// What `y₀` is known to, and `O` times a constant of size 1.
     noise: f64,
-    /// The curve's own acceleration, and its speed, over the time at last.
+    /// The curve's own acceleration, and its speed over the time.
     acceleration: f64,
     speed: f64,
-    /// What was added up to the mismatch, without regard to signs.
+    /// What was added up, without regard to signs.
     terms: f64,
     /// Whether the curve moves at any node, by more than round-off of that.
     moves: bool,
 }
 
-impl Sizes {
-    fn lengths(self, time: f64, rows: f64) -> Sizes {
-        let [noise, acceleration, speed, terms] =
-            [self.noise, self.acceleration, self.speed / time.powi(2), self.terms].map(f64::sqrt);
-        let terms = if terms.is_finite() { terms } else { 0.0 };
-        let floor = ROUND_OFF * rows.max(acceleration.hypot(speed)).max(terms);
-        Sizes { noise: noise.max(floor), acceleration, speed, terms, ..self }
+/// Squares of lengths, added up; of the columns of `[O | y₀]` where there are several.
+struct Sums {
+    noise: DVector<f64>,
+    terms: DVector<f64>,
+    acceleration: f64,
+    speed: f64,
+    moves: bool,
+}
+
+impl Sums {
+    /// The sizes, and for each constant the size at which its column is known as well as `y₀`: whatever its
+    /// unit, it has an effect if that stands out from its own noise. Where nothing moves but by round-off,
+    /// so do the columns, and all have the noise of what balances.
+    fn lengths(&self, time: f64, triangle: &DMatrix<f64>) -> (Sizes, Vec<f64>) {
+        let [acceleration, speed] = [self.acceleration, self.speed / time.powi(2)].map(f64::sqrt);
+        let last = triangle.ncols() - 1;
+        let known = |noise: f64, size: f64, terms: f64| {
+            let terms = Some(terms.sqrt()).filter(|x| x.is_finite()).unwrap_or(0.0);
+            noise.sqrt().max(ROUND_OFF * size.max(terms))
+        };
+        let motion = acceleration.hypot(speed);
+        let column = |k: usize, size: f64| known(self.noise[k], size.max(triangle.column(k).norm()), self.terms[k]);
+        let (noise, units) = if self.moves {
+            let own = column(last, motion);
+            let columns = (0..last).map(|k| column(k, 0.0));
+            (own, columns.map(|noise| if noise > 0.0 { power(own / noise) } else { 1.0 }).collect())
+        } else {
+            (known(self.noise.sum(), triangle.norm().max(motion), self.terms.sum()), vec![1.0; last])
+        };
+        let terms = Some(self.terms.sum().sqrt()).filter(|x| x.is_finite()).unwrap_or(0.0);
+        (Sizes { noise, acceleration, speed, terms, moves: self.moves }, units)
     }
 }
 
@@ -203,7 +228,8 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     let panels = bounds.len() - 1;
     let (constants, scales) = (fine.family.constants(), fine.scales.constants.clone());
     let mut triangle = DMatrix::zeros(0, constants.len() + 1);
-    let mut sums = Sizes::default();
+    let zeros = DVector::zeros(constants.len() + 1);
+    let mut sums = Sums { noise: zeros.clone(), terms: zeros, acceleration: 0.0, speed: 0.0, moves: false };
     let (nodes, n) = (legendre(), fine.family.shape.coordinates);
     let mut found: Vec<Decision> = Vec::new();
     let mut parts = PARTS.into_iter().peekable();
@@ -218,10 +244,14 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             triangle.rows_mut(above + i * n, n).copy_from(&(&here.rows * root));
             if i == panel % NODES {
                 let there = coarse.mismatch(other, t)?;
-                let terms = fine.length_of_terms(&here);
-                sums.noise += (&here.rows - there.rows).norm_squared() * width.abs();
-                sums.terms += terms.powi(2) * width.abs();
-                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * terms;
+                let squares = |rows: DMatrix<f64>| {
+                    DVector::from_iterator(rows.ncols(), rows.column_iter().map(|x| x.norm_squared()))
+                };
+                let terms = squares(fine.terms_of(&here));
+                let all = terms.sum().sqrt();
+                sums.noise += squares(&here.rows - there.rows) * width.abs();
+                sums.terms += terms * width.abs();
+                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * all;
             }
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);
@@ -233,10 +263,13 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             passed = true;
         }
         if passed {
-            let sizes = sums.lengths(past, triangle.norm());
+            let (sizes, units) = sums.lengths(past, &triangle);
+            let mut scaled = triangle.clone();
+            scaled.column_iter_mut().zip(&units).for_each(|(mut column, unit)| column *= *unit);
+            let scales = scales.iter().zip(units).map(|(scale, unit)| scale * unit).collect();
             let whole = panel + 1 == panels && way == (end - start).abs();
             let until = (!whole).then_some(bounds[panel + 1]);
-            found.push(judge(triangle.clone(), sizes, until, constants.to_vec(), scales.clone()));
+            found.push(judge(scaled, sizes, until, constants.to_vec(), scales));
         }
         Ok(())
     };

@@ -168,6 +168,9 @@ pub(crate) struct MismatchSeries<C> {
     /// The same as accelerations of the coordinates, n rows.
     pub(crate) accelerations: Vec<Vec<C>>,
     pub(crate) width: usize,
+    /// `M` and `A` at the start.
+    pub(crate) mass: Vec<C>,
+    pub(crate) jacobian: Vec<C>,
     /// Whether curve and lift are at rest.
     pub(crate) at_rest: bool,
 }
@@ -242,6 +245,8 @@ impl Family {
             }
             sum.into_iter().map(|x| -x).collect()
         });
-        Ok(MismatchSeries { accelerations: accelerations.collect(), orders: unknowns, width, at_rest })
+        let accelerations = accelerations.collect();
+        let (mass, jacobian) = (order(instant.mass, 0), order(instant.jacobian, 0));
+        Ok(MismatchSeries { accelerations, orders: unknowns, width, mass, jacobian, at_rest })
     }
 }

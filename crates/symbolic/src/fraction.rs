@@ -175,16 +175,19 @@ impl Fraction {
 
     /// The nearest float of a decimal, and of any fraction but for the last digit; 0 and ∞ beyond the range.
     pub fn to_f64(self) -> f64 {
-        if let Some((n, d)) = self.plain() {
+        let exact = |n: i128| n.unsigned_abs() <= 1 << 53;
+        if let Some((n, d)) = self.plain().filter(|&(n, d)| exact(n) && exact(d)) {
             return n as f64 / d as f64;
         }
-        let tens = self.twos.min(self.fives);
-        let digits = raised(self.numerator, self.twos - tens, self.fives - tens).filter(|_| self.denominator == 1);
-        match digits.and_then(|digits| format!("{digits}e{tens}").parse().ok()) {
-            Some(x) => x,
-            None => {
-                let twos = self.twos + 2 * self.fives;
-                let quotient = self.numerator as f64 / self.denominator as f64 * 1.25_f64.powi(self.fives);
+        let (n, d, twos, fives) = self.parts();
+        let tens = twos.min(fives);
+        let digits = raised(n, twos - tens, fives - tens).filter(|_| d == 1);
+        match (digits.and_then(|digits| format!("{digits}e{tens}").parse().ok()), self.plain()) {
+            (Some(x), _) => x,
+            (None, Some((n, d))) => n as f64 / d as f64,
+            (None, None) => {
+                let twos = twos + 2 * fives;
+                let quotient = n as f64 / d as f64 * 1.25_f64.powi(fives);
                 quotient * 2_f64.powi(twos / 2) * 2_f64.powi(twos - twos / 2)
             }
         }
@@ -249,7 +252,7 @@ mod tests {
 
     #[test]
     fn floats_of_decimals_are_the_nearest() {
-        for text in ["9.81e-45", "123456789012345e-60", "1e300", "5e-324", "2.5e33"] {
+        for text in ["1e-24", "7e25", "9.81e-45", "123456789012345e-60", "1e300", "5e-324", "2.5e33"] {
             assert_eq!(decimal(text).to_f64().to_bits(), text.parse::<f64>().unwrap().to_bits(), "{text}");
         }
         assert_eq!(decimal("1e-400").to_f64(), 0.0);
