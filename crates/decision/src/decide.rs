@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
-use crate::scales::power;
+use crate::sizes::{CERTAIN, Column, ROUND_OFF, Sizes, Sums};
 use crate::transport::{Path, Transport};
 
 /// Gauss nodes a panel, and the least number of panels.
@@ -15,10 +15,6 @@ pub(crate) const NODES: usize = 2;
 const PANELS: usize = 40;
 /// The question is judged up to these parts of the time.
 const PARTS: [f64; 12] = [0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
-/// A mismatch up to this many times its noise is none.
-const CERTAIN: f64 = 10.0;
-/// What round-off leaves of the rows at best, relative to their size and to what was added up to them.
-const ROUND_OFF: f64 = 1e-14;
 /// Noise over this part of the curve's own acceleration tells nothing: a mismatch below it may be real.
 const TOO_LOUD: f64 = 1e-5;
 
@@ -103,57 +99,8 @@ pub struct Decision {
     /// Up to when this was judged, if not to the end: what comes after is too loud, or cannot be followed.
     pub until: Option<f64>,
     triangle: DMatrix<f64>,
-    /// What a constant of size 1 in the triangle is.
-    scales: Vec<f64>,
+    columns: Vec<Column>,
     sizes: Sizes,
-}
-
-/// What a mismatch is compared with.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sizes {
-    /// What `y₀` is known to, and `O` times a constant of size 1.
-    noise: f64,
-    /// The curve's own acceleration, and its speed over the time.
-    acceleration: f64,
-    speed: f64,
-    /// What was added up, without regard to signs.
-    terms: f64,
-    /// Whether the curve moves at any node, by more than round-off of that.
-    moves: bool,
-}
-
-/// Squares of lengths, added up; of the columns of `[O | y₀]` where there are several.
-struct Sums {
-    noise: DVector<f64>,
-    terms: DVector<f64>,
-    acceleration: f64,
-    speed: f64,
-    moves: bool,
-}
-
-impl Sums {
-    /// The sizes, and for each constant the size at which its column is known as well as `y₀`: whatever its
-    /// unit, it has an effect if that stands out from its own noise. Where nothing moves but by round-off,
-    /// so do the columns, and all have the noise of what balances.
-    fn lengths(&self, time: f64, triangle: &DMatrix<f64>) -> (Sizes, Vec<f64>) {
-        let [acceleration, speed] = [self.acceleration, self.speed / time.powi(2)].map(f64::sqrt);
-        let last = triangle.ncols() - 1;
-        let known = |noise: f64, size: f64, terms: f64| {
-            let terms = Some(terms.sqrt()).filter(|x| x.is_finite()).unwrap_or(0.0);
-            noise.sqrt().max(ROUND_OFF * size.max(terms))
-        };
-        let motion = acceleration.hypot(speed);
-        let column = |k: usize, size: f64| known(self.noise[k], size.max(triangle.column(k).norm()), self.terms[k]);
-        let (noise, units) = if self.moves {
-            let own = column(last, motion);
-            let columns = (0..last).map(|k| column(k, 0.0));
-            (own, columns.map(|noise| if noise > 0.0 { power(own / noise) } else { 1.0 }).collect())
-        } else {
-            (known(self.noise.sum(), triangle.norm().max(motion), self.terms.sum()), vec![1.0; last])
-        };
-        let terms = Some(self.terms.sum().sqrt()).filter(|x| x.is_finite()).unwrap_or(0.0);
-        (Sizes { noise, acceleration, speed, terms, moves: self.moves }, units)
-    }
 }
 
 impl Decision {
@@ -169,7 +116,7 @@ impl Decision {
 
     /// Constants in their scales.
     fn scaled(&self, constants: &[f64]) -> DVector<f64> {
-        DVector::from_iterator(constants.len(), constants.iter().zip(&self.scales).map(|(c, scale)| c / scale))
+        DVector::from_iterator(constants.len(), constants.iter().zip(&self.columns).map(|(c, column)| c / column.scale))
     }
 
     /// Whether the constants `c` leave no mismatch that stands out from the noise.
@@ -184,8 +131,8 @@ impl Decision {
         let columns: Vec<usize> = kept.iter().copied().chain([last]).collect();
         let triangle = compressed(self.triangle.select_columns(&columns));
         let constants = kept.iter().map(|&i| self.constants[i].clone()).collect();
-        let scales = kept.iter().map(|&i| self.scales[i]).collect();
-        judge(triangle, self.sizes, self.until, constants, scales)
+        let columns = kept.iter().map(|&i| self.columns[i]).collect();
+        judge(triangle, self.sizes, self.until, constants, columns)
     }
 }
 
@@ -263,13 +210,13 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             passed = true;
         }
         if passed {
-            let (sizes, units) = sums.lengths(past, &triangle);
+            let (sizes, mut columns) = sums.lengths(past, &triangle);
             let mut scaled = triangle.clone();
-            scaled.column_iter_mut().zip(&units).for_each(|(mut column, unit)| column *= *unit);
-            let scales = scales.iter().zip(units).map(|(scale, unit)| scale * unit).collect();
+            scaled.column_iter_mut().zip(&columns).for_each(|(mut column, known)| column *= known.scale);
+            columns.iter_mut().zip(&scales).for_each(|(column, scale)| column.scale *= scale);
             let whole = panel + 1 == panels && way == (end - start).abs();
             let until = (!whole).then_some(bounds[panel + 1]);
-            found.push(judge(scaled, sizes, until, constants.to_vec(), scales));
+            found.push(judge(scaled, sizes, until, constants.to_vec(), columns));
         }
         Ok(())
     };
@@ -309,7 +256,7 @@ fn judge(
     sizes: Sizes,
     until: Option<f64>,
     constants: Vec<String>,
-    scales: Vec<f64>,
+    known: Vec<Column>,
 ) -> Decision {
     let last = triangle.ncols() - 1;
     // as many rows as right singular vectors
@@ -332,16 +279,22 @@ fn judge(
             (point, reach, least) = (all, far, left);
         }
     }
-    let free = (0..last).filter(|&k| svd.values[k] <= limit);
-    let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&scales).map(|(c, scale)| c * scale));
-    let directions = orthonormal(free.map(|k| own(svd.right.row(k).transpose())).collect());
+    let free: Vec<DVector<f64>> =
+        (0..last).filter(|&k| svd.values[k] <= limit).map(|k| svd.right.row(k).transpose()).collect();
+    // without effect, or with one that is lost in noise?
+    let length = |c: &DVector<f64>, of: fn(&Column) -> f64| {
+        c.iter().zip(&known).map(|(c, column)| (c * of(column)).powi(2)).sum::<f64>().sqrt()
+    };
+    let loud = free.iter().any(|c| CERTAIN * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
+    let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
+    let directions = orthonormal(free.into_iter().map(own).collect());
     let noise = sizes.noise * reach;
     let motion = sizes.acceleration.hypot(sizes.speed);
     // where nothing moves, what balances is the scale
     let scale = if sizes.moves { motion } else { sizes.terms * reach };
     let verdict = if least > CERTAIN * noise {
         Verdict::NotContained
-    } else if CERTAIN * noise <= TOO_LOUD * scale {
+    } else if CERTAIN * noise <= TOO_LOUD * scale && !loud {
         Verdict::Contained
     } else {
         Verdict::Undecided
@@ -356,7 +309,7 @@ fn judge(
         constants,
         until,
         triangle,
-        scales,
+        columns: known,
         sizes,
     }
 }
@@ -378,7 +331,14 @@ pub(crate) fn least(mut rows: DMatrix<f64>) -> f64 {
     for mut column in rows.columns_mut(0, last).column_iter_mut().filter(|column| column.norm() > 0.0) {
         column /= column.norm();
     }
-    judge(compressed(rows), Sizes::default(), None, Vec::new(), vec![1.0; last]).least
+    judge(
+        compressed(rows),
+        Sizes::default(),
+        None,
+        Vec::new(),
+        vec![Column { scale: 1.0, noise: 0.0, size: 0.0 }; last],
+    )
+    .least
 }
 
 /// The triangular factor: the same lengths in at most as many rows as columns.

@@ -93,12 +93,12 @@ impl Scaling {
         let g = &scaled.graph;
         let mut map = self.map(scaled);
         for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
-            map.insert(u.rate, g.mul(g.number(1.0 / self.time), g.variable(u.rate)));
+            map.insert(u.rate, g.div(g.variable(u.rate), g.number(self.time)));
         }
         let mut removal = removal.clone();
         for w in &mut removal.memory {
             let length = w.coordinate.map_or(1.0, |i| self.lengths[i]);
-            w.rate = g.mul(g.number(self.time / length), g.substitute(w.rate, &map));
+            w.rate = g.mul(g.div(g.number(self.time), g.number(length)), g.substitute(w.rate, &map));
         }
         removal.chart = g.substitute_all(&removal.chart, &map);
         for u in removal.parameters.iter().filter(|u| u.coordinate.is_none()) {
@@ -124,11 +124,10 @@ impl Scaling {
     /// Equations of the scaled system whose outputs are in the old units.
     pub fn outputs(&self, mut equations: Equations) -> Equations {
         let g = &equations.graph;
-        let scaled = |es: &[Expr], by: f64| -> Vec<Expr> {
-            es.iter().zip(&self.lengths).map(|(&e, &a)| g.mul(g.number(by * a), e)).collect()
+        let scaled = |es: &[Expr], over: f64| -> Vec<Expr> {
+            es.iter().zip(&self.lengths).map(|(&e, &a)| g.mul(g.div(g.number(a), g.number(over)), e)).collect()
         };
-        let (coordinates, velocities) =
-            (scaled(&equations.coordinates, 1.0), scaled(&equations.velocities, 1.0 / self.time));
+        let (coordinates, velocities) = (scaled(&equations.coordinates, 1.0), scaled(&equations.velocities, self.time));
         (equations.coordinates, equations.velocities, equations.chart) = (coordinates, velocities, None);
         equations
     }
