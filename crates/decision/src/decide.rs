@@ -180,6 +180,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     let (nodes, n) = (legendre(), fine.family.shape.coordinates);
     let mut found: Vec<Decision> = Vec::new();
     let mut parts = PARTS.into_iter().peekable();
+    let mut begun = None;
     let mut add = |panel: usize| -> Result<(), DecisionError> {
         let width = bounds[panel + 1] - bounds[panel];
         let above = triangle.nrows();
@@ -211,6 +212,9 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
         }
         if passed {
             let (sizes, mut columns) = sums.lengths(past, &triangle);
+            // what grows hides what does not
+            let first = begun.get_or_insert_with(|| columns.iter().map(|k| k.size / k.scale).collect::<Vec<_>>());
+            columns.iter_mut().zip(first).for_each(|(k, first)| k.size = k.size.min(*first * k.scale));
             let mut scaled = triangle.clone();
             scaled.column_iter_mut().zip(&columns).for_each(|(mut column, known)| column *= known.scale);
             columns.iter_mut().zip(&scales).for_each(|(column, scale)| column.scale *= scale);

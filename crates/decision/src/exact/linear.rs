@@ -13,15 +13,13 @@ pub(crate) fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Opti
 /// Makes `right` (size×width) `matrix⁻¹ · right`, and says the determinant; `None` where that is zero.
 pub(crate) fn solve<C: Coefficient>(matrix: &mut [C], right: &mut [C], size: usize, width: usize, one: C) -> Option<C> {
     let mut determinant = one;
-    let mut units = units(matrix, size);
     for column in 0..size {
-        let weight = |row: usize| matrix[row * size + column].weight() * units[row];
+        let weight = |row: usize| matrix[row * size + column].weight();
         let pivot = (column..size).max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a)))?;
         let value = matrix[pivot * size + column];
         let over = value.inverse()?;
         if pivot != column {
             determinant = -determinant;
-            units.swap(pivot, column);
             (0..size).for_each(|j| matrix.swap(pivot * size + j, column * size + j));
             (0..width).for_each(|j| right.swap(pivot * width + j, column * width + j));
         }
@@ -40,25 +38,6 @@ pub(crate) fn solve<C: Coefficient>(matrix: &mut [C], right: &mut [C], size: usi
         (0..column).for_each(|row| subtract_row(right, width, 0, row, column, matrix[row * size + column]));
     }
     Some(determinant)
-}
-
-/// Factors of the rows with which entries are of size 1, columns being scaled as well: so no unit chooses a
-/// pivot.
-fn units<C: Coefficient>(matrix: &[C], size: usize) -> Vec<f64> {
-    let mut units = vec![1.0; size];
-    if C::FOLLOWED {
-        return units;
-    }
-    let over = |largest: f64| if largest > 0.0 && largest.is_finite() { largest.recip() } else { 1.0 };
-    let weight = |i: usize, j: usize| matrix[i * size + j].weight();
-    for _ in 0..2 {
-        let columns: Vec<f64> =
-            (0..size).map(|j| over((0..size).map(|i| weight(i, j) * units[i]).fold(0.0, f64::max))).collect();
-        for (i, unit) in units.iter_mut().enumerate() {
-            *unit = over((0..size).map(|j| weight(i, j) * columns[j]).fold(0.0, f64::max));
-        }
-    }
-    units
 }
 
 /// Subtracts `factor` times `row` from the row `from`, in the columns from `begin` on.

@@ -184,6 +184,9 @@ impl Coefficient for f64 {
     }
 }
 
+/// The weight of round-off among pivots.
+const ROUND_OFF: f64 = 1e-60;
+
 /// Numbers that know what of them may be round-off.
 impl Coefficient for Bounded {
     const ZERO: Self = Bounded { value: 0.0, magnitude: 0.0 };
@@ -202,7 +205,8 @@ impl Coefficient for Bounded {
     }
 
     fn weight(self) -> f64 {
-        self.value.abs()
+        // what may be round-off is a pivot only where nothing else is
+        if self.may_be_zero() { self.value.abs() * ROUND_OFF } else { self.value.abs() }
     }
 
     fn convolution(a: &[Self], b: &[Self]) -> Self {
