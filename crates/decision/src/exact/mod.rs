@@ -4,6 +4,7 @@ mod jet;
 mod linear;
 mod modular;
 mod rational;
+mod small_fraction;
 
 use symbolic::{Bounded, Scalar};
 
