@@ -210,7 +210,9 @@ fn a_large_disc_and_a_short_hitch() {
             assert_eq!(found, Integrability::Nonintegrable { depth }, "{name}, {key} = {value}");
             let usual = decided(&catalogue::find(name, &[]).expect("a scene"));
             let found = decided(&scene);
-            assert!(found == usual || found.0 == "Undecided", "{name}, {key} = {value}: {found:?}, {usual:?}");
+            // what is proved has the last word
+            let same = found == usual || found.0 == "Undecided" || found.2.is_some();
+            assert!(same && found.2 == usual.2, "{name}, {key} = {value}: {found:?}, {usual:?}");
         }
     }
 }
