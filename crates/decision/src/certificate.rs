@@ -60,7 +60,9 @@ fn in_any_field<T>(mut compute: impl FnMut() -> Result<T, String>) -> Result<T, 
 fn roots(radicands: impl Iterator<Item = Exact>) -> Vec<(String, u64)> {
     let mut primes = BTreeSet::new();
     for x in radicands.filter(|x| x.is_rational()) {
-        let mut rest = x.numerator.saturating_mul(x.denominator).abs();
+        let (n, d, twos, fives) = x.fraction.parts();
+        primes.extend([(2, twos), (5, fives)].into_iter().filter(|(_, exponent)| *exponent != 0).map(|(p, _)| p));
+        let mut rest = n.saturating_mul(d).abs();
         for prime in 2..TRIED {
             while rest > 1 && rest % prime == 0 {
                 rest /= prime;

@@ -3,12 +3,13 @@
 use equations::{Equations, Role};
 use integrate::{EvaluationError, Gauge};
 use mechanics::{State, System};
-use symbolic::Expr;
+use symbolic::{Bounded, Expr, Scalar};
 
 use crate::DecisionError;
 use crate::exact::solve;
 use crate::family::{flow, timeless};
 use crate::program::{Evaluator, Program};
+use crate::scales;
 
 /// A point of a curve: positions, velocities and accelerations, each of length n.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -89,6 +90,8 @@ pub struct Flow {
     inputs: Vec<f64>,
     start: Vec<f64>,
     span: (f64, f64),
+    /// Factors of the equations and sizes of the unknowns of an instant.
+    units: [Vec<f64>; 2],
 }
 
 /// Equations whose instants are linear in their unknowns `z`, as programs for numbers of any kind.
@@ -203,7 +206,11 @@ impl Flow {
         let parameters: Vec<f64> = system.parameters.iter().map(|p| p.value).collect();
         let at_start = [&parameters[..], &[start.t], &start.q, &start.v, constants].concat();
         let start_states = programs.start.evaluator().run(&at_start).to_vec();
+        let inputs: Vec<Bounded> =
+            parameters.iter().chain([&start.t]).chain(&start_states).map(|&x| Bounded::from_f64(x)).collect();
+        let matrix = programs.instant.evaluator::<Bounded>().run(&inputs).to_vec();
         Flow {
+            units: scales::balanced(programs.unknowns, &matrix),
             instant: programs.instant.evaluator(),
             rates: programs.rates.evaluator(),
             steep: programs.steep.evaluator(),
@@ -247,9 +254,14 @@ impl Curve for Flow {
         self.inputs.extend(states);
         let size = self.programs.unknowns;
         let (matrix, rest) = self.instant.run(&self.inputs).split_at_mut(size * size);
+        let [factors, sizes] = &self.units;
+        for (i, factor) in factors.iter().enumerate() {
+            matrix[i * size..(i + 1) * size].iter_mut().zip(sizes).for_each(|(x, size)| *x *= factor * size);
+            rest[i] *= factor;
+        }
         let solved = solve(matrix, rest, size, 1, 1.0);
         let point = solved.map(|_| {
-            self.inputs.extend(rest.iter().map(|z| -z));
+            self.inputs.extend(rest.iter().zip(sizes).map(|(z, size)| -z * size));
             let (of_states, point) = self.rates.run(&self.inputs).split_at(states.len());
             rates.copy_from_slice(of_states);
             let part = |i: usize| point[i * self.programs.coordinates..(i + 1) * self.programs.coordinates].to_vec();

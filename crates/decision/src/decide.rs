@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::DecisionError;
 use crate::curve::{Curve, Flow};
 use crate::family::Family;
+use crate::sizes::{CERTAIN, Column, ROUND_OFF, Sizes, Sums};
 use crate::transport::{Path, Transport};
 
 /// Gauss nodes a panel, and the least number of panels.
@@ -14,10 +15,6 @@ pub(crate) const NODES: usize = 2;
 const PANELS: usize = 40;
 /// The question is judged up to these parts of the time.
 const PARTS: [f64; 12] = [0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
-/// A mismatch up to this many times its noise is none.
-const CERTAIN: f64 = 10.0;
-/// What round-off leaves of the rows at best, relative to their size and to what was added up to them.
-const ROUND_OFF: f64 = 1e-14;
 /// Noise over this part of the curve's own acceleration tells nothing: a mismatch below it may be real.
 const TOO_LOUD: f64 = 1e-5;
 
@@ -102,33 +99,8 @@ pub struct Decision {
     /// Up to when this was judged, if not to the end: what comes after is too loud, or cannot be followed.
     pub until: Option<f64>,
     triangle: DMatrix<f64>,
-    /// What a constant of size 1 in the triangle is.
-    scales: Vec<f64>,
+    columns: Vec<Column>,
     sizes: Sizes,
-}
-
-/// What a mismatch is compared with; squares of lengths while these are added up.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sizes {
-    /// What the rows are known to.
-    noise: f64,
-    /// The curve's own acceleration, and its speed, over the time at last.
-    acceleration: f64,
-    speed: f64,
-    /// What was added up to the mismatch, without regard to signs.
-    terms: f64,
-    /// Whether the curve moves at any node, by more than round-off of that.
-    moves: bool,
-}
-
-impl Sizes {
-    fn lengths(self, time: f64, rows: f64) -> Sizes {
-        let [noise, acceleration, speed, terms] =
-            [self.noise, self.acceleration, self.speed / time.powi(2), self.terms].map(f64::sqrt);
-        let terms = if terms.is_finite() { terms } else { 0.0 };
-        let floor = ROUND_OFF * rows.max(acceleration.hypot(speed)).max(terms);
-        Sizes { noise: noise.max(floor), acceleration, speed, terms, ..self }
-    }
 }
 
 impl Decision {
@@ -144,7 +116,7 @@ impl Decision {
 
     /// Constants in their scales.
     fn scaled(&self, constants: &[f64]) -> DVector<f64> {
-        DVector::from_iterator(constants.len(), constants.iter().zip(&self.scales).map(|(c, scale)| c / scale))
+        DVector::from_iterator(constants.len(), constants.iter().zip(&self.columns).map(|(c, column)| c / column.scale))
     }
 
     /// Whether the constants `c` leave no mismatch that stands out from the noise.
@@ -159,8 +131,8 @@ impl Decision {
         let columns: Vec<usize> = kept.iter().copied().chain([last]).collect();
         let triangle = compressed(self.triangle.select_columns(&columns));
         let constants = kept.iter().map(|&i| self.constants[i].clone()).collect();
-        let scales = kept.iter().map(|&i| self.scales[i]).collect();
-        judge(triangle, self.sizes, self.until, constants, scales)
+        let columns = kept.iter().map(|&i| self.columns[i]).collect();
+        judge(triangle, self.sizes, self.until, constants, columns)
     }
 }
 
@@ -203,10 +175,12 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
     let panels = bounds.len() - 1;
     let (constants, scales) = (fine.family.constants(), fine.scales.constants.clone());
     let mut triangle = DMatrix::zeros(0, constants.len() + 1);
-    let mut sums = Sizes::default();
+    let zeros = DVector::zeros(constants.len() + 1);
+    let mut sums = Sums { noise: zeros.clone(), terms: zeros, acceleration: 0.0, speed: 0.0, moves: false };
     let (nodes, n) = (legendre(), fine.family.shape.coordinates);
     let mut found: Vec<Decision> = Vec::new();
     let mut parts = PARTS.into_iter().peekable();
+    let mut begun = None;
     let mut add = |panel: usize| -> Result<(), DecisionError> {
         let width = bounds[panel + 1] - bounds[panel];
         let above = triangle.nrows();
@@ -218,10 +192,14 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             triangle.rows_mut(above + i * n, n).copy_from(&(&here.rows * root));
             if i == panel % NODES {
                 let there = coarse.mismatch(other, t)?;
-                let terms = fine.length_of_terms(&here);
-                sums.noise += (&here.rows - there.rows).norm_squared() * width.abs();
-                sums.terms += terms.powi(2) * width.abs();
-                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * terms;
+                let squares = |rows: DMatrix<f64>| {
+                    DVector::from_iterator(rows.ncols(), rows.column_iter().map(|x| x.norm_squared()))
+                };
+                let terms = squares(fine.terms_of(&here));
+                let all = terms.sum().sqrt();
+                sums.noise += squares(&here.rows - there.rows) * width.abs();
+                sums.terms += terms * width.abs();
+                sums.moves |= here.acceleration.hypot(here.speed / way) > CERTAIN * ROUND_OFF * all;
             }
             sums.acceleration += (here.acceleration * root).powi(2);
             sums.speed += (here.speed * root).powi(2);
@@ -233,10 +211,16 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             passed = true;
         }
         if passed {
-            let sizes = sums.lengths(past, triangle.norm());
+            let (sizes, mut columns) = sums.lengths(past, &triangle);
+            // what grows hides what does not
+            let first = begun.get_or_insert_with(|| columns.iter().map(|k| k.size / k.scale).collect::<Vec<_>>());
+            columns.iter_mut().zip(first).for_each(|(k, first)| k.size = k.size.min(*first * k.scale));
+            let mut scaled = triangle.clone();
+            scaled.column_iter_mut().zip(&columns).for_each(|(mut column, known)| column *= known.scale);
+            columns.iter_mut().zip(&scales).for_each(|(column, scale)| column.scale *= scale);
             let whole = panel + 1 == panels && way == (end - start).abs();
             let until = (!whole).then_some(bounds[panel + 1]);
-            found.push(judge(triangle.clone(), sizes, until, constants.to_vec(), scales.clone()));
+            found.push(judge(scaled, sizes, until, constants.to_vec(), columns));
         }
         Ok(())
     };
@@ -276,7 +260,7 @@ fn judge(
     sizes: Sizes,
     until: Option<f64>,
     constants: Vec<String>,
-    scales: Vec<f64>,
+    known: Vec<Column>,
 ) -> Decision {
     let last = triangle.ncols() - 1;
     // as many rows as right singular vectors
@@ -299,16 +283,22 @@ fn judge(
             (point, reach, least) = (all, far, left);
         }
     }
-    let free = (0..last).filter(|&k| svd.values[k] <= limit);
-    let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&scales).map(|(c, scale)| c * scale));
-    let directions = orthonormal(free.map(|k| own(svd.right.row(k).transpose())).collect());
+    let free: Vec<DVector<f64>> =
+        (0..last).filter(|&k| svd.values[k] <= limit).map(|k| svd.right.row(k).transpose()).collect();
+    // without effect, or with one that is lost in noise?
+    let length = |c: &DVector<f64>, of: fn(&Column) -> f64| {
+        c.iter().zip(&known).map(|(c, column)| (c * of(column)).powi(2)).sum::<f64>().sqrt()
+    };
+    let loud = free.iter().any(|c| CERTAIN * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
+    let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
+    let directions = orthonormal(free.into_iter().map(own).collect());
     let noise = sizes.noise * reach;
     let motion = sizes.acceleration.hypot(sizes.speed);
     // where nothing moves, what balances is the scale
     let scale = if sizes.moves { motion } else { sizes.terms * reach };
     let verdict = if least > CERTAIN * noise {
         Verdict::NotContained
-    } else if CERTAIN * noise <= TOO_LOUD * scale {
+    } else if CERTAIN * noise <= TOO_LOUD * scale && !loud {
         Verdict::Contained
     } else {
         Verdict::Undecided
@@ -323,7 +313,7 @@ fn judge(
         constants,
         until,
         triangle,
-        scales,
+        columns: known,
         sizes,
     }
 }
@@ -345,7 +335,14 @@ pub(crate) fn least(mut rows: DMatrix<f64>) -> f64 {
     for mut column in rows.columns_mut(0, last).column_iter_mut().filter(|column| column.norm() > 0.0) {
         column /= column.norm();
     }
-    judge(compressed(rows), Sizes::default(), None, Vec::new(), vec![1.0; last]).least
+    judge(
+        compressed(rows),
+        Sizes::default(),
+        None,
+        Vec::new(),
+        vec![Column { scale: 1.0, noise: 0.0, size: 0.0 }; last],
+    )
+    .least
 }
 
 /// The triangular factor: the same lengths in at most as many rows as columns.

@@ -2,9 +2,10 @@
 
 use mechanics::{State, System};
 use nalgebra::{DMatrix, DVector};
+use symbolic::{Bounded, Scalar};
 
 use crate::decide::{NODES, least, legendre};
-use crate::exact::{Jet, Modular};
+use crate::exact::{FIELDS, Jet, Modular, in_field};
 use crate::proof::Question;
 use crate::series::{MismatchSeries, SeriesStart, order as at_order};
 use crate::start::ExactStart;
@@ -14,10 +15,6 @@ use crate::transport::root_of_mass;
 const HIGHEST: usize = 12;
 /// And for the least mismatch.
 const TAYLOR: usize = 24;
-/// A coefficient under this part of its terms counts as zero, where no exact numbers decide.
-const VANISHES: f64 = 1e-9;
-/// So does one under this part of the curve's own accelerations, where terms are small that cancel in them.
-const ROUND_OFF: f64 = 1e-13;
 /// Of the time in which coefficients get no larger; and slices of that part.
 const FAST: f64 = 0.5;
 const SLICES: usize = 24;
@@ -29,15 +26,17 @@ pub struct LeadingDifference {
     pub exponent: usize,
     /// `y_k / ((k + 1)(k + 2))`, length n.
     pub coefficient: Vec<f64>,
-    /// The time after which a later term of `y` makes more of the difference than this one.
+    /// The time after which a later term of `y` is longer than this one, by `M`; 0 where that tells no length.
     pub reach: f64,
-    /// Whether the exponent is proved for the numbers as written: all lower images are zero, this one is not.
+    /// Whether the exponent is that of the numbers as written: the image of its coefficient is not zero, and
+    /// those of all lower ones are zero in two fields.
     pub exact: bool,
 }
 
 impl Question<'_> {
     /// The leading term for the family's motion from `state` with `constants`; `None` if no coefficient up to
-    /// the twelfth stands out. An exact start gives an exact exponent, `constants` being decimals as written.
+    /// the twelfth stands out from its round-off, or none is there. An exact start gives an exact exponent,
+    /// `constants` being decimals as written.
     pub fn leading_difference(
         &self,
         system: &System,
@@ -46,28 +45,31 @@ impl Question<'_> {
         constants: &[f64],
     ) -> Option<LeadingDifference> {
         let (curve, series) = self.series(&rounded(system, state), HIGHEST).ok()?;
-        let proved = exact.and_then(|exact| self.proved_order(exact, constants));
-        let coordinates = self.family().shape.coordinates;
-        let accelerations = &curve.inputs[curve.inputs.len() - coordinates..];
-        let own = |k: usize| at_order(accelerations, k).into_iter().fold(0.0, |size: f64, a| size.max(a.abs()));
-        let floor = |k: usize| (0..=k).map(own).fold(0.0, f64::max) * ROUND_OFF;
-        let seen = (0..HIGHEST).find(|&k| stands_out(&series, k, constants, floor(k)))?;
+        let proved = exact.and_then(|exact| self.agreed_order(exact, constants));
+        let mismatch = |k: usize| rows(&series.accelerations[k], series.width, constants);
+        let seen = (0..HIGHEST).find(|&k| mismatch(k).any(|y| !y.may_be_zero()))?;
         // decimals that stand for other numbers leave lower terms, of the size of round-off
-        let order = proved.flatten().map_or(seen, |order| order.max(seen));
+        let order = proved.map_or(Some(seen), |order| order.map(|order| order.max(seen)))?;
         let term = |k: usize| -> Vec<f64> {
             let over = ((k + 1) * (k + 2)) as f64;
-            rows(&series, k).map(|row| value(row, constants).0 / over).collect()
+            mismatch(k).map(|y| if y.may_be_zero() { 0.0 } else { y.value / over }).collect()
         };
         let coefficient = term(order);
-        let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let meets = |k: usize| (size(&coefficient) / size(&term(k))).powf(1.0 / (k - order) as f64);
-        let reach = (order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min);
+        let values = |x: &[Bounded]| x.iter().map(|x| x.value).collect::<Vec<f64>>();
+        let root = root_of_mass(coefficient.len(), &values(&series.mass), &values(&series.jacobian));
+        let reach = root.map_or(0.0, |root| {
+            let size = |x: &[f64]| (&root * DVector::from_column_slice(x)).norm();
+            let meets = |k: usize| (size(&coefficient) / size(&term(k))).powf(1.0 / (k - order) as f64);
+            (order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min)
+        });
         // removal parameters have no series among these inputs, and nonlinear constraints no such removal
         let coefficient = match self.family().lift {
             Some(_) => coefficient,
             None => {
-                let unknowns = unknowns(&series, order, constants);
-                let accelerations = self.at_costates(&at_order(&curve.inputs, 0), constants, &unknowns)?;
+                let unknowns: Vec<f64> =
+                    rows(&series.orders[order], series.width, constants).map(|z| z.value).collect();
+                let inputs: Vec<f64> = values(&at_order(&curve.inputs, 0));
+                let accelerations = self.at_costates(&inputs, constants, &unknowns)?;
                 accelerations.into_iter().map(|x| x / ((order + 1) * (order + 2)) as f64).collect()
             }
         };
@@ -78,19 +80,26 @@ impl Question<'_> {
     /// part of `time` in which these converge fast: over all of it the least is no less. `None` where there
     /// are no series, and for removals with variables of their own.
     pub fn least_by_series(&self, system: &System, state: &State, time: f64) -> Option<f64> {
-        let family = self.family();
-        let (curve, series) = self.series(&rounded(system, state), TAYLOR).ok()?;
-        if family.lift.is_some() {
+        let (_, series): (_, MismatchSeries<Bounded>) = self.series(&rounded(system, state), TAYLOR).ok()?;
+        if self.family().lift.is_some() {
             return None;
         }
-        let values = family.evaluator::<f64>().run(&at_order(&curve.inputs, 0)).to_vec();
-        let root = root_of_mass(&family.shape, &family.shape.instant(&values))?;
-        let n = family.shape.coordinates;
-        let terms: Vec<_> =
-            series.accelerations.iter().map(|y| &root * DMatrix::from_row_slice(n, series.width, y)).collect();
-        let size = |k: usize| terms[..k].iter().map(|term| term.norm()).fold(0.0, f64::max);
-        let radius = |k: usize| (size(k) / terms[k].norm()).powf(1.0 / k as f64);
-        let reach = (1..TAYLOR).map(radius).filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
+        let n = self.family().shape.coordinates;
+        let values = |x: &[Bounded]| x.iter().map(|x| x.value).collect::<Vec<f64>>();
+        let root = root_of_mass(n, &values(&series.mass), &values(&series.jacobian))?;
+        let known = |y: &Bounded| if y.may_be_zero() { 0.0 } else { y.value };
+        let terms: Vec<_> = series
+            .accelerations
+            .iter()
+            .map(|y| &root * DMatrix::from_row_iterator(n, series.width, y.iter().map(known)))
+            .collect();
+        // the time at which term k of a column is as long as an earlier one: in any unit
+        let radius = |(k, column): (usize, usize)| {
+            let size = |k: usize| terms[k].column(column).norm();
+            (0..k).map(|j| (size(j) / size(k)).powf(1.0 / (k - j) as f64)).fold(0.0, f64::max)
+        };
+        let all = (1..TAYLOR).flat_map(|k| (0..series.width).map(move |column| (k, column)));
+        let reach = all.map(radius).filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
         let width = time.min(FAST * reach) / SLICES as f64;
         let nodes = (0..SLICES).flat_map(|slice| legendre().map(|(x, weight)| (width * (slice as f64 + x), weight)));
         let mut rows = DMatrix::zeros(NODES * SLICES * n, series.width);
@@ -112,7 +121,10 @@ impl Question<'_> {
         let (n, k, count) = (shape.coordinates, shape.costates, shape.accelerations.len());
         let to_acceleration = DMatrix::from_row_slice(n, count, instant.to_acceleration);
         let start = family.start(inputs);
-        let costates: Vec<f64> = start.chunks_exact(constants.len() + 1).map(|row| value(row, constants).0).collect();
+        let costates: Vec<f64> = start
+            .chunks_exact(constants.len() + 1)
+            .map(|row| row.iter().zip(constants.iter().chain(&[1.0])).map(|(r, c)| r * c).sum())
+            .collect();
         let plain = DMatrix::from_row_slice(shape.unknowns, shape.unknowns, instant.matrix);
         let mut z = DVector::zeros(shape.unknowns);
         let mut bent = plain.clone();
@@ -130,8 +142,22 @@ impl Question<'_> {
         Some((to_acceleration * z.select_rows(&shape.accelerations)).as_slice().to_vec())
     }
 
-    /// The first order that does not vanish, in exact numbers; `None` where these do not apply.
-    fn proved_order(&self, exact: &ExactStart, constants: &[f64]) -> Option<Option<usize>> {
+    /// The first order that does not vanish, in two fields; `None` where exact numbers do not apply. What is
+    /// not zero in one field is not zero; so the first of any field is no lower than that of the numbers.
+    fn agreed_order(&self, exact: &ExactStart, constants: &[f64]) -> Option<Option<usize>> {
+        let mut found = Vec::new();
+        for field in &FIELDS {
+            let Some(order) = in_field(field, || self.first_order(exact, constants)) else { continue };
+            if found.contains(&order) {
+                return Some(order);
+            }
+            found.push(order);
+        }
+        None
+    }
+
+    /// The first order whose images are not all zero.
+    fn first_order(&self, exact: &ExactStart, constants: &[f64]) -> Option<Option<usize>> {
         let (start, _) = exact.series().ok()?;
         let (_, series) = self.series(&start, HIGHEST).ok()?;
         let constants: Vec<Jet<Modular>> = constants.iter().map(|&c| Jet::of(c)).collect();
@@ -149,7 +175,7 @@ impl Question<'_> {
 }
 
 /// A start as it is rounded.
-fn rounded(system: &System, state: &State) -> SeriesStart<f64> {
+fn rounded(system: &System, state: &State) -> SeriesStart<Bounded> {
     SeriesStart {
         parameters: system.parameters.iter().map(|p| Jet::of(p.value)).collect(),
         time: Jet::of(state.t),
@@ -158,23 +184,10 @@ fn rounded(system: &System, state: &State) -> SeriesStart<f64> {
     }
 }
 
-/// Unknowns that are accelerations, at one order.
-fn unknowns(series: &MismatchSeries<f64>, order: usize, constants: &[f64]) -> Vec<f64> {
-    series.orders[order].chunks_exact(series.width).map(|row| value(row, constants).0).collect()
-}
-
-fn rows(series: &MismatchSeries<f64>, order: usize) -> impl Iterator<Item = &[f64]> {
-    series.accelerations[order].chunks_exact(series.width)
-}
-
-/// `O c + y₀` of one row, and the size of its terms.
-fn value(row: &[f64], constants: &[f64]) -> (f64, f64) {
-    let terms = row.iter().zip(constants.iter().chain(&[1.0])).map(|(r, c)| r * c);
-    terms.fold((0.0, 0.0), |(sum, size), x| (sum + x, size + x.abs()))
-}
-
-fn stands_out(series: &MismatchSeries<f64>, order: usize, constants: &[f64], floor: f64) -> bool {
-    // terms that cancelled at earlier orders left round-off that is as large as they were
-    let size = (0..=order).flat_map(|k| rows(series, k)).map(|row| value(row, constants).1).fold(0.0_f64, f64::max);
-    rows(series, order).any(|row| value(row, constants).0.abs() > (VANISHES * size).max(floor))
+/// `O c + y₀`, row by row.
+fn rows(entries: &[Bounded], width: usize, constants: &[f64]) -> impl Iterator<Item = Bounded> {
+    entries.chunks_exact(width).map(move |row| {
+        let factors = constants.iter().chain(&[1.0]).map(|&c| Bounded::from_f64(c));
+        row.iter().zip(factors).fold(Bounded::from_f64(0.0), |sum, (&r, c)| sum + r * c)
+    })
 }

@@ -86,6 +86,7 @@ mod random_start;
 mod scales;
 mod section;
 mod series;
+mod sizes;
 mod start;
 mod transport;
 

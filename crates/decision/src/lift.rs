@@ -149,7 +149,7 @@ impl Lift {
                 lifted.extend((0..m).map(|i| of(seconds, i)));
                 return Ok(lifted);
             }
-            let over = C::of(Exact { denominator: k as i128, ..Exact::ONE })?;
+            let over = C::of(Exact::over(k)?)?;
             let rates: Vec<C> = speeds.solved[k - 1].iter().copied().chain(order(&values[n..], k - 1)).collect();
             for (x, rate) in own.iter_mut().zip(rates) {
                 x.push(rate * over);

@@ -7,10 +7,23 @@ use crate::start::{ExactStart, NoExactStart};
 /// Random times, positions and velocities are integers of either sign up to 2 to one of these powers: exact
 /// numbers have to fit, of which functions are taken.
 const BITS: [u32; 3] = [20, 8, 3];
-/// Where roots have branches they are so many of these parts away from the start.
+/// Where roots have branches they are so many of these parts of its own numbers away from the start.
 const PART: i128 = 1 << 30;
 /// Draws until the constraints have roots: where they are squares, each has one for every second draw.
 const DRAWS: usize = 256;
+
+/// The number with this place, where it is not zero; else the least of the others, or 1.
+fn size(numbers: &[Jet<Modular>], place: usize) -> Jet<Modular> {
+    let known = |x: &Jet<Modular>| x.exact().filter(|x| !x.is_zero()).map(|exact| exact.to_f64().abs());
+    let own = numbers.get(place).filter(|x| known(x).is_some());
+    let least = || {
+        numbers
+            .iter()
+            .filter(|x| known(x).is_some())
+            .min_by(|a, b| f64::total_cmp(&known(a).unwrap_or(0.0), &known(b).unwrap_or(0.0)))
+    };
+    own.or_else(least).copied().unwrap_or(Jet::constant(Modular::one(), Some(Exact::ONE)))
+}
 
 /// `compute` at a random start, of the largest numbers with which that succeeds.
 ///
@@ -55,7 +68,7 @@ impl ExactStart {
         };
         let n = self.system.dimension();
         let mut draws = |centre: Option<&[Jet<Modular>]>| -> Result<Vec<Jet<Modular>>, Flaw> {
-            (0..n).map(|i| draw().map(|x| centre.map_or(x, |centre| centre[i] + x))).collect()
+            (0..n).map(|i| draw().map(|x| centre.map_or(x, |centre| centre[i] + x * size(centre, i)))).collect()
         };
         let times = vec![self.given().1; n];
         let choices = [&self.supplied, &self.spare];

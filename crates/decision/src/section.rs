@@ -76,10 +76,11 @@ impl Question<'_> {
             Section { constants, expressions: Vec::new(), values: Vec::new(), proved: false, every: false };
         let mut formulas = Vec::new();
         for j in 0..k {
-            let terms = ansatz.functions.iter().zip(&coefficients[j * count..(j + 1) * count]).map(|(&b, a)| {
-                let (n, d) = (i64::try_from(a.numerator).unwrap_or(0), i64::try_from(a.denominator).unwrap_or(1));
-                g.mul(g.ratio(n, d), b)
-            });
+            let terms = ansatz
+                .functions
+                .iter()
+                .zip(&coefficients[j * count..(j + 1) * count])
+                .map(|(&b, a)| g.mul(g.fraction(a.fraction), b));
             let expression = g.sum(&terms.collect::<Vec<_>>());
             section.values.push(g.evaluate(expression, &values)?);
             section.expressions.push(g.plain(expression));

@@ -138,7 +138,7 @@ impl Dynamics {
             let (rates, point) = values.split_at(self.states);
             if k < orders {
                 sound(rates)?;
-                let over = C::of(Exact { denominator: k as i128, ..Exact::ONE })?;
+                let over = C::of(Exact::over(k)?)?;
                 for (y, rate) in states.iter_mut().zip(rates) {
                     y.push(rate.coefficient(k - 1) * over);
                 }
@@ -168,6 +168,9 @@ pub(crate) struct MismatchSeries<C> {
     /// The same as accelerations of the coordinates, n rows.
     pub(crate) accelerations: Vec<Vec<C>>,
     pub(crate) width: usize,
+    /// `M` and `A` at the start.
+    pub(crate) mass: Vec<C>,
+    pub(crate) jacobian: Vec<C>,
     /// Whether curve and lift are at rest.
     pub(crate) at_rest: bool,
 }
@@ -219,7 +222,7 @@ impl Family {
             };
             let rest: Vec<C> = instant.explicit.chunks_exact(k + 1).map(|row| row[k].coefficient(at)).collect();
             let explicit = along(&costates, &explicit, &rest, at);
-            let over = C::of(Exact { denominator: at as i128 + 1, ..Exact::ONE })?;
+            let over = C::of(Exact::over(at + 1)?)?;
             let mut next = Vec::with_capacity(k * width);
             for rate in &shape.rates {
                 let (from, place) = match *rate {
@@ -242,6 +245,8 @@ impl Family {
             }
             sum.into_iter().map(|x| -x).collect()
         });
-        Ok(MismatchSeries { accelerations: accelerations.collect(), orders: unknowns, width, at_rest })
+        let accelerations = accelerations.collect();
+        let (mass, jacobian) = (order(instant.mass, 0), order(instant.jacobian, 0));
+        Ok(MismatchSeries { accelerations, orders: unknowns, width, mass, jacobian, at_rest })
     }
 }

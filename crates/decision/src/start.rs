@@ -240,7 +240,7 @@ struct Written {
 impl Written {
     fn new(g: &Graph, inputs: &[Symbol], values: &[Expr]) -> Result<Self, DecisionError> {
         // what was written and is not known is NaN
-        let is_decimal = |e: Expr, x: f64| x.is_nan() || (g.as_ratio(e).is_none() && e == g.number(x));
+        let is_decimal = |e: Expr, x: f64| x.is_nan() || (g.as_fraction(e).is_none() && e == g.number(x));
         let decimal = |&e: &Expr| g.as_number(e).filter(|&x| is_decimal(e, x));
         let decimals: Vec<Option<f64>> = values.iter().map(decimal).collect();
         let rest = values.iter().zip(&decimals).map(|(&e, x)| if x.is_some() { g.zero() } else { e });

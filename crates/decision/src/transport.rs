@@ -10,7 +10,7 @@ use symbolic::{Bounded, Scalar};
 use crate::DecisionError;
 use crate::curve::{Curve, Point};
 use crate::exact::{solve, subtract_product};
-use crate::family::{CostateRate, Family, Instant, Shape};
+use crate::family::{CostateRate, Family};
 use crate::lift::Lift;
 use crate::program::Evaluator;
 use crate::scales::{self, Scales};
@@ -310,7 +310,7 @@ impl<'a> Transport<'a> {
         let instant = shape.instant(&self.values);
         let n = shape.coordinates;
         let to_acceleration = DMatrix::from_row_slice(n, shape.accelerations.len(), instant.to_acceleration);
-        let factor = root_of_mass(shape, &instant);
+        let factor = root_of_mass(n, instant.mass, instant.jacobian);
         let factor = factor.ok_or_else(|| fault(format!("M is not positive on ker A at t = {t}")))?;
         let mass = DMatrix::from_row_slice(n, n, instant.mass);
         let length = |x: &[f64]| {
@@ -323,22 +323,21 @@ impl<'a> Transport<'a> {
         Ok(Mismatch { rows, acceleration, speed, columns, unknowns, whitened })
     }
 
-    /// How long what was added up to the rows of the last mismatch is, without regard to signs: round-off is
-    /// a part.
-    pub(crate) fn length_of_terms(&mut self, last: &Mismatch) -> f64 {
+    /// What was added up to the rows of the last mismatch, without regard to signs: round-off is a part.
+    pub(crate) fn terms_of(&mut self, last: &Mismatch) -> DMatrix<f64> {
         let terms = self.terms(&last.columns, &last.unknowns);
-        (last.whitened.abs() * terms.select_rows(&self.family.shape.accelerations)).norm()
+        last.whitened.abs() * terms.select_rows(&self.family.shape.accelerations)
     }
 }
 
-/// `√M` for mismatches: these lie in ker A, there alone M has to be positive, and `M + c AᵀA` is M.
-pub(crate) fn root_of_mass(shape: &Shape, instant: &Instant<f64>) -> Option<DMatrix<f64>> {
-    let (n, h) = (shape.coordinates, shape.constraints);
+/// `√M` (n×n) for mismatches: these lie in ker A, there alone M has to be positive, and `M + c AᵀA` is M.
+pub(crate) fn root_of_mass(n: usize, mass: &[f64], jacobian: &[f64]) -> Option<DMatrix<f64>> {
+    let h = jacobian.len() / n;
     // each velocity in the unit in which its mass is 1
-    let own = |i: usize| scales::power(instant.mass[i * n + i].abs().sqrt().recip());
+    let own = |i: usize| scales::power(mass[i * n + i].abs().sqrt().recip());
     let units: Vec<f64> = (0..n).map(own).collect();
-    let mass = DMatrix::from_fn(n, n, |i, j| units[i] * instant.mass[i * n + j] * units[j]);
-    let mut jacobian = DMatrix::from_fn(h, n, |i, j| instant.jacobian[i * n + j] * units[j]);
+    let mass = DMatrix::from_fn(n, n, |i, j| units[i] * mass[i * n + j] * units[j]);
+    let mut jacobian = DMatrix::from_fn(h, n, |i, j| jacobian[i * n + j] * units[j]);
     jacobian.row_iter_mut().for_each(|mut row| row *= scales::power(row.amax().recip()));
     let normal = jacobian.transpose() * &jacobian;
     let unit = if h == 0 { 0.0 } else { mass.norm() / normal.norm() };

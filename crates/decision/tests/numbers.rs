@@ -97,3 +97,70 @@ fn leading_terms_see_the_numbers_too() {
     let scene = written(&turned("\"pi/3\"", "\"-pi/3\""), &[]);
     assert_eq!(leading(&scene, &[0.0], true), None);
 }
+
+/// A blade that slides and turns on a slope, in units of mass and length of any size.
+fn skate(mass: &str, length: &str) -> String {
+    format!(
+        r#"
+title = "skate"
+[parameters]
+m = {mass}
+[coordinates]
+x = {{ start = 0 }}
+y = {{ start = 0 }}
+phi = {{ start = 0.3 }}
+[system]
+lagrangian = "m*{length}^2*(x'^2/{length}^2 + y'^2/{length}^2 + 0.2*phi'^2)/2 + 4.9*m*{length}*x"
+constraints = ["y'*cos(phi) - x'*sin(phi)"]
+[start.velocities]
+"phi'" = 1.1
+"x'" = "0.5*{length}"
+[run]
+duration = 3
+"#
+    )
+}
+
+const UNITS: [(&str, &str); 6] =
+    [("1", "1"), ("1e-12", "1e-9"), ("1e-45", "1e27"), ("3e60", "1e-30"), ("1e-27", "1e9"), ("7e-24", "2.5e-25")];
+
+#[test]
+fn decimals_of_any_exponent_are_exact() {
+    for (mass, length) in UNITS {
+        let (proof, _) = proved(&written(&skate(mass, length), &[]));
+        let Finding::None(none) = &proof.this_start else { panic!("{mass}, {length}: {proof:?}") };
+        assert_eq!((none.order, none.full_rank), (1, true), "{mass}, {length}");
+    }
+    // an identity, with numbers of any size in it
+    for (mass, length) in UNITS {
+        let text = skate(mass, length)
+            .replace("y'*cos(phi) - x'*sin(phi)", "y' - x'*x/2")
+            .replace("4.9*m", "0*m")
+            .replace("\"phi'\" = 1.1", "\"phi'\" = 0");
+        let (proof, section) = proved(&written(&text, &[]));
+        assert!(matches!(proof.this_start, Finding::Contained { .. }), "{mass}, {length}: {proof:?}");
+        assert!(section.is_some_and(|section| section.proved), "{mass}, {length}");
+    }
+    // what is rounded has no image, however small it is
+    let rounded = skate("1", "1").replace("4.9", "(1e-20 + 1e-45)");
+    let (proof, _) = proved(&written(&rounded, &[]));
+    let Finding::NotApplicable(why) = &proof.this_start else { panic!("{proof:?}") };
+    assert!(why.contains("no fraction of moderate size"), "{why}");
+}
+
+#[test]
+fn leading_terms_know_no_units() {
+    for exact in [true, false] {
+        let (usual, coefficient, _) = leading(&written(&skate("1", "1"), &[]), &[0.0], exact).expect("a difference");
+        for (mass, length) in UNITS {
+            let scene = written(&skate(mass, length), &[]);
+            let (exponent, found, proved) = leading(&scene, &[0.0], exact).expect("a difference");
+            assert_eq!((exponent, proved), (usual, exact), "{mass}, {length}");
+            let unit: f64 = length.parse().unwrap();
+            for (i, unit) in [unit, unit, 1.0].into_iter().enumerate() {
+                let off = (found[i] - coefficient[i] * unit).abs();
+                assert!(off <= 1e-9 * coefficient[i].abs() * unit + 1e-15 * unit, "{mass}, {length}: {found:?}");
+            }
+        }
+    }
+}

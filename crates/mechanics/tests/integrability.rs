@@ -160,6 +160,11 @@ fn no_value_at_any_point_is_no_rank() {
     // nothing is negative but under the first root
     let found = verdict(&["x", "y", "z"], &["z' - (sqrt(x) + sqrt(a))*y'"]);
     assert_eq!(found, Integrability::Nonintegrable { depth: 1 });
+    // in the domain at none of six points on either side of zero
+    for roots in ["sqrt(x) + sqrt(a) + sqrt(b)", "sqrt(x) + sqrt(-a) + sqrt(b)", "sqrt(x) + sqrt(a) + sqrt(1 - a)"] {
+        let found = verdict(&["x", "y", "z", "a", "b"], &[&format!("z' - ({roots})*y'")]);
+        assert!(!found.is_integrable(), "{roots}: {found}");
+    }
     let nowhere = verdict(&["x", "y", "z"], &["z' - sqrt(x - 200)*y'"]);
     assert!(!nowhere.is_integrable(), "{nowhere}");
 }

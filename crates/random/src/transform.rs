@@ -44,11 +44,13 @@ impl Scaling {
         let mut scaled = system.clone();
         let g = &scaled.graph;
         let map = self.map(&scaled);
-        let rewritten = |factor: f64, e: Expr| g.mul(g.number(factor), g.substitute(e, &map));
+        let by = |factor: Expr, e: Expr| g.mul(factor, g.substitute(e, &map));
+        let rewritten = |factor: f64, e: Expr| by(g.number(factor), e);
         let lagrangian = rewritten(self.action, system.lagrangian);
         let constraints = system.constraints.iter().map(|&f| rewritten(self.constraint, f)).collect();
         // virtual work Q dq is an L, too
-        let forces = system.forces.iter().zip(&self.lengths).map(|(&q, &a)| rewritten(self.action * a, q)).collect();
+        let work = |(&q, &a): (&Expr, &f64)| by(g.mul(g.number(self.action), g.number(a)), q);
+        let forces = system.forces.iter().zip(&self.lengths).map(work).collect();
         (scaled.lagrangian, scaled.constraints, scaled.forces) = (lagrangian, constraints, forces);
         scaled.breakpoints.iter_mut().for_each(|t| *t /= self.time);
         for watched in &mut scaled.watched {
@@ -91,29 +93,32 @@ impl Scaling {
     pub fn removal(&self, scaled: &System, removal: &Removal) -> Removal {
         let g = &scaled.graph;
         let mut map = self.map(scaled);
-        let mut over_time = |s: Symbol, by: f64| map.insert(s, g.mul(g.number(by), g.variable(s)));
-        for (c, a) in scaled.coordinates.iter().zip(&self.lengths) {
-            over_time(c.acceleration, a / self.time.powi(2));
+        // quotients of decimals stay what they are
+        let [one, time] = [1.0, self.time].map(|x| g.number(x));
+        let over = |a: Expr, b: Expr| g.div(a, b);
+        let mut scaled_by = |s: Symbol, by: Expr| map.insert(s, g.mul(by, g.variable(s)));
+        for (c, &a) in scaled.coordinates.iter().zip(&self.lengths) {
+            scaled_by(c.acceleration, over(g.number(a), g.powi(time, 2)));
         }
         let own: Vec<_> = removal.parameters.iter().filter(|u| u.coordinate.is_none()).collect();
         for u in &own {
-            over_time(u.rate, 1.0 / self.time);
-            over_time(u.second_rate, 1.0 / self.time.powi(2));
+            scaled_by(u.rate, over(one, time));
+            scaled_by(u.second_rate, over(one, g.powi(time, 2)));
         }
-        let rewritten = |factor: f64, e: Expr| g.mul(g.number(factor), g.substitute(e, &map));
+        let rewritten = |factor: Expr, e: Expr| g.mul(factor, g.substitute(e, &map));
         let mut removal = removal.clone();
         for w in &mut removal.memory {
-            w.rate = rewritten(self.time / w.coordinate.map_or(1.0, |i| self.lengths[i]), w.rate);
+            w.rate = rewritten(over(time, g.number(w.coordinate.map_or(1.0, |i| self.lengths[i]))), w.rate);
         }
-        for ((e, own), a) in removal.coordinates.iter_mut().zip(scaled.positions()).zip(&self.lengths) {
+        for ((e, own), &a) in removal.coordinates.iter_mut().zip(scaled.positions()).zip(&self.lengths) {
             if *e != g.variable(own) {
-                *e = rewritten(1.0 / a, *e);
+                *e = rewritten(over(one, g.number(a)), *e);
             }
         }
         removal.chart = g.substitute_all(&removal.chart, &map);
         for (s, start) in &mut removal.start {
             // what the parameter's own rate is at the start has the new unit of time too
-            *start = rewritten(if own.iter().any(|u| u.rate == *s) { self.time } else { 1.0 }, *start);
+            *start = rewritten(if own.iter().any(|u| u.rate == *s) { time } else { one }, *start);
         }
         removal.constants = match &removal.constants {
             ConstantsRule::Zero => ConstantsRule::Zero,
@@ -140,11 +145,10 @@ impl Scaling {
     /// Equations of the scaled system whose outputs are in the old units.
     pub fn outputs(&self, mut equations: Equations) -> Equations {
         let g = &equations.graph;
-        let scaled = |es: &[Expr], by: f64| -> Vec<Expr> {
-            es.iter().zip(&self.lengths).map(|(&e, &a)| g.mul(g.number(by * a), e)).collect()
+        let scaled = |es: &[Expr], over: f64| -> Vec<Expr> {
+            es.iter().zip(&self.lengths).map(|(&e, &a)| g.mul(g.div(g.number(a), g.number(over)), e)).collect()
         };
-        let (coordinates, velocities) =
-            (scaled(&equations.coordinates, 1.0), scaled(&equations.velocities, 1.0 / self.time));
+        let (coordinates, velocities) = (scaled(&equations.coordinates, 1.0), scaled(&equations.velocities, self.time));
         (equations.coordinates, equations.velocities, equations.chart) = (coordinates, velocities, None);
         equations
     }

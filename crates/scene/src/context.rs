@@ -92,5 +92,5 @@ impl Context<'_> {
 
 /// A formula as it is written; where arithmetic has rounded it to a number, it is none that is known.
 pub(super) fn unrounded(g: &Graph, e: Expr) -> Expr {
-    if g.as_number(e).is_some() && g.as_ratio(e).is_none() { g.number(f64::NAN) } else { e }
+    if g.as_number(e).is_some() && g.as_fraction(e).is_none() { g.number(f64::NAN) } else { e }
 }

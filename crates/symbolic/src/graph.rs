@@ -1,5 +1,6 @@
 //! The graph and its constructors.
 
+use crate::Fraction;
 use crate::arena::{Arena, Node};
 use crate::matrix::Matrix;
 use crate::number::{Number, Rational};
@@ -116,19 +117,22 @@ impl Graph {
         self.arena.borrow_mut().number(Number::PI)
     }
 
-    /// Numerator and denominator of `e`, if it is a number that nothing has rounded; π is the quotient
-    /// [`crate::PI`].
+    /// `e`, if it is a number that nothing has rounded; π is the quotient [`crate::PI`].
     ///
     /// ```
+    /// use symbolic::Fraction;
     /// let g = symbolic::Graph::new();
-    /// assert_eq!(g.as_ratio(g.number(9.81)), Some((981, 100)));
-    /// assert_eq!(g.as_ratio(g.number(0.1 + 0.2)), None);
+    /// assert_eq!(g.as_fraction(g.number(9.81)), Fraction::new(981, 100));
+    /// assert_eq!(g.as_fraction(g.number(1e-45)), Fraction::decimal("1e-45"));
+    /// assert_eq!(g.as_fraction(g.number(0.1 + 0.2)), None);
     /// ```
-    pub fn as_ratio(&self, e: Expr) -> Option<(i64, i64)> {
-        match self.arena.borrow().as_number(e) {
-            Some(Number::Exact(r)) => Some((r.numerator(), r.denominator())),
-            _ => None,
-        }
+    pub fn as_fraction(&self, e: Expr) -> Option<Fraction> {
+        self.arena.borrow().as_number(e).and_then(Number::fraction)
+    }
+
+    /// This number; rounded where it has too many digits.
+    pub fn fraction(&self, x: Fraction) -> Expr {
+        self.arena.borrow_mut().number(Number::of(x).unwrap_or(Number::rounded(x.to_f64())))
     }
 
     /// The value of `e`, if it is a number. A division by zero among numbers is a number that is not finite.

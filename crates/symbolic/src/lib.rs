@@ -2,7 +2,7 @@
 //!
 //! A [`Graph`] holds expressions in which every value stands once: equal expressions are the same node
 //! ([`Expr`]), and so common subexpressions need no search. Constructors keep a canonical form: like
-//! terms and factors are merged, numbers are exact fractions while they fit, signs come out of odd and
+//! terms and factors are merged, numbers are exact fractions while they fit, of any decimal exponent, signs come out of odd and
 //! even functions, P sin²u + P cos²u is P. Products of sums are multiplied out by [`Graph::expand`]
 //! only. One source serves every use: [`Graph::latex`] for the reader, [`Graph::derivative`] for the
 //! equations, and [`Graph::compile`] for numbers in any [`Scalar`] type.
@@ -45,6 +45,7 @@ mod expand;
 mod factor;
 #[doc(hidden)]
 pub mod faults;
+mod fraction;
 mod function;
 mod graph;
 mod identity;
@@ -82,6 +83,7 @@ pub use code::{Code, Language};
 pub use evaluate::CompileError;
 pub use evaluator::Evaluator;
 pub use excerpt::excerpt;
+pub use fraction::Fraction;
 pub use function::Function;
 pub use graph::Graph;
 pub use identity::{Around, Vanishing};

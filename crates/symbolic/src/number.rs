@@ -1,11 +1,15 @@
 //! Numbers of the graph: exact rationals while they fit, `f64` beyond.
 
+use crate::Fraction;
 use num_rational::Ratio;
 use num_traits::{CheckedAdd, CheckedMul};
 use std::hash::{Hash, Hasher};
 
 /// Integers up to here are exact in `f64`, so a quotient of two of them is rounded once.
 const EXACT_IN_F64: i64 = 1 << 53;
+
+/// Decimals of so many digits are taken as they are written.
+const DIGITS: usize = 15;
 
 /// The π of `f64` as a quotient of two primes, off by 4e-18: so it is told apart from all that is written
 /// without.
@@ -139,11 +143,13 @@ impl Rational {
     }
 }
 
-/// An exact rational, or a float where no exact one fits. Zero is always exact, and so is every
-/// float whose shortest decimal is a fraction that converts back to the same float.
+/// An exact rational, or a float where no exact one fits. Zero is always exact, and so is every float whose
+/// shortest decimal is a fraction that converts back to the same float, or has few digits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Number {
     Exact(Rational),
+    /// This fraction, free of factors 2 and 5, times `2^twos 5^fives`: where [`Number::Exact`] does not fit.
+    Scaled(Rational, i16, i16),
     Float(f64),
 }
 
@@ -151,6 +157,7 @@ impl PartialEq for Number {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Number::Exact(a), Number::Exact(b)) => a == b,
+            (Number::Scaled(a, twos, fives), Number::Scaled(b, c, d)) => (a, twos, fives) == (b, c, d),
             (Number::Float(a), Number::Float(b)) => a.to_bits() == b.to_bits(),
             _ => false,
         }
@@ -163,6 +170,7 @@ impl Hash for Number {
     fn hash<H: Hasher>(&self, state: &mut H) {
         match self {
             Number::Exact(r) => r.hash(state),
+            Number::Scaled(r, twos, fives) => (r, twos, fives).hash(state),
             Number::Float(x) => x.to_bits().hash(state),
         }
     }
@@ -205,10 +213,7 @@ impl Number {
         if x == x.trunc() && x.abs() <= EXACT_IN_F64 as f64 {
             return Number::Exact(Rational::integer(x as i64));
         }
-        match exact_decimal(&format!("{x:e}")) {
-            Some(r) if r.to_f64() == x => Number::Exact(r),
-            _ => Number::Float(x),
-        }
+        exact_decimal(&format!("{x:e}")).filter(|n| n.to_f64() == x).unwrap_or(Number::Float(x))
     }
 
     /// A decimal literal such as `9.81` or `1e-3`; `None` where it is beyond the range of `f64`.
@@ -216,20 +221,42 @@ impl Number {
     /// The digits before `e0` are those of a float that was rounded, as it is printed.
     pub(crate) fn from_decimal(literal: &str) -> Option<Self> {
         let rounded = literal.ends_with("e0");
-        if let Some(r) = exact_decimal(literal).filter(|_| !rounded) {
-            return Some(Number::Exact(r));
-        }
         let x: f64 = literal.parse().ok()?;
         let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
         let lost = x == 0.0 && mantissa.bytes().any(|c| matches!(c, b'1'..=b'9'));
-        (x.is_finite() && !lost).then(|| Self::rounded(x))
+        (x.is_finite() && !lost).then(|| exact_decimal(literal).filter(|_| !rounded).unwrap_or(Self::rounded(x)))
     }
 
     pub(crate) fn to_f64(self) -> f64 {
         match self {
             Number::Exact(r) => r.to_f64(),
             Number::Float(x) => x,
+            Number::Scaled(..) => self.fraction().map_or(f64::NAN, Fraction::to_f64),
         }
+    }
+
+    /// The number, where it is exact.
+    pub(crate) fn fraction(self) -> Option<Fraction> {
+        let (r, twos, fives) = match self {
+            Number::Exact(r) => (r, 0, 0),
+            Number::Scaled(r, twos, fives) => (r, twos, fives),
+            Number::Float(_) => return None,
+        };
+        Fraction::with_powers(r.numerator().into(), r.denominator().into(), twos.into(), fives.into())
+    }
+
+    /// `None` where it does not fit.
+    pub(crate) fn of(x: Fraction) -> Option<Self> {
+        let fitting = |n: i128, d: i128| Rational::new(i64::try_from(n).ok()?, i64::try_from(d).ok()?);
+        if let Some(r) = x.plain().and_then(|(n, d)| fitting(n, d)) {
+            return Some(Number::Exact(r));
+        }
+        let (n, d, twos, fives) = x.parts();
+        Some(Number::Scaled(fitting(n, d)?, i16::try_from(twos).ok()?, i16::try_from(fives).ok()?))
+    }
+
+    pub(crate) fn is_exact(self) -> bool {
+        !matches!(self, Number::Float(_))
     }
 
     pub(crate) fn is_zero(self) -> bool {
@@ -246,7 +273,7 @@ impl Number {
 
     pub(crate) fn is_negative(self) -> bool {
         match self {
-            Number::Exact(r) => r.is_negative(),
+            Number::Exact(r) | Number::Scaled(r, ..) => r.is_negative(),
             Number::Float(x) => x < 0.0,
         }
     }
@@ -259,6 +286,7 @@ impl Number {
         self,
         other: Self,
         exact: fn(Rational, Rational) -> Option<Rational>,
+        scaled: fn(Fraction, Fraction) -> Option<Fraction>,
         float: fn(f64, f64) -> f64,
     ) -> Self {
         if let (Number::Exact(a), Number::Exact(b)) = (self, other)
@@ -266,26 +294,28 @@ impl Number {
         {
             return Number::Exact(r);
         }
-        Self::rounded(float(self.to_f64(), other.to_f64()))
+        let exact = self.fraction().zip(other.fraction()).and_then(|(a, b)| scaled(a, b)).and_then(Self::of);
+        exact.unwrap_or_else(|| Self::rounded(float(self.to_f64(), other.to_f64())))
     }
 
     pub(crate) fn add(self, other: Self) -> Self {
         if self.is_zero() || other.is_zero() {
             return if self.is_zero() { other } else { self };
         }
-        self.combine(other, Rational::add, |a, b| a + b)
+        self.combine(other, Rational::add, Fraction::add, |a, b| a + b)
     }
 
     pub(crate) fn mul(self, other: Self) -> Self {
         if self.is_one() || other.is_one() {
             return if self.is_one() { other } else { self };
         }
-        self.combine(other, Rational::mul, |a, b| a * b)
+        self.combine(other, Rational::mul, Fraction::mul, |a, b| a * b)
     }
 
     pub(crate) fn neg(self) -> Self {
         match self {
             Number::Exact(r) => Number::Exact(r.neg()),
+            Number::Scaled(r, twos, fives) => Number::Scaled(r.neg(), twos, fives),
             Number::Float(x) => Number::Float(-x),
         }
     }
@@ -307,6 +337,9 @@ impl Number {
             1 => return self,
             _ => {}
         }
+        if let Some(power) = self.fraction().and_then(|x| x.powi(exponent)).and_then(Self::of) {
+            return power;
+        }
         Self::rounded(match i32::try_from(exponent) {
             Ok(n) => self.to_f64().powi(n),
             Err(_) => self.to_f64().powf(exponent as f64),
@@ -314,27 +347,15 @@ impl Number {
     }
 }
 
-/// `digits[.digits][e±digits]` as a fraction, where numerator and denominator fit.
-fn exact_decimal(literal: &str) -> Option<Rational> {
-    let (mantissa, exponent) = match literal.split_once(['e', 'E']) {
-        Some((m, e)) => (m, e.parse::<i32>().ok()?),
-        None => (literal, 0),
-    };
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let fraction = fraction.trim_end_matches('0');
-    let digits: i64 =
-        if fraction.is_empty() { whole.parse().ok()? } else { format!("{whole}{fraction}").parse().ok()? };
-    let scale = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
-    if scale >= 0 {
-        if digits == 0 {
-            return Some(Rational::integer(0));
-        }
-        let factor = 10_i64.checked_pow(scale.unsigned_abs())?;
-        return Rational::new(digits.checked_mul(factor)?, 1);
-    }
-    let r = Rational::new(digits, 10_i64.checked_pow(scale.unsigned_abs())?)?;
-    let fits = r.numerator().abs() <= EXACT_IN_F64 && r.denominator() <= EXACT_IN_F64;
-    (fits || r.denominator() == 1).then_some(r)
+/// `digits[.digits][e±digits]`, where that is an integer, a fraction exact in `f64`, or has few digits: what
+/// arithmetic has rounded has more.
+fn exact_decimal(literal: &str) -> Option<Number> {
+    let n = Fraction::decimal(literal).and_then(Number::of)?;
+    let fits =
+        |r: Rational| r.denominator() == 1 || r.numerator().abs() <= EXACT_IN_F64 && r.denominator() <= EXACT_IN_F64;
+    let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
+    let digits = || mantissa.replace('.', "").trim_matches('0').len();
+    (matches!(n, Number::Exact(r) if fits(r)) || digits() <= DIGITS).then_some(n)
 }
 
 #[cfg(test)]
@@ -351,6 +372,9 @@ mod tests {
         assert_eq!(Number::from_decimal("1e-400"), None);
         assert_eq!(Number::from_f64(9.81), Number::ratio(981, 100));
         assert!(matches!(Number::from_f64(0.1 + 0.2), Number::Float(_)));
+        let [small, large] = ["1e-27", "2e45"].map(|text| Number::from_decimal(text).unwrap());
+        assert_eq!(small.mul(large), Number::from_f64(2e18));
+        assert_eq!(small.mul(small).mul(Number::from_f64(1e54)), Number::ONE);
     }
 
     #[test]
@@ -358,7 +382,8 @@ mod tests {
         let big = Number::integer(i64::MAX);
         assert_eq!(big.mul(big).to_f64(), (i64::MAX as f64).powi(2));
         assert_eq!(Number::integer(i64::MIN).neg().to_f64(), -(i64::MIN as f64));
-        assert_eq!(Number::integer(2).powi(-2000), Number::ZERO);
+        assert!(!Number::integer(2).powi(-2000).is_zero());
+        assert_eq!(Number::integer(2).powi(-2000).to_f64(), 0.0);
         assert!(!Number::ZERO.recip().is_finite());
         assert_eq!(Number::ZERO.powi(0), Number::ONE);
     }

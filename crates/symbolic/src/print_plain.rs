@@ -130,6 +130,15 @@ pub(crate) fn number_text(n: Number) -> (String, Option<String>) {
                 (r.numerator().to_string(), Some(r.denominator().to_string()))
             }
         }
+        Number::Scaled(..) => {
+            let decimal = format!("{:e}", n.to_f64());
+            let whole = n.fraction().map_or(String::new(), |x| x.to_string());
+            match whole.split_once('/') {
+                _ if Number::from_decimal(&decimal) == Some(n) => (decimal, None),
+                Some((above, below)) => (above.into(), Some(below.into())),
+                None => (whole, None),
+            }
+        }
         // never read back as an exact number
         Number::Float(x) if x.is_finite() && Number::from_f64(x) != n => (format!("{x}e0"), None),
         Number::Float(x) => (float_text(x), None),

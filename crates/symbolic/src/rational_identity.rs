@@ -65,10 +65,15 @@ impl Arena {
 /// A number that is not exact is taken for an unknown one.
 fn number(x: Number, seed: u64) -> Option<u64> {
     let signed = |size: u64, negative: bool| if negative { (P - size % P) % P } else { size % P };
+    let of = |r: Rational| {
+        let denominator = inverse(r.denominator().unsigned_abs() % P)?;
+        Some(times(signed(r.numerator().unsigned_abs(), r.is_negative()), denominator))
+    };
     match x {
-        Number::Exact(r) => {
-            let denominator = inverse(r.denominator().unsigned_abs() % P)?;
-            Some(times(signed(r.numerator().unsigned_abs(), r.is_negative()), denominator))
+        Number::Exact(r) => of(r),
+        Number::Scaled(r, twos, fives) => {
+            let power = |base: u64, exponent: i16| power(base, Rational::integer(exponent.into()), 0);
+            Some(times(of(r)?, times(power(2, twos)?, power(5, fives)?)))
         }
         Number::Float(x) => Some(signed(random(!seed, x.abs().to_bits()), x < 0.0)),
     }

@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::Fraction;
+
 /// A real number type: what a [`Tape`](crate::Tape) needs to be evaluated in it.
 ///
 /// Angles are in radians. Outside its domain a function gives the type's "not a number".
@@ -17,7 +19,12 @@ pub trait Scalar:
     fn from_f64(x: f64) -> Self;
     /// `numerator / denominator`, rounded in this type.
     fn from_ratio(numerator: i64, denominator: i64) -> Self;
-    /// A number of a formula that is known as this float only: beyond 64 bits, or rounded by arithmetic.
+    /// A fraction beyond 64 bits, rounded in this type.
+    fn from_fraction(x: Fraction) -> Self {
+        Self::from_f64(x.to_f64())
+    }
+    /// A number of a formula that is known as this float only: with too many digits, or rounded by
+    /// arithmetic.
     fn rounded(x: f64) -> Self {
         Self::from_f64(x)
     }

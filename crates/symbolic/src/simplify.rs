@@ -238,16 +238,19 @@ impl Arena {
             *coefficient = coefficient.mul(n.powi(whole));
             return;
         }
-        let r = match n {
-            Number::Exact(r) if !r.is_zero() && !r.is_negative() => r,
+        let (r, twos, fives) = match n {
+            Number::Exact(r) if !r.is_zero() && !r.is_negative() => (r, 0, 0),
+            Number::Scaled(r, twos, fives) if !r.is_negative() => (r, twos, fives),
             _ => {
                 *coefficient = coefficient.mul(Number::rounded(n.to_f64().powf(exponent.to_f64())));
                 return;
             }
         };
-        let parts = [(r.numerator(), exponent), (r.denominator(), exponent.neg())];
-        if parts.iter().any(|(part, e)| Rational::integer(*part).powi(e.floor()).is_none()) {
-            *coefficient = coefficient.mul(Number::rounded(r.to_f64().powf(exponent.to_f64())));
+        let times = |n: i16| exponent.mul(Rational::integer(n.into())).unwrap_or(exponent);
+        let mut parts = vec![(r.numerator(), exponent), (r.denominator(), exponent.neg())];
+        parts.extend([(2, twos), (5, fives)].into_iter().filter(|(_, n)| *n != 0).map(|(part, n)| (part, times(n))));
+        if parts.iter().any(|(part, e)| !Number::integer(*part).powi(e.floor()).is_exact()) {
+            *coefficient = coefficient.mul(Number::rounded(n.to_f64().powf(exponent.to_f64())));
             return;
         }
         for (part, exponent) in parts {

@@ -88,9 +88,10 @@ impl Tape {
     pub fn workspace<T: Scalar>(&self) -> Workspace<T> {
         let mut registers = vec![T::from_f64(0.0); self.registers];
         for (register, n) in &self.constants {
-            registers[*register as usize] = match n {
-                Number::Exact(r) => T::from_ratio(r.numerator(), r.denominator()),
-                Number::Float(x) => T::rounded(*x),
+            registers[*register as usize] = match (n, n.fraction()) {
+                (Number::Exact(r), _) => T::from_ratio(r.numerator(), r.denominator()),
+                (_, Some(x)) => T::from_fraction(x),
+                _ => T::rounded(n.to_f64()),
             };
         }
         run(&self.setup, &mut registers);

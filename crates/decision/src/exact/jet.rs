@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use symbolic::{Function, Scalar};
+use symbolic::{Fraction, Function, Scalar};
 
 use super::rational::{Exact, PARTS};
 use super::{Coefficient, Flaw};
@@ -107,7 +107,7 @@ impl<C: Coefficient> Jet<C> {
             return Jet { terms: 1, ..result };
         }
         for k in 1..result.known {
-            let over = C::of(Exact { denominator: k as i128, ..Exact::ONE });
+            let over = Exact::over(k).and_then(C::of);
             match (next(k, &result.coefficients), over) {
                 (Some(x), Ok(over)) => result.coefficients[k] = x * over,
                 _ => return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..result },
@@ -118,7 +118,7 @@ impl<C: Coefficient> Jet<C> {
 
     /// Coefficients of `u'`, shifted: entry k is `k u_k`.
     fn slopes(&self) -> [C; ORDERS] {
-        std::array::from_fn(|k| match C::of(Exact { numerator: k as i128, ..Exact::ONE }) {
+        std::array::from_fn(|k| match Exact::integer(k).and_then(C::of) {
             Ok(k_times) if k < self.terms => self.coefficients[k] * k_times,
             _ => C::ZERO,
         })
@@ -133,9 +133,13 @@ impl<C: Coefficient> Jet<C> {
         Self::number(C::of(one), Some(one))
     }
 
+    fn one_half() -> Self {
+        let half = Exact::over(2);
+        Self::number(half.and_then(C::of), half.ok())
+    }
+
     fn half(self) -> Self {
-        let half = Exact { denominator: 2, ..Exact::ONE };
-        self * Self::number(C::of(half), Some(half))
+        self * Self::one_half()
     }
 
     /// `u^α` for a constant `α`, from `u y' = α u' y`.
@@ -148,7 +152,7 @@ impl<C: Coefficient> Jet<C> {
             // k u₀ y_k = α Σ_j j u_j y_{k−j} − Σ_{j<k} j y_j u_{k−j}
             let mut sum = alpha * C::convolution(&slopes[1..=k], &y[..k]);
             for (j, &before) in y.iter().enumerate().take(k).skip(1) {
-                let times = C::of(Exact { numerator: j as i128, ..Exact::ONE }).ok()?;
+                let times = Exact::integer(j).and_then(C::of).ok()?;
                 sum = sum - times * before * self.coefficients[k - j];
             }
             Some(sum * over)
@@ -258,15 +262,24 @@ impl<C: Coefficient> Scalar for Jet<C> {
         if !C::FOLLOWED {
             return Self::number(C::of_float(numerator as f64 / denominator as f64), None);
         }
-        match Exact::of_formula(numerator, denominator) {
+        match Fraction::new(numerator.into(), denominator.into()) {
+            Some(x) => Self::from_fraction(x),
+            None => Self::flawed(Flaw::Zero),
+        }
+    }
+
+    fn from_fraction(x: Fraction) -> Self {
+        if !C::FOLLOWED {
+            return Self::of(x.to_f64());
+        }
+        match Exact::of_formula(x) {
             Ok(exact) => Self::number(C::of(exact), Some(exact)),
             Err(flaw) => Self::flawed(flaw),
         }
     }
 
     fn sqrt(self) -> Self {
-        let half = Exact { denominator: 2, ..Exact::ONE };
-        self.to_power(self.coefficients[0].root(self.exact), Self::number(C::of(half), Some(half)))
+        self.to_power(self.coefficients[0].root(self.exact), Self::one_half())
     }
 
     fn sin(self) -> Self {
@@ -285,7 +298,7 @@ impl<C: Coefficient> Scalar for Jet<C> {
             Jet { terms: 1, ..begun }
         };
         let (mut sine, mut cosine) = (begun(|v| v.0), begun(|v| v.1));
-        if let Some(x) = self.exact.filter(|x| x.numerator == 0) {
+        if let Some(x) = self.exact.filter(|x| x.fraction.is_zero()) {
             // twice the sine of multiples of π/6, where that is an integer
             let value = |turns: i64| {
                 let sixths = Some(turns).filter(|turns| turns % (PARTS / 6) == 0)? / (PARTS / 6);
@@ -299,7 +312,7 @@ impl<C: Coefficient> Scalar for Jet<C> {
             return (sine, cosine);
         }
         for k in 1..self.known {
-            let Ok(over) = C::of(Exact { denominator: k as i128, ..Exact::ONE }) else { continue };
+            let Ok(over) = Exact::over(k).and_then(C::of) else { continue };
             let forward = C::convolution(&slopes[1..=k], &cosine.coefficients[..k]);
             let backward = C::convolution(&slopes[1..=k], &sine.coefficients[..k]);
             sine.coefficients[k] = forward * over;
@@ -380,7 +393,7 @@ impl<C: Coefficient> Scalar for Jet<C> {
 
     fn atan2(self, x: Self) -> Self {
         // the angle of (x, y) has the rate (x y' − y x')/(x² + y²); its value for x > 0 is that of atan(y/x)
-        let positive = x.exact.is_some_and(|x| x.is_rational() && x.numerator > 0);
+        let positive = x.exact.is_some_and(|x| x.is_rational() && !x.is_zero() && !x.fraction.is_negative());
         if positive { (self / x).atan() } else { Jet { flaw: self.flaw.or(Some(Flaw::InverseFunction)), ..self } }
     }
 }

@@ -4,6 +4,9 @@ mod jet;
 mod linear;
 mod modular;
 mod rational;
+mod small_fraction;
+
+use symbolic::{Bounded, Scalar};
 
 pub(crate) use jet::{Jet, ORDERS};
 pub(crate) use linear::{inverse, solve, subtract_product};
@@ -159,6 +162,56 @@ impl Coefficient for f64 {
 
     fn convolution(a: &[Self], b: &[Self]) -> Self {
         a.iter().zip(b.iter().rev()).map(|(a, b)| a * b).sum()
+    }
+
+    fn sine_and_cosine(self, _: Option<Exact>) -> Result<(Self, Self), Flaw> {
+        Ok(self.sin_cos())
+    }
+
+    fn exponential(self, _: Option<Exact>) -> Result<Self, Flaw> {
+        Ok(self.exp())
+    }
+
+    fn root(self, _: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw> {
+        Ok((self.sqrt(), None))
+    }
+
+    fn inverse_function(self, function: symbolic::Function, _: Option<Exact>) -> Result<(Self, Option<Exact>), Flaw> {
+        Ok((function.apply(self), None))
+    }
+
+    fn power(self, _: Option<Exact>, exponent: Self) -> Result<Self, Flaw> {
+        Ok(self.powf(exponent))
+    }
+}
+
+/// The weight of round-off among pivots.
+const ROUND_OFF: f64 = 1e-60;
+
+/// Numbers that know what of them may be round-off.
+impl Coefficient for Bounded {
+    const ZERO: Self = Bounded { value: 0.0, magnitude: 0.0 };
+    const FOLLOWED: bool = false;
+
+    fn of(x: Exact) -> Result<Self, Flaw> {
+        Ok(Bounded::from_f64(x.to_f64()))
+    }
+
+    fn of_float(x: f64) -> Result<Self, Flaw> {
+        Ok(Bounded::from_f64(x))
+    }
+
+    fn inverse(self) -> Option<Self> {
+        (self.value != 0.0).then(|| Bounded::from_f64(1.0) / self)
+    }
+
+    fn weight(self) -> f64 {
+        // what may be round-off is a pivot only where nothing else is
+        if self.may_be_zero() { self.value.abs() * ROUND_OFF } else { self.value.abs() }
+    }
+
+    fn convolution(a: &[Self], b: &[Self]) -> Self {
+        a.iter().zip(b.iter().rev()).fold(Self::ZERO, |sum, (&a, &b)| sum + a * b)
     }
 
     fn sine_and_cosine(self, _: Option<Exact>) -> Result<(Self, Self), Flaw> {

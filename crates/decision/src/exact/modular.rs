@@ -14,6 +14,8 @@ use std::cell::Cell;
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
+use symbolic::Fraction;
+
 use super::Flaw;
 use super::rational::{Exact, PARTS, inverse};
 
@@ -92,8 +94,6 @@ const TWOS: u32 = 5;
 const CYCLOTOMIC: [i128; 6] = [2, 3, 5, 7, 11, 13];
 /// Prime factors under this are looked for under roots.
 pub(crate) const TRIED: i128 = 4096;
-/// Numerators and denominators of small fractions are at most this.
-const SMALL: i128 = 1_000_000;
 
 /// An element of the field, as `x 2^64` modulo `p` (Montgomery).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,24 +161,19 @@ impl Modular {
 
     /// The image of a fraction; `None` where its denominator is a multiple of `p`.
     pub(crate) fn fraction(x: Exact) -> Option<Self> {
-        let numerator = Self::integer(x.numerator);
-        let over = match usize::try_from(x.denominator).ok().and_then(|d| OVER[field().number].get(d)) {
-            Some(&over) => over,
-            None => Self::integer(x.denominator).inverse()?,
+        let over = |d: i128| match usize::try_from(d).ok().and_then(|d| OVER[field().number].get(d)) {
+            Some(&over) => Some(over),
+            None => Self::integer(d).inverse(),
         };
-        Some(numerator * over)
-    }
-
-    /// The fraction with this image and a numerator and denominator of at most a million.
-    pub(crate) fn small_fraction(self) -> Option<Exact> {
-        let (mut r, mut s) = ((i128::from(field().prime), i128::from(self.value())), (0_i128, 1_i128));
-        while r.1 > SMALL {
-            let quotient = r.0 / r.1;
-            r = (r.1, r.0 - quotient * r.1);
-            s = (s.1, s.0 - quotient * s.1);
+        if let Some((n, d)) = x.fraction.plain() {
+            return Some(Self::integer(n) * over(d)?);
         }
-        let found = Exact::ratio(r.1, s.1).filter(|_| s.1.abs() <= SMALL)?;
-        (Self::fraction(found) == Some(self)).then_some(found)
+        let (n, d, twos, fives) = x.fraction.parts();
+        let power = |base: i128, exponent: i32| {
+            let base = if exponent < 0 { over(base)? } else { Self::integer(base) };
+            Some(base.power(exponent.unsigned_abs().into()))
+        };
+        Some(Self::integer(n) * over(d)? * power(2, twos)? * power(5, fives)?)
     }
 
     pub(crate) fn power(self, mut exponent: u64) -> Self {
@@ -212,11 +207,17 @@ impl Modular {
     /// The image of `base^x`, for a base of order `r`.
     fn rational_power(base: Self, x: Exact) -> Result<Self, Flaw> {
         let order = i128::from(field().order);
-        let (n, d) = (x.numerator.rem_euclid(order), x.denominator.rem_euclid(order));
+        let (n, d, twos, fives) = x.fraction.parts();
+        let (n, d) = (n.rem_euclid(order), d.rem_euclid(order));
         if d == 0 {
             return Err(Flaw::Angle);
         }
-        Ok(base.power((n * inverse(d, order) % order) as u64))
+        let power = |base: i128, exponent: i32| {
+            let base = if exponent < 0 { inverse(base, order) } else { base };
+            (0..exponent.abs()).fold(1, |power, _| power * base % order)
+        };
+        let scaled = n * inverse(d, order) % order * power(2, twos) % order * power(5, fives) % order;
+        Ok(base.power(scaled as u64))
     }
 
     /// `e^x`.
@@ -278,11 +279,15 @@ impl Modular {
 
     /// `√x`, `x > 0` a fraction of squares and primes with roots here; roots of several are independent.
     pub(crate) fn root(x: Exact) -> Result<(Self, Option<Exact>), Flaw> {
-        if !x.is_rational() || x.numerator < 0 {
+        if !x.is_rational() || x.fraction.is_negative() {
             return Err(Flaw::Root);
         }
-        let mut square_free = x.numerator.checked_mul(x.denominator).ok_or(Flaw::Root)?;
-        let mut outside = Exact::ratio(1, x.denominator).ok_or(Flaw::Root)?;
+        let (n, d, twos, fives) = x.fraction.parts();
+        let odd = [(2, twos), (5, fives)].into_iter().filter(|(_, exponent)| exponent % 2 != 0);
+        let mut square_free =
+            odd.map(|(prime, _)| prime).chain([d]).try_fold(n, i128::checked_mul).ok_or(Flaw::Root)?;
+        let outside = Fraction::with_powers(1, d, twos.div_euclid(2), fives.div_euclid(2));
+        let mut outside = Exact::rational(outside.ok_or(Flaw::Root)?);
         let mut roots = Self::one();
         if square_free == 0 {
             return Ok((Self::ZERO, Some(Exact::ZERO)));

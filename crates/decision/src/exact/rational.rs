@@ -3,6 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use symbolic::Fraction;
+
 use super::Flaw;
 
 /// Multiples of `π/PARTS` are known: of `π/d` for every d up to 16, of degrees and of their halves and
@@ -11,35 +13,36 @@ pub(crate) const PARTS: i64 = 720_720;
 /// Decimals of so many digits may be multiples of π in the digits of a double.
 const LONG: usize = 15;
 
-/// `numerator / denominator + turns · π/PARTS`, reduced.
+/// `fraction + turns · π/PARTS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Exact {
-    pub(crate) numerator: i128,
-    pub(crate) denominator: i128,
+    pub(crate) fraction: Fraction,
     pub(crate) turns: i64,
 }
 
-fn divisor(a: i128, b: i128) -> i128 {
-    let (mut a, mut b) = (a.abs(), b.abs());
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
-}
-
 impl Exact {
-    pub(crate) const ZERO: Exact = Exact { numerator: 0, denominator: 1, turns: 0 };
-    pub(crate) const ONE: Exact = Exact { numerator: 1, denominator: 1, turns: 0 };
+    pub(crate) const ZERO: Exact = Exact { fraction: Fraction::ZERO, turns: 0 };
+    pub(crate) const ONE: Exact = Exact { fraction: Fraction::ONE, turns: 0 };
     /// π/2.
-    pub(crate) const QUARTER: Exact = Exact { numerator: 0, denominator: 1, turns: PARTS / 2 };
+    pub(crate) const QUARTER: Exact = Exact { turns: PARTS / 2, ..Exact::ZERO };
 
     /// `None` where the reduced fraction would not fit, or the denominator is zero.
     pub(crate) fn ratio(numerator: i128, denominator: i128) -> Option<Self> {
-        if denominator == 0 {
-            return None;
-        }
-        let shared = divisor(numerator, denominator) * denominator.signum();
-        Some(Exact { numerator: numerator / shared, denominator: denominator / shared, turns: 0 })
+        Fraction::new(numerator, denominator).map(Self::rational)
+    }
+
+    pub(crate) fn rational(fraction: Fraction) -> Self {
+        Exact { fraction, turns: 0 }
+    }
+
+    /// `k`
+    pub(crate) fn integer(k: usize) -> Result<Self, Flaw> {
+        Self::ratio(k as i128, 1).ok_or(Flaw::Number)
+    }
+
+    /// `1/k`
+    pub(crate) fn over(k: usize) -> Result<Self, Flaw> {
+        Self::ratio(1, k as i128).ok_or(Flaw::Zero)
     }
 
     /// The decimal that `x` is written as.
@@ -49,9 +52,8 @@ impl Exact {
     /// these digits may be meant. [`Flaw::Number`] for what does not fit.
     pub(crate) fn of(x: f64) -> Result<Self, Flaw> {
         let text = format!("{x:e}");
-        let (mantissa, exponent) = text.split_once('e').ok_or(Flaw::Number)?;
-        let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-        if whole.len() + fraction.len() >= LONG
+        let digits = text.split('e').next().unwrap_or_default().bytes().filter(u8::is_ascii_digit).count();
+        if digits >= LONG
             && (1..=360).any(|d| {
                 let times = (x / PI * f64::from(d)).round();
                 times != 0.0 && (x - times * PI / f64::from(d)).abs() <= f64::EPSILON * x.abs()
@@ -59,37 +61,33 @@ impl Exact {
         {
             return Err(Flaw::Rounded);
         }
-        let decimal = || {
-            let digits: i128 = format!("{whole}{fraction}").parse().ok()?;
-            let scale = exponent.parse::<i32>().ok()? - i32::try_from(fraction.len()).ok()?;
-            let power = 10_i128.checked_pow(scale.unsigned_abs())?;
-            if scale >= 0 { Self::ratio(digits.checked_mul(power)?, 1) } else { Self::ratio(digits, power) }
-        };
-        decimal().ok_or(Flaw::Number)
+        Fraction::decimal(&text).map(Self::rational).ok_or(Flaw::Number)
     }
 
     /// A number of a formula, in which π is the quotient [`symbolic::PI`] of two primes.
     ///
     /// # Errors
     /// [`Flaw::Pi`] for what is no `a + b π` with moderate fractions, [`Flaw::Turn`] for too fine a `b`.
-    pub(crate) fn of_formula(numerator: i64, denominator: i64) -> Result<Self, Flaw> {
+    pub(crate) fn of_formula(x: Fraction) -> Result<Self, Flaw> {
         let (above, below) = (i128::from(symbolic::PI.0), i128::from(symbolic::PI.1));
-        let (n, d) = (i128::from(numerator), i128::from(denominator));
+        let (n, d, twos, fives) = x.parts();
         if d % above == 0 {
             return Err(Flaw::Pi);
         }
         if d % below != 0 {
-            let rounded = d > 10_i128.pow(13) && Self::of(n as f64 / d as f64) == Err(Flaw::Rounded);
-            return if rounded { Err(Flaw::Rounded) } else { Self::ratio(n, d).ok_or(Flaw::Number) };
+            let fine = x.plain().is_some_and(|(_, d)| d > 10_i128.pow(13));
+            let rounded = fine && Self::of(x.to_f64()) == Err(Flaw::Rounded);
+            return if rounded { Err(Flaw::Rounded) } else { Ok(Self::rational(x)) };
         }
-        let rest = d / below;
-        if rest % below == 0 {
+        if d / below % below == 0 {
             return Err(Flaw::Pi);
         }
         if n % above == 0 {
-            return Self::ratio(n / above, rest).ok_or(Flaw::Number)?.of_pi();
+            return Self::of_pi(Fraction::with_powers(n / above, d / below, twos, fives).ok_or(Flaw::Number)?);
         }
         // n/rest = b·above modulo the prime `below`, b = r/s with r and s under the root of that
+        let (n, d) = x.plain().ok_or(Flaw::Pi)?;
+        let rest = d / below;
         let residue = n * inverse(rest % below * above % below, below) % below;
         let (mut r, mut s) = ((below, residue.rem_euclid(below)), (0_i128, 1_i128));
         while 2 * r.1 * r.1 > below {
@@ -97,21 +95,16 @@ impl Exact {
             r = (r.1, r.0 - quotient * r.1);
             s = (s.1, s.0 - quotient * s.1);
         }
-        let part = Self::ratio(r.1, s.1).filter(|_| 2 * s.1 * s.1 <= below).ok_or(Flaw::Pi)?;
+        let part = Fraction::new(r.1, s.1).filter(|_| 2 * s.1 * s.1 <= below).ok_or(Flaw::Pi)?;
         // the fraction beside it
-        let beside = Self::ratio(
-            n * part.denominator - part.numerator * above * rest,
-            d.checked_mul(part.denominator).ok_or(Flaw::Pi)?,
-        );
-        let beside = beside.filter(|beside| beside.denominator % below != 0).ok_or(Flaw::Pi)?;
-        part.of_pi()?.add(beside).ok_or(Flaw::Number)
+        let pi = Fraction::new(above, below).and_then(|pi| part.mul(pi)).ok_or(Flaw::Pi)?;
+        let beside = x.add(pi.neg()).filter(|beside| beside.parts().1 % below != 0).ok_or(Flaw::Pi)?;
+        Ok(Exact { fraction: beside, ..Self::of_pi(part)? })
     }
 
     /// This many times π.
-    fn of_pi(self) -> Result<Self, Flaw> {
-        let turns = self.numerator.checked_mul(PARTS.into()).filter(|turns| turns % self.denominator == 0);
-        let turns = turns.and_then(|turns| i64::try_from(turns / self.denominator).ok()).ok_or(Flaw::Turn)?;
-        Ok(Exact { turns, ..Exact::ZERO })
+    fn of_pi(part: Fraction) -> Result<Self, Flaw> {
+        Ok(Exact { turns: whole(part, PARTS).ok_or(Flaw::Turn)?, ..Exact::ZERO })
     }
 
     /// Whether no π is in it.
@@ -124,14 +117,12 @@ impl Exact {
     }
 
     pub(crate) fn add(self, other: Self) -> Option<Self> {
-        let a = self.numerator.checked_mul(other.denominator)?;
-        let b = other.numerator.checked_mul(self.denominator)?;
-        let sum = Self::ratio(a.checked_add(b)?, self.denominator.checked_mul(other.denominator)?)?;
-        Some(Exact { turns: self.turns.checked_add(other.turns)?, ..sum })
+        let turns = self.turns.checked_add(other.turns)?;
+        Some(Exact { fraction: self.fraction.add(other.fraction)?, turns })
     }
 
     pub(crate) fn neg(self) -> Self {
-        Exact { numerator: -self.numerator, denominator: self.denominator, turns: -self.turns }
+        Exact { fraction: self.fraction.neg(), turns: -self.turns }
     }
 
     pub(crate) fn mul(self, other: Self) -> Option<Self> {
@@ -139,23 +130,24 @@ impl Exact {
         if !factor.is_rational() {
             return None;
         }
-        let numerator = angle.numerator.checked_mul(factor.numerator)?;
-        let product = Self::ratio(numerator, angle.denominator.checked_mul(factor.denominator)?)?;
-        let turns = i128::from(angle.turns).checked_mul(factor.numerator)?;
-        if turns % factor.denominator != 0 {
-            return None;
-        }
-        Some(Exact { turns: i64::try_from(turns / factor.denominator).ok()?, ..product })
+        let turns = whole(factor.fraction, angle.turns)?;
+        Some(Exact { fraction: angle.fraction.mul(factor.fraction)?, turns })
     }
 
     /// `None` for zero, and where π is in it.
     pub(crate) fn recip(self) -> Option<Self> {
-        if self.is_rational() { Self::ratio(self.denominator, self.numerator) } else { None }
+        if self.is_rational() { self.fraction.recip().map(Self::rational) } else { None }
     }
 
     pub(crate) fn to_f64(self) -> f64 {
-        self.numerator as f64 / self.denominator as f64 + self.turns as f64 * (PI / PARTS as f64)
+        self.fraction.to_f64() + self.turns as f64 * (PI / PARTS as f64)
     }
+}
+
+/// `times · x`, where that is a moderate integer.
+fn whole(x: Fraction, times: i64) -> Option<i64> {
+    let (n, d) = Fraction::new(times.into(), 1)?.mul(x)?.plain()?;
+    if d == 1 { i64::try_from(n).ok() } else { None }
 }
 
 /// `1/a` modulo the prime `p`.
@@ -171,11 +163,9 @@ pub(crate) fn inverse(a: i128, p: i128) -> i128 {
 
 impl fmt::Display for Exact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (n, d) = (self.numerator, self.denominator);
-        match Exact::ratio(self.turns.into(), PARTS.into()) {
-            Some(pi) if self.turns != 0 => write!(f, "{n}/{d} + {}*pi/{}", pi.numerator, pi.denominator),
-            _ if d == 1 => write!(f, "{n}"),
-            _ => write!(f, "{n}/{d}"),
+        match Fraction::new(self.turns.into(), PARTS.into()).and_then(Fraction::plain) {
+            Some((n, d)) if n != 0 => write!(f, "{} + {n}*pi/{d}", self.fraction),
+            _ => write!(f, "{}", self.fraction),
         }
     }
 }
@@ -194,9 +184,9 @@ mod tests {
         assert_eq!(Exact::of(1.5708).ok().and_then(|x| x.recip()), Exact::ratio(2500, 3927));
         let read = |text: &str| {
             let g = symbolic::Graph::new();
-            let (n, d) = g.as_ratio(g.parse(text, &|_| None, &[]).unwrap()).unwrap();
-            Exact::of_formula(n, d)
+            Exact::of_formula(g.as_fraction(g.parse(text, &|_| None, &[]).unwrap()).unwrap())
         };
+        assert_eq!(Exact::of(2.5e-60).map(|x| x.to_string()), Ok("5/(2*10^60)".into()));
         let of = |n, d, turns| Ok(Exact { turns, ..Exact::ratio(n, d).unwrap() });
         assert_eq!(read("30*pi/180"), of(0, 1, PARTS / 6));
         assert_eq!(read("pi + 1/3"), of(1, 3, PARTS));

@@ -1,0 +1,72 @@
+//! What is known of a mismatch, and what it is compared with.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::scales::power;
+
+/// A mismatch up to this many times its noise is none.
+pub(crate) const CERTAIN: f64 = 10.0;
+/// What round-off leaves of the rows at best, relative to their size and to what was added up to them.
+pub(crate) const ROUND_OFF: f64 = 1e-14;
+
+/// Of one constant in the triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Column {
+    /// What a constant of size 1 in the triangle is.
+    pub(crate) scale: f64,
+    /// What its column is known to, and its size: without one, that of what was added up to it.
+    pub(crate) noise: f64,
+    pub(crate) size: f64,
+}
+
+/// What a mismatch is compared with.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sizes {
+    /// What `y₀` is known to, and `O` times a constant of size 1.
+    pub(crate) noise: f64,
+    /// The curve's own acceleration, and its speed over the time.
+    pub(crate) acceleration: f64,
+    pub(crate) speed: f64,
+    /// What was added up, without regard to signs.
+    pub(crate) terms: f64,
+    /// Whether the curve moves at any node, by more than round-off of that.
+    pub(crate) moves: bool,
+}
+
+/// Squares of lengths, added up; of the columns of `[O | y₀]` where there are several.
+pub(crate) struct Sums {
+    pub(crate) noise: DVector<f64>,
+    pub(crate) terms: DVector<f64>,
+    pub(crate) acceleration: f64,
+    pub(crate) speed: f64,
+    pub(crate) moves: bool,
+}
+
+impl Sums {
+    /// The sizes, and for each constant the size at which its column is known as well as `y₀`: whatever its
+    /// unit, it has an effect if that stands out from its own noise. Where nothing moves but by round-off,
+    /// so do the columns, and all have the noise of what balances.
+    pub(crate) fn lengths(&self, time: f64, triangle: &DMatrix<f64>) -> (Sizes, Vec<Column>) {
+        let [acceleration, speed] = [self.acceleration, self.speed / time.powi(2)].map(f64::sqrt);
+        let last = triangle.ncols() - 1;
+        let finite = |square: f64| Some(square.sqrt()).filter(|x| x.is_finite()).unwrap_or(0.0);
+        let known = |noise: f64, size: f64, terms: f64| noise.sqrt().max(ROUND_OFF * size.max(finite(terms)));
+        let terms = finite(self.terms.sum());
+        let motion = acceleration.hypot(speed);
+        let column = |k: usize, size: f64| known(self.noise[k], size.max(triangle.column(k).norm()), self.terms[k]);
+        let sizes = |noise| Sizes { noise, acceleration, speed, terms, moves: self.moves };
+        if !self.moves {
+            let noise = known(self.noise.sum(), triangle.norm().max(motion), self.terms.sum());
+            return (sizes(noise), vec![Column { scale: 1.0, noise, size: terms }; last]);
+        }
+        let own = column(last, motion);
+        let columns = (0..last).map(|k| {
+            let noise = column(k, 0.0);
+            let scale = if noise > 0.0 { power(own / noise) } else { 1.0 };
+            let norm = triangle.column(k).norm();
+            let size = if norm > CERTAIN * noise { norm } else { norm.max(finite(self.terms[k])) };
+            Column { scale, noise: noise * scale, size: size * scale }
+        });
+        (sizes(own), columns.collect())
+    }
+}
