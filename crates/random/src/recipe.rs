@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
+use super::feature::{Features, features};
 use super::{Kind, NullTest};
 
 /// Most coordinates of a random system.
@@ -108,6 +109,8 @@ pub struct Recipe {
     pub multipliers: Vec<i64>,
     /// Costates at the start, in eighths.
     pub costates: Vec<i64>,
+    /// What it has besides.
+    pub features: Features,
 }
 
 impl Recipe {
@@ -190,7 +193,8 @@ pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
     );
     let sizes = (2..=MOST, 0..MOST, Just((0..MOST).collect::<Vec<_>>()).prop_shuffle());
     let removal = vec((-3..=3_i64, 0..MOST), MOST * (MOST + 1) / 2);
-    (sizes, inertia, constraint, removal, start).prop_map(move |(sizes, inertia, constraint, removal, start)| {
+    let all = (sizes, inertia, constraint, removal, start, features(MOST));
+    all.prop_map(move |(sizes, inertia, constraint, removal, start, features)| {
         let (coordinates, constraints, order) = sizes;
         let (masses, mass_terms, potential, gyroscopic, driving) = inertia;
         let (rows, mixing, along, drift, closeness, cyclic) = constraint;
@@ -216,6 +220,7 @@ pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
             velocities,
             multipliers,
             costates,
+            features,
         }
     })
 }
