@@ -10,9 +10,9 @@ use symbolic::{Expr, Function, Graph};
 /// How a switch goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
-    /// `(1 + tanh 24U)/2`
+    /// `(1 + tanh 20U)/2`
     Tanh,
-    /// `exp(−49 U²)`
+    /// `exp(−38 U²)`
     Bump,
     /// On for `0 < U < ½`, as `step` has it.
     Step,
@@ -98,10 +98,10 @@ impl Features {
     pub(crate) fn switched(&self, g: &Graph, part: Part, over: i64, [passed, way]: [Expr; 2]) -> Expr {
         let Some(switch) = self.switch.as_ref().filter(|switch| switch.part == part) else { return g.zero() };
         let u = g.sub(g.div(passed, way), g.one());
-        let edge = |behind: Expr| g.call(Function::Tanh, g.mul(g.integer(24), g.sub(u, behind)));
+        let edge = |behind: Expr| g.call(Function::Tanh, g.mul(g.integer(20), g.sub(u, behind)));
         let sigma = match switch.edge {
             Edge::Tanh => g.mul(g.ratio(1, 2), g.add(g.one(), edge(g.zero()))),
-            Edge::Bump => g.call(Function::Exp, g.mul(g.integer(-49), g.powi(u, 2))),
+            Edge::Bump => g.call(Function::Exp, g.mul(g.integer(-38), g.powi(u, 2))),
             Edge::Step => g.mul(g.ratio(1, 2), g.sub(edge(g.zero()), edge(g.ratio(1, 2)))),
         };
         g.mul(g.ratio(switch.strength, over), sigma)
@@ -127,7 +127,7 @@ pub(crate) fn features(most: usize) -> impl Strategy<Value = Features> {
     let root = (part(), 1..=4_i64, 0..most).prop_map(|(part, coefficient, place)| Root { part, coefficient, place });
     let far = prop_oneof![24..=36_i64, -36..=-24_i64];
     let far = (prop::collection::vec(far, most), 16..=24_i64).prop_map(|(positions, time)| Far { positions, time });
-    let (switch, root) = (prop::option::weighted(0.25, switch), prop::option::weighted(0.2, root));
+    let (switch, root) = (prop::option::weighted(0.2, switch), prop::option::weighted(0.15, root));
     let all = (switch, root, prop::option::weighted(0.25, far));
     all.prop_map(|(switch, root, far)| Features { switch, root, far })
 }
