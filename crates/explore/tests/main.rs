@@ -200,7 +200,8 @@ fn sliders_keep_what_begins_elsewhere() {
     let mut compared = 0;
     // the switch on the way, from a start beyond it, and with a term whose factor was zero
     for at in [[5.0, 0.0, 0.0], [5.0, 0.0, 9.0], [5.0, 0.5, 0.0], [40.0, 0.5, 0.0]] {
-        let ((near, coarse), (full, numbers)) = (ask_again(&mut explorer, question(at, true)), ask(question(at, false)));
+        let ((near, coarse), (full, numbers)) =
+            (ask_again(&mut explorer, question(at, true)), ask(question(at, false)));
         for (i, near) in near["motions"].as_array().unwrap().iter().enumerate() {
             let full = &full["motions"][i];
             assert_eq!((&near["status"], &near["refused"]), (&full["status"], &full["refused"]), "{at:?}, {near}");

@@ -19,9 +19,9 @@ use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable
 use scene::Scene;
 use symbolic::{Expr, Function, Graph, Symbol};
 
+use super::Kind;
 use super::feature::Part;
 use super::recipe::{MassTerm, Recipe, Shape, Term};
-use super::{Kind, Truth};
 
 /// Length of the run of a random scene.
 pub const DURATION: f64 = 1.5;
@@ -33,40 +33,6 @@ impl Recipe {
     /// The scene, with a start on its constraint and a removal of its own.
     pub fn scene(&self, name: &str) -> Scene {
         Builder::new(self).scene(name)
-    }
-
-    /// What Frobenius' test has to find.
-    pub fn truth(&self) -> Truth {
-        match self.kind {
-            Kind::Free => Truth::Unconstrained,
-            Kind::Nonlinear => Truth::NotLinear,
-            kind if kind.is_integrable() => Truth::Integrable,
-            Kind::PartlyIntegrable => Truth::PartlyIntegrable { integrals: self.integrals() },
-            _ => Truth::Nonintegrable,
-        }
-    }
-
-    /// Number of constraints that are integrable by construction.
-    pub(crate) fn integrals(&self) -> usize {
-        match self.kind {
-            kind if kind.is_integrable() => self.h(),
-            Kind::PartlyIntegrable => 1 + self.constraints % (self.h() - 1),
-            _ => 0,
-        }
-    }
-
-    /// `q_i(t₀)` in eighths.
-    fn first_position(&self, i: usize) -> i64 {
-        self.positions[i] + 8 * self.features.shift(i)
-    }
-
-    /// Whether time may enter.
-    fn moves(&self) -> bool {
-        match self.kind {
-            Kind::TimeDependent => true,
-            Kind::Integrable | Kind::HiddenIntegrable => self.driving > 0,
-            _ => false,
-        }
     }
 }
 

@@ -9,7 +9,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use super::feature::{Features, features};
-use super::{Kind, NullTest};
+use super::{Kind, NullTest, Truth};
 
 /// Most coordinates of a random system.
 pub const MOST: usize = 6;
@@ -133,6 +133,40 @@ impl Recipe {
     /// Indices of the dependent coordinates, one a constraint.
     pub fn dependent(&self) -> Vec<usize> {
         self.ordered()[self.n() - self.h()..].to_vec()
+    }
+
+    /// What Frobenius' test has to find.
+    pub fn truth(&self) -> Truth {
+        match self.kind {
+            Kind::Free => Truth::Unconstrained,
+            Kind::Nonlinear => Truth::NotLinear,
+            kind if kind.is_integrable() => Truth::Integrable,
+            Kind::PartlyIntegrable => Truth::PartlyIntegrable { integrals: self.integrals() },
+            _ => Truth::Nonintegrable,
+        }
+    }
+
+    /// Number of constraints that are integrable by construction.
+    pub(crate) fn integrals(&self) -> usize {
+        match self.kind {
+            kind if kind.is_integrable() => self.h(),
+            Kind::PartlyIntegrable => 1 + self.constraints % (self.h() - 1),
+            _ => 0,
+        }
+    }
+
+    /// `q_i(t₀)` in eighths.
+    pub(crate) fn first_position(&self, i: usize) -> i64 {
+        self.positions[i] + 8 * self.features.shift(i)
+    }
+
+    /// Whether time may enter.
+    pub(crate) fn moves(&self) -> bool {
+        match self.kind {
+            Kind::TimeDependent => true,
+            Kind::Integrable | Kind::HiddenIntegrable => self.driving > 0,
+            _ => false,
+        }
     }
 
     fn ordered(&self) -> Vec<usize> {

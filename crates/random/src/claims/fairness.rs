@@ -41,7 +41,11 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         match found.proof.almost_every_start {
             // roots have images at few starts: no ranks
             Finding::NotApplicable(_) => {
-                case.found.count(9, "every mu0 does, random starts have no image, and it is proved symbolically", by_ranks);
+                case.found.count(
+                    9,
+                    "every mu0 does, random starts have no image, and it is proved symbolically",
+                    by_ranks,
+                );
             }
             _ => case.found.require(9, "and ranks say so", by_ranks, &note),
         }
