@@ -34,8 +34,8 @@ fn choice(scene: &Scene, name: &str) -> Choice {
 }
 
 /// Holds all forms, removals and ensembles of a scene against each other: how many agreed, how many were
-/// refused or are not trusted, and what contradicts. A removal that is no vakonomic motion is held against `f`
-/// alone.
+/// refused or are not trusted, and what contradicts. A removal that is no vakonomic motion is held against
+/// `f` alone.
 #[derive(Default)]
 struct Tally {
     agreed: usize,
@@ -362,7 +362,7 @@ fn what_is_listed_as_constant_is_constant() {
         found.extend(motion.invariant_drift(&times).unwrap());
     }
     assert!(found.iter().all(|(_, _, drift)| *drift < 1e-9) && !found.is_empty(), "{found:?}");
-    // Chetaev's energy changes by this, and was listed: the constraint is homogeneous to the last digit at first
+    // Chetaev's energy changes by this, and was listed: to the last digit, `f` is homogeneous at first
     let mut motion = trusted(&scene, &choice(&scene, "chetaev"), Form::Named).unwrap();
     let energy = |t: f64, motion: &mut Motion| {
         let now = motion.at(t).unwrap();
