@@ -127,7 +127,7 @@ pub(crate) fn features(most: usize) -> impl Strategy<Value = Features> {
     let root = (part(), 1..=4_i64, 0..most).prop_map(|(part, coefficient, place)| Root { part, coefficient, place });
     let far = prop_oneof![24..=36_i64, -36..=-24_i64];
     let far = (prop::collection::vec(far, most), 16..=24_i64).prop_map(|(positions, time)| Far { positions, time });
-    let (switch, root) = (prop::option::weighted(0.2, switch), prop::option::weighted(0.15, root));
-    let all = (switch, root, prop::option::weighted(0.25, far));
+    let (switch, root) = (prop::option::weighted(0.12, switch), prop::option::weighted(0.12, root));
+    let all = (switch, root, prop::option::weighted(0.2, far));
     all.prop_map(|(switch, root, far)| Features { switch, root, far })
 }
