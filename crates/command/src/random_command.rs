@@ -51,6 +51,8 @@ fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &Ran
         }
         let rate = |seconds: f64| format!(" in {seconds:.1} s, {:.0} a second", records.len() as f64 / seconds);
         let _ = writeln!(text, "\n{} systems{}", records.len(), seconds.map_or(String::new(), rate));
+        let features: Vec<String> = summary.features.iter().map(|(name, count)| format!("{count} {name}")).collect();
+        let _ = writeln!(text, "of which have {}", deltaq::words::enumerate(&features));
         text += &work(records);
         for path in &paths {
             let _ = writeln!(text, "counterexample: {path}");

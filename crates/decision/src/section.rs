@@ -90,6 +90,20 @@ impl Question<'_> {
         section.proved = section.every || is_identity(system, &self.curve, family, Some(&formulas));
         Ok(Some(section))
     }
+
+    /// The section `c = 0`, where every other constant does as well, which is proved; for scenes whose random
+    /// starts have no image, as with roots.
+    pub fn every_constant(&self, system: &System) -> Option<Section> {
+        let (family, k) = (self.family(), self.family().shape.constants);
+        let suits = k == family.shape.costates && family.lift.is_none();
+        (suits && is_identity(system, &self.curve, family, None)).then(|| Section {
+            constants: family.constants().to_vec(),
+            expressions: vec!["0".into(); k],
+            values: vec![0.0; k],
+            proved: true,
+            every: true,
+        })
+    }
 }
 
 impl Ansatz<'_> {

@@ -152,12 +152,14 @@ impl<'a> Pairing<'a> {
         let refuted = matches!(proof.this_start, Finding::None(_));
         let decision = decide_flow(&self.family, &flow, &DecisionSettings { refuted, ..DecisionSettings::default() })?;
         // an identity would be one at almost every start
+        let all = decision.verdict == Verdict::Contained && decision.set.dimension() == decision.set.point.len();
         let section = match proof.almost_every_start {
             Finding::None(_) => None,
             _ if !self.constants.is_empty() => None,
+            Finding::NotApplicable(_) if all => question.every_constant(system),
             _ => question.section(system, &exact, start)?,
         };
-        let unseen = refuted && decision.verdict == decision::Verdict::Contained;
+        let unseen = refuted && decision.verdict == Verdict::Contained;
         let least = |until| question.least_by_series(system, start, until - start.t);
         let implied = unseen.then(|| least(decision.until.unwrap_or(end))).flatten();
         Ok(Membership { decision, proof, section, implied })

@@ -67,22 +67,40 @@ fn an_indefinite_mass_matrix_makes_no_distance_zero() {
     assert!(definite.pairs.iter().all(|p| !p.gap.indefinite));
 }
 
+/// (x, y, z, w) of [`INDEFINITE`] at t = 3 in Chetaev's and the vakonomic motion: derived by hand, integrated
+/// by mpmath with 60 digits. x − y stays 0, and z is the same in both.
+const AT_THREE: [(&str, [f64; 4]); 2] = [
+    ("chetaev", [-2.966_457_630_273_797, -2.966_457_630_273_797, 2.205_552_687_624_833_3, 2.387_231_328_944_562_8]),
+    ("vakonomic", [-1.744_911_144_074_385, -1.744_911_144_074_385, 2.205_552_687_624_833_3, 2.387_231_328_944_562_8]),
+];
+
 #[test]
 fn ensembles_estimate_errors_along_null_directions() {
     let scene = scene(&indefinite());
-    for choice in choices(&scene).iter().filter(|choice| ["chetaev", "vakonomic"].contains(&choice.formulation)) {
-        for tolerance in [1e-4, 1e-6, 1e-8] {
+    for (formulation, truth) in AT_THREE {
+        let choice = choices(&scene).into_iter().find(|choice| choice.formulation == formulation).expect("a choice");
+        for tolerance in [1e-4, 1e-6, 1e-8, Settings::default().tolerance] {
             let settings = Settings { tolerance, ..Settings::default() };
-            let truth = solve_choice(&scene, choice, &Settings::default()).and_then(|mut m| m.at(3.0)).expect("truth");
-            let ensemble = Ensemble::new(&scene, choice, &["x"], &settings).expect("an ensemble");
+            let mut ensemble = Ensemble::new(&scene, &choice, &["x"], &settings).expect("an ensemble");
+            let mut members = vec![1.0];
+            members.extend((1..8).map(|i| 1.0 + 1e-3 * f64::from(i))); // all lanes are used
+            let rows: Vec<[f64; 1]> = members.into_iter().map(|x| [x]).collect();
+            let members = rows.iter().map(|row| ensemble.member(row).expect("a member")).collect::<Vec<_>>();
             let options = EnsembleOptions { threads: 1, estimate: true };
-            let motions = ensemble.answers(ensemble.members(&[[1.0]], 1), &[3.0], &options);
+            let motions = ensemble.motions(&members, &[3.0], &options);
             let motion = motions[0].as_ref().expect("a member");
-            let error = (motion.outputs[0].coordinates[0] - truth.coordinates[0]).abs();
+            assert_eq!(motion.status().0, "completed");
             let estimate = motion.estimate.as_ref().expect("asked for");
-            // M = diag(1, −1, 1, 1): the length of what x alone is wrong by
+            let mut largest = 0.0_f64;
+            for (i, x) in truth.iter().enumerate() {
+                let error = (motion.outputs[0].coordinates[i] - x).abs();
+                let allowed = estimate.coordinates[i] + 1e-14 * (1.0 + x.abs());
+                assert!(error <= allowed, "{formulation}, {tolerance:e}, {i}: {error:e}, {estimate:?}");
+                largest = largest.max(error);
+            }
+            // M = diag(1, −1, 1, 1): the length of what x and y alone are wrong by
             let own = estimate.coordinates.iter().fold(0.0, |a: f64, d| a.max(*d));
-            assert!(estimate.absolute >= own && estimate.absolute > error, "{tolerance:e}: {error:e}, {estimate:?}");
+            assert!(estimate.absolute >= own && estimate.absolute >= largest - 1e-14, "{tolerance:e}: {estimate:?}");
         }
     }
 }

@@ -180,6 +180,41 @@ fn motions_at_a_glance_follow_sliders() {
     assert!(compared > 100, "{compared}");
 }
 
+/// Equations that are kept while a slider moves have the terms that are zero to the last digit where it was.
+#[test]
+fn sliders_keep_what_begins_elsewhere() {
+    let text = "title = \"Switched\"\n[parameters]\nX = 40\nk = 0\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n\
+                z = { start = 0 }\nw = { start = 0 }\n[system]\n\
+                lagrangian = \"(x'^2 + y'^2 + z'^2 + w'^2)/2 + 0.3*z*x - 0.2*w\"\n\
+                constraints = [\"z' - y'\", \"(2 + cos(x))*w' - z' + y' - y'*(1 + tanh(50*(x - X)))/2 - k*x'\"]\n\
+                [start.velocities]\n\"x'\" = 4\n\"y'\" = 1\n[run]\nduration = 3\n";
+    let (scene, _) = ask(json!({ "ask": "scene", "name": "switched", "text": text }));
+    let labels: Vec<&Value> = scene["motions"].as_array().unwrap().iter().map(|motion| &motion["label"]).collect();
+    let question = |[place, k, start]: [f64; 3], glance: bool| {
+        let set = json!({ "X": place, "k": k, "x": start });
+        json!({ "ask": "motions", "name": "switched", "text": text, "set": set, "motions": labels, "steps": 20,
+                "glance": glance })
+    };
+    let mut explorer = Explorer::default();
+    ask_again(&mut explorer, question([40.0, 0.0, 0.0], true));
+    let mut compared = 0;
+    // the switch on the way, from a start beyond it, and with a term whose factor was zero
+    for at in [[5.0, 0.0, 0.0], [5.0, 0.0, 9.0], [5.0, 0.5, 0.0], [40.0, 0.5, 0.0]] {
+        let ((near, coarse), (full, numbers)) =
+            (ask_again(&mut explorer, question(at, true)), ask(question(at, false)));
+        for (i, near) in near["motions"].as_array().unwrap().iter().enumerate() {
+            let full = &full["motions"][i];
+            assert_eq!((&near["status"], &near["refused"]), (&full["status"], &full["refused"]), "{at:?}, {near}");
+            if full["status"] == "completed" {
+                let [a, b] = [(near, &coarse), (full, &numbers)].map(|(m, n)| coordinates(m, n, 20, 4).to_vec());
+                assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-3), "{at:?}, {}: {a:?} {b:?}", near["label"]);
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 16, "{compared}");
+}
+
 /// All numbers of a scene that can be set, moved by so large a part of their sliders, and a tenth as long.
 fn moved(scene: &Value, part: f64) -> serde_json::Map<String, Value> {
     let controls = scene["controls"].as_array().unwrap().iter().filter(|control| control["kind"] != "kappa");

@@ -138,6 +138,29 @@ fn eigenvalues_over_a_parameter() {
     assert!(matches!(&error, LinearError::At { error, .. } if matches!(**error, LinearError::Scene(_))), "{error}");
 }
 
+/// ω² = 5/2 where w rests, (5 + 5/9)/(2 + 1/9) where w' = y'/3 has begun: the derivation at k = 4 has to
+/// keep what is zero to the last digit there.
+#[test]
+fn a_sweep_keeps_what_begins_at_another_value() {
+    let place = [("x", 0.0), ("y", 0.0), ("z", 0.0), ("w", 0.0)];
+    let lagrangian = "(x'^2 + y'^2 + z'^2 + w'^2)/2 - (x^2 + 2*y^2 + 3*z^2 + 5*w^2)/2";
+    let constraints = ["z' - y'", "(2 + cos(x))*w' - z' + y' - y'*(1 + tanh(50*(k - 9)))/2"];
+    let scene = scene(&place, lagrangian, &constraints, "\"x'\" = 0, \"y'\" = 0");
+    let mut swept = 0;
+    for choice in choices(&scene) {
+        for find in [false, true] {
+            let found = sweep(&scene, &choice, &[], ("k", &[4.0, 14.0, 30.0]), find).expect("all are steady");
+            for (point, square) in found.points.iter().zip([2.5, 50.0 / 19.0, 50.0 / 19.0]) {
+                let all: Vec<f64> = point.part.eigenvalues.iter().map(|e| e.value.im.powi(2)).collect();
+                let near = |square: f64| all.iter().filter(|x| (*x - square).abs() < 1e-7).count();
+                assert!(near(square) == 2 && near(1.0) == 2, "{}, k = {}: {all:?}", choice.label, point.value);
+            }
+            swept += 1;
+        }
+    }
+    assert!(swept >= 8, "{swept}");
+}
+
 #[test]
 fn what_moves_is_said_with_its_rate_and_the_limit() {
     let error = steady(&oscillator(0.5), "chetaev").expect_err("it swings");

@@ -19,8 +19,9 @@ use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable
 use scene::Scene;
 use symbolic::{Expr, Function, Graph, Symbol};
 
+use super::Kind;
+use super::feature::Part;
 use super::recipe::{MassTerm, Recipe, Shape, Term};
-use super::{Kind, Truth};
 
 /// Length of the run of a random scene.
 pub const DURATION: f64 = 1.5;
@@ -32,35 +33,6 @@ impl Recipe {
     /// The scene, with a start on its constraint and a removal of its own.
     pub fn scene(&self, name: &str) -> Scene {
         Builder::new(self).scene(name)
-    }
-
-    /// What Frobenius' test has to find.
-    pub fn truth(&self) -> Truth {
-        match self.kind {
-            Kind::Free => Truth::Unconstrained,
-            Kind::Nonlinear => Truth::NotLinear,
-            kind if kind.is_integrable() => Truth::Integrable,
-            Kind::PartlyIntegrable => Truth::PartlyIntegrable { integrals: self.integrals() },
-            _ => Truth::Nonintegrable,
-        }
-    }
-
-    /// Number of constraints that are integrable by construction.
-    pub(crate) fn integrals(&self) -> usize {
-        match self.kind {
-            kind if kind.is_integrable() => self.h(),
-            Kind::PartlyIntegrable => 1 + self.constraints % (self.h() - 1),
-            _ => 0,
-        }
-    }
-
-    /// Whether time may enter.
-    fn moves(&self) -> bool {
-        match self.kind {
-            Kind::TimeDependent => true,
-            Kind::Integrable | Kind::HiddenIntegrable => self.driving > 0,
-            _ => false,
-        }
     }
 }
 
@@ -144,6 +116,11 @@ impl<'a> Builder<'a> {
             let strength = g.ratio(self.recipe.driving, 8);
             terms.push(g.product(&[strength, self.q(self.independent[0]), g.call(Function::Cos, self.time())]));
         }
+        let last = g.powi(self.v(n - 1), 2);
+        terms.push(g.mul(self.switched(Part::Kinetic, 16), last));
+        terms.push(g.mul(self.rooted(Part::Kinetic, &self.occurring), last));
+        terms.push(g.mul(self.switched(Part::Potential, 32), self.to_the_switch()[1]));
+        terms.push(self.rooted(Part::Potential, &self.occurring));
         g.sum(&terms)
     }
 
@@ -154,7 +131,9 @@ impl<'a> Builder<'a> {
         if r < self.recipe.integrals() {
             return g.zero();
         }
-        let q1 = self.q(self.independent[0]);
+        let first = self.independent[0];
+        // powers of what is far are no well-conditioned functions
+        let q1 = g.sub(self.q(first), g.integer(self.recipe.features.shift(first)));
         let order = (r + 1 - self.recipe.integrals()) as i64;
         let function = if self.recipe.rows[0].power {
             g.powi(q1, order as i32)
@@ -170,7 +149,37 @@ impl<'a> Builder<'a> {
         };
         let along = self.independent.get(1).map_or(g.zero(), |&i| g.mul(g.ratio(self.recipe.along, 8), self.v(i)));
         let drift = if self.recipe.kind.has_drift() { g.ratio(self.recipe.drift, 8) } else { g.zero() };
-        g.product(&[g.ratio(row.curvature, 8), function, motion, g.add(along, drift)])
+        let switch = g.add(g.one(), self.switched(Part::Constraints, 8));
+        g.product(&[g.ratio(row.curvature, 8), function, motion, switch, g.add(along, drift)])
+    }
+
+    /// `strength/over · σ` for its part. It is in `q₁` or in `t`, and on after `at/8` of the run at the start
+    /// velocity.
+    fn switched(&self, part: Part, over: i64) -> Expr {
+        let g = &self.system.graph;
+        self.recipe.features.switched(g, part, over, self.to_the_switch())
+    }
+
+    /// What has passed of that in which the switch is, and what passes until it is on.
+    fn to_the_switch(&self) -> [Expr; 2] {
+        let g = &self.system.graph;
+        let (at, timed) = self.recipe.features.switch.as_ref().map_or((1, false), |switch| (switch.at, switch.timed));
+        match timed && self.recipe.moves() {
+            true => [g.sub(self.time(), g.integer(self.recipe.features.time())), g.ratio(3 * at, 16)],
+            false => [self.passed(self.independent[0]), g.ratio(3 * at * self.recipe.velocities[0], 128)],
+        }
+    }
+
+    /// The root for its part, in one of the `allowed` coordinates.
+    fn rooted(&self, part: Part, allowed: &[usize]) -> Expr {
+        let passed = |place: usize| self.passed(allowed[place % allowed.len()]);
+        self.recipe.features.rooted(&self.system.graph, part, passed)
+    }
+
+    /// `q_i − q_i(t₀)`
+    fn passed(&self, i: usize) -> Expr {
+        let g = &self.system.graph;
+        g.sub(self.q(i), g.ratio(self.recipe.first_position(i), 8))
     }
 
     /// Rates of the dependent coordinates, by the constraints, in the rates `of_independent` of the others.
@@ -214,6 +223,10 @@ impl<'a> Builder<'a> {
             let along = self.q(self.independent[0]);
             terms.push(g.product(&[g.ratio(row.time, 16), g.call(Function::Sin, g.add(self.time(), along))]));
         }
+        if r < self.recipe.integrals() {
+            terms.push(g.mul(self.switched(Part::Constraints, 32), self.to_the_switch()[1]));
+        }
+        terms.push(self.rooted(Part::Constraints, &allowed));
         g.sum(&terms)
     }
 
@@ -223,7 +236,9 @@ impl<'a> Builder<'a> {
         let row = &self.recipe.rows[r];
         let place = row.potential.first().map_or(0, |term| term.first);
         let varying = row.potential.first().map_or(0, |term| 2 * term.coefficient);
-        g.mul(g.ratio(row.curvature.abs(), 8), self.factor(varying, place, &self.occurring))
+        let more = [self.switched(Part::Constraints, 8), self.rooted(Part::Constraints, &self.occurring)];
+        let factor = g.sum(&[self.factor(varying, place, &self.occurring), more[0], more[1]]);
+        g.mul(g.ratio(row.curvature.abs(), 8), factor)
     }
 
     fn constraints(&self) -> Vec<Expr> {
@@ -330,18 +345,18 @@ impl<'a> Builder<'a> {
 
     fn start(&self) -> State {
         let eighths = |x: i64| x as f64 / 8.0;
-        let n = self.recipe.n();
-        let q: Vec<f64> = self.recipe.positions[..n].iter().map(|&x| eighths(x)).collect();
+        let (n, t) = (self.recipe.n(), self.recipe.features.time() as f64);
+        let q: Vec<f64> = (0..n).map(|i| eighths(self.recipe.first_position(i))).collect();
         let mut v = vec![0.0; n];
         for (&i, &x) in self.independent.iter().zip(&self.recipe.velocities) {
             v[i] = eighths(x);
         }
         let independent: Vec<Expr> = self.independent.iter().map(|&i| self.v(i)).collect();
-        let values = self.system.values_at(&State { t: 0.0, q: q.clone(), v: v.clone() });
+        let values = self.system.values_at(&State { t, q: q.clone(), v: v.clone() });
         for (&d, rate) in self.dependent.iter().zip(self.dependent_rates(&independent)) {
             v[d] = self.system.graph.evaluate(rate, &values).unwrap_or(f64::NAN);
         }
-        State { t: 0.0, q, v }
+        State { t, q, v }
     }
 
     /// Start velocities, roots unevaluated; empty where constraints are linear: solved in exact numbers.

@@ -8,7 +8,8 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-use super::{Kind, NullTest};
+use super::feature::{Features, features};
+use super::{Kind, NullTest, Truth};
 
 /// Most coordinates of a random system.
 pub const MOST: usize = 6;
@@ -108,6 +109,8 @@ pub struct Recipe {
     pub multipliers: Vec<i64>,
     /// Costates at the start, in eighths.
     pub costates: Vec<i64>,
+    /// What it has besides.
+    pub features: Features,
 }
 
 impl Recipe {
@@ -130,6 +133,40 @@ impl Recipe {
     /// Indices of the dependent coordinates, one a constraint.
     pub fn dependent(&self) -> Vec<usize> {
         self.ordered()[self.n() - self.h()..].to_vec()
+    }
+
+    /// What Frobenius' test has to find.
+    pub fn truth(&self) -> Truth {
+        match self.kind {
+            Kind::Free => Truth::Unconstrained,
+            Kind::Nonlinear => Truth::NotLinear,
+            kind if kind.is_integrable() => Truth::Integrable,
+            Kind::PartlyIntegrable => Truth::PartlyIntegrable { integrals: self.integrals() },
+            _ => Truth::Nonintegrable,
+        }
+    }
+
+    /// Number of constraints that are integrable by construction.
+    pub(crate) fn integrals(&self) -> usize {
+        match self.kind {
+            kind if kind.is_integrable() => self.h(),
+            Kind::PartlyIntegrable => 1 + self.constraints % (self.h() - 1),
+            _ => 0,
+        }
+    }
+
+    /// `q_i(t₀)` in eighths.
+    pub(crate) fn first_position(&self, i: usize) -> i64 {
+        self.positions[i] + 8 * self.features.shift(i)
+    }
+
+    /// Whether time may enter.
+    pub(crate) fn moves(&self) -> bool {
+        match self.kind {
+            Kind::TimeDependent => true,
+            Kind::Integrable | Kind::HiddenIntegrable => self.driving > 0,
+            _ => false,
+        }
     }
 
     fn ordered(&self) -> Vec<usize> {
@@ -190,7 +227,8 @@ pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
     );
     let sizes = (2..=MOST, 0..MOST, Just((0..MOST).collect::<Vec<_>>()).prop_shuffle());
     let removal = vec((-3..=3_i64, 0..MOST), MOST * (MOST + 1) / 2);
-    (sizes, inertia, constraint, removal, start).prop_map(move |(sizes, inertia, constraint, removal, start)| {
+    let all = (sizes, inertia, constraint, removal, start, features(MOST));
+    all.prop_map(move |(sizes, inertia, constraint, removal, start, features)| {
         let (coordinates, constraints, order) = sizes;
         let (masses, mass_terms, potential, gyroscopic, driving) = inertia;
         let (rows, mixing, along, drift, closeness, cyclic) = constraint;
@@ -216,6 +254,7 @@ pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
             velocities,
             multipliers,
             costates,
+            features,
         }
     })
 }

@@ -38,6 +38,9 @@ pub struct Record {
     pub coordinates: usize,
     /// Number of constraints.
     pub constraints: usize,
+    /// What it has besides: a switch, a root, a start far from the origin.
+    #[serde(default)]
+    pub features: Vec<String>,
     /// Why the run was shortened, if it was.
     pub shortened: Option<String>,
     /// How often each claim held: theorem, claim, count.
@@ -58,6 +61,7 @@ impl Record {
             kind: recipe.kind,
             coordinates: recipe.n(),
             constraints: recipe.h(),
+            features: recipe.features.names().into_iter().map(String::from).collect(),
             shortened: None,
             held: Vec::new(),
             open: Vec::new(),
@@ -170,6 +174,8 @@ pub struct Summary {
     pub kinds: BTreeMap<String, u64>,
     /// Systems by number of coordinates and constraints.
     pub sizes: BTreeMap<String, u64>,
+    /// Systems with each feature.
+    pub features: BTreeMap<String, u64>,
     /// Systems whose run was shortened because a motion stops.
     pub shortened: u64,
     /// Systems on which a theorem holds, fails or is undecided; 0 is what must hold within each formulation.
@@ -187,6 +193,9 @@ impl Summary {
         for record in records {
             *summary.kinds.entry(record.kind.to_string()).or_default() += 1;
             *summary.sizes.entry(format!("{}, {}", record.coordinates, record.constraints)).or_default() += 1;
+            for feature in &record.features {
+                *summary.features.entry(feature.clone()).or_default() += 1;
+            }
             summary.shortened += u64::from(record.shortened.is_some());
             for theorem in 0..=14 {
                 if let Some(word) = record.word(theorem) {

@@ -35,10 +35,6 @@ pub enum Vanishing {
     },
 }
 
-/// Where random points of the numerical test are drawn, symbol by symbol: its value at the start, and how far
-/// from there a motion may come.
-pub type Around = HashMap<Symbol, [f64; 2]>;
-
 impl Vanishing {
     /// Is it zero, exactly or numerically?
     ///
@@ -67,13 +63,7 @@ impl Graph {
     /// ```
     #[track_caller]
     pub fn vanishes(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
-        self.vanishes_around(e, constants, &Around::new())
-    }
-
-    /// [`Graph::vanishes`] with half of the points drawn `around` a start.
-    #[track_caller]
-    pub fn vanishes_around(&self, e: Expr, constants: &HashMap<Symbol, f64>, around: &Around) -> Vanishing {
-        match self.vanishes_in_truth(e, constants, around) {
+        match self.vanishes_in_truth(e, constants) {
             answer if !faults::goes_wrong("answer turned") => answer,
             answer if answer.is_zero() => Vanishing::No { value: 1.0, bound: 0.0 },
             _ => Vanishing::Exactly,
@@ -99,7 +89,7 @@ impl Graph {
             arena.is_zero_rational(e)
         };
         let zero = self.arena.borrow().is_zero_rational(e)
-            || match self.vanishes_in_truth(e, &HashMap::new(), &Around::new()) {
+            || match self.vanishes_in_truth(e, &HashMap::new()) {
                 Vanishing::Exactly => true,
                 Vanishing::No { .. } => false,
                 _ => split(),
@@ -116,15 +106,15 @@ impl Graph {
         Evaluator::new(tape).evaluate(&inputs)[0].may_be_zero()
     }
 
-    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>, around: &Around) -> Vanishing {
+    fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
         let e = self.substituted(&[open], &self.as_numbers(constants))[0];
         if e == Arena::ZERO {
             return Vanishing::Exactly;
         }
-        let mut sampled = self.sample(e, &HashMap::new(), around);
+        let mut sampled = self.sample(e, &HashMap::new());
         if matches!(sampled, Vanishing::No { .. }) && e != open && self.arena.borrow().contains_float(e) {
             // what cancelled floats leave does not tell their size; constants as inputs keep it
-            let again = self.sample(open, constants, around);
+            let again = self.sample(open, constants);
             if again.is_zero() {
                 sampled = again;
             }
@@ -137,7 +127,7 @@ impl Graph {
     }
 
     /// The numerical test, at these values of the constants.
-    fn sample(&self, e: Expr, constants: &HashMap<Symbol, f64>, around: &Around) -> Vanishing {
+    fn sample(&self, e: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {
         let symbols: Vec<Symbol> = self.symbols_of(e).into_iter().collect();
         let Ok(tape) = self.compile(&symbols, &[e], &HashMap::new()) else {
             return Vanishing::Undecided { tried: 0 };
@@ -148,7 +138,7 @@ impl Graph {
         let (mut points, mut tried) = (0, 0);
         while points < POINTS && tried < TRIES {
             for (x, symbol) in inputs.iter_mut().zip(&symbols) {
-                let drawn = || coordinate(&mut random, tried, around.get(symbol));
+                let drawn = || coordinate(&mut random, tried);
                 *x = Bounded::from_f64(constants.get(symbol).copied().unwrap_or_else(drawn));
             }
             tried += 1;
@@ -165,16 +155,15 @@ impl Graph {
     }
 }
 
-/// In turns: around the start, if there is one; in [0.2, 1.3], where roots and logarithms are finite; the
-/// same with random signs; of sizes from 0.01 to 100.
-fn coordinate(random: &mut SplitMix, tried: usize, around: Option<&[f64; 2]>) -> f64 {
+/// In turns: in [0.2, 1.3], where roots and logarithms are finite; the same with random signs; of sizes from
+/// 0.01 to 100.
+fn coordinate(random: &mut SplitMix, tried: usize) -> f64 {
     let bits = random.bits();
     let part = (bits >> 11) as f64 / (1_u64 << 53) as f64;
     let signed = |x: f64| if bits & 1 == 1 { -x } else { x };
-    match (tried % 4, around) {
-        (0 | 2, Some([start, reach])) => start + signed(part * reach),
-        (0, None) => 0.2 + 1.1 * part,
-        (1, _) => signed(0.2 + 1.1 * part),
+    match tried % 4 {
+        0 => 0.2 + 1.1 * part,
+        1 => signed(0.2 + 1.1 * part),
         _ => signed(100.0_f64.powf(2.0 * part - 1.0)),
     }
 }

@@ -86,7 +86,7 @@ pub use excerpt::excerpt;
 pub use fraction::Fraction;
 pub use function::Function;
 pub use graph::Graph;
-pub use identity::{Around, Vanishing};
+pub use identity::Vanishing;
 pub use lexer::names_in;
 pub use matrix::Matrix;
 pub use number::PI;

@@ -74,7 +74,7 @@ fn a_false_claim_is_shrunk_to_a_small_system() {
     // false: "nothing with a nonintegrable constraint moves by more than 0.1"
     let moves = |recipe: &Recipe| {
         let mut case = Case::new(recipe.clone(), "small").ok()?;
-        let (start, end) = (case.chetaev.at(0.0).ok()?, case.chetaev.at(case.end()).ok()?);
+        let (start, end) = (case.chetaev.at(case.scene.start.t).ok()?, case.chetaev.at(case.end()).ok()?);
         let ways = end.coordinates.iter().zip(&start.coordinates).map(|(a, b)| (a - b).abs());
         let way = ways.fold(0.0, f64::max);
         (way > 0.1).then(|| (recipe.clone(), case.scene))

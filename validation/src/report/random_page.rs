@@ -119,6 +119,7 @@ fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &
         others.row(&[&label(theorem), &what, &so, &values.len()]);
     }
     let kinds: Vec<String> = summary.kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+    let features: Vec<String> = summary.features.iter().map(|(name, count)| format!("{count} have {name}")).collect();
     let mut sizes = Table::new(["", ">$h = 0$", ">1", ">2", ">3", ">4", ">5"]);
     for n in 2..=6 {
         let count = |h: usize| summary.sizes.get(&format!("{n}, {h}")).map_or("–".into(), |count| count.to_string());
@@ -142,6 +143,7 @@ fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &
             ("open", &open_words(batch, records, counterexamples)),
             ("seed", &batch.seed),
             ("kinds", &enumerate(&kinds)),
+            ("features", &enumerate(&features)),
             ("duration", &DURATION),
             ("shortened", &summary.shortened),
             ("sizes", &sizes),
