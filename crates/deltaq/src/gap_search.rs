@@ -59,8 +59,19 @@ pub(crate) struct Closest {
     pub starts: usize,
 }
 
-/// Searches from `guesses` and many other values, as long as the work is under `limit`. `None` where no guess
-/// leads to a motion.
+/// Where a search begins, and where it may end.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim<'a> {
+    /// Constants to begin from.
+    pub guesses: &'a [Vec<f64>],
+    /// Work up to which new values are tried ([`Differences::work`]).
+    pub limit: usize,
+    /// Whether some constants may leave no gap at all: then a small one that Gauss-Newton steps reach is
+    /// taken for what round-off leaves of that.
+    pub may_vanish: bool,
+}
+
+/// Searches from the guesses and many other values. `None` where no guess leads to a motion.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be started or `target` cannot be read off.
@@ -68,18 +79,23 @@ pub(crate) fn closest(
     setting: Setting,
     equations: &Equations,
     target: &mut Motion,
-    guesses: &[Vec<f64>],
-    limit: usize,
+    aim: Aim,
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Option<Closest>, SolveError> {
     let end = target.end();
     let differences = Differences::new(setting, equations, target, INSTANTS, metric, settings)?;
-    let mut search = Search { differences, limit, random: 0x9E37_79B9_7F4A_7C15, starts: 0 };
-    let Some(mut found) = search.best_guess(guesses, settings) else { return Ok(None) };
-    if !search.differences.is_close(found.1) {
+    let mut search = Search { differences, limit: aim.limit, random: 0x9E37_79B9_7F4A_7C15, starts: 0 };
+    let Some(mut found) = search.best_guess(aim.guesses, settings) else { return Ok(None) };
+    let is_close = search.differences.is_close(found.1);
+    if is_close && !aim.may_vanish {
+        search.differences.refine(settings);
+        found.1 = search.gap(&found.0, FINE);
+    }
+    if !(is_close && aim.may_vanish) {
         found = search.globally(found);
-        if search.differences.is_close(found.1)
+        if aim.may_vanish
+            && search.differences.is_close(found.1)
             && let Some(exact) = search.differences.squares(&found.0, settings)
         {
             found.0 = exact;
