@@ -91,7 +91,8 @@ pub(crate) fn fits(
             let by_identity = known.is_some();
             let mut known = known.map(|costates| (costates, 0));
             if let (None, Some(&first)) = (&known, vakonomic.first()) {
-                known = by_multipliers(scene, runs, [first, run, target], may_vanish((first, target)), metric, settings)?;
+                known =
+                    by_multipliers(scene, runs, [first, run, target], may_vanish((first, target)), metric, settings)?;
             }
             let nearest = answer((run, target)).map(|found| found.decision.set.point.clone());
             let may_vanish = may_vanish((run, target));

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use deltaq::{
     Choice, Comparison, Ensemble, EnsembleOptions, Fit, Fits, FittedMotion, Metric, Motion, Settings, Verdict, choices,
-    compare_unfitted, costate_names,
+    compare_unfitted,
 };
 use mechanics::ConstantsRule;
 use scene::Scene;
@@ -32,9 +32,8 @@ impl Family<'_> {
         let answers = self.ensemble.answers(self.ensemble.members(rows, 1), times, &options);
         let mut largest = |outputs: Vec<equations::Outputs>| {
             let each = times.iter().zip(goal.iter().zip(&outputs));
-            let gap = each.map(|(t, (to, now))| {
-                self.metric.distance(*t, &to.coordinates, &to.velocities, &now.coordinates)
-            });
+            let gap =
+                each.map(|(t, (to, now))| self.metric.distance(*t, &to.coordinates, &to.velocities, &now.coordinates));
             let gap = gap.fold(0.0, f64::max);
             if outputs.len() < times.len() { f64::INFINITY } else { gap }
         };
@@ -42,17 +41,13 @@ impl Family<'_> {
     }
 }
 
-/// Names of the numbers that an ensemble varies in the place of free constants of a run, and its choice.
-fn varied(scene: &Scene, choice: &Choice, fitted: &FittedMotion) -> (Vec<String>, Choice) {
-    let constants: Vec<f64> = fitted.constants.iter().map(|(_, c)| *c).collect();
-    match &choice.removal {
-        None => ((1..=constants.len()).map(|i| format!("mu{i}")).collect(), choice.clone()),
-        Some(removal) => {
-            let names = costate_names(scene, removal);
-            assert_eq!(names.len(), constants.len(), "{}: {:?}", scene.name, fitted.constants);
-            (names, Choice { constants: ConstantsRule::Given(constants), ..choice.clone() })
-        }
-    }
+/// Names of the numbers that an ensemble varies in the place of the free constants of a run.
+fn varied(choice: &Choice, fitted: &FittedMotion) -> Vec<String> {
+    let name = |(i, (name, _)): (usize, &(String, f64))| match choice.removal {
+        None => format!("mu{}", i + 1),
+        Some(_) => name.clone(),
+    };
+    fitted.constants.iter().enumerate().map(name).collect()
 }
 
 /// Values on lines through `center`, and drawn ones around it.
@@ -85,7 +80,8 @@ fn swept(scene: &Scene, runs: &mut [deltaq::Run], fit: &Fit, fitted: &FittedMoti
     const LOOKED_AT: usize = 40;
     let settings = Settings::default();
     let center: Vec<f64> = fitted.constants.iter().map(|(_, c)| *c).collect();
-    let (names, choice) = varied(scene, &runs[fit.run].choice, fitted);
+    let choice = Choice { constants: ConstantsRule::Zero, ..runs[fit.run].choice.clone() };
+    let names = varied(&choice, fitted);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let target = runs[fit.target].outcome.as_mut().expect("it was met");
     let ensemble = Ensemble::new(scene, &choice, &names, &settings).expect("an ensemble").until(target.end());
