@@ -22,7 +22,11 @@ pub(crate) struct Exact {
 fn divisor(a: i128, b: i128) -> i128 {
     let (mut a, mut b) = (a.abs(), b.abs());
     while b != 0 {
-        (a, b) = (b, a % b);
+        // a long division takes ten times as long
+        (a, b) = match (u64::try_from(a), u64::try_from(b)) {
+            (Ok(short), Ok(by)) => (b, i128::from(short % by)),
+            _ => (b, a % b),
+        };
     }
     a
 }
@@ -37,6 +41,9 @@ impl Exact {
     pub(crate) fn ratio(numerator: i128, denominator: i128) -> Option<Self> {
         if denominator == 0 {
             return None;
+        }
+        if denominator == 1 {
+            return Some(Exact { numerator, denominator, turns: 0 });
         }
         let shared = divisor(numerator, denominator) * denominator.signum();
         Some(Exact { numerator: numerator / shared, denominator: denominator / shared, turns: 0 })
@@ -141,6 +148,9 @@ impl Exact {
         }
         let numerator = angle.numerator.checked_mul(factor.numerator)?;
         let product = Self::ratio(numerator, angle.denominator.checked_mul(factor.denominator)?)?;
+        if angle.is_rational() {
+            return Some(product);
+        }
         let turns = i128::from(angle.turns).checked_mul(factor.numerator)?;
         if turns % factor.denominator != 0 {
             return None;
@@ -162,7 +172,10 @@ impl Exact {
 pub(crate) fn inverse(a: i128, p: i128) -> i128 {
     let (mut r, mut s) = ((p, a.rem_euclid(p)), (0_i128, 1_i128));
     while r.1 != 0 {
-        let quotient = r.0 / r.1;
+        let quotient = match (u64::try_from(r.0), u64::try_from(r.1)) {
+            (Ok(short), Ok(by)) => i128::from(short / by),
+            _ => r.0 / r.1,
+        };
         r = (r.1, r.0 - quotient * r.1);
         s = (s.1, s.0 - quotient * s.1);
     }
