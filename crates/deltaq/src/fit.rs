@@ -14,7 +14,7 @@ use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, so
 const INSTANTS: usize = 40;
 
 /// Tolerance of the integrations while constants are searched, and the limits on the search.
-const SEARCH_TOLERANCE: f64 = 1e-7;
+pub(crate) const SEARCH_TOLERANCE: f64 = 1e-7;
 const SEARCH_STEPS: usize = 5_000;
 const SEARCH_ITERATIONS: usize = 30;
 /// The coarse search is done where an iteration brings less than this part.
@@ -116,6 +116,31 @@ impl Differences {
     /// From now on motions are integrated as finely as the one that is to be met.
     pub(crate) fn refine(&mut self, settings: &Settings) {
         self.tolerance = settings.tolerance * TIGHTER;
+    }
+
+    /// Steps that a motion may take.
+    pub(crate) fn max_steps(&self) -> usize {
+        self.coarse.max_steps
+    }
+
+    /// Where this part of the motion ends, and every `stride`-th instant of it.
+    pub(crate) fn times(&self, part: f64, stride: usize) -> (f64, Vec<f64>) {
+        let times = (1..=self.instants(part, stride)).map(|k| self.goal[k * stride - 1].0).collect();
+        (self.start + (self.end - self.start) * part, times)
+    }
+
+    /// Counts work that was done elsewhere.
+    pub(crate) fn did(&mut self, steps: usize, readings: usize) {
+        self.work += (steps + readings / READINGS) * self.prepared.compiled.cost()[1].operations();
+    }
+
+    /// The largest gap of these coordinates at every `stride`-th instant, as many as there are.
+    pub(crate) fn gap_of<'a>(&self, motion: impl Iterator<Item = &'a [f64]>, stride: usize) -> f64 {
+        let instants = self.goal.chunks_exact(stride).map(|instants| &instants[stride - 1]);
+        let gap = |(now, (_, q, factor)): (&[f64], &(f64, DVector<f64>, DMatrix<f64>))| {
+            (factor * (DVector::from_column_slice(now) - q)).norm()
+        };
+        motion.zip(instants).map(gap).fold(0.0, f64::max)
     }
 
     /// Number of coordinates.

@@ -1,15 +1,17 @@
 //! What the free constants of one run can do to meet another.
 
-use equations::FreeConstant;
+use equations::{Equations, FreeConstant};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
+use crate::fit::SEARCH_TOLERANCE;
 use crate::gap::{Gap, Verdict, compare_motions};
 use crate::gap_search::{Aim, Closest, WORK, closest};
 use crate::runs::{Decided, Pair, Run};
+use crate::screening::Screening;
 use crate::{
-    Answer, Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of,
-    setting, solve,
+    Answer, Choice, Ensemble, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at,
+    multipliers_of, setting, solve,
 };
 
 /// The vakonomic motion is searched for Chetaev's by this many times the work of other searches.
@@ -153,11 +155,25 @@ fn by_multipliers(
         return Ok(None);
     }
     let (equations, guesses) = (family.equations.clone(), [zero, family.constants.clone()]);
+    let screening = screening(scene, &runs[vakonomic].choice, &equations, settings);
+    let aim = Aim { guesses: &guesses, screening, limit: WORK / LESS, may_vanish };
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
-    let aim = Aim { guesses: &guesses, limit: WORK / LESS, may_vanish };
     let found = closest(setting(scene), &equations, goal, aim, metric, settings)?;
     let Some(Closest { motion, starts }) = found else { return Ok(None) };
     Ok(costates_of(scene, &removal, &motion.constants)?.map(|costates| (costates, starts)))
+}
+
+/// The motions of a choice over its free constants, in lanes; `None` where these are no numbers of a start.
+fn screening(scene: &Scene, choice: &Choice, equations: &Equations, settings: &Settings) -> Option<Screening> {
+    let name = |(i, name): (usize, String)| match choice.removal {
+        None => format!("mu{}", i + 1),
+        Some(_) => name,
+    };
+    let names: Vec<String> = constant_names(equations).into_iter().enumerate().map(name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let choice = Choice { constants: ConstantsRule::Zero, ..choice.clone() };
+    let settings = Settings { tolerance: SEARCH_TOLERANCE, ..settings.clone() };
+    Ensemble::new(scene, &choice, &names, &settings).ok().map(Screening::new)
 }
 
 /// Where the constants of a fit come from.
@@ -197,6 +213,7 @@ fn fit_run(
         return Ok(None);
     }
     let is_principal = [run, target].map(|i| runs[i].choice.formulation) == ["vakonomic", "chetaev"];
+    let choice = runs[run].choice.clone();
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
     let found = match start {
         Start::Known((values, starts)) => {
@@ -208,7 +225,8 @@ fn fit_run(
             let nearest = nearest.filter(|nearest| nearest.len() == constants.len());
             let guesses = [nearest.unwrap_or_else(|| vec![0.0; constants.len()]), constants];
             let limit = if is_principal { WORK } else { WORK / LESS };
-            let aim = Aim { guesses: &guesses, limit, may_vanish };
+            let screening = screening(scene, &choice, &equations, settings);
+            let aim = Aim { guesses: &guesses, screening, limit, may_vanish };
             closest(setting(scene), &equations, goal, aim, metric, settings)?
         }
     };
