@@ -137,10 +137,9 @@ impl Differences {
     /// The largest gap of these coordinates at every `stride`-th instant, as many as there are.
     pub(crate) fn gap_of<'a>(&self, motion: impl Iterator<Item = &'a [f64]>, stride: usize) -> f64 {
         let instants = self.goal.chunks_exact(stride).map(|instants| &instants[stride - 1]);
-        let gap = |(now, (_, q, factor)): (&[f64], &(f64, DVector<f64>, DMatrix<f64>))| {
-            (factor * (DVector::from_column_slice(now) - q)).norm()
-        };
-        motion.zip(instants).map(gap).fold(0.0, f64::max)
+        let each = motion.zip(instants);
+        let gaps = each.map(|(now, (_, q, factor))| (factor * (DVector::from_column_slice(now) - q)).norm());
+        gaps.fold(0.0, f64::max)
     }
 
     /// Number of coordinates.
