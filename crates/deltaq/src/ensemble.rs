@@ -146,6 +146,12 @@ impl Ensemble {
         Ensemble { end, ..self }
     }
 
+    /// Members take at most this many steps.
+    pub(crate) fn at_most(mut self, max_steps: usize) -> Self {
+        self.settings.max_steps = max_steps;
+        self
+    }
+
     /// Why no member can be integrated in company, if that is so.
     pub fn refusal(&self) -> Option<&str> {
         self.lanes.as_ref().err().map(String::as_str)

@@ -14,7 +14,7 @@ use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, so
 const INSTANTS: usize = 40;
 
 /// Tolerance of the integrations while constants are searched, and the limits on the search.
-const SEARCH_TOLERANCE: f64 = 1e-7;
+pub(crate) const SEARCH_TOLERANCE: f64 = 1e-7;
 const SEARCH_STEPS: usize = 5_000;
 const SEARCH_ITERATIONS: usize = 30;
 /// The coarse search is done where an iteration brings less than this part.
@@ -69,6 +69,7 @@ pub fn best_fit(
 pub(crate) struct Differences {
     prepared: Prepared,
     coarse: Settings,
+    tolerance: f64,
     /// Time, coordinates and a factor of the metric, at each instant.
     goal: Vec<(f64, DVector<f64>, DMatrix<f64>)>,
     origin: DVector<f64>,
@@ -99,7 +100,7 @@ impl Differences {
         let prepared = Prepared::new(setting, equations.clone(), settings)?;
         let method = Some(prepared.method.method);
         let coarse = Settings { max_steps: SEARCH_STEPS.min(settings.max_steps), method, ..settings.clone() };
-        Ok(Differences { prepared, coarse, goal, origin, start, end, work: 0 })
+        Ok(Differences { prepared, coarse, tolerance: SEARCH_TOLERANCE, goal, origin, start, end, work: 0 })
     }
 
     /// Motions may take no more than this many times the steps of those with these constants.
@@ -110,6 +111,35 @@ impl Differences {
             let steps = run.solution.work.steps + run.solution.work.rejected;
             self.coarse.max_steps = self.coarse.max_steps.min(times * steps.max(10));
         }
+    }
+
+    /// From now on motions are integrated as finely as the one that is to be met.
+    pub(crate) fn refine(&mut self, settings: &Settings) {
+        self.tolerance = settings.tolerance * TIGHTER;
+    }
+
+    /// Steps that a motion may take.
+    pub(crate) fn max_steps(&self) -> usize {
+        self.coarse.max_steps
+    }
+
+    /// Where this part of the motion ends, and every `stride`-th instant of it.
+    pub(crate) fn times(&self, part: f64, stride: usize) -> (f64, Vec<f64>) {
+        let times = (1..=self.instants(part, stride)).map(|k| self.goal[k * stride - 1].0).collect();
+        (self.start + (self.end - self.start) * part, times)
+    }
+
+    /// Counts work that was done elsewhere.
+    pub(crate) fn did(&mut self, steps: usize, readings: usize) {
+        self.work += (steps + readings / READINGS) * self.prepared.compiled.cost()[1].operations();
+    }
+
+    /// The largest gap of these coordinates at every `stride`-th instant, as many as there are.
+    pub(crate) fn gap_of<'a>(&self, motion: impl Iterator<Item = &'a [f64]>, stride: usize) -> f64 {
+        let instants = self.goal.chunks_exact(stride).map(|instants| &instants[stride - 1]);
+        let each = motion.zip(instants);
+        let gaps = each.map(|(now, (_, q, factor))| (factor * (DVector::from_column_slice(now) - q)).norm());
+        gaps.fold(0.0, f64::max)
     }
 
     /// Number of coordinates.
@@ -162,13 +192,13 @@ impl Differences {
         Ok(differences)
     }
 
-    /// All differences with these constants, coarsely; `None` without a motion.
+    /// All differences with these constants, coarsely until [`Differences::refine`]; `None` without a motion.
     pub(crate) fn at(&mut self, constants: &[f64], part: f64, stride: usize) -> Option<DVector<f64>> {
         let coarse = self.coarse.clone();
-        self.fill(constants, part, stride, SEARCH_TOLERANCE, &coarse).ok()
+        self.fill(constants, part, stride, self.tolerance, &coarse).ok()
     }
 
-    /// The largest gap at these instants, coarsely; infinite without a motion.
+    /// The largest gap at these instants as of [`Differences::at`]; infinite without a motion.
     pub(crate) fn largest(&mut self, constants: &[f64], part: f64, stride: usize) -> f64 {
         let n = self.dimension();
         let lengths = |all: DVector<f64>| {

@@ -1,15 +1,17 @@
 //! What the free constants of one run can do to meet another.
 
-use equations::FreeConstant;
+use equations::{Equations, FreeConstant};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
+use crate::fit::SEARCH_TOLERANCE;
 use crate::gap::{Gap, Verdict, compare_motions};
-use crate::gap_search::{Closest, WORK, closest};
+use crate::gap_search::{Aim, Closest, WORK, closest};
 use crate::runs::{Decided, Pair, Run};
+use crate::screening::Screening;
 use crate::{
-    Answer, Choice, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at, multipliers_of,
-    setting, solve,
+    Answer, Choice, Ensemble, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at,
+    multipliers_of, setting, solve,
 };
 
 /// The vakonomic motion is searched for Chetaev's by this many times the work of other searches.
@@ -76,6 +78,13 @@ pub(crate) fn fits(
         let open: Vec<_> = decided.iter().filter(|d| open(d)).map(|d| (d.family, d.curve)).collect();
         wanted.retain(|asked| open.contains(asked));
     }
+    let answer = |asked: (usize, usize)| {
+        let decided = decided.iter().find(|d| (d.family, d.curve) == asked)?;
+        decided.outcome.as_ref().ok()
+    };
+    let may_vanish = |asked| {
+        !answer(asked).is_some_and(|found| matches!(found.answer(), Answer::NoneProved { .. } | Answer::None { .. }))
+    };
     let mut fits = Vec::new();
     for (run, target) in wanted {
         let pair = |p: &&Pair| (p.first, p.second) == (target.min(run), target.max(run));
@@ -84,11 +93,12 @@ pub(crate) fn fits(
             let by_identity = known.is_some();
             let mut known = known.map(|costates| (costates, 0));
             if let (None, Some(&first)) = (&known, vakonomic.first()) {
-                known = by_multipliers(scene, runs, [first, run, target], metric, settings)?;
+                known =
+                    by_multipliers(scene, runs, [first, run, target], may_vanish((first, target)), metric, settings)?;
             }
-            let nearest = decided.iter().find(|d| (d.family, d.curve) == (run, target));
-            let nearest = nearest.and_then(|d| Some(d.outcome.as_ref().ok()?.decision.set.point.clone()));
-            let start = known.map_or(Start::Search(nearest), Start::Known);
+            let nearest = answer((run, target)).map(|found| found.decision.set.point.clone());
+            let may_vanish = may_vanish((run, target));
+            let start = known.map_or(Start::Search { nearest, may_vanish }, Start::Known);
             if let Some(mut fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
                 let before = pairs.iter().find(pair).map_or(0.0, |p| p.gap.largest);
                 if let Some(found) = &mut fitted
@@ -133,6 +143,7 @@ fn by_multipliers(
     scene: &Scene,
     runs: &mut [Run],
     [vakonomic, run, target]: [usize; 3],
+    may_vanish: bool,
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Option<(Vec<f64>, usize)>, SolveError> {
@@ -144,10 +155,25 @@ fn by_multipliers(
         return Ok(None);
     }
     let (equations, guesses) = (family.equations.clone(), [zero, family.constants.clone()]);
+    let screening = screening(scene, &runs[vakonomic].choice, &equations, settings);
+    let aim = Aim { guesses: &guesses, screening, limit: WORK / LESS, may_vanish };
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
-    let found = closest(setting(scene), &equations, goal, &guesses, WORK / LESS, metric, settings)?;
+    let found = closest(setting(scene), &equations, goal, aim, metric, settings)?;
     let Some(Closest { motion, starts }) = found else { return Ok(None) };
     Ok(costates_of(scene, &removal, &motion.constants)?.map(|costates| (costates, starts)))
+}
+
+/// The motions of a choice over its free constants, in lanes; `None` where these are no numbers of a start.
+fn screening(scene: &Scene, choice: &Choice, equations: &Equations, settings: &Settings) -> Option<Screening> {
+    let name = |(i, name): (usize, String)| match choice.removal {
+        None => format!("mu{}", i + 1),
+        Some(_) => name,
+    };
+    let names: Vec<String> = constant_names(equations).into_iter().enumerate().map(name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let choice = Choice { constants: ConstantsRule::Zero, ..choice.clone() };
+    let settings = Settings { tolerance: SEARCH_TOLERANCE, ..settings.clone() };
+    Ensemble::new(scene, &choice, &names, &settings).ok().map(Screening::new)
 }
 
 /// Where the constants of a fit come from.
@@ -156,7 +182,7 @@ enum Start {
     Known((Vec<f64>, usize)),
     /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
     /// where nothing was decided; or from those of the run, where these are closer.
-    Search(Option<Vec<f64>>),
+    Search { nearest: Option<Vec<f64>>, may_vanish: bool },
 }
 
 /// Outer `None`: there is nothing to fit. Inner `None`: no constants lead to a motion.
@@ -187,6 +213,7 @@ fn fit_run(
         return Ok(None);
     }
     let is_principal = [run, target].map(|i| runs[i].choice.formulation) == ["vakonomic", "chetaev"];
+    let choice = runs[run].choice.clone();
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
     let found = match start {
         Start::Known((values, starts)) => {
@@ -194,11 +221,13 @@ fn fit_run(
             let motion = solve(within, equations, &ConstantsRule::Given(values), settings)?;
             Some(Closest { motion, starts })
         }
-        Start::Search(nearest) => {
+        Start::Search { nearest, may_vanish } => {
             let nearest = nearest.filter(|nearest| nearest.len() == constants.len());
             let guesses = [nearest.unwrap_or_else(|| vec![0.0; constants.len()]), constants];
             let limit = if is_principal { WORK } else { WORK / LESS };
-            closest(setting(scene), &equations, goal, &guesses, limit, metric, settings)?
+            let screening = screening(scene, &choice, &equations, settings);
+            let aim = Aim { guesses: &guesses, screening, limit, may_vanish };
+            closest(setting(scene), &equations, goal, aim, metric, settings)?
         }
     };
     let Some(Closest { mut motion, starts }) = found else { return Ok(Some(None)) };

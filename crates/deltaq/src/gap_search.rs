@@ -14,6 +14,7 @@ use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::Differences;
+use crate::screening::Screening;
 use crate::{Metric, Motion, Setting, Settings, SolveError, solve};
 
 /// Instants at which gaps are looked at; in sweeps every fourth, elsewhere every second.
@@ -59,8 +60,20 @@ pub(crate) struct Closest {
     pub starts: usize,
 }
 
-/// Searches from `guesses` and many other values, as long as the work is under `limit`. `None` where no guess
-/// leads to a motion.
+/// Where a search begins, how it sweeps, and where it may end.
+pub(crate) struct Aim<'a> {
+    /// Constants to begin from.
+    pub guesses: &'a [Vec<f64>],
+    /// What sweeps go by; without, they go value by value.
+    pub screening: Option<Screening>,
+    /// Work up to which new values are tried ([`Differences::work`]).
+    pub limit: usize,
+    /// Whether some constants may leave no gap at all: then a small one that Gauss-Newton steps reach is
+    /// taken for what round-off leaves of that.
+    pub may_vanish: bool,
+}
+
+/// Searches from the guesses and many other values. `None` where no guess leads to a motion.
 ///
 /// # Errors
 /// [`SolveError`] where the motion cannot be started or `target` cannot be read off.
@@ -68,18 +81,26 @@ pub(crate) fn closest(
     setting: Setting,
     equations: &Equations,
     target: &mut Motion,
-    guesses: &[Vec<f64>],
-    limit: usize,
+    aim: Aim,
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Option<Closest>, SolveError> {
     let end = target.end();
     let differences = Differences::new(setting, equations, target, INSTANTS, metric, settings)?;
-    let mut search = Search { differences, limit, random: 0x9E37_79B9_7F4A_7C15, starts: 0 };
+    let Aim { guesses, screening, limit, may_vanish } = aim;
+    let mut search = Search { differences, screening, limit, random: 0x9E37_79B9_7F4A_7C15, starts: 0 };
     let Some(mut found) = search.best_guess(guesses, settings) else { return Ok(None) };
-    if !search.differences.is_close(found.1) {
+    let is_close = search.differences.is_close(found.1);
+    if is_close && !may_vanish {
+        // lanes are as coarse as the first looks
+        search.screening = None;
+        search.differences.refine(settings);
+        found.1 = search.gap(&found.0, FINE);
+    }
+    if !(is_close && may_vanish) {
         found = search.globally(found);
-        if search.differences.is_close(found.1)
+        if may_vanish
+            && search.differences.is_close(found.1)
             && let Some(exact) = search.differences.squares(&found.0, settings)
         {
             found.0 = exact;
@@ -95,6 +116,7 @@ type Value = (Vec<f64>, f64);
 
 struct Search {
     differences: Differences,
+    screening: Option<Screening>,
     /// Work up to which new values are tried.
     limit: usize,
     random: u64,
@@ -145,22 +167,29 @@ impl Search {
     fn descended(&mut self, best: Value, values: Vec<Vec<f64>>, first: bool) -> Value {
         let mut bound = best.1 * BEYOND;
         let mut all: Vec<Value> = Vec::new();
-        for value in values {
-            if self.differences.work > self.limit {
-                break;
-            }
-            self.starts += 1;
-            let gap = self.gap_under(&value, bound, COARSE);
-            if gap.is_finite() {
-                all.push((value, gap));
-                all.sort_by(|a, b| a.1.total_cmp(&b.1));
-                all.truncate(STARTS);
-                bound = if all.len() == STARTS { bound.min(all[STARTS - 1].1) } else { bound };
-            }
+        let mut left = &values[..];
+        while !left.is_empty() && self.differences.work <= self.limit {
+            let (found, looked_at) = self.under(left, bound);
+            left = &left[looked_at..];
+            self.starts += looked_at;
+            all.extend(found);
+            all.sort_by(|a, b| a.1.total_cmp(&b.1));
+            all.truncate(STARTS);
+            bound = if all.len() == STARTS { bound.min(all[STARTS - 1].1) } else { bound };
         }
         let from = std::iter::once(best.clone()).filter(|_| first).chain(all);
         let ends: Vec<Value> = from.map(|value| self.descent(value)).collect();
         ends.into_iter().fold(best, |best, end| if end.1 < best.1 { end } else { best })
+    }
+
+    /// Which of the first of these values leave a gap under `bound`, that gap, and how many were looked at.
+    fn under(&mut self, values: &[Vec<f64>], bound: f64) -> (Vec<Value>, usize) {
+        if let Some(screening) = &self.screening {
+            return screening.under(&mut self.differences, values, bound, COARSE);
+        }
+        let gap = self.gap_under(&values[0], bound, COARSE);
+        let found = if gap < bound { vec![(values[0].clone(), gap)] } else { Vec::new() };
+        (found, 1)
     }
 
     /// The largest gap of these constants at every `stride`-th instant; infinite without a motion.

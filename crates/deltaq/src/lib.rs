@@ -85,6 +85,7 @@ mod metric;
 mod motion;
 mod prepared;
 mod runs;
+mod screening;
 mod settings;
 mod single_run;
 mod sizes;

@@ -91,11 +91,12 @@ impl<C: Coefficient> Jet<C> {
         Jet { coefficients: [C::ZERO; ORDERS], known, terms: terms.min(known).max(1), exact, flaw }
     }
 
-    /// `y` with `y' = u' w` or so: coefficients from 1 on, each from earlier ones; `next(k, y)` is `k y_k`.
+    /// `y` with `y' = u' w` or so: coefficients from 1 on, each from earlier ones; `next(k, y, y')` is
+    /// `k y_k`, the rates shifted as [`Jet::slopes`] are.
     fn integrated(
         &self,
         first: Result<(C, Option<Exact>), Flaw>,
-        next: impl Fn(usize, &[C; ORDERS]) -> Option<C>,
+        next: impl Fn(usize, &[C; ORDERS], &[C; ORDERS]) -> C,
     ) -> Self {
         let (value, exact) = match first {
             Ok(first) => first,
@@ -106,22 +107,26 @@ impl<C: Coefficient> Jet<C> {
         if self.terms == 1 {
             return Jet { terms: 1, ..result };
         }
+        let mut slopes = [C::ZERO; ORDERS];
         for k in 1..result.known {
-            let over = Exact::over(k).and_then(C::of);
-            match (next(k, &result.coefficients), over) {
-                (Some(x), Ok(over)) => result.coefficients[k] = x * over,
-                _ => return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..result },
-            }
+            let Ok(over) = Exact::over(k).and_then(C::of) else {
+                return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..result };
+            };
+            slopes[k] = next(k, &result.coefficients, &slopes);
+            result.coefficients[k] = slopes[k] * over;
         }
         result
     }
 
     /// Coefficients of `u'`, shifted: entry k is `k u_k`.
     fn slopes(&self) -> [C; ORDERS] {
-        std::array::from_fn(|k| match Exact::integer(k).and_then(C::of) {
-            Ok(k_times) if k < self.terms => self.coefficients[k] * k_times,
-            _ => C::ZERO,
-        })
+        let mut slopes = [C::ZERO; ORDERS];
+        for (k, slope) in slopes.iter_mut().enumerate().take(self.terms).skip(1) {
+            if let Ok(times) = Exact::integer(k).and_then(C::of) {
+                *slope = self.coefficients[k] * times;
+            }
+        }
+        slopes
     }
 
     fn recip(self) -> Self {
@@ -148,21 +153,17 @@ impl<C: Coefficient> Jet<C> {
             return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..self };
         };
         let (alpha, slopes) = (exponent.coefficients[0], self.slopes());
-        self.integrated(first, |k, y| {
+        self.integrated(first, |k, y, rates| {
             // k u₀ y_k = α Σ_j j u_j y_{k−j} − Σ_{j<k} j y_j u_{k−j}
-            let mut sum = alpha * C::convolution(&slopes[1..=k], &y[..k]);
-            for (j, &before) in y.iter().enumerate().take(k).skip(1) {
-                let times = Exact::integer(j).and_then(C::of).ok()?;
-                sum = sum - times * before * self.coefficients[k - j];
-            }
-            Some(sum * over)
+            let sum = alpha * C::convolution(&slopes[1..=k], &y[..k]);
+            (sum - C::convolution(&rates[1..k], &self.coefficients[1..k])) * over
         })
     }
 
     /// A function with the derivative `slope` (a series in the same variable) and the known value `first`.
     fn with_slope(self, first: Result<(C, Option<Exact>), Flaw>, slope: Self) -> Self {
         let slopes = self.slopes();
-        let result = self.integrated(first, |k, _| Some(C::convolution(&slopes[1..=k], &slope.coefficients[..k])));
+        let result = self.integrated(first, |k, _, _| C::convolution(&slopes[1..=k], &slope.coefficients[..k]));
         Jet { flaw: result.flaw.or(slope.flaw), ..result }
     }
 
@@ -294,7 +295,7 @@ impl<C: Coefficient> Scalar for Jet<C> {
         let slopes = self.slopes();
         let first = self.coefficients[0].sine_and_cosine(self.exact);
         let begun = |f: fn((C, C)) -> C| {
-            let begun = self.integrated(first.map(|values| (f(values), None)), |_, _| Some(C::ZERO));
+            let begun = self.integrated(first.map(|values| (f(values), None)), |_, _, _| C::ZERO);
             Jet { terms: 1, ..begun }
         };
         let (mut sine, mut cosine) = (begun(|v| v.0), begun(|v| v.1));
@@ -375,7 +376,7 @@ impl<C: Coefficient> Scalar for Jet<C> {
         let slopes = self.slopes();
         let one = self.exact.filter(|x| x.is_zero()).and_then(|_| Exact::ratio(1, 1));
         let first = self.coefficients[0].exponential(self.exact).map(|x| (x, one));
-        self.integrated(first, |k, y| Some(C::convolution(&slopes[1..=k], &y[..k])))
+        self.integrated(first, |k, y, _| C::convolution(&slopes[1..=k], &y[..k]))
     }
 
     fn log(self) -> Self {

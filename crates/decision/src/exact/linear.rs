@@ -13,11 +13,13 @@ pub(crate) fn inverse<C: Coefficient>(matrix: &[C], size: usize, one: C) -> Opti
 /// Makes `right` (size×width) `matrix⁻¹ · right`, and says the determinant; `None` where that is zero.
 pub(crate) fn solve<C: Coefficient>(matrix: &mut [C], right: &mut [C], size: usize, width: usize, one: C) -> Option<C> {
     let mut determinant = one;
+    let mut over_pivots = Vec::with_capacity(size);
     for column in 0..size {
         let weight = |row: usize| matrix[row * size + column].weight();
         let pivot = (column..size).max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a)))?;
         let value = matrix[pivot * size + column];
         let over = value.inverse()?;
+        over_pivots.push(over);
         if pivot != column {
             determinant = -determinant;
             (0..size).for_each(|j| matrix.swap(pivot * size + j, column * size + j));
@@ -32,8 +34,7 @@ pub(crate) fn solve<C: Coefficient>(matrix: &mut [C], right: &mut [C], size: usi
             }
         }
     }
-    for column in (0..size).rev() {
-        let over = matrix[column * size + column].inverse()?;
+    for (column, over) in over_pivots.into_iter().enumerate().rev() {
         right[column * width..(column + 1) * width].iter_mut().for_each(|x| *x = *x * over);
         (0..column).for_each(|row| subtract_row(right, width, 0, row, column, matrix[row * size + column]));
     }

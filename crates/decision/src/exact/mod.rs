@@ -1,5 +1,6 @@
 //! Truncated power series over a finite field, or `f64`, and the expressions of the graph evaluated on them.
 
+mod field;
 mod jet;
 mod linear;
 mod modular;
@@ -8,9 +9,10 @@ mod small_fraction;
 
 use symbolic::{Bounded, Scalar};
 
+pub(crate) use field::{FIELDS, in_field};
 pub(crate) use jet::{Jet, ORDERS};
 pub(crate) use linear::{inverse, solve, subtract_product};
-pub(crate) use modular::{FIELDS, Modular, TRIED, in_field};
+pub(crate) use modular::{Modular, TRIED};
 pub(crate) use rational::{Exact, PARTS};
 
 /// Why a number has no image in the finite field.

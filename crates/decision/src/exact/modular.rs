@@ -10,81 +10,14 @@
 //! Coefficients may be multiples of a prime, or alike modulo it: what is not zero in one field is not zero,
 //! and what is zero is looked at in a second one. [`in_field`] says in which field a computation is.
 
-use std::cell::Cell;
 use std::ops::{Add, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
 use symbolic::Fraction;
 
 use super::Flaw;
+use super::field::{FIELDS, field, in_field};
 use super::rational::{Exact, PARTS, inverse};
-
-/// A prime `p = 1 + 2 · 720720 r`, under 2^61, in whose field all primes up to 47 have roots.
-#[derive(Debug)]
-pub(crate) struct Field {
-    number: usize,
-    prime: u64,
-    /// The prime order `r` of the images of `e^{i a}` and `e^a`.
-    order: u64,
-    /// Image of `e^i`; that of `e` is a power of it.
-    circle: u64,
-    /// Image of `e^{iπ/720720}`.
-    root: u64,
-    /// A number without a square root.
-    no_square: u64,
-    /// `−1/p` modulo 2^64, and `2^128` modulo `p`.
-    inverse: u64,
-    square: u64,
-}
-
-impl Field {
-    const fn new(number: usize, [prime, order, circle, root, no_square]: [u64; 5]) -> Field {
-        let mut inverse = 1_u64;
-        let mut step = 0;
-        while step < 6 {
-            inverse = inverse.wrapping_mul(2_u64.wrapping_sub(prime.wrapping_mul(inverse)));
-            step += 1;
-        }
-        let (mut square, mut bit) = (1_u64, 0);
-        while bit < 128 {
-            square = square * 2 % prime;
-            bit += 1;
-        }
-        Field { number, prime, order, circle, root, no_square, inverse: inverse.wrapping_neg(), square }
-    }
-}
-
-/// The fields, in the order in which they are tried.
-pub(crate) static FIELDS: [Field; 4] = [
-    Field::new(0, [PRIME_0, 1_085_488_079_471, 975_884_136_587_877_671, 526_195_852_125_278_733, 59]),
-    Field::new(1, [PRIME_1, 1_388_298_279_469, 461_914_068_013_983_121, 202_331_662_873_999_217, 53]),
-    Field::new(2, [PRIME_2, 928_303_084_897, 1_221_517_435_739_604_024, 203_386_488_316_749_660, 59]),
-    Field::new(3, [PRIME_3, 1_110_438_832_333, 1_414_060_028_229_214_018, 578_905_345_920_477_889, 53]),
-];
-const PRIME_0: u64 = 1_564_665_937_272_678_241;
-const PRIME_1: u64 = 2_001_148_671_957_795_361;
-const PRIME_2: u64 = 1_338_093_198_693_931_681;
-const PRIME_3: u64 = 1_600_630_950_478_079_521;
-
-thread_local! {
-    static FIELD: Cell<&'static Field> = const { Cell::new(&FIELDS[0]) };
-}
-
-fn field() -> &'static Field {
-    FIELD.get()
-}
-
-/// `compute`, all elements being of this field; none of them may leave it.
-pub(crate) fn in_field<T>(field: &'static Field, compute: impl FnOnce() -> T) -> T {
-    struct Back(&'static Field);
-    impl Drop for Back {
-        fn drop(&mut self) {
-            FIELD.set(self.0);
-        }
-    }
-    let _back = Back(FIELD.replace(field));
-    compute()
-}
 
 /// The image of `e` is this power of that of `e^i`.
 const NEPER: u64 = 271_828_182_845;
@@ -107,12 +40,66 @@ fn reduce(x: u128) -> u64 {
     if t >= field.prime { t - field.prime } else { t }
 }
 
-/// Inverses of small numbers.
-static OVER: LazyLock<[[Modular; 64]; FIELDS.len()]> = LazyLock::new(|| {
-    std::array::from_fn(|i| {
-        in_field(&FIELDS[i], || std::array::from_fn(|d| Modular::new(d as u64).inverse().unwrap_or(Modular::ZERO)))
+/// Small numbers whose images and inverses are kept.
+const KEPT: usize = 64;
+
+/// Images that are asked for again and again, of one field.
+struct Kept {
+    whole: [Modular; KEPT],
+    over: [Modular; KEPT],
+    half_over_i: Modular,
+    circle: Powers,
+    neper: Powers,
+    root: Powers,
+}
+
+static KEPT_IMAGES: LazyLock<[Kept; FIELDS.len()]> = LazyLock::new(|| {
+    FIELDS.each_ref().map(|field| {
+        in_field(field, || {
+            let whole: [Modular; KEPT] = std::array::from_fn(|x| Modular::new(x as u64));
+            let over = whole.map(|x| x.inverse().unwrap_or(Modular::ZERO));
+            let (circle, root) = (Modular::new(field.circle), Modular::new(field.root));
+            // 1/i = −i
+            let half_over_i = -(over[2] * root.power(PARTS as u64 / 2));
+            let powers = Powers::new;
+            Kept {
+                whole,
+                over,
+                half_over_i,
+                circle: powers(circle),
+                neper: powers(circle.power(NEPER)),
+                root: powers(root),
+            }
+        })
     })
 });
+
+fn kept() -> &'static Kept {
+    &KEPT_IMAGES[field().number]
+}
+
+/// `b^{j 256^i}`, by which a power of `b` takes one product per byte of its exponent.
+struct Powers(Vec<[Modular; 256]>);
+
+impl Powers {
+    /// For exponents under `2^48`.
+    fn new(base: Modular) -> Self {
+        let mut base = base;
+        let table = |_| {
+            let mut table = [Modular::one(); 256];
+            (1..256).for_each(|j| table[j] = table[j - 1] * base);
+            base = table[255] * base;
+            table
+        };
+        Powers((0..6).map(table).collect())
+    }
+
+    fn power(&self, exponent: u64) -> Modular {
+        let bytes = exponent.to_le_bytes();
+        let factors = self.0.iter().zip(bytes).filter(|(_, byte)| *byte != 0);
+        factors.fold(Modular::one(), |product, (table, byte)| product * table[usize::from(byte)])
+    }
+}
 
 impl Modular {
     pub(crate) const ZERO: Modular = Modular(0);
@@ -127,21 +114,16 @@ impl Modular {
     }
 
     pub(crate) fn one() -> Self {
-        Self::new(1)
+        Modular(field().one)
     }
 
     pub(crate) fn prime() -> u64 {
         field().prime
     }
 
-    /// `√−1`.
-    pub(crate) fn imaginary() -> Self {
-        Self::root_of_unity(PARTS / 2)
-    }
-
     /// The image of `e^{iπ turns/720720}`.
     pub(crate) fn root_of_unity(turns: i64) -> Self {
-        Self::new(field().root).power(turns.rem_euclid(2 * PARTS) as u64)
+        kept().root.power(turns.rem_euclid(2 * PARTS) as u64)
     }
 
     /// `r` and the images of `e^i` and `e`.
@@ -155,13 +137,17 @@ impl Modular {
     }
 
     fn integer(x: i128) -> Self {
-        let rest = x.rem_euclid(i128::from(field().prime));
-        Self::new(rest as u64)
+        match i64::try_from(x) {
+            Ok(x) if (0..KEPT as i64).contains(&x) => kept().whole[x as usize],
+            Ok(x) if x < 0 => -Self::new(x.unsigned_abs()),
+            Ok(x) => Self::new(x as u64),
+            Err(_) => Self::new(x.rem_euclid(i128::from(field().prime)) as u64),
+        }
     }
 
     /// The image of a fraction; `None` where its denominator is a multiple of `p`.
     pub(crate) fn fraction(x: Exact) -> Option<Self> {
-        let over = |d: i128| match usize::try_from(d).ok().and_then(|d| OVER[field().number].get(d)) {
+        let over = |d: i128| match usize::try_from(d).ok().and_then(|d| kept().over.get(d)) {
             Some(&over) => Some(over),
             None => Self::integer(d).inverse(),
         };
@@ -204,35 +190,35 @@ impl Modular {
         total
     }
 
-    /// The image of `base^x`, for a base of order `r`.
-    fn rational_power(base: Self, x: Exact) -> Result<Self, Flaw> {
+    /// The exponent of the image of `b^x`, for `b` of order `r`.
+    fn exponent(x: Exact) -> Result<u64, Flaw> {
         let order = i128::from(field().order);
         let (n, d, twos, fives) = x.fraction.parts();
         let (n, d) = (n.rem_euclid(order), d.rem_euclid(order));
-        if d == 0 {
-            return Err(Flaw::Angle);
-        }
+        let n = match d {
+            0 => return Err(Flaw::Angle),
+            1 => n,
+            // both are under 2^41
+            _ => n * inverse(d, order) % order,
+        };
         let power = |base: i128, exponent: i32| {
             let base = if exponent < 0 { inverse(base, order) } else { base };
             (0..exponent.abs()).fold(1, |power, _| power * base % order)
         };
-        let scaled = n * inverse(d, order) % order * power(2, twos) % order * power(5, fives) % order;
-        Ok(base.power(scaled as u64))
+        Ok((n * power(2, twos) % order * power(5, fives) % order) as u64)
     }
 
     /// `e^x`.
     pub(crate) fn exponential(x: Exact) -> Result<Self, Flaw> {
-        if x.is_rational() { Self::rational_power(Self::new(field().circle).power(NEPER), x) } else { Err(Flaw::Pi) }
+        if x.is_rational() { Ok(kept().neper.power(Self::exponent(x)?)) } else { Err(Flaw::Pi) }
     }
 
     /// `(sin x, cos x)`.
     pub(crate) fn sine_and_cosine(x: Exact) -> Result<(Self, Self), Flaw> {
-        let i = Self::imaginary();
-        let forward = Self::rational_power(Self::new(field().circle), x)? * Self::root_of_unity(x.turns);
-        let flaw = Err(Flaw::Zero);
-        let (Some(backward), Some(half)) = (forward.inverse(), Self::new(2).inverse()) else { return flaw };
-        let Some(over_i) = i.inverse() else { return flaw };
-        Ok(((forward - backward) * half * over_i, (forward + backward) * half))
+        let (kept, exponent) = (kept(), Self::exponent(x)?);
+        let forward = kept.circle.power(exponent) * Self::root_of_unity(x.turns);
+        let backward = kept.circle.power(field().order - exponent) * Self::root_of_unity(-x.turns);
+        Ok(((forward - backward) * kept.half_over_i, (forward + backward) * kept.over[2]))
     }
 
     /// A square root, the same in every call; `None` for what is no square.
@@ -365,7 +351,14 @@ mod tests {
     }
 
     fn laws() {
-        assert_eq!(Modular::imaginary().power(2), -Modular::one());
+        assert_eq!(Modular::root_of_unity(PARTS / 2).power(2), -Modular::one());
+        for exponent in [0, 1, 255, 256, 271_828, field().order - 1] {
+            let base = Modular::new(field().circle);
+            assert_eq!(kept().circle.power(exponent), base.power(exponent));
+            assert_eq!(kept().neper.power(exponent), base.power(NEPER).power(exponent));
+        }
+        assert_eq!(Modular::integer(-5) + Modular::integer(5), Modular::ZERO);
+        assert_eq!(Modular::integer(1 << 90), Modular::new(1 << 45) * Modular::new(1 << 45));
         assert_eq!(Modular::root_of_unity(PARTS), -Modular::one());
         let of_turns = |turns| Modular::sine_and_cosine(Exact { turns, ..Exact::ZERO }).unwrap();
         let (sine, cosine) = Modular::sine_and_cosine(ratio(3, 10)).unwrap();

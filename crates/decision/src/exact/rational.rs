@@ -154,7 +154,10 @@ fn whole(x: Fraction, times: i64) -> Option<i64> {
 pub(crate) fn inverse(a: i128, p: i128) -> i128 {
     let (mut r, mut s) = ((p, a.rem_euclid(p)), (0_i128, 1_i128));
     while r.1 != 0 {
-        let quotient = r.0 / r.1;
+        let quotient = match (u64::try_from(r.0), u64::try_from(r.1)) {
+            (Ok(short), Ok(by)) => i128::from(short / by),
+            _ => r.0 / r.1,
+        };
         r = (r.1, r.0 - quotient * r.1);
         s = (s.1, s.0 - quotient * s.1);
     }
