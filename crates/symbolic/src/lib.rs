@@ -66,6 +66,7 @@ mod random;
 mod range;
 mod rational_identity;
 mod rotation;
+mod saturate;
 mod scalar;
 mod series;
 mod simplify;
