@@ -344,8 +344,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         } else if !last && (creeps || step <= shortest_step(t) || step.is_nan()) {
             self.leave(lane, Left::StepTooSmall, done);
         } else {
-            self.taken[lane] = if last { remaining } else { step * remaining.signum() };
-            self.taken_to[lane] = if last { rider.end } else { t + self.taken[lane] };
+            self.taken_to[lane] = if last { rider.end } else { t + step * remaining.signum() };
+            self.taken[lane] = self.taken_to[lane] - t;
             self.next_unit[lane] = self.taken[lane].abs();
         }
     }

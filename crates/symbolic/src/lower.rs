@@ -101,6 +101,14 @@ impl Lowering<'_> {
 
     /// Σ c·t, terms with the same |c| added up before c is multiplied.
     fn sum(&mut self, constant: Number, terms: &[(Expr, Number)]) -> Id {
+        if let [(t, c)] = terms
+            && let (Some(place), Parts { constant: None, varying: Some(x) }) = (place(constant, *c), self.values[t])
+        {
+            let place = self.program.constant(place);
+            let distance = self.program.push(Value::Sub(x, place));
+            let factor = self.program.constant(*c);
+            return self.program.push(Value::Mul(factor, distance));
+        }
         let mut groups: Vec<(Option<Id>, Vec<Signed>)> = Vec::new();
         let mut rest: Vec<Signed> = Vec::new();
         for (t, c) in terms {
@@ -215,5 +223,16 @@ impl Lowering<'_> {
                 self.program.push(Value::Pow(v, exponent))
             }
         }
+    }
+}
+
+/// The place `p` of `k + c x = c (x − p)`, where it is a decimal of a few digits and `c` no sign: what is far
+/// from the origin and narrow, as `(t − 1000007)/0.01`, loses nothing where `x` is near.
+fn place(k: Number, c: Number) -> Option<Number> {
+    const DIGITS: i64 = 1_000_000_000_000;
+    let place = k.mul(c.recip()).neg();
+    match place {
+        Number::Exact(r) if !r.is_zero() && !c.abs().is_one() && DIGITS % r.denominator() == 0 => Some(place),
+        _ => None,
     }
 }

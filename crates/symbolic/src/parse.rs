@@ -262,7 +262,7 @@ impl<'a> Parser<'a> {
         if negative && self.graph.is_zero(base) {
             return Err(Fault { kind: ParseErrorKind::DivisionByZero, start, end: self.last });
         }
-        self.finite(Value::Scalar(self.graph.pow(base, exponent)), start)
+        self.finite(Value::Scalar(self.graph.power_as_written(base, exponent)), start)
     }
 
     pub(crate) fn nested<T>(

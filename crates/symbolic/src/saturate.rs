@@ -13,6 +13,9 @@ use crate::arena::{Arena, Node};
 use crate::number::{Number, Rational};
 use crate::{Expr, Function};
 
+/// Largest whole number that a unit is a part by.
+const SMALL: i64 = 64;
+
 /// Which functions of the unit are scaled.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Scale {
@@ -21,6 +24,9 @@ pub(crate) enum Scale {
     /// `cosh g`, `sinh g`, and `exp(±n g) = (2 σ(±2g) cosh g)ⁿ`, by `1/cosh g`.
     Hyperbolic,
 }
+
+/// An expression over a whole number.
+pub(crate) type Unit = (Expr, i64);
 
 /// Powers of a unit's functions in a term: `exp(n g)`, `cosh g`, `sinh g`.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -48,8 +54,8 @@ pub(crate) struct ScaledFactor {
 /// The factors of a product that overflow together.
 pub(crate) struct Group {
     pub(crate) scale: Scale,
-    /// `g`.
-    pub(crate) unit: Expr,
+    /// A multiple of `g`, and which one.
+    pub(crate) unit: Unit,
     pub(crate) factors: Vec<ScaledFactor>,
     /// Powers in front: of σ(g) and σ(−g), or of `1/cosh g` twice.
     pub(crate) powers: [Rational; 2],
@@ -86,7 +92,7 @@ impl Group {
         self.powers.iter().all(|r| !r.is_negative())
     }
 
-    /// The largest multiple of the unit that stands in an exponential.
+    /// The largest multiple of `g` that stands in an exponential.
     pub(crate) fn multiple(&self) -> i64 {
         let degrees = self.factors.iter().flat_map(|factor| &factor.terms).map(|term| term.degrees);
         degrees.map(|d| d.exp.abs().max((d.cosh + d.sinh).min(1))).max().unwrap_or(1)
@@ -109,8 +115,13 @@ impl Arena {
     fn saturating(&self, factors: &[(Expr, Rational)], taken: &[bool]) -> Option<Group> {
         let divisors = factors.iter().zip(taken).filter(|((_, r), taken)| r.is_negative() && !**taken);
         for ((base, _), _) in divisors {
-            let Some((scale, unit)) = self.unit(*base) else { continue };
-            let found = self.group(scale, unit, factors, taken);
+            let Some((scale, (unit, part))) = self.unit(*base) else { continue };
+            let mut found = self.group(scale, (unit, part), factors, taken);
+            // with √(1 + exp g) by σ(±g/2), no root of what may underflow is taken
+            let roots = found.as_ref().map_or(1, |group| group.powers[0].denominator().max(group.powers[1].denominator()));
+            if scale == Scale::Logistic && (2..=SMALL / part).contains(&roots) {
+                found = self.group(scale, (unit, part * roots), factors, taken);
+            }
             if found.is_some() {
                 return found;
             }
@@ -119,16 +130,17 @@ impl Arena {
     }
 
     /// What a divisor asks to be scaled by.
-    fn unit(&self, base: Expr) -> Option<(Scale, Expr)> {
-        let mut least: Option<Expr> = None;
+    fn unit(&self, base: Expr) -> Option<(Scale, Unit)> {
+        let mut least: Option<Unit> = None;
         for f in self.top_calls(base) {
             match *self.node(f) {
-                Node::Call(Function::Cosh | Function::Sinh, g) => return Some((Scale::Hyperbolic, g)),
+                Node::Call(Function::Cosh | Function::Sinh, g) => return Some((Scale::Hyperbolic, (g, 1))),
                 Node::Call(Function::Exp, g) if f != base => {
-                    let smaller = |h: Expr| self.ratio(g, h).is_some_and(|r| r.to_f64().abs() < 1.0);
-                    if least.is_none_or(smaller) {
-                        least = Some(g);
-                    }
+                    // of arguments that are 2 g and 3 g, that of which both are multiples
+                    least = least.map_or(Some((g, 1)), |(h, d)| match self.ratio(g, h) {
+                        Some(r) if (1..=SMALL).contains(&(d * r.denominator())) => Some((h, d * r.denominator())),
+                        _ => Some((h, d)),
+                    });
                 }
                 _ => {}
             }
@@ -149,7 +161,7 @@ impl Arena {
         terms.into_iter().flat_map(factors).filter(|f| matches!(self.node(*f), Node::Call(..))).collect()
     }
 
-    fn group(&self, scale: Scale, unit: Expr, factors: &[(Expr, Rational)], taken: &[bool]) -> Option<Group> {
+    fn group(&self, scale: Scale, unit: Unit, factors: &[(Expr, Rational)], taken: &[bool]) -> Option<Group> {
         let mut involved = Vec::new();
         let mut powers = [Rational::integer(0); 2];
         for (place, (base, exponent)) in factors.iter().enumerate().filter(|(place, _)| !taken[*place]) {
@@ -178,11 +190,11 @@ impl Arena {
         }
         let both = powers[0].add(powers[1])?;
         let finite = scale == Scale::Hyperbolic || !both.is_negative();
-        finite.then_some(Group { scale, unit, factors: involved, powers })
+        (finite && !involved.is_empty()).then_some(Group { scale, unit, factors: involved, powers })
     }
 
     /// The powers of the unit's functions in `number · e`; none where these stand inside other factors, too.
-    fn scaled_term(&self, scale: Scale, unit: Expr, e: Expr, number: Number) -> ScaledTerm {
+    fn scaled_term(&self, scale: Scale, unit: Unit, e: Expr, number: Number) -> ScaledTerm {
         let whole = || ScaledTerm { number, rest: vec![(e, Rational::ONE)], degrees: Degrees::default() };
         let factors = match self.node(e) {
             Node::Product(factors) => factors.to_vec(),
@@ -212,16 +224,16 @@ impl Arena {
     }
 
     /// `exp(n g)`, `cosh g` or `sinh g`.
-    fn degrees(&self, scale: Scale, unit: Expr, e: Expr) -> Option<Degrees> {
+    fn degrees(&self, scale: Scale, unit: Unit, e: Expr) -> Option<Degrees> {
         match *self.node(e) {
             Node::Call(Function::Exp, u) => {
-                let exp = self.ratio(u, unit)?.as_integer()?;
+                let exp = self.ratio(u, unit.0)?.mul(Rational::integer(unit.1))?.as_integer()?;
                 Some(Degrees { exp, ..Degrees::default() })
             }
-            Node::Call(Function::Cosh, u) if scale == Scale::Hyperbolic && u == unit => {
+            Node::Call(Function::Cosh, u) if scale == Scale::Hyperbolic && u == unit.0 => {
                 Some(Degrees { cosh: 1, ..Degrees::default() })
             }
-            Node::Call(Function::Sinh, u) if scale == Scale::Hyperbolic && u == unit => {
+            Node::Call(Function::Sinh, u) if scale == Scale::Hyperbolic && u == unit.0 => {
                 Some(Degrees { sinh: 1, ..Degrees::default() })
             }
             _ => None,
@@ -229,7 +241,7 @@ impl Arena {
     }
 
     /// `a/b`, where that is a fraction that is seen from the two.
-    fn ratio(&self, a: Expr, b: Expr) -> Option<Rational> {
+    pub(crate) fn ratio(&self, a: Expr, b: Expr) -> Option<Rational> {
         if a == b {
             return Some(Rational::ONE);
         }

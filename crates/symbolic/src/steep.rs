@@ -136,9 +136,11 @@ impl Graph {
         let mut open = vec![true; factors.len()];
         let groups = self.arena.borrow().saturating_groups(factors);
         for group in groups.iter().filter(|group| group.is_bounded()) {
-            found.insert((group.unit, Kind::Tanh));
-            found.insert((self.mul(self.integer(group.multiple()), group.unit), Kind::Tanh));
-            pending.push(group.unit);
+            let (unit, part) = group.unit;
+            for n in [1, group.multiple()] {
+                found.insert((self.mul(self.ratio(n, part), unit), Kind::Tanh));
+            }
+            pending.push(unit);
             for factor in &group.factors {
                 open[factor.place] = false;
                 for (base, exponent) in factor.terms.iter().flat_map(|term| &term.rest) {

@@ -3,7 +3,7 @@
 use super::{Lowering, Signed};
 use crate::number::{Number, Rational};
 use crate::program::{Id, Value};
-use crate::saturate::{Group, Scale, ScaledFactor, ScaledTerm};
+use crate::saturate::{Group, Scale, ScaledFactor, ScaledTerm, Unit};
 use crate::{Expr, Function};
 
 impl Lowering<'_> {
@@ -71,7 +71,7 @@ impl Lowering<'_> {
             Scale::Hyperbolic => {
                 let mut powers = vec![(self.sech(group.unit), high - degrees.growth())];
                 if degrees.sinh > 0 {
-                    let unit = self.whole(group.unit);
+                    let unit = self.whole(group.unit.0);
                     powers.push((self.program.push(Value::Call(Function::Tanh, unit)), degrees.sinh));
                 }
                 if degrees.exp != 0 {
@@ -100,7 +100,7 @@ impl Lowering<'_> {
         let [first, second] = group.powers;
         if group.scale == Scale::Hyperbolic {
             if first.is_negative() {
-                let unit = self.whole(group.unit);
+                let unit = self.whole(group.unit.0);
                 push(self.program.push(Value::Call(Function::Cosh, unit)), first.neg());
             } else {
                 push(self.sech(group.unit), first);
@@ -122,31 +122,33 @@ impl Lowering<'_> {
     }
 
     /// exp(r g)
-    fn exponential(&mut self, unit: Expr, r: Rational) -> Id {
-        let mut argument = self.whole(unit);
-        if r != Rational::ONE {
-            let factor = self.program.constant(Number::Exact(r));
-            argument = self.program.push(Value::Mul(factor, argument));
-        }
+    fn exponential(&mut self, unit: Unit, r: Rational) -> Id {
+        let argument = self.multiple(unit, r);
         self.program.push(Value::Call(Function::Exp, argument))
     }
 
-    fn sech(&mut self, unit: Expr) -> Id {
+    fn sech(&mut self, (unit, _): Unit) -> Id {
         let unit = self.whole(unit);
         self.program.push(Value::Sech(unit))
     }
 
     /// σ(n g) and σ(−n g)
-    fn logistics(&mut self, unit: Expr, n: i64) -> [Id; 2] {
-        let mut argument = self.whole(unit);
-        if n != 1 {
-            let factor = self.program.constant(Number::integer(n));
-            argument = self.program.push(Value::Mul(factor, argument));
-        }
+    fn logistics(&mut self, unit: Unit, n: i64) -> [Id; 2] {
+        let argument = self.multiple(unit, Rational::integer(n));
         let opposite = match self.program.value(argument) {
             Value::Neg(a) => a,
             _ => self.program.push(Value::Neg(argument)),
         };
         [argument, opposite].map(|a| self.program.push(Value::Logistic(a)))
+    }
+
+    /// r g
+    fn multiple(&mut self, (unit, part): Unit, r: Rational) -> Id {
+        let (argument, factor) = (self.whole(unit), Number::Exact(r).mul(Number::ratio(1, part)));
+        if factor.is_one() {
+            return argument;
+        }
+        let factor = self.program.constant(factor);
+        self.program.push(Value::Mul(factor, argument))
     }
 }
