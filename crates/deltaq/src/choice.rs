@@ -123,7 +123,8 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
 /// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
 pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
     let mut equations = derive_combined(system, start, choice)?;
-    equations.guards.extend(domains_at(system, start, &equations)?);
+    equations.domains = domains_at(system, start, &equations)?;
+    equations.guards.extend(&equations.domains);
     Ok(equations)
 }
 

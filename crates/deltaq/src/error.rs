@@ -46,7 +46,7 @@ pub enum SolveError {
         unknowns: String,
     },
     /// The start is where a formula, as it was written, has no value.
-    #[error("at the start {expression} is {value:.3e}: a root or logarithm of it, as written, has no value there")]
+    #[error("at the start {expression} is {value:?}: a root or logarithm of it that was written has no value")]
     OutsideDomain {
         /// What is negative.
         expression: String,

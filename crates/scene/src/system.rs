@@ -155,7 +155,12 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
             Value::Expression(text) => context.names.parse_value(source, &context.system.graph, &text),
         };
         match source.note(value) {
-            Some(value) => context.names.define(entry.key, value),
+            Some(value) => {
+                if let Some(e) = value.scalar() {
+                    context.system.graph.give_name(e, entry.key);
+                }
+                context.names.define(entry.key, value);
+            }
             None => context.names.insert_faulty(entry.key, Role::Definition),
         }
     }

@@ -59,6 +59,8 @@ pub(crate) struct Arena {
     pub(crate) derivatives: FxHashMap<(Expr, Symbol), Expr>,
     /// What has to be no less than zero where a formula was read, and the function of it, which may be gone.
     pub(crate) domains: BTreeSet<(Expr, Expr)>,
+    /// What expressions are called where they are printed.
+    pub(crate) given_names: FxHashMap<Expr, Arc<str>>,
 }
 
 impl Default for Arena {
@@ -73,6 +75,7 @@ impl Default for Arena {
             set_ids: FxHashMap::default(),
             derivatives: FxHashMap::default(),
             domains: BTreeSet::new(),
+            given_names: FxHashMap::default(),
         };
         arena.number(Number::ZERO);
         arena.number(Number::ONE);
