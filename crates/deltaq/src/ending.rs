@@ -46,7 +46,9 @@ impl Ending {
             StopCause::Event { index } => {
                 let guard = guard_words(equations, *index);
                 let cause = match equations.domains.contains(&equations.guards[*index]) {
-                    true => format!("{guard} vanishes, of which a root or logarithm that was written has no value beyond"),
+                    true => {
+                        format!("{guard} vanishes, of which a root or logarithm that was written has no value beyond")
+                    }
                     false => format!("{guard} vanishes, by which the equations divide"),
                 };
                 return Ending::Stopped { t: *t, cause };

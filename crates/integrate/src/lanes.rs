@@ -165,7 +165,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.candidate[i][lane] = *y;
             self.reached[i][lane] = *y;
             self.slope[i][lane] = 0.0;
-            self.absolute_tolerances[i][lane] = self.options.absolute_tolerance * start.sizes[i];
+            self.absolute_tolerances[i][lane] = self.options.absolute_tolerance_of(start.sizes[i]);
         }
         let run = LaneRun { states: Vec::new(), work: Work::default(), projection: ProjectionReport::default() };
         let pace = Pace::new(start.t, start.end);

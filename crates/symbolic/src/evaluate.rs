@@ -204,9 +204,8 @@ impl Graph {
                 _ => arena.value(n, &known),
             };
             if !value.is_finite() {
-                let grows = |n: &Expr| {
-                    matches!(arena.node(*n), Node::Call(Function::Exp | Function::Cosh | Function::Sinh, _))
-                };
+                let grows =
+                    |n: &Expr| matches!(arena.node(*n), Node::Call(Function::Exp | Function::Cosh | Function::Sinh, _));
                 if !arena.reachable(&[n], |_| true).iter().any(grows) {
                     drop(arena);
                     return Err(self.not_finite(n));

@@ -118,7 +118,8 @@ impl Arena {
             let Some((scale, (unit, part))) = self.unit(*base) else { continue };
             let mut found = self.group(scale, (unit, part), factors, taken);
             // with √(1 + exp g) by σ(±g/2), no root of what may underflow is taken
-            let roots = found.as_ref().map_or(1, |group| group.powers[0].denominator().max(group.powers[1].denominator()));
+            let roots =
+                found.as_ref().map_or(1, |group| group.powers[0].denominator().max(group.powers[1].denominator()));
             if scale == Scale::Logistic && (2..=SMALL / part).contains(&roots) {
                 found = self.group(scale, (unit, part * roots), factors, taken);
             }
@@ -167,7 +168,8 @@ impl Arena {
         for (place, (base, exponent)) in factors.iter().enumerate().filter(|(place, _)| !taken[*place]) {
             let terms = match self.node(*base) {
                 Node::Sum(constant, terms) => {
-                    let mut all: Vec<ScaledTerm> = terms.iter().map(|(t, c)| self.scaled_term(scale, unit, *t, *c)).collect();
+                    let mut all: Vec<ScaledTerm> =
+                        terms.iter().map(|(t, c)| self.scaled_term(scale, unit, *t, *c)).collect();
                     if !constant.is_zero() {
                         all.push(ScaledTerm { number: *constant, rest: Vec::new(), degrees: Degrees::default() });
                     }

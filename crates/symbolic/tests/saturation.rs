@@ -96,8 +96,13 @@ fn values_and_slopes_are_those_of_the_formula_where_nothing_overflows() {
             let (mut y, h) = ([0.0; 2], 1e-4);
             tape.evaluate(&[at], &mut tape.workspace(), &mut y);
             let expected = plain(at);
-            assert!((y[0] - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{text} at {at}: {} for {expected}", y[0]);
-            let slope = (8.0 * (plain(at + h) - plain(at - h)) - plain(at + 2.0 * h) + plain(at - 2.0 * h)) / (12.0 * h);
+            assert!(
+                (y[0] - expected).abs() <= 1e-12 * (1.0 + expected.abs()),
+                "{text} at {at}: {} for {expected}",
+                y[0]
+            );
+            let slope =
+                (8.0 * (plain(at + h) - plain(at - h)) - plain(at + 2.0 * h) + plain(at - 2.0 * h)) / (12.0 * h);
             assert!((y[1] - slope).abs() <= 1e-5 * (1.0 + slope.abs()), "{text} at {at}: {} for {slope}", y[1]);
         }
     }
@@ -127,7 +132,10 @@ fn series_are_finite_everywhere_and_those_of_repeated_differentiation() {
                 for (i, c) in found.iter().enumerate().take(5) {
                     let expected = g.evaluate(derivative, &HashMap::from([(t, at), (k, 0.5)])).unwrap() * factor;
                     let size = found.iter().fold(1e-3, |a: f64, x| a.max(x.abs()));
-                    assert!((c - expected).abs() < 1e-9 * size, "{text} along {path} at {at}, order {i}: {c} {expected}");
+                    assert!(
+                        (c - expected).abs() < 1e-9 * size,
+                        "{text} along {path} at {at}, order {i}: {c} {expected}"
+                    );
                     derivative = g.derivative(derivative, t);
                     factor *= 1e-3 / (i + 1) as f64;
                 }
@@ -150,7 +158,12 @@ fn what_saturates_is_steep_near_its_change_only() {
                 (steep.gauge)(y[0])
             };
             for (from, to) in [(-1e9, -100.0), (100.0, 1e9)] {
-                assert!((gauge(to) - gauge(from)).abs() < 1e-9, "{text}: {} {}", steep.function, g.plain(steep.argument));
+                assert!(
+                    (gauge(to) - gauge(from)).abs() < 1e-9,
+                    "{text}: {} {}",
+                    steep.function,
+                    g.plain(steep.argument)
+                );
             }
         }
         assert!(!g.steep(&[read(&g, text)], &known).is_empty(), "{text}");

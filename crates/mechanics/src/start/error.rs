@@ -178,7 +178,10 @@ fn redundant(combination: &[(usize, f64)]) -> String {
             let sum: Vec<String> = several.iter().map(term).collect();
             let numbers: Vec<String> = several.iter().map(|(number, _)| number.to_string()).collect();
             let sum = sum.join(" + ").replace("+ -", "− ");
-            format!("; there {sum} does not depend on the velocities: drop one of constraints {}, or replace them by independent combinations, such as their components along two directions", numbers.join(", "))
+            format!(
+                "; there {sum} does not depend on the velocities: drop one of constraints {}, or replace them by independent combinations, such as their components along two directions",
+                numbers.join(", ")
+            )
         }
     }
 }
