@@ -153,3 +153,52 @@ fn nested_definitions_are_printed_once_under_their_names() {
     let text = deltaq::equations_text(&equations, deltaq::EquationStyle::Plain);
     assert!(text.len() < 10_000 && text.contains("d24 = d23^2 + sin(d23)"), "{}", text.len());
 }
+
+/// Classical Runge–Kutta steps of `y' = f(y)`.
+fn stepped<const N: usize>(f: impl Fn([f64; N]) -> [f64; N], mut y: [f64; N], end: f64) -> [f64; N] {
+    let h = end / 4000.0;
+    let moved = |y: [f64; N], k: [f64; N], part: f64| std::array::from_fn(|i| y[i] + part * h * k[i]);
+    for _ in 0..4000 {
+        let a = f(y);
+        let b = f(moved(y, a, 0.5));
+        let c = f(moved(y, b, 0.5));
+        let d = f(moved(y, c, 1.0));
+        y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+    }
+    y
+}
+
+#[test]
+fn first_order_states_are_coordinates_without_mass_and_currents_rates_of_charges() {
+    let filter = scene(
+        "[coordinates]\nx = { start = 1 }\ns = { start = 0 }",
+        "lagrangian = \"(x'^2 - x^2)/2\"\nconstraints = [\"s' - (x - s)/0.5\"]\nforces = { x = \"-0.3*s\" }",
+        "\"x'\" = 0",
+        "duration = 2",
+    );
+    let end = solve(&filter).unwrap().at(2.0).unwrap();
+    let [x, _, s] = stepped(|[x, v, s]| [v, -x - 0.3 * s, (x - s) / 0.5], [1.0, 0.0, 0.0], 2.0);
+    assert!((end.coordinates[0] - x).abs() < 1e-10 && (end.coordinates[1] - s).abs() < 1e-10, "{end:?} {x} {s}");
+    assert!(end.multipliers[0].abs() < 1e-12, "{end:?}");
+    // Bouc–Wen: z' = v − ½ |v| z, |v| smooth
+    let hysteresis = scene(
+        "[coordinates]\nx = { start = 1 }\nz = { start = 0 }",
+        "lagrangian = \"x'^2/2\"\nconstraints = [\"z' - x' + sqrt(x'^2 + 0.01)*z/2\"]\nforces = { x = \"-x - z\" }",
+        "\"x'\" = 0",
+        "duration = 2",
+    );
+    let end = solve(&hysteresis).unwrap().at(2.0).unwrap();
+    let rates = |[x, v, z]: [f64; 3]| [v, -x - z, v - (v * v + 0.01).sqrt() * z / 2.0];
+    let [x, _, z] = stepped(rates, [1.0, 0.0, 0.0], 2.0);
+    assert!((end.coordinates[0] - x).abs() + (end.coordinates[1] - z).abs() < 1e-9, "{end:?} {x} {z}");
+    assert!(end.multipliers[0].abs() < 1e-12, "{end:?}");
+    let motor = scene(
+        "[coordinates]\nphi = { start = 0 }\nq = { start = 0 }",
+        "lagrangian = \"0.02*phi'^2/2 + 0.1*q'^2/2 + 0.5*phi*q'\"\nforces = { q = \"12 - q'\" }",
+        "\"phi'\" = 0\n\"q'\" = 0",
+        "duration = 1",
+    );
+    let end = solve(&motor).unwrap().at(1.0).unwrap();
+    let [omega, i] = stepped(|[omega, i]| [25.0 * i, 10.0 * (12.0 - i - 0.5 * omega)], [0.0, 0.0], 1.0);
+    assert!((end.velocities[0] - omega).abs() < 1e-9 && (end.velocities[1] - i).abs() < 1e-9, "{end:?} {omega} {i}");
+}
