@@ -98,7 +98,8 @@ impl Parser<'_> {
         let kind = if name == "pi" {
             return Ok(Value::Scalar(self.graph.pi()));
         } else if arity(name).is_some() {
-            ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() }
+            let kind = ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() };
+            return Err(self.fault(kind, token));
         } else {
             let known = self.scope.known().iter().map(String::as_str).chain(["pi"]);
             ParseErrorKind::Undefined {

@@ -64,6 +64,9 @@ impl Graph {
             Err(fault) if faults.is_empty() || fault.kind.is_of_grammar() => faults.push(fault),
             _ => {}
         }
+        let told: Vec<ParseErrorKind> = faults.iter().map(|fault| fault.kind.clone()).collect();
+        let mut place = 0..;
+        faults.retain(|fault| place.next().is_some_and(|i| !told[..i].contains(&fault.kind)));
         let error = |Fault { kind, start, end }| ParseError {
             kind,
             text: text.to_owned(),

@@ -198,6 +198,7 @@ impl ParseErrorKind {
                 | UnclosedParenthesis
                 | UnmatchedParenthesis
                 | ImplicitMultiplication { .. }
+                | FunctionWithoutArgument { .. }
                 | NumberOutOfRange { .. }
                 | TooDeep { .. }
         )
