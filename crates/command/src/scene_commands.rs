@@ -60,8 +60,11 @@ fn described(scene: &Scene) -> String {
         scene.start.t,
         scene.duration
     );
+    // what the constraints give as a difference of larger numbers may be nothing but their last digits
+    let noise = 8.0 * f64::EPSILON * scene.start.v.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
     for ((c, q), v) in system.coordinates.iter().zip(&scene.start.q).zip(&scene.start.v) {
         let supplied = scene.completion.supplied.contains(&format!("{}'", c.name));
+        let v = if supplied && v.abs() <= noise { 0.0 } else { *v };
         let by = if supplied { "  by the constraints" } else { "" };
         let _ = writeln!(text, "  {:<12} {q:<22} {:<13} {v}{by}", c.name, format!("{}'", c.name));
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::{Result, bail};
 use deltaq::{
     Choice, Chosen, ChosenForm, EquationStyle, Form, Prepared, Settings, SolveError, choices, code, derive_at,
-    derive_in_form, equations_text, forms, integrability, prepare, setting, system_text,
+    derive_in_form, equations_text, forms, integrability, prepare, setting, shared_text, system_text,
 };
 use equations::{Cost, Equations};
 use mechanics::ConstantsRule;
@@ -80,9 +80,9 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     }
     if arguments.format == TextOrJson::Json {
         let g = &scene.system.graph;
-        let print = |&e| if arguments.latex { g.latex(e) } else { g.plain(e) };
-        let lagrangian = print(&scene.system.lagrangian);
-        let constraints: Vec<String> = scene.system.constraints.iter().map(print).collect();
+        let given = [&[scene.system.lagrangian], &scene.system.constraints[..]].concat();
+        let (shared, mut constraints) = shared_text(g, &given, arguments.latex);
+        let lagrangian = constraints.remove(0);
         let entry = |(choice, derived, integrated): &(Choice, Result<String, String>, Option<ChosenForm>)| {
             let removal = choice.removal.as_ref().map(|removal| &removal.name);
             let (equations, refused) = (derived.as_ref().ok(), derived.as_ref().err());
@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
             "show",
             &json!({
                 "scene": scene.name, "title": scene.title, "source": scene.source, "lagrangian": lagrangian,
-                "constraints": constraints, "integrability": integrability, "breakpoints": scene.system.breakpoints,
+                "constraints": constraints, "shared": shared, "integrability": integrability, "breakpoints": scene.system.breakpoints,
                 "formulations": equations.iter().map(entry).collect::<Vec<_>>(),
             }),
         ));

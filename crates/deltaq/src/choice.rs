@@ -1,6 +1,6 @@
 //! What is chosen before a motion is computed: formulation, removal, free constants; the resulting equations.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use equations::{Derivation, Equations, Formulation, Named};
 use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, System};
@@ -122,6 +122,32 @@ fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
 /// # Errors
 /// As [`derive()`]; [`SolveError::Start`] where the constraints are dependent.
 pub fn derive_at(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
+    let mut equations = derive_combined(system, start, choice)?;
+    equations.domains = domains_at(system, start, &equations)?;
+    equations.guards.extend(&equations.domains);
+    Ok(equations)
+}
+
+/// What has to stay positive for the system as it was written, in the variables of its equations.
+fn domains_at(system: &System, start: &State, equations: &Equations) -> Result<Vec<Expr>, SolveError> {
+    let g = &system.graph;
+    let mut values = system.values_at(start);
+    values.extend(system.parameter_values());
+    let outside = |e: &&Expr| g.evaluate(**e, &values).is_ok_and(|x| x < 0.0);
+    if let Some(e) = system.domains.iter().find(outside) {
+        let value = g.evaluate(*e, &values).unwrap_or(f64::NAN);
+        return Err(SolveError::OutsideDomain { expression: g.plain(*e), value });
+    }
+    let symbols = system.positions().into_iter().chain(system.velocities());
+    let read = equations.coordinates.iter().chain(&equations.velocities).copied();
+    let map: HashMap<Symbol, Expr> = symbols.zip(read).collect();
+    let guards = system.domains.iter().map(|e| equations.graph.substitute(*e, &map));
+    let defined = equations.definitions.iter().map(|d| d.0).chain(equations.parameters.keys().copied());
+    let known: HashSet<Symbol> = equations.known_symbols().into_iter().chain(defined).collect();
+    Ok(guards.filter(|&e| equations.symbols_behind([e]).is_subset(&known)).collect())
+}
+
+fn derive_combined(system: &System, start: &State, choice: &Choice) -> Result<Equations, SolveError> {
     let combined = Recombination::at(system, start);
     if choice.removal.is_some() {
         // the constraints stand no more in the equations, but they gave the start

@@ -45,7 +45,13 @@ impl Ending {
             StopCause::Event { index } if *index == equations.guards.len() => return Ending::Completed,
             StopCause::Event { index } => {
                 let guard = guard_words(equations, *index);
-                return Ending::Stopped { t: *t, cause: format!("{guard} vanishes, by which the equations divide") };
+                let cause = match equations.domains.contains(&equations.guards[*index]) {
+                    true => {
+                        format!("{guard} vanishes, of which a root or logarithm that was written has no value beyond")
+                    }
+                    false => format!("{guard} vanishes, by which the equations divide"),
+                };
+                return Ending::Stopped { t: *t, cause };
             }
             StopCause::NotFinite { component } => {
                 let symbol = equations.states.get(*component).map(|y| equations.graph.name(y.symbol));

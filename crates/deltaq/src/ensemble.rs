@@ -15,7 +15,7 @@ use integrate::{Interrupt, Method};
 use mechanics::{ConstantsRule, State, System};
 use scene::{Scene, Start, Starts};
 
-use crate::{Choice, Metric, Prepared, Settings, SolveError, Varying, formulation, setting};
+use crate::{Choice, Form, Metric, Prepared, Settings, SolveError, Varying, formulation, setting};
 pub(crate) use costates::Costates;
 pub use costates::{costate_names, given_costates, is_costate};
 pub use motions::MemberMotion;
@@ -56,10 +56,13 @@ pub struct Ensemble {
     metric: Metric,
     /// The equations once more, in whose words a member says why it stopped: for all threads.
     words: Arc<Mutex<Equations>>,
+    /// The same in multipliers, where pivots were chosen at the scene's own values of what varies: for members
+    /// at whose values they vanish.
+    without_pivots: Option<Box<Ensemble>>,
 }
 
 /// What a member starts from.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct EnsembleStart {
     /// `(t₀, q₀, v₀)`, on the constraint.
     pub state: State,
@@ -90,6 +93,8 @@ pub struct EnsembleMember {
     /// Free constants, then the parameters that vary.
     constants: Vec<f64>,
     guess: Vec<f64>,
+    /// What it was started from, for equations without pivots.
+    given: EnsembleStart,
 }
 
 impl EnsembleMember {
@@ -115,6 +120,7 @@ impl Ensemble {
         if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
             return refused(format!("`{}` is named twice", names[i]));
         }
+        let asked = (choice, names);
         let (costates, names) =
             Costates::among(names, scene, choice).map_err(|reason| SolveError::Member { reason })?;
         let choice = &costates.choice(choice);
@@ -138,7 +144,15 @@ impl Ensemble {
         let metric = Metric::varying(&system, &varied)?;
         let words = Arc::new(Mutex::new(equations.clone()));
         let (choice, end) = (choice.clone(), setting(scene).end);
-        Ok(Ensemble { varying, lanes, choice, system, starts, costates, end, settings, metric, words })
+        let by_pivots = !system.constraints.is_empty() && settings.form == Form::Suited;
+        let without_pivots = match by_pivots && !varied.is_empty() {
+            true => {
+                let named = Settings { form: Form::Named, ..settings.clone() };
+                Ensemble::new(scene, asked.0, asked.1, &named).ok().map(Box::new)
+            }
+            false => None,
+        };
+        Ok(Ensemble { varying, lanes, choice, system, starts, costates, end, settings, metric, words, without_pivots })
     }
 
     /// Members end at `end`, and not where the scene does.
@@ -174,9 +188,11 @@ impl Ensemble {
     pub fn member_at(&mut self, start: &EnsembleStart) -> Result<EnsembleMember, SolveError> {
         let EnsembleStart { state, end, parameters, constants } = start;
         self.varying.set(state, parameters, constants, false)?;
+        let rule = constants.clone();
         let Prepared { start, constants, guess, .. } = self.varying.prepared();
         let (y, constants, guess) = (start.clone(), constants.clone(), guess.clone());
-        Ok(EnsembleMember { t: state.t, end: *end, y, constants, guess })
+        let given = EnsembleStart { state: state.clone(), end: *end, parameters: parameters.clone(), constants: rule };
+        Ok(EnsembleMember { t: state.t, end: *end, y, constants, guess, given })
     }
 
     /// The member with these numbers, one a name, or why there is none.

@@ -22,6 +22,9 @@ const LONG: usize = 60;
 /// The same for what the user wrote.
 const LONG_SYSTEM: usize = 200;
 
+/// Formulas of more symbols and numbers than this are so too, however few are different.
+const LONG_PRINTED: usize = 500;
+
 /// The derived equations and what was left out of them.
 pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     let g = &equations.graph;
@@ -29,7 +32,7 @@ pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     let sides = equations.statements.iter().flat_map(|s| [s.left, s.right]);
     let mut whole: Vec<Expr> = values.into_iter().chain(sides).collect();
     let mut pieces = Vec::new();
-    if whole.iter().any(|&e| g.size(&[e]) > LONG) {
+    if whole.iter().any(|&e| g.size(&[e]) > LONG || g.printed_length(e) > LONG_PRINTED) {
         (pieces, whole) = g.abbreviate(&whole, "s");
     }
     let order: Vec<Symbol> = pieces.iter().map(|(symbol, _)| *symbol).collect();
@@ -66,12 +69,21 @@ pub fn equations_text(equations: &Equations, style: EquationStyle) -> String {
     text
 }
 
+/// Formulas and what they share by name: names with what they stand for, then the formulas in these.
+pub fn shared_text(g: &Graph, es: &[Expr], latex: bool) -> (Vec<[String; 2]>, Vec<String>) {
+    let print = |e: Expr| if latex { g.latex(e) } else { g.plain(e) };
+    let long = es.iter().any(|&e| g.printed_length(e) > LONG_PRINTED);
+    let (pieces, rest) = if long { g.abbreviate(es, "s") } else { (Vec::new(), es.to_vec()) };
+    let pieces = pieces.into_iter().map(|(symbol, e)| [print(g.variable(symbol)), print(e)]);
+    (pieces.collect(), rest.into_iter().map(print).collect())
+}
+
 /// `L` and `f = 0` of a system, a line each; what would be long is cut into named pieces, before the line.
 pub fn system_text(system: &System, style: EquationStyle) -> String {
     let g = &system.graph;
     let mut whole = [&[system.lagrangian], &system.constraints[..]].concat();
     let mut pieces = Vec::new();
-    if whole.iter().any(|&e| g.size(&[e]) > LONG_SYSTEM) {
+    if whole.iter().any(|&e| g.size(&[e]) > LONG_SYSTEM || g.printed_length(e) > LONG_PRINTED) {
         (pieces, whole) = g.abbreviate(&whole, "s");
     }
     let mut writer = Writer { text: String::new(), graph: g, style, pieces: pieces.into_iter().collect() };

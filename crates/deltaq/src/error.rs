@@ -45,6 +45,14 @@ pub enum SolveError {
         /// The unknowns.
         unknowns: String,
     },
+    /// The start is where a formula, as it was written, has no value.
+    #[error("at the start {expression} is {value:?}: a root or logarithm of it that was written has no value")]
+    OutsideDomain {
+        /// What is negative.
+        expression: String,
+        /// Its value.
+        value: f64,
+    },
     /// The equations cannot be evaluated at the start.
     #[error("at the start: {0}")]
     AtStart(EvaluationFailure),

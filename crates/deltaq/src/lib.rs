@@ -117,7 +117,7 @@ pub use ensemble::{
     Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, MemberMotion, MemberRun, costate_names, given_costates,
     is_costate, number_of_threads, over_threads,
 };
-pub use equations_text::{EquationStyle, equations_text, system_text};
+pub use equations_text::{EquationStyle, equations_text, shared_text, system_text};
 pub use error::SolveError;
 pub use error_estimate::{ErrorEstimate, TRUSTED, error_estimate, error_estimates};
 pub use fit::best_fit;

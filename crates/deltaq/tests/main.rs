@@ -6,3 +6,4 @@ mod estimates;
 mod examples;
 mod fits;
 mod gaps;
+mod switches;

@@ -160,6 +160,8 @@ pub struct Equations {
     pub projection: Option<ConstraintProjection>,
     /// Expressions in `(t, y)` whose zero is a singularity of the equations.
     pub guards: Vec<Expr>,
+    /// Those of the guards at which formulas, as they were written, cease to have values.
+    pub domains: Vec<Expr>,
     /// By which pivots they were derived, where these may become small along a motion and others be taken;
     /// never where other coordinates are read off than those of the system.
     pub chart: Option<Chart>,
@@ -194,6 +196,7 @@ impl Equations {
             invariants: Vec::new(),
             projection: None,
             guards: Vec::new(),
+            domains: Vec::new(),
             chart: None,
             statements: Vec::new(),
             left_out: Vec::new(),

@@ -165,7 +165,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.candidate[i][lane] = *y;
             self.reached[i][lane] = *y;
             self.slope[i][lane] = 0.0;
-            self.absolute_tolerances[i][lane] = self.options.absolute_tolerance * start.sizes[i];
+            self.absolute_tolerances[i][lane] = self.options.absolute_tolerance_of(start.sizes[i]);
         }
         let run = LaneRun { states: Vec::new(), work: Work::default(), projection: ProjectionReport::default() };
         let pace = Pace::new(start.t, start.end);
@@ -344,8 +344,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         } else if !last && (creeps || step <= shortest_step(t) || step.is_nan()) {
             self.leave(lane, Left::StepTooSmall, done);
         } else {
-            self.taken[lane] = if last { remaining } else { step * remaining.signum() };
-            self.taken_to[lane] = if last { rider.end } else { t + self.taken[lane] };
+            self.taken_to[lane] = if last { rider.end } else { t + step * remaining.signum() };
+            self.taken[lane] = self.taken_to[lane] - t;
             self.next_unit[lane] = self.taken[lane].abs();
         }
     }

@@ -130,7 +130,13 @@ impl Options {
     /// The absolute tolerance of each of `n` components.
     pub(crate) fn absolute_tolerances(&self, n: usize) -> Vec<f64> {
         let size = |i: usize| self.sizes.get(i).copied().unwrap_or(1.0);
-        (0..n).map(|i| self.absolute_tolerance * size(i)).collect()
+        (0..n).map(|i| self.absolute_tolerance_of(size(i))).collect()
+    }
+
+    /// That of a component of this size; a start in the tail of a pulse, at 1e-304 of it, asks for none of zero.
+    pub(crate) fn absolute_tolerance_of(&self, size: f64) -> f64 {
+        const LEAST: f64 = 1e-200;
+        (self.absolute_tolerance * size).max(LEAST)
     }
 
     /// The breakpoints on the way from `start` to `end`, and `end`.

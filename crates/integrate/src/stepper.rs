@@ -59,7 +59,9 @@ pub(crate) fn next_step((t, end): (f64, f64), step: f64, stretch: f64, longest: 
     if step.abs() <= limit {
         return Err(StopCause::StepTooSmall { step: step.abs(), limit });
     }
-    Ok((step, t + step))
+    // what is taken is what lies between two times that are numbers
+    let to = t + step;
+    Ok((to - t, to))
 }
 
 /// The shortest step that still moves the time `t` by more than its own round-off.

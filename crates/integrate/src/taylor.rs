@@ -183,14 +183,15 @@ impl<'s, 'p> Taylor<'s, 'p> {
         let forgiven = 1.0 + moves.fold(0.0, f64::max);
         for _ in 0..MANY {
             self.place = (self.place + GOLDEN).fract();
-            let x = theta * self.place;
+            let t = begin + self.taken * self.place;
+            let x = (t - begin) / self.unit;
             for (row, (y, slope)) in
                 self.coefficients.chunks_exact(order + 1).zip(self.inside.iter_mut().zip(&mut self.inside_slope))
             {
                 (*y, *slope) = row.iter().rev().fold((0.0, 0.0), |(y, slope), c| (y * x + c, slope * x + y));
                 *slope *= theta;
             }
-            self.system.rates(begin + self.taken * self.place, &self.inside, &mut self.rates)?;
+            self.system.rates(t, &self.inside, &mut self.rates)?;
             for (component, absolute) in self.absolute_tolerances.iter().enumerate() {
                 let (y, slope) = (self.inside[component], self.inside_slope[component]);
                 let allowed = DEFECT * (absolute + relative * y.abs().max(slope.abs()));

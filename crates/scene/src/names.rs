@@ -176,9 +176,21 @@ impl Names {
         graph.parse_value(&text.text, &Known(self, graph)).map_err(|error| self.fault(source, text, error))
     }
 
-    fn fault(&self, source: Source, text: &Text, error: ParseError) -> SceneError {
+    /// The first fault of a formula; the others are noted.
+    fn fault(&self, source: Source, text: &Text, mut error: ParseError) -> SceneError {
+        for other in std::mem::take(&mut error.also) {
+            source.note::<()>(Err(self.fault(source, text, other)));
+        }
         let kind = self.better_fault(&error.kind).unwrap_or(SceneErrorKind::Expression(error.kind));
         source.error_within(text, error.offset, error.length, kind)
+    }
+
+    /// The coordinate of which `theta_dot`, `thetadot` or `dtheta` is meant to be the time derivative.
+    fn with_dot(&self, name: &str) -> Option<String> {
+        let base = ["_dot", "dot", "_d"].iter().find_map(|end| name.strip_suffix(end));
+        let base = [base, name.strip_prefix('d')].into_iter().flatten();
+        let moves = |base: &&str| matches!(self.role(base), Some(Role::Coordinate | Role::RemovalParameter));
+        base.filter(|base| !base.is_empty()).find(moves).map(String::from)
     }
 
     /// An undefined derivative of something that is defined has a better explanation than a similar name, and
@@ -186,6 +198,9 @@ impl Names {
     fn better_fault(&self, kind: &ParseErrorKind) -> Option<SceneErrorKind> {
         let ParseErrorKind::Undefined { name, .. } = kind else { return None };
         let base = name.trim_end_matches('\'');
+        if let Some(base) = self.with_dot(name) {
+            return Some(SceneErrorKind::Unavailable { name: name.clone(), reason: Unavailable::Dot(base) });
+        }
         if self.faulty.contains(base) {
             return Some(SceneErrorKind::Faulty { name: base.into() });
         }

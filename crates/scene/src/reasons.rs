@@ -32,6 +32,9 @@ pub enum Unavailable {
         /// What can be used.
         known: &'static str,
     },
+    /// A time derivative written with `dot`.
+    #[error("a time derivative is {0}'")]
+    Dot(String),
     /// A derivative of something that is not a coordinate.
     #[error("{0} does not change with time")]
     NoDerivative(&'static str),

@@ -64,6 +64,7 @@ pub(super) fn build<'a>(
     context.system.parameters.splice(0..0, parameters);
     source.note(definitions(&mut context));
     source.note(read_system(&mut context));
+    context.system.domains = lost_domains(&context.system);
     for (section, constant) in [("invariants", true), ("observables", false)] {
         source.note(watched(&mut context, section, constant));
     }
@@ -154,11 +155,22 @@ fn definitions(context: &mut Context) -> Result<(), SceneError> {
             Value::Expression(text) => context.names.parse_value(source, &context.system.graph, &text),
         };
         match source.note(value) {
-            Some(value) => context.names.define(entry.key, value),
+            Some(value) => {
+                if let Some(e) = value.scalar() {
+                    context.system.graph.give_name(e, entry.key);
+                }
+                context.names.define(entry.key, value);
+            }
             None => context.names.insert_faulty(entry.key, Role::Definition),
         }
     }
     Ok(())
+}
+
+/// Of the definitions and the system as they are written.
+fn lost_domains(system: &System) -> Vec<Expr> {
+    let given = [&[system.lagrangian], &system.constraints[..], &system.forces].concat();
+    system.graph.lost_domains(&given)
 }
 
 fn read_system(context: &mut Context) -> Result<(), SceneError> {

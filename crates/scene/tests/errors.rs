@@ -328,3 +328,32 @@ fn files() {
     }
     assert!(error(&folder.path().join("missing.toml")).to_string().contains("not found"));
 }
+
+#[test]
+fn every_fault_of_a_formula_is_told() {
+    let text = "title = \"t\"\n[coordinates]\ntheta = { start = 1 }\nx = { start = 0 }\n[system]\n\
+                lagrangian = \"theta_dot^2/2 + xdot^2/2 - gg*cos(thea) + abs(x) + foo(x)*sin(1, 2) + dx\"\n\
+                [start.velocities]\n\"x'\" = 0\n[run]\nduration = 1\n";
+    let error = scene::Scene::parse("t", text).unwrap_err();
+    let told: Vec<String> = error.each().map(|fault| fault.kind.to_string()).collect();
+    let expected = [
+        "`theta_dot` cannot be used here: a time derivative is theta'",
+        "`xdot` cannot be used here: a time derivative is x'",
+        "undefined name `gg`",
+        "undefined name `thea`; did you mean `theta`?",
+        "`abs` is not differentiable",
+        "unknown function `foo`",
+        "`sin` takes 1 argument, found 2",
+        "`dx` cannot be used here: a time derivative is x'",
+    ];
+    assert_eq!(told.len(), expected.len(), "{told:#?}");
+    assert!(told.iter().zip(expected).all(|(told, words)| told.starts_with(words)), "{told:#?}");
+}
+
+#[test]
+fn velocities_that_are_missing_come_with_the_line_to_write() {
+    let text =
+        "title = \"t\"\n[coordinates]\nx = { start = 0 }\n[system]\nlagrangian = \"x'^2/2\"\n[run]\nduration = 1\n";
+    let told = scene::Scene::parse("t", text).unwrap_err().to_string();
+    assert!(told.contains("give more under [start.velocities], as in `\"x'\" = 0`"), "{told}");
+}

@@ -111,7 +111,12 @@ fn a_sign_is_chosen_by_the_guess() {
 fn dependent_constraints_show_singular_values() {
     let velocities = "velocities = { \"x'\" = 0, \"y'\" = 0, \"z'\" = 0 }";
     let error = load([0.1; 3], KINETIC, "\"x' - y'\", \"1000*y' - 1000*x'\"", velocities).unwrap_err();
-    let StartError::DependentConstraints { singular_values, ratio, limit } = error else { panic!("{error}") };
+    let told = error.to_string();
+    let StartError::DependentConstraints { singular_values, ratio, limit, combination } = error else {
+        panic!("{told}")
+    };
+    assert!(combination.len() == 2 && (combination[0].1 / combination[1].1 - 1000.0).abs() < 1e-9, "{combination:?}");
+    assert!(told.contains("drop one of constraints 1, 2"), "{told}");
     assert!(singular_values.len() == 2 && ratio < 1e-15 && limit == 1e-10);
     // at rest the cone has no tangent plane
     let error = load([0.1; 3], KINETIC, CONE, velocities).unwrap_err();

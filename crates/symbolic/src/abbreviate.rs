@@ -7,6 +7,8 @@ use rustc_hash::FxHashMap;
 
 /// A shared subexpression of at least this many printed leaves gets a name.
 const SHARED_LEAVES: usize = 4;
+/// One that has a name already ([`Graph::give_name`]).
+const NAMED_LEAVES: usize = 2;
 /// An expression of more printed leaves than this is cut.
 const LONG_LEAVES: usize = 60;
 /// Terms of a long sum are put together up to this many leaves.
@@ -25,6 +27,8 @@ impl Graph {
     /// assert_eq!(definitions, [(g.symbol("s1"), shared)]);
     /// assert_eq!(g.plain(rest[0]), "s1^2");
     /// ```
+    ///
+    /// What was given a name keeps it ([`Graph::give_name`]).
     pub fn abbreviate(&self, es: &[Expr], prefix: &str) -> (Vec<(Symbol, Expr)>, Vec<Expr>) {
         let mut arena = self.arena.borrow_mut();
         let order = arena.reachable(es, |_| true);
@@ -42,13 +46,46 @@ impl Graph {
             if arena.leaves(new) > LONG_LEAVES {
                 new = arena.split_long(new, &mut names);
             }
-            if uses[&n] > 1 && arena.leaves(new) >= SHARED_LEAVES {
-                new = names.name(&mut arena, new);
+            let named = arena.given_names.get(&n).cloned();
+            if uses[&n] > 1 && arena.leaves(new) >= if named.is_some() { NAMED_LEAVES } else { SHARED_LEAVES } {
+                new = match named {
+                    Some(name) => names.define(&mut arena, &name, new),
+                    None => names.name(&mut arena, new),
+                };
             }
             image.insert(n, new);
         }
         let rest = es.iter().map(|e| image[e]).collect();
         (names.definitions, rest)
+    }
+}
+
+impl Graph {
+    /// Lets `e` be called so where it is shared by what is printed.
+    ///
+    /// ```
+    /// let g = symbolic::Graph::new();
+    /// let x = g.variable(g.symbol("x"));
+    /// let sum = g.add(x, g.powi(x, 2));
+    /// g.give_name(sum, "d");
+    /// let (definitions, rest) = g.abbreviate(&[g.powi(sum, 3), g.sqrt(sum)], "s");
+    /// assert_eq!(definitions, [(g.symbol("d"), sum)]);
+    /// assert_eq!(g.plain(rest[0]), "d^3");
+    /// ```
+    pub fn give_name(&self, e: Expr, name: &str) {
+        self.arena.borrow_mut().given_names.entry(e).or_insert_with(|| name.into());
+    }
+
+    /// Symbols and numbers in `e` as it would be printed, shared parts counted wherever they stand.
+    pub fn printed_length(&self, e: Expr) -> usize {
+        let arena = self.arena.borrow();
+        let mut lengths: FxHashMap<Expr, usize> = FxHashMap::default();
+        for n in arena.reachable(&[e], |_| true) {
+            let mut length = 0_usize;
+            arena.node(n).each_child(|child| length = length.saturating_add(lengths[&child]));
+            lengths.insert(n, length.max(1));
+        }
+        lengths[&e]
     }
 }
 
@@ -69,6 +106,16 @@ impl Names<'_> {
                 break arena.symbol(&name);
             }
         };
+        self.push(arena, symbol, e)
+    }
+
+    /// The symbol of that name for `e`.
+    fn define(&mut self, arena: &mut Arena, name: &str, e: Expr) -> Expr {
+        let symbol = arena.symbol(name);
+        self.push(arena, symbol, e)
+    }
+
+    fn push(&mut self, arena: &mut Arena, symbol: Symbol, e: Expr) -> Expr {
         self.definitions.push((symbol, e));
         arena.intern(Node::Symbol(symbol))
     }

@@ -90,15 +90,15 @@ impl Graph {
     fn apply(&self, name: &str, arguments: &[Expr]) -> Expr {
         let x = arguments[0];
         match name {
-            "sqrt" => self.sqrt(x),
-            "ln" => self.call(Function::Log, x),
+            "sqrt" => self.power_as_written(x, self.ratio(1, 2)),
+            "ln" => self.call_as_written(Function::Log, x),
             "sec" => self.powi(self.call(Function::Cos, x), -1),
             "csc" => self.powi(self.call(Function::Sin, x), -1),
             "cot" => self.div(self.call(Function::Cos, x), self.call(Function::Sin, x)),
             "atan2" => self.atan2(x, arguments[1]),
-            "pow" => self.pow(x, arguments[1]),
+            "pow" => self.power_as_written(x, arguments[1]),
             _ => match Function::ALL.iter().find(|f| f.name() == name) {
-                Some(f) => self.call(*f, x),
+                Some(f) => self.call_as_written(*f, x),
                 None => unreachable!("`{name}` is among the functions"),
             },
         }

@@ -4,6 +4,7 @@ use crate::Function;
 use crate::cancel;
 use crate::number::{Number, Rational};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// A node of a [`crate::Graph`]. Equal expressions are the same node (hash-consing).
@@ -56,6 +57,10 @@ pub(crate) struct Arena {
     sets: Vec<Dependencies>,
     set_ids: FxHashMap<Dependencies, u32>,
     pub(crate) derivatives: FxHashMap<(Expr, Symbol), Expr>,
+    /// What has to be no less than zero where a formula was read, and the function of it, which may be gone.
+    pub(crate) domains: BTreeSet<(Expr, Expr)>,
+    /// What expressions are called where they are printed.
+    pub(crate) given_names: FxHashMap<Expr, Arc<str>>,
 }
 
 impl Default for Arena {
@@ -69,6 +74,8 @@ impl Default for Arena {
             sets: Vec::new(),
             set_ids: FxHashMap::default(),
             derivatives: FxHashMap::default(),
+            domains: BTreeSet::new(),
+            given_names: FxHashMap::default(),
         };
         arena.number(Number::ZERO);
         arena.number(Number::ONE);

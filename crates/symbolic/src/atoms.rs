@@ -90,7 +90,7 @@ impl Parser<'_> {
         }
     }
 
-    fn variable(&self, token: Spanned) -> Result<Value, Fault> {
+    fn variable(&mut self, token: Spanned) -> Result<Value, Fault> {
         let name = self.slice(token);
         if let Some(value) = self.scope.value(name) {
             return Ok(value);
@@ -98,7 +98,8 @@ impl Parser<'_> {
         let kind = if name == "pi" {
             return Ok(Value::Scalar(self.graph.pi()));
         } else if arity(name).is_some() {
-            ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() }
+            let kind = ParseErrorKind::FunctionWithoutArgument { name: name.to_owned() };
+            return Err(self.fault(kind, token));
         } else {
             let known = self.scope.known().iter().map(String::as_str).chain(["pi"]);
             ParseErrorKind::Undefined {
@@ -106,7 +107,8 @@ impl Parser<'_> {
                 suggestion: nearest(name, known).or_else(|| nearest(name, callable())),
             }
         };
-        Err(self.fault(kind, token))
+        let fault = self.fault(kind, token);
+        Ok(self.unreadable(fault))
     }
 
     fn call(&mut self, token: Spanned) -> Result<Value, Fault> {
@@ -121,7 +123,11 @@ impl Parser<'_> {
                 let suggestion = nearest(name, callable());
                 ParseErrorKind::UnknownFunction { name: name.to_owned(), suggestion }
             };
-            return Err(self.fault(kind, token));
+            let fault = self.fault(kind, token);
+            self.advance()?;
+            self.nested(open, |parser| parser.arguments(Token::Close))?;
+            self.close(open)?;
+            return Ok(self.unreadable(fault));
         };
         self.advance()?;
         let axes = if name == "rotation" { self.axes()? } else { None };
@@ -131,7 +137,8 @@ impl Parser<'_> {
         if !expected.contains(&found) {
             let (function, expected) = (name.to_owned(), *expected.start());
             let kind = ParseErrorKind::WrongArgumentCount { function, expected, found };
-            return Err(Fault { kind, start: token.start, end: self.last });
+            let fault = Fault { kind, start: token.start, end: self.last };
+            return Ok(self.unreadable(fault));
         }
         let value = self.apply(token, axes, &arguments)?;
         let divides = matches!(name, "sec" | "csc" | "cot" | "pow");

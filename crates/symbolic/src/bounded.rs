@@ -127,6 +127,8 @@ impl Scalar for Bounded {
         acosh 1.0 / (x * x - 1.0).sqrt();
         atanh 1.0 / (1.0 - x * x);
         exp y;
+        logistic y * (-x).logistic();
+        sech y * x.tanh();
         log 1.0 / x;
     }
     fn powf(self, exponent: Self) -> Self {

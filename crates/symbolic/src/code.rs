@@ -137,6 +137,11 @@ impl Language {
             Value::Div(a, b) => (format!("{}/{}", at(a, PRODUCT), at(b, ATOM)), PRODUCT),
             Value::Sqrt(a) => call("sqrt", &[a]),
             Value::Call(function, a) => call(function.name(), &[a]),
+            Value::Logistic(a) => {
+                let one = self.number(Number::ONE).0;
+                (format!("{one}/({one} + {}(-{}))", self.function("exp"), at(a, ATOM)), PRODUCT)
+            }
+            Value::Sech(a) => (format!("{}/{}", self.number(Number::ONE).0, call("cosh", &[a]).0), PRODUCT),
             Value::Pow(a, b) => call("pow", &[a, b]),
             Value::Atan2(a, b) => call("atan2", &[a, b]),
             Value::Input(_) | Value::Constant(_) => unreachable!("these are written where they stand"),

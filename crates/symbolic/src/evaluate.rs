@@ -5,7 +5,7 @@ use crate::number::Number;
 use crate::program::{Id, Program};
 use crate::series::{SeriesInput, SeriesTape, build};
 use crate::tape::Tape;
-use crate::{Expr, Graph, Symbol, lower};
+use crate::{Evaluator, Expr, Function, Graph, Symbol, lower};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::HashMap;
 
@@ -197,18 +197,32 @@ impl Graph {
         self.check_bound(&[e], |s| values.contains_key(&s))?;
         let arena = self.arena.borrow();
         let mut known: FxHashMap<Expr, f64> = FxHashMap::default();
+        let mut overflown = None;
         for n in arena.reachable(&[e], |_| true) {
             let value = match arena.node(n) {
                 Node::Symbol(s) => values[s],
                 _ => arena.value(n, &known),
             };
             if !value.is_finite() {
-                drop(arena);
-                return Err(self.not_finite(n));
+                let grows =
+                    |n: &Expr| matches!(arena.node(*n), Node::Call(Function::Exp | Function::Cosh | Function::Sinh, _));
+                if !arena.reachable(&[n], |_| true).iter().any(grows) {
+                    drop(arena);
+                    return Err(self.not_finite(n));
+                }
+                overflown.get_or_insert(n);
             }
             known.insert(n, value);
         }
-        Ok(known[&e])
+        drop(arena);
+        let Some(culprit) = overflown else { return Ok(known[&e]) };
+        // what overflows may stand in a quotient that does not
+        let inputs: Vec<(Symbol, f64)> = values.iter().map(|(s, x)| (*s, *x)).collect();
+        let symbols: Vec<Symbol> = inputs.iter().map(|(s, _)| *s).collect();
+        let numbers: Vec<f64> = inputs.iter().map(|(_, x)| *x).collect();
+        let mut value = Evaluator::new(self.compile(&symbols, &[e], &HashMap::new())?);
+        let value = value.evaluate(&numbers)[0];
+        if value.is_finite() { Ok(value) } else { Err(self.not_finite(culprit)) }
     }
 
     pub(crate) fn check_bound(&self, es: &[Expr], bound: impl Fn(Symbol) -> bool) -> Result<(), CompileError> {

@@ -1,5 +1,7 @@
 //! From the graph to a straight-line program.
 
+mod scaled;
+
 use crate::Expr;
 use crate::Symbol;
 use crate::arena::{Arena, Node};
@@ -32,13 +34,13 @@ pub(crate) fn lower(
 }
 
 /// A value and whether it is to be negated.
-type Signed = (bool, Id);
+pub(super) type Signed = (bool, Id);
 
 /// A value as constant · varying; either may be absent, for 1.
 #[derive(Clone, Copy)]
-struct Parts {
-    constant: Option<Id>,
-    varying: Option<Id>,
+pub(super) struct Parts {
+    pub(super) constant: Option<Id>,
+    pub(super) varying: Option<Id>,
 }
 
 impl Parts {
@@ -47,9 +49,9 @@ impl Parts {
     }
 }
 
-struct Lowering<'a> {
-    arena: &'a Arena,
-    program: Program,
+pub(super) struct Lowering<'a> {
+    pub(super) arena: &'a Arena,
+    pub(super) program: Program,
     symbols: FxHashMap<Symbol, Parts>,
     values: FxHashMap<Expr, Parts>,
 }
@@ -62,7 +64,7 @@ impl Lowering<'_> {
         }
     }
 
-    fn whole(&mut self, e: Expr) -> Id {
+    pub(super) fn whole(&mut self, e: Expr) -> Id {
         match self.values[&e] {
             Parts { constant: None, varying: None } => self.program.constant(Number::ONE),
             Parts { constant: Some(v), varying: None } | Parts { constant: None, varying: Some(v) } => v,
@@ -99,6 +101,14 @@ impl Lowering<'_> {
 
     /// Σ c·t, terms with the same |c| added up before c is multiplied.
     fn sum(&mut self, constant: Number, terms: &[(Expr, Number)]) -> Id {
+        if let [(t, c)] = terms
+            && let (Some(place), Parts { constant: None, varying: Some(x) }) = (place(constant, *c), self.values[t])
+        {
+            let place = self.program.constant(place);
+            let distance = self.program.push(Value::Sub(x, place));
+            let factor = self.program.constant(*c);
+            return self.program.push(Value::Mul(factor, distance));
+        }
         let mut groups: Vec<(Option<Id>, Vec<Signed>)> = Vec::new();
         let mut rest: Vec<Signed> = Vec::new();
         for (t, c) in terms {
@@ -142,7 +152,7 @@ impl Lowering<'_> {
     }
 
     /// Σ ±v as (is it to be negated?, value): it starts with a positive term where there is one.
-    fn signed_sum(&mut self, terms: &[Signed]) -> Signed {
+    pub(super) fn signed_sum(&mut self, terms: &[Signed]) -> Signed {
         let first = terms.iter().position(|(negative, _)| !negative);
         let all_negative = first.is_none();
         let first = first.unwrap_or(0);
@@ -174,12 +184,11 @@ impl Lowering<'_> {
         v.unwrap_or_else(|| self.program.constant(Number::ONE))
     }
 
-    fn product(&mut self, factors: &[(Expr, Rational)]) -> Parts {
+    pub(super) fn product(&mut self, factors: &[(Expr, Rational)]) -> Parts {
         let mut sides = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
-        for (base, exponent) in factors {
-            let v = self.whole(*base);
+        for (v, exponent) in self.scaled_factors(factors) {
             let side = 2 * usize::from(self.program.is_constant(v)) + usize::from(exponent.is_negative());
-            let power = self.positive_power(v, *exponent);
+            let power = self.positive_power(v, exponent);
             sides[side].push(power);
         }
         let [above, below, constant_above, constant_below] = sides;
@@ -196,7 +205,7 @@ impl Lowering<'_> {
     }
 
     /// v to the absolute value of a non-zero exponent
-    fn positive_power(&mut self, v: Id, exponent: Rational) -> Id {
+    pub(super) fn positive_power(&mut self, v: Id, exponent: Rational) -> Id {
         let (n, d) = (exponent.numerator().unsigned_abs(), exponent.denominator());
         match d {
             1 => self.program.powi(v, n),
@@ -214,5 +223,16 @@ impl Lowering<'_> {
                 self.program.push(Value::Pow(v, exponent))
             }
         }
+    }
+}
+
+/// The place `p` of `k + c x = c (x − p)`, where it is a decimal of a few digits and `c` no sign: what is far
+/// from the origin and narrow, as `(t − 1000007)/0.01`, loses nothing where `x` is near.
+fn place(k: Number, c: Number) -> Option<Number> {
+    const DIGITS: i64 = 1_000_000_000_000;
+    let place = k.mul(c.recip()).neg();
+    match place {
+        Number::Exact(r) if !r.is_zero() && !c.abs().is_one() && DIGITS % r.denominator() == 0 => Some(place),
+        _ => None,
     }
 }

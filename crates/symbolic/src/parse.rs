@@ -39,7 +39,7 @@ impl Graph {
     pub fn parse_number(&self, text: &str, scope: &dyn Scope) -> Result<Expr, ParseError> {
         let value = self.parse_value(text, scope)?;
         let kind = ParseErrorKind::NotANumber { found: value.shape() };
-        let whole = || ParseError { kind, text: text.to_owned(), offset: 0, length: text.len() };
+        let whole = || ParseError { kind, text: text.to_owned(), offset: 0, length: text.len(), also: Vec::new() };
         value.scalar().ok_or_else(whole)
     }
 
@@ -55,13 +55,28 @@ impl Graph {
     /// A [`ParseError`] with the place and, where there is one, a hint.
     pub fn parse_value(&self, text: &str, scope: &dyn Scope) -> Result<Value, ParseError> {
         let start = Spanned { token: Token::End, start: 0, end: 0 };
-        let mut parser = Parser { graph: self, text, scope, next: start, last: 0, depth: 0 };
-        parser.formula().map_err(|fault| ParseError {
-            kind: fault.kind,
+        let mut parser = Parser { graph: self, text, scope, next: start, last: 0, depth: 0, faults: Vec::new() };
+        let outcome = parser.formula();
+        let mut faults = std::mem::take(&mut parser.faults);
+        match outcome {
+            Ok(value) if faults.is_empty() => return Ok(value),
+            // what follows from a name that means nothing is no fault of its own
+            Err(fault) if faults.is_empty() || fault.kind.is_of_grammar() => faults.push(fault),
+            _ => {}
+        }
+        let told: Vec<ParseErrorKind> = faults.iter().map(|fault| fault.kind.clone()).collect();
+        let mut place = 0..;
+        faults.retain(|fault| place.next().is_some_and(|i| !told[..i].contains(&fault.kind)));
+        let error = |Fault { kind, start, end }| ParseError {
+            kind,
             text: text.to_owned(),
-            offset: fault.start,
-            length: fault.end - fault.start,
-        })
+            offset: start,
+            length: end - start,
+            also: Vec::new(),
+        };
+        let mut errors = faults.into_iter().map(error);
+        let first = errors.next().expect("there is a fault");
+        Err(ParseError { also: errors.collect(), ..first })
     }
 }
 
@@ -93,6 +108,8 @@ pub(crate) struct Parser<'a> {
     /// Where the token before `next` ends.
     pub(crate) last: usize,
     depth: usize,
+    /// Faults that leave the rest readable.
+    pub(crate) faults: Vec<Fault>,
 }
 
 impl<'a> Parser<'a> {
@@ -134,6 +151,12 @@ impl<'a> Parser<'a> {
     pub(crate) fn number(&self, value: &Value, start: usize, end: usize) -> Result<Expr, Fault> {
         let kind = || ParseErrorKind::NotANumber { found: value.shape() };
         value.scalar().ok_or_else(|| Fault { kind: kind(), start, end })
+    }
+
+    /// Something in the place of what cannot be read, for what comes after it.
+    pub(crate) fn unreadable(&mut self, fault: Fault) -> Value {
+        self.faults.push(fault);
+        Value::Scalar(self.graph.variable(self.graph.symbol("?")))
     }
 
     fn formula(&mut self) -> Result<Value, Fault> {
@@ -262,7 +285,7 @@ impl<'a> Parser<'a> {
         if negative && self.graph.is_zero(base) {
             return Err(Fault { kind: ParseErrorKind::DivisionByZero, start, end: self.last });
         }
-        self.finite(Value::Scalar(self.graph.pow(base, exponent)), start)
+        self.finite(Value::Scalar(self.graph.power_as_written(base, exponent)), start)
     }
 
     pub(crate) fn nested<T>(

@@ -25,6 +25,8 @@ pub struct ParseError {
     pub offset: usize,
     /// Length of the offending piece in bytes; 0 at the end of the text.
     pub length: usize,
+    /// What else is wrong, in the order of the text: names and calls, which leave the rest readable.
+    pub also: Vec<ParseError>,
 }
 
 /// What is wrong with a formula.
@@ -182,6 +184,25 @@ pub enum ParseErrorKind {
         /// The greatest accepted depth.
         limit: usize,
     },
+}
+
+impl ParseErrorKind {
+    /// Whether the text is no formula, whatever its names mean.
+    pub(crate) fn is_of_grammar(&self) -> bool {
+        use ParseErrorKind::*;
+        matches!(
+            self,
+            UnexpectedCharacter { .. }
+                | UnexpectedToken { .. }
+                | UnexpectedEnd { .. }
+                | UnclosedParenthesis
+                | UnmatchedParenthesis
+                | ImplicitMultiplication { .. }
+                | FunctionWithoutArgument { .. }
+                | NumberOutOfRange { .. }
+                | TooDeep { .. }
+        )
+    }
 }
 
 fn hinted(hint: Option<&str>) -> String {

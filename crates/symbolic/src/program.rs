@@ -16,6 +16,10 @@ pub(crate) enum Value {
     Recip(Id),
     Sqrt(Id),
     Call(Function, Id),
+    /// 1/(1 + exp(−a))
+    Logistic(Id),
+    /// 1/cosh a
+    Sech(Id),
     Add(Id, Id),
     Sub(Id, Id),
     Mul(Id, Id),
@@ -36,7 +40,13 @@ impl Value {
     pub(crate) fn operands(self) -> ([Id; 3], usize) {
         match self {
             Value::Input(_) | Value::Constant(_) => ([0; 3], 0),
-            Value::Neg(a) | Value::Square(a) | Value::Recip(a) | Value::Sqrt(a) | Value::Call(_, a) => ([a, 0, 0], 1),
+            Value::Neg(a)
+            | Value::Square(a)
+            | Value::Recip(a)
+            | Value::Sqrt(a)
+            | Value::Call(_, a)
+            | Value::Logistic(a)
+            | Value::Sech(a) => ([a, 0, 0], 1),
             Value::Add(a, b)
             | Value::Sub(a, b)
             | Value::Mul(a, b)

@@ -60,6 +60,14 @@ pub trait Scalar:
     fn atanh(self) -> Self;
     /// eˣ
     fn exp(self) -> Self;
+    /// 1/(1 + e⁻ˣ), between 0 and 1 for all x
+    fn logistic(self) -> Self {
+        Self::from_f64(1.0) / (Self::from_f64(1.0) + (-self).exp())
+    }
+    /// 1/cosh x, between 0 and 1 for all x
+    fn sech(self) -> Self {
+        Self::from_f64(1.0) / self.cosh()
+    }
     /// natural logarithm of x
     fn log(self) -> Self;
     /// x to a real power

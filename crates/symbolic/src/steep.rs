@@ -3,7 +3,7 @@
 use crate::arena::Node;
 use crate::number::Rational;
 use crate::{Expr, Function, Graph, Range, Symbol};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::{BTreeSet, HashMap};
 
 /// A call `F(x)` that is nearly constant but for a part of its arguments.
@@ -86,17 +86,22 @@ impl Graph {
         let mut found = Found::new();
         let mut ranges = FxHashMap::default();
         let mut range = |e: Expr| self.range_among(e, known, &mut ranges);
-        let reached = self.arena.borrow().reachable(es, |_| true);
-        for e in reached {
+        let (mut pending, mut seen) = (es.to_vec(), FxHashSet::default());
+        while let Some(e) = pending.pop() {
+            if !seen.insert(e) {
+                continue;
+            }
             let node = self.arena.borrow().node(e).clone();
+            if let Node::Product(factors) = node {
+                self.steep_product(&factors, &mut range, &mut found, &mut pending);
+                continue;
+            }
+            node.each_child(|child| pending.push(child));
             match node {
                 Node::Call(Function::Tanh, x) => found.extend([(x, Kind::Tanh)]),
                 Node::Call(Function::Exp, x) => found.extend([(x, Kind::Exp)]),
                 Node::Call(Function::Atan | Function::Asinh, x) => found.extend([(x, Kind::Arctangent)]),
                 Node::Atan2(y, x) => found.extend([(self.add(self.powi(x, 2), self.powi(y, 2)), Kind::Root)]),
-                Node::Product(factors) => {
-                    factors.iter().for_each(|(b, r)| self.steep_power(*b, *r, &mut range, &mut found))
-                }
                 Node::Power(base, exponent) => {
                     self.steep_power(base, Rational::integer(-1), &mut range, &mut found);
                     if range(base).low > 0.0 {
@@ -118,6 +123,39 @@ impl Graph {
             .filter(|(x, _)| varies(x))
             .map(|(argument, kind)| Steep { function: kind.function(), argument, gauge: kind.gauge() })
             .collect()
+    }
+
+    /// Of factors that overflow together, so that the product does not, only the unit is steep, like a `tanh`.
+    fn steep_product(
+        &self,
+        factors: &[(Expr, Rational)],
+        range: &mut impl FnMut(Expr) -> Range,
+        found: &mut Found,
+        pending: &mut Vec<Expr>,
+    ) {
+        let mut open = vec![true; factors.len()];
+        let groups = self.arena.borrow().saturating_groups(factors);
+        for group in groups.iter().filter(|group| group.is_bounded()) {
+            let (unit, part) = group.unit;
+            for n in [1, group.multiple()] {
+                found.insert((self.mul(self.ratio(n, part), unit), Kind::Tanh));
+            }
+            pending.push(unit);
+            for factor in &group.factors {
+                open[factor.place] = false;
+                for (base, exponent) in factor.terms.iter().flat_map(|term| &term.rest) {
+                    self.steep_power(*base, *exponent, range, found);
+                    pending.push(*base);
+                }
+                if factor.terms.iter().any(|term| !term.rest.is_empty()) {
+                    self.steep_power(factors[factor.place].0, factor.exponent, range, found);
+                }
+            }
+        }
+        for ((base, exponent), _) in factors.iter().zip(open).filter(|(_, open)| *open) {
+            self.steep_power(*base, *exponent, range, found);
+            pending.push(*base);
+        }
     }
 
     fn steep_power(&self, base: Expr, exponent: Rational, range: &mut impl FnMut(Expr) -> Range, found: &mut Found) {

@@ -17,6 +17,8 @@ enum Instruction {
     Recip(Register, Register),
     Sqrt(Register, Register),
     Call(Function, Register, Register),
+    Logistic(Register, Register),
+    Sech(Register, Register),
     /// (sine, cosine, angle)
     SinCos(Register, Register, Register),
     Add(Register, Register, Register),
@@ -296,6 +298,8 @@ impl Assembly<'_> {
             Value::Recip(a) => Instruction::Recip(to, at(a)),
             Value::Sqrt(a) => Instruction::Sqrt(to, at(a)),
             Value::Call(f, a) => Instruction::Call(f, to, at(a)),
+            Value::Logistic(a) => Instruction::Logistic(to, at(a)),
+            Value::Sech(a) => Instruction::Sech(to, at(a)),
             Value::Add(a, b) => Instruction::Add(to, at(a), at(b)),
             Value::Sub(a, b) => Instruction::Sub(to, at(a), at(b)),
             Value::Mul(a, b) => Instruction::Mul(to, at(a), at(b)),
@@ -320,6 +324,8 @@ fn run<T: Scalar>(instructions: &[Instruction], r: &mut [T]) {
             Instruction::Recip(to, a) => r[to as usize] = T::from_f64(1.0) / r[a as usize],
             Instruction::Sqrt(to, a) => r[to as usize] = r[a as usize].sqrt(),
             Instruction::Call(f, to, a) => r[to as usize] = f.apply(r[a as usize]),
+            Instruction::Logistic(to, a) => r[to as usize] = r[a as usize].logistic(),
+            Instruction::Sech(to, a) => r[to as usize] = r[a as usize].sech(),
             Instruction::SinCos(sine, cosine, a) => {
                 (r[sine as usize], r[cosine as usize]) = r[a as usize].sin_cos();
             }

@@ -3,6 +3,7 @@
 mod algebra;
 mod evaluation;
 mod properties;
+mod saturation;
 mod series;
 mod text;
 mod vectors;

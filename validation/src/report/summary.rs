@@ -1,5 +1,7 @@
 //! A comparison for a terminal: three lines, two small tables, the gaps over time.
 
+use std::fmt::Write;
+
 use anyhow::Result;
 use deltaq::{Comparison, Ending, Pair, Verdict, error_estimate, setting};
 
@@ -78,7 +80,10 @@ fn pairs(comparison: &Comparison) -> String {
     let counts = ["same", "different", "undecided"].map(|verdict| (count(verdict), verdict));
     let counts: Vec<String> =
         counts.iter().filter(|(n, _)| *n > 0).map(|(n, verdict)| format!("{n} {verdict}")).collect();
-    let rest = if others.is_empty() { String::new() } else { format!("   of the others: {}\n", counts.join(", ")) };
+    let mut rest = if others.is_empty() { String::new() } else { format!("   of the others: {}\n", counts.join(", ")) };
+    for pair in others.iter().filter(|p| p.gap.verdict != Verdict::Same) {
+        let _ = writeln!(rest, "      {}: {} – {}", pair.gap.verdict.word(), label(pair.first), label(pair.second));
+    }
     let table = if shown.is_empty() { String::new() } else { aligned(&table) };
     table + &rest
 }

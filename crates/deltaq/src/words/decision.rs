@@ -50,11 +50,13 @@ pub fn decisions(comparison: &Comparison) -> Vec<[String; 4]> {
 /// The set of values of the constants `c` that was found.
 fn constants(membership: &Membership, c: &str) -> String {
     let set = &membership.decision.set;
-    let point: Vec<String> = set.point.iter().map(|c| precise(*c)).collect();
+    // last digits of the others are no number
+    let noise = 8.0 * f64::EPSILON * set.point.iter().fold(1.0_f64, |size, c| size.max(c.abs()));
+    let point: Vec<String> = set.point.iter().map(|c| precise(if c.abs() <= noise { 0.0 } else { *c })).collect();
     match set.dimension() {
         0 => format!("{c} = ({})", point.join(", ")),
         d if d == membership.decision.constants.len() => format!("every {c}"),
-        d => format!("every {c} of a set of dimension {d} around ({})", point.join(", ")),
+        d => format!("every {c} of a set of dimension {d} through ({})", point.join(", ")),
     }
 }
 

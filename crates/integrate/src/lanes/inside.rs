@@ -26,7 +26,7 @@ impl<P: LaneProblem> Lanes<'_, P> {
             place = place.map(|place| (place + GOLDEN).fract());
             let t: Lane = from_fn(|l| self.t[l] + place[l] * self.taken[l]);
             let theta: Lane = from_fn(|l| self.taken[l] / self.unit[l]);
-            let share: Lane = from_fn(|l| place[l] * theta[l]);
+            let share: Lane = from_fn(|l| (t[l] - self.t[l]) / self.unit[l]);
             let inner = self.inner.iter_mut().zip(&mut self.inner_slope);
             let rows = inner.zip(self.coefficients.chunks_exact(self.orders));
             pulp::Arch::new().dispatch(

@@ -36,7 +36,7 @@ impl std::fmt::Display for Quantity {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StartError {
     /// The given velocities and the constraints leave some velocities open.
-    #[error("too few start velocities: {} not determined by the given ones and the constraints", listed(.velocities))]
+    #[error("too few start velocities: {} not determined by the given ones and the constraints; give more under [start.velocities], as in {}", listed(.velocities), lines(.velocities))]
     Undetermined {
         /// Velocities of which more have to be given.
         velocities: Vec<String>,
@@ -82,8 +82,11 @@ pub enum StartError {
         points: usize,
     },
     /// `A` has no full row rank.
-    #[error("the constraints are dependent at the start: smallest singular value of the scaled constraint Jacobian {ratio:.1e} of the largest, limit {limit:.0e} (singular values {})", values(.singular_values))]
+    #[error("the constraints are dependent at the start: smallest singular value of the scaled constraint Jacobian {ratio:.1e} of the largest, limit {limit:.0e} (singular values {}){}", values(.singular_values), redundant(.combination))]
     DependentConstraints {
+        /// The combination of constraints whose derivatives by the velocities vanish: numbers of constraints, from
+        /// 1, with their factors; empty where a constraint has none by itself.
+        combination: Vec<(usize, f64)>,
         /// Singular values of the scaled `A`, falling.
         singular_values: Vec<f64>,
         /// Smallest over largest.
@@ -157,5 +160,28 @@ pub(super) fn check_lengths(system: &System, state: &State) -> Result<(), StartE
     match [state.q.len(), state.v.len()].into_iter().find(|&found| found != expected) {
         Some(found) => Err(StartError::WrongLength { found, expected }),
         None => Ok(()),
+    }
+}
+
+/// Lines that give velocities.
+fn lines(velocities: &[String]) -> String {
+    velocities.first().map_or_else(String::new, |name| format!("`\"{name}\" = 0`"))
+}
+
+/// A combination in words, and what to do about it.
+fn redundant(combination: &[(usize, f64)]) -> String {
+    match combination {
+        [] => String::new(),
+        [(only, _)] => format!("; constraint {only} does not depend on the velocities there"),
+        several => {
+            let term = |(number, factor): &(usize, f64)| format!("{factor:.3} × constraint {number}");
+            let sum: Vec<String> = several.iter().map(term).collect();
+            let numbers: Vec<String> = several.iter().map(|(number, _)| number.to_string()).collect();
+            let sum = sum.join(" + ").replace("+ -", "− ");
+            format!(
+                "; there {sum} does not depend on the velocities: drop one of constraints {}, or replace them by independent combinations, such as their components along two directions",
+                numbers.join(", ")
+            )
+        }
     }
 }

@@ -140,7 +140,20 @@ impl ScaledMatrices {
         if ratio > SINGULAR_LIMIT {
             return Ok(ratio);
         }
-        Err(StartError::DependentConstraints { singular_values, ratio, limit: SINGULAR_LIMIT })
+        let combination = self.redundant()?;
+        Err(StartError::DependentConstraints { combination, singular_values, ratio, limit: SINGULAR_LIMIT })
+    }
+
+    /// The combination of constraints of which the least is left, the largest factor 1; small ones left out.
+    fn redundant(&self) -> Result<Vec<(usize, f64)>, StartError> {
+        const PART: f64 = 1e-6;
+        let product = &self.constraint_jacobian * self.constraint_jacobian.transpose();
+        let right = decompose(&product)?.right;
+        let last = right.row(right.nrows() - 1);
+        let of_rows: Vec<f64> = last.iter().zip(self.rows.iter()).map(|(x, row)| x * row).collect();
+        let largest = of_rows.iter().copied().fold(0.0_f64, |a, x| if x.abs() > a.abs() { x } else { a });
+        let factors = of_rows.iter().map(|x| x / largest).enumerate();
+        Ok(factors.filter(|(_, x)| x.abs() > PART).map(|(i, x)| (i + 1, x)).collect())
     }
 
     /// Whether the circles of Gershgorin tell that `M`, and with it `NᵀMN`, is far from singular.

@@ -82,7 +82,7 @@ impl Scalar for Lanes {
         (Lanes(both.map(|x| x.0)), Lanes(both.map(|x| x.1)))
     }
 
-    functions!(sin cos tan sinh cosh tanh asin acos atan asinh acosh atanh exp log);
+    functions!(sin cos tan sinh cosh tanh asin acos atan asinh acosh atanh exp logistic sech log);
 
     fn powf(self, exponent: Lanes) -> Lanes {
         self.zip(exponent, f64::powf)

@@ -52,7 +52,7 @@ impl Builder<'_> {
                 Value::Recip(b) if self.is_line(b) => {}
                 Value::Mul(a, b) if self.is_line(a) => factor[b as usize] += 1,
                 Value::Mul(a, b) if self.is_line(b) => factor[a as usize] += 1,
-                Value::Call(..) if integrated[id] => {}
+                Value::Call(..) | Value::Logistic(_) | Value::Sech(_) if integrated[id] => {}
                 _ => {
                     let (operands, count) = value.operands();
                     for o in &operands[..count] {

@@ -17,6 +17,8 @@ impl Builder<'_> {
             Value::Recip(b) => self.quotient(id, None, b),
             Value::Sqrt(a) => self.square_root(id, a),
             Value::Call(function, a) => self.call(id, function, a),
+            Value::Logistic(a) => self.logistic(id, a),
+            Value::Sech(a) => self.hyperbolic_secant(id, a),
             Value::Pow(a, b) => self.power(id, a, b),
             Value::Atan2(y, x) => self.angle(id, y, x),
             Value::Constant(_) | Value::MulAdd(..) | Value::MulSub(..) | Value::NegMulAdd(..) | Value::Mul3(..) => {
@@ -69,7 +71,7 @@ impl Builder<'_> {
 
     fn call(&mut self, id: Id, function: Function, a: Id) -> Row {
         use Function::*;
-        if self.integrated.iter().any(|i| i.id == id) {
+        if self.is_integrated(id) {
             return self.fresh(Some(id));
         }
         match function {
@@ -144,6 +146,52 @@ impl Builder<'_> {
         self.absorb(&mut sum, u, self.one, true);
         self.definitions.push((of_u, sum));
         row
+    }
+
+    /// s' = a' p, p = s σ(−a) = s − s²
+    fn logistic(&mut self, id: Id, a: Id) -> Row {
+        if self.is_integrated(id) {
+            return self.fresh(Some(id));
+        }
+        let argument = self.row(a);
+        let opposite = self.minus(a);
+        let other = self.push(Value::Logistic(opposite));
+        let p = self.push(Value::Mul(id, other));
+        let square = self.push(Value::Square(id));
+        let difference = self.push(Value::Sub(id, square));
+        self.with_hidden(id, argument, p, difference, self.one)
+    }
+
+    /// y' = −a' p, p = y tanh a
+    fn hyperbolic_secant(&mut self, id: Id, a: Id) -> Row {
+        if self.is_integrated(id) {
+            return self.fresh(Some(id));
+        }
+        let argument = self.row(a);
+        let tanh = self.push(Value::Call(Function::Tanh, a));
+        self.row(tanh);
+        let p = self.push(Value::Mul(id, tanh));
+        let minus_one = self.number(-1);
+        self.with_hidden(id, argument, p, p, minus_one)
+    }
+
+    /// x' = sign · a' p for a hidden `p`, whose orders from the first on are those of `moving`.
+    fn with_hidden(&mut self, id: Id, argument: Row, p: Id, moving: Id, sign: Id) -> Row {
+        let slope = self.slope(argument);
+        let row = self.fresh(Some(id));
+        let of_p = self.fresh(Some(p));
+        let weight = self.times(sign, p);
+        let sum =
+            Sum { terms: vec![Part::of(weight, argument)], pairs_over_k: vec![(sign, slope, of_p)], ..Sum::default() };
+        self.definitions.push((row, sum));
+        let mut sum = Sum::default();
+        self.absorb(&mut sum, moving, self.one, true);
+        self.definitions.push((of_p, sum));
+        row
+    }
+
+    fn is_integrated(&self, id: Id) -> bool {
+        self.integrated.iter().any(|i| i.id == id)
     }
 
     /// x' d = sign · a'

@@ -90,11 +90,11 @@ impl Builder<'_> {
             let value = self.program.value(id);
             let (operands, count) = value.operands();
             pending.extend(&operands[..count]);
-            let Value::Call(function, a) = value else { continue };
+            let (Value::Call(_, a) | Value::Logistic(a) | Value::Sech(a)) = value else { continue };
             if !matches!(self.motions[a as usize], Motion::Line | Motion::Combination) {
                 continue;
             }
-            let Some((sign, derivative)) = self.derivative(id, function, a) else { continue };
+            let Some((sign, derivative)) = self.derivative(id, value, a) else { continue };
             let slope = self.rate(a);
             let (factor, rate) = match self.multiple(slope) {
                 _ if !self.varies(slope) => (self.times(sign, slope), derivative),
@@ -107,9 +107,21 @@ impl Builder<'_> {
     }
 
     /// The derivative of a function by its argument: a number and a value that varies.
-    fn derivative(&mut self, id: Id, function: Function, a: Id) -> Option<(Id, Id)> {
+    fn derivative(&mut self, id: Id, of: Value, a: Id) -> Option<(Id, Id)> {
         use Function::*;
         let (one, minus_one) = (self.one, self.number(-1));
+        let function = match of {
+            Value::Call(function, _) => function,
+            Value::Logistic(_) => {
+                let opposite = self.minus(a);
+                let other = self.push(Value::Logistic(opposite));
+                return Some((one, self.push(Value::Mul(id, other))));
+            }
+            _ => {
+                let tanh = self.push(Value::Call(Tanh, a));
+                return Some((minus_one, self.push(Value::Mul(id, tanh))));
+            }
+        };
         let value = match function {
             Sin => Value::Call(Cos, a),
             Cos => Value::Call(Sin, a),
