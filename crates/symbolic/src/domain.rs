@@ -1,13 +1,13 @@
 //! Where formulas have values as they were written, though a simpler form has them elsewhere, too.
 
-use crate::{Expr, Function, Graph, Range};
+use crate::{Expr, Fraction, Function, Graph, Range};
 use std::collections::HashMap;
 
 impl Graph {
     /// [`Graph::pow`] of a formula that is read.
     pub(crate) fn power_as_written(&self, base: Expr, exponent: Expr) -> Expr {
         let power = self.pow(base, exponent);
-        if self.as_ratio(exponent).is_none_or(|(_, denominator)| denominator != 1) {
+        if self.as_fraction(exponent).and_then(Fraction::plain).is_none_or(|(_, d)| d != 1) {
             self.arena.borrow_mut().domains.insert((base, power));
         }
         power
