@@ -57,6 +57,18 @@ class Series:
             c.append(-c[0] * sum(map(mul, self.c[1 : k + 1], c[::-1])))
         return self.chain(c, [-x for x in convolved(c, c)])
 
+    def sqrt(self):
+        c = [self.c[0].sqrt()]
+        for k in range(1, len(self.c)):
+            c.append((self.c[k] - sum(map(mul, c[1:k], c[:0:-1]))) / (2 * c[0]))
+        return self.chain(c, [x / 2 for x in Series(c).inverse().c])
+
+    def exp(self):
+        c = [self.c[0].exp()]
+        for k in range(1, len(self.c)):
+            c.append(sum(j * self.c[j] * c[k - j] for j in range(1, k + 1)) / k)
+        return self.chain(c, c)
+
     __radd__, __rmul__ = __add__, __mul__
     __neg__, __sub__, __rsub__ = lambda self: self * -1, lambda self, x: self + -x, lambda self, x: -self + x
     __truediv__ = lambda self, x: self * (x.inverse() if isinstance(x, Series) else 1 / x)
@@ -95,6 +107,13 @@ class Algebra:
 
     def sqrt(self, x):
         return x.sqrt()
+
+    def exp(self, x):
+        return x.exp()
+
+    def tanh(self, x):
+        twice = self.exp(2 * x)
+        return (twice - 1) / (twice + 1)
 
     def power(self, x, n):
         if not isinstance(x, Series):

@@ -65,7 +65,9 @@ impl Sums {
             let scale = if noise > 0.0 { power(own / noise) } else { 1.0 };
             let norm = triangle.column(k).norm();
             let size = if norm > CERTAIN * noise { norm } else { norm.max(finite(self.terms[k])) };
-            Column { scale, noise: noise * scale, size: size * scale }
+            // an effect that is round-off of the motion hides none
+            let size = if size > ROUND_OFF * terms { size * scale } else { f64::INFINITY };
+            Column { scale, noise: noise * scale, size }
         });
         (sizes(own), columns.collect())
     }

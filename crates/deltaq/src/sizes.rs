@@ -24,8 +24,8 @@ const SEEN: f64 = 1.0 / (1 << 30) as f64;
 ///
 /// What is zero or round-off has the size that changes a coordinate by as much as the energy allows it within
 /// `τ`, `|M_ii| Δqᵢ² = E τ²` with `E = max(vᵀ|M|v, τ² v̇ᵀ|M|v̇)`, or as the largest one in its unit moves, if that
-/// is less; or else a velocity, `Δqᵢ/τ`. A state that neither depends on has the size that changes those that
-/// have one by it within `τ`; 1 where nothing does.
+/// is less; or else a velocity, `Δqᵢ/τ`. A state that neither depends on has the size that the others give it
+/// within `τ`; or else the one that changes theirs by as much; 1 where nothing does.
 pub(crate) fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], length: f64) -> Vec<f64> {
     let mut rates = vec![0.0; y.len()];
     let found = compiled.rates(t, y, &mut rates).and_then(|()| compiled.outputs(t, y));
@@ -90,11 +90,30 @@ impl Probe<'_> {
         for j in 0..sizes.len() {
             sizes[j] = self.moved(j, time, &mut share).unwrap_or(0.0);
         }
-        // what velocities and coordinates do not depend on, by those rates that do
+        let driven = self.driven(&sizes, time);
+        sizes.iter_mut().zip(driven).filter(|(size, _)| **size == 0.0).for_each(|(size, driven)| *size = driven);
+        // what neither depends on the others nor moves, by what it does to them
         while let Some(found) = self.behind(&sizes, time) {
             sizes = found;
         }
         sizes
+    }
+
+    /// What the states that have a size make of each within a time, all moved by a part of it, up or down.
+    fn driven(&mut self, sizes: &[f64], time: f64) -> Vec<f64> {
+        let mut driven = vec![0.0_f64; sizes.len()];
+        for pattern in 1..=2 {
+            let by = |(i, (y, size)): (usize, (&f64, &f64))| {
+                let part = if (i + 1) * (pattern + 1) % 5 % 2 == 0 { MOVE } else { -MOVE };
+                y + part * size.max(if *size > 0.0 { self.reach(i, time) } else { 0.0 })
+            };
+            let moved: Vec<f64> = self.y.iter().zip(sizes).enumerate().map(by).collect();
+            let Some(there) = self.rates_at(self.t, &moved) else { continue };
+            for (largest, change) in driven.iter_mut().zip(seen(&there, &self.rates)) {
+                *largest = largest.max((change * time / MOVE).abs());
+            }
+        }
+        driven
     }
 
     /// What coordinates and velocities may come to within a time; 0 where nothing tells.
@@ -122,7 +141,7 @@ impl Probe<'_> {
     /// The sizes with those that rates of sized states tell; `None` if there are no more.
     fn behind(&mut self, sizes: &[f64], time: f64) -> Option<Vec<f64>> {
         let mut found = sizes.to_vec();
-        for j in (0..sizes.len()).filter(|&j| sizes[j] == 0.0) {
+        for j in (0..sizes.len()).filter(|&j| sizes[j] == 0.0 && self.reach(j, time) == 0.0).collect::<Vec<_>>() {
             let mut share = |probe: &mut Self, y: &[f64]| {
                 let there = probe.rates_at(probe.t, y)?;
                 let changes: Vec<f64> = seen(&there, &probe.rates).iter().map(|change| change * time).collect();

@@ -59,13 +59,22 @@ const OWN: [(&str, &str); 5] = [
 ];
 
 /// Faults that no judge can notice: the end of the path, the line, what goes wrong there, the reason.
-const EXPLAINED: [[&str; 4]; 1] = [[
-    "mechanics/src/automatic_removal.rs",
-    "let denominator = g.product(&g.denominators(&entries));",
-    "factor dropped",
-    "u' times a function of q is the rate of another parameter of the same directions; that this one needs no \
-     chart is shown by the example of the function",
-]];
+const EXPLAINED: [[&str; 4]; 2] = [
+    [
+        "mechanics/src/automatic_removal.rs",
+        "let denominator = g.product(&g.denominators(&entries));",
+        "factor dropped",
+        "u' times a function of q is the rate of another parameter of the same directions; that this one needs no \
+         chart is shown by the example of the function",
+    ],
+    [
+        "mechanics/src/speeds.rs",
+        "let mass = number(g.derivative(g.derivative(system.lagrangian, v), v)).abs();",
+        "derivative left out",
+        "which velocities are solved for is a choice, and every regular one gives a removal; that it does not \
+         depend on units is shown by `units_change_no_word`",
+    ],
+];
 
 /// Faults tried on one road, of those of one place; `FAULTS_A_PLACE=N` tries more, or all.
 const A_PLACE: usize = 6;

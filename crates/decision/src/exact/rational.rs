@@ -189,7 +189,7 @@ mod tests {
             let g = symbolic::Graph::new();
             Exact::of_formula(g.as_fraction(g.parse(text, &|_| None, &[]).unwrap()).unwrap())
         };
-        assert_eq!(Exact::of(2.5e-60).map(|x| x.to_string()), Ok("5/(2*10^60)".into()));
+        assert_eq!(Exact::of(2.5e-60).map(|x| x.to_string()), Ok("1/(4*10^59)".into()));
         let of = |n, d, turns| Ok(Exact { turns, ..Exact::ratio(n, d).unwrap() });
         assert_eq!(read("30*pi/180"), of(0, 1, PARTS / 6));
         assert_eq!(read("pi + 1/3"), of(1, 3, PARTS));
