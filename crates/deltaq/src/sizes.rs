@@ -81,15 +81,13 @@ impl Probe<'_> {
     /// The sizes that the energy tells; 0 where it tells none.
     fn of_energy(&mut self, time: f64) -> Vec<f64> {
         let (place, velocity) = self.likely(time.abs());
-        let mut sizes = vec![0.0; self.y.len()];
         let mut share = |probe: &mut Self, y: &[f64]| {
             let there = probe.compiled.outputs(probe.t, y).ok()?;
             let places = largest_part(&seen(&there.coordinates, &probe.here.coordinates), &place);
             places.or_else(|| largest_part(&seen(&there.velocities, &probe.here.velocities), &velocity))
         };
-        for j in 0..sizes.len() {
-            sizes[j] = self.moved(j, time, &mut share).unwrap_or(0.0);
-        }
+        let moved = (0..self.y.len()).map(|j| self.moved(j, time, &mut share).unwrap_or(0.0));
+        let mut sizes: Vec<f64> = moved.collect();
         let driven = self.driven(&sizes, time);
         sizes.iter_mut().zip(driven).filter(|(size, _)| **size == 0.0).for_each(|(size, driven)| *size = driven);
         // what neither depends on the others nor moves, by what it does to them

@@ -123,7 +123,7 @@ impl Fraction {
     }
 
     /// The sum, where it fits.
-    pub fn add(self, other: Self) -> Option<Self> {
+    pub fn checked_add(self, other: Self) -> Option<Self> {
         if let (Some((a, b)), Some((c, d))) = (self.plain(), other.plain()) {
             let cross = a.checked_mul(d).zip(c.checked_mul(b)).and_then(|(x, y)| x.checked_add(y));
             if let Some((n, d)) = cross.zip(b.checked_mul(d)) {
@@ -141,7 +141,7 @@ impl Fraction {
     }
 
     /// The product, where it fits.
-    pub fn mul(self, other: Self) -> Option<Self> {
+    pub fn checked_mul(self, other: Self) -> Option<Self> {
         if let (Some((a, b)), Some((c, d))) = (self.plain(), other.plain())
             && let Some((n, d)) = a.checked_mul(c).zip(b.checked_mul(d))
         {
@@ -156,7 +156,7 @@ impl Fraction {
 
     /// The negative.
     #[must_use]
-    pub fn neg(self) -> Self {
+    pub fn minus(self) -> Self {
         Fraction { numerator: -self.numerator, ..self }
     }
 
@@ -242,16 +242,16 @@ mod tests {
     #[test]
     fn products_of_units_are_exact() {
         let (a, b) = (decimal("3e-45"), decimal("4e45"));
-        assert_eq!(a.mul(b), Fraction::new(12, 1));
-        assert_eq!(a.recip().unwrap().mul(Fraction::new(3, 1).unwrap()), Some(decimal("1e45")));
-        assert_eq!(decimal("1.5e-60").add(decimal("2.5e-60")), Some(decimal("4e-60")));
-        assert_eq!(decimal("1e-60").add(decimal("1")), None);
-        let third = Fraction::new(1, 3).unwrap().mul(decimal("1e-50")).unwrap();
-        assert_eq!(third.add(third).and_then(|x| x.add(third)), Some(decimal("1e-50")));
-        assert_eq!(third.powi(-3), Fraction::new(27, 1).and_then(|x| x.mul(decimal("1e150"))));
-        assert_eq!(third.add(third.neg()), Some(Fraction::ZERO));
+        assert_eq!(a.checked_mul(b), Fraction::new(12, 1));
+        assert_eq!(a.recip().unwrap().checked_mul(Fraction::new(3, 1).unwrap()), Some(decimal("1e45")));
+        assert_eq!(decimal("1.5e-60").checked_add(decimal("2.5e-60")), Some(decimal("4e-60")));
+        assert_eq!(decimal("1e-60").checked_add(decimal("1")), None);
+        let third = Fraction::new(1, 3).unwrap().checked_mul(decimal("1e-50")).unwrap();
+        assert_eq!(third.checked_add(third).and_then(|x| x.checked_add(third)), Some(decimal("1e-50")));
+        assert_eq!(third.powi(-3), Fraction::new(27, 1).and_then(|x| x.checked_mul(decimal("1e150"))));
+        assert_eq!(third.checked_add(third.minus()), Some(Fraction::ZERO));
         // one way to be written, wherever it comes from
-        assert_eq!(decimal("1e-40").mul(decimal("1e20")), Fraction::new(1, 10_i128.pow(20)));
+        assert_eq!(decimal("1e-40").checked_mul(decimal("1e20")), Fraction::new(1, 10_i128.pow(20)));
     }
 
     #[test]
@@ -260,7 +260,7 @@ mod tests {
             assert_eq!(decimal(text).to_f64().to_bits(), text.parse::<f64>().unwrap().to_bits(), "{text}");
         }
         assert_eq!(decimal("1e-400").to_f64(), 0.0);
-        let third = Fraction::new(1, 3).unwrap().mul(decimal("1e-50")).unwrap().to_f64();
+        let third = Fraction::new(1, 3).unwrap().checked_mul(decimal("1e-50")).unwrap().to_f64();
         assert!((third / (1e-50 / 3.0) - 1.0).abs() < 1e-14, "{third}");
         assert_eq!(Fraction::new(2, 1).unwrap().powi(-2000).unwrap().to_f64(), 0.0);
     }
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn text_is_read_back() {
         assert_eq!(decimal("7e-45").to_string(), "7/10^45");
-        assert_eq!(decimal("-7e-45").mul(Fraction::new(1, 3).unwrap()).unwrap().to_string(), "-7/(3*10^45)");
+        assert_eq!(decimal("-7e-45").checked_mul(Fraction::new(1, 3).unwrap()).unwrap().to_string(), "-7/(3*10^45)");
         assert_eq!(decimal("2.5e45").to_string(), "25*10^44");
         assert_eq!(decimal("1.5e-45").to_string(), "3/(2*10^45)");
         assert_eq!(Fraction::new(1, 3).unwrap().to_string(), "1/3");

@@ -302,14 +302,14 @@ impl Number {
         if self.is_zero() || other.is_zero() {
             return if self.is_zero() { other } else { self };
         }
-        self.combine(other, Rational::add, Fraction::add, |a, b| a + b)
+        self.combine(other, Rational::add, Fraction::checked_add, |a, b| a + b)
     }
 
     pub(crate) fn mul(self, other: Self) -> Self {
         if self.is_one() || other.is_one() {
             return if self.is_one() { other } else { self };
         }
-        self.combine(other, Rational::mul, Fraction::mul, |a, b| a * b)
+        self.combine(other, Rational::mul, Fraction::checked_mul, |a, b| a * b)
     }
 
     pub(crate) fn neg(self) -> Self {

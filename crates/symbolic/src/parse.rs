@@ -39,7 +39,7 @@ impl Graph {
     pub fn parse_number(&self, text: &str, scope: &dyn Scope) -> Result<Expr, ParseError> {
         let value = self.parse_value(text, scope)?;
         let kind = ParseErrorKind::NotANumber { found: value.shape() };
-        let whole = || ParseError { kind, text: text.to_owned(), offset: 0, length: text.len(), also: Vec::new() };
+        let whole = || ParseError { kind, text: text.into(), offset: 0, length: text.len(), also: Box::default() };
         value.scalar().ok_or_else(whole)
     }
 
@@ -69,10 +69,10 @@ impl Graph {
         faults.retain(|fault| place.next().is_some_and(|i| !told[..i].contains(&fault.kind)));
         let error = |Fault { kind, start, end }| ParseError {
             kind,
-            text: text.to_owned(),
+            text: text.into(),
             offset: start,
             length: end - start,
-            also: Vec::new(),
+            also: Box::default(),
         };
         let mut errors = faults.into_iter().map(error);
         let first = errors.next().expect("there is a fault");

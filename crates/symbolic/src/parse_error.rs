@@ -20,13 +20,13 @@ pub struct ParseError {
     /// What is wrong.
     pub kind: ParseErrorKind,
     /// The whole text that was read.
-    pub text: String,
+    pub text: Box<str>,
     /// Where the offending piece starts in `text`, in bytes.
     pub offset: usize,
     /// Length of the offending piece in bytes; 0 at the end of the text.
     pub length: usize,
     /// What else is wrong, in the order of the text: names and calls, which leave the rest readable.
-    pub also: Vec<ParseError>,
+    pub also: Box<[ParseError]>,
 }
 
 /// What is wrong with a formula.

@@ -97,8 +97,8 @@ impl Exact {
         }
         let part = Fraction::new(r.1, s.1).filter(|_| 2 * s.1 * s.1 <= below).ok_or(Flaw::Pi)?;
         // the fraction beside it
-        let pi = Fraction::new(above, below).and_then(|pi| part.mul(pi)).ok_or(Flaw::Pi)?;
-        let beside = x.add(pi.neg()).filter(|beside| beside.parts().1 % below != 0).ok_or(Flaw::Pi)?;
+        let pi = Fraction::new(above, below).and_then(|pi| part.checked_mul(pi)).ok_or(Flaw::Pi)?;
+        let beside = x.checked_add(pi.minus()).filter(|beside| beside.parts().1 % below != 0).ok_or(Flaw::Pi)?;
         Ok(Exact { fraction: beside, ..Self::of_pi(part)? })
     }
 
@@ -118,11 +118,11 @@ impl Exact {
 
     pub(crate) fn add(self, other: Self) -> Option<Self> {
         let turns = self.turns.checked_add(other.turns)?;
-        Some(Exact { fraction: self.fraction.add(other.fraction)?, turns })
+        Some(Exact { fraction: self.fraction.checked_add(other.fraction)?, turns })
     }
 
     pub(crate) fn neg(self) -> Self {
-        Exact { fraction: self.fraction.neg(), turns: -self.turns }
+        Exact { fraction: self.fraction.minus(), turns: -self.turns }
     }
 
     pub(crate) fn mul(self, other: Self) -> Option<Self> {
@@ -131,7 +131,7 @@ impl Exact {
             return None;
         }
         let turns = whole(factor.fraction, angle.turns)?;
-        Some(Exact { fraction: angle.fraction.mul(factor.fraction)?, turns })
+        Some(Exact { fraction: angle.fraction.checked_mul(factor.fraction)?, turns })
     }
 
     /// `None` for zero, and where π is in it.
@@ -146,7 +146,7 @@ impl Exact {
 
 /// `times · x`, where that is a moderate integer.
 fn whole(x: Fraction, times: i64) -> Option<i64> {
-    let (n, d) = Fraction::new(times.into(), 1)?.mul(x)?.plain()?;
+    let (n, d) = Fraction::new(times.into(), 1)?.checked_mul(x)?.plain()?;
     if d == 1 { i64::try_from(n).ok() } else { None }
 }
 
