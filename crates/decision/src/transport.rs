@@ -227,7 +227,14 @@ impl<'a> Transport<'a> {
     fn terms(&mut self, columns: &DMatrix<f64>, solved: &DMatrix<f64>) -> DMatrix<f64> {
         let shape = &self.family.shape;
         let (size, k, last) = (shape.unknowns, shape.costates, shape.constants);
-        let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let mut inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        // what vanishes along the curve is known to the digits of what moves there
+        let (start, end) = self.span();
+        let (n, time) = (shape.coordinates, (end - start).abs());
+        let of_velocities = inputs[self.family.parameters().len() + 1 + n..].iter_mut().take(n);
+        for (v, scale) in of_velocities.zip(&self.scales.coordinates) {
+            v.magnitude = v.magnitude.max(scale / time);
+        }
         let magnitudes: Vec<f64> = self.bounded.run(&inputs).iter().map(|x| x.magnitude).collect();
         let instant = shape.instant(&magnitudes);
         let mut right = DMatrix::from_row_slice(size, k, instant.by_costate) * columns.abs();

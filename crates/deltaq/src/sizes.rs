@@ -19,8 +19,9 @@ const MOVES: usize = 11;
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
 /// The size of each state at `(t, y)`, by which an absolute tolerance is multiplied: how large it is there,
-/// or becomes by its rate within the time `τ ≤ length` for which Euler's step is right. So it is in the
-/// state's own unit, and a motion of 10⁻¹² m is resolved as well as one of 1 m.
+/// or becomes by its rate within the time `τ ≤ length` for which Euler's step is right; within all the
+/// `length`, if that is no more than what follows. So it is in the state's own unit, and a motion of 10⁻¹² m
+/// is resolved as well as one of 1 m.
 ///
 /// What is zero or round-off has the size that changes a coordinate by as much as the energy allows it within
 /// `τ`, `|M_ii| Δqᵢ² = E τ²` with `E = max(vᵀ|M|v, τ² v̇ᵀ|M|v̇)`, or as the largest one in its unit moves, if that
@@ -38,9 +39,10 @@ pub(crate) fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f
     };
     let own: Vec<bool> = of_energy.iter().enumerate().map(|(i, size)| is_own(&probe, i, length, *size)).collect();
     let time = probe.time(length, &own);
-    let of_energy = if own.iter().all(|own| *own) { vec![0.0; y.len()] } else { probe.of_energy(time) };
+    let of_energy = probe.of_energy(time);
     let size = |(i, of_energy): (usize, f64)| {
-        let size = if is_own(&probe, i, time, of_energy) { probe.reach(i, time) } else { of_energy };
+        let far = probe.reach(i, length).min(of_energy);
+        let size = if is_own(&probe, i, time, of_energy) { probe.reach(i, time).max(far) } else { of_energy };
         if size > 0.0 && size.is_finite() { size } else { 1.0 }
     };
     of_energy.into_iter().enumerate().map(size).collect()

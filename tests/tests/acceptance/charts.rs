@@ -117,7 +117,7 @@ fn classic_systems_go_on_by_other_charts_as_with_multipliers() {
     ] {
         // from 0 the snakeboard comes to where its costates are not determined any more
         let costates =
-            if scene.name == "snakeboard" { vec![0.05, -0.03] } else { vec![0.0; scene.system.constraints.len()] };
+            if scene.name == "snakeboard" { vec![0.1, 0.1] } else { vec![0.0; scene.system.constraints.len()] };
         let (removal, mut motion) = removed(&scene, ConstantsRule::Given(costates.clone()));
         let mu0 = multipliers_of(&scene, &removal, &costates).unwrap().expect("coordinates");
         let equations = equations(&scene.system, "vakonomic", None);
