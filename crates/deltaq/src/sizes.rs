@@ -7,9 +7,8 @@ use crate::metric::subtract;
 
 /// A state under this part of the size that the energy tells is round-off.
 const NO_SIZE: f64 = 1e-14;
-/// Euler's step is tried from the length of the run over `LONGER^TRIES` on, each `LONGER` times the one before.
-const TRIES: i32 = 9;
-const LONGER: f64 = 8.0;
+/// A size over 1, and over this part of what the energy tells, is no size: runs may be long.
+const LARGE: f64 = 1e-4;
 /// States are moved by this part of their size to see what depends on them; those that tell none, by
 /// `LEAST` and so much more each time until something does.
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
@@ -18,34 +17,26 @@ const MOVES: usize = 11;
 /// What changes by less than this part of it does not depend on what was moved.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
-/// The size of each state at `(t, y)`, by which an absolute tolerance is multiplied: how large it is there,
-/// or becomes by its rate within the time `τ ≤ length` for which Euler's step is right; within all the
-/// `length`, if that is no more than what follows. So it is in the state's own unit, and a motion of 10⁻¹² m
-/// is resolved as well as one of 1 m.
+/// The size of each state at `(t, y)`, by which an absolute tolerance is multiplied: how large it is there, or
+/// becomes by its rate within the length of the run; at most 1, or where numbers are large at most 10⁻⁴ of
+/// what follows. So a motion of 10⁻¹² m is resolved as well as one of 1 m.
 ///
 /// What is zero or round-off has the size that changes a coordinate by as much as the energy allows it within
-/// `τ`, `|M_ii| Δqᵢ² = E τ²` with `E = max(vᵀ|M|v, τ² v̇ᵀ|M|v̇)`, or as the largest one in its unit moves, if that
-/// is less; or else a velocity, `Δqᵢ/τ`. A state that neither depends on has the size that the others give it
-/// within `τ`; or else the one that changes theirs by as much; 1 where nothing does.
+/// the length `T`, `|M_ii| Δqᵢ² = E T²` with `E = max(vᵀ|M|v, T² v̇ᵀ|M|v̇)`, or as the largest one in its unit
+/// moves, if that is less; or else a velocity, `Δqᵢ/T`. A state that neither depends on has the size that the
+/// others give it within `T`; or else the one that changes theirs by as much; 1 where nothing does.
 pub(crate) fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], length: f64) -> Vec<f64> {
     let mut rates = vec![0.0; y.len()];
     let found = compiled.rates(t, y, &mut rates).and_then(|()| compiled.outputs(t, y));
     let Ok(here) = found else { return vec![1.0; y.len()] };
     let mut probe = Probe { compiled, metric, t, y, rates, here };
-    let of_energy = probe.of_energy(length);
-    let is_own = |probe: &Probe, i: usize, time: f64, size: f64| {
-        let reach = probe.reach(i, time);
-        reach > 0.0 && reach > NO_SIZE * size
-    };
-    let own: Vec<bool> = of_energy.iter().enumerate().map(|(i, size)| is_own(&probe, i, length, *size)).collect();
-    let time = probe.time(length, &own);
-    let of_energy = probe.of_energy(time);
-    let size = |(i, of_energy): (usize, f64)| {
-        let far = probe.reach(i, length).min(of_energy);
-        let size = if is_own(&probe, i, time, of_energy) { probe.reach(i, time).max(far) } else { of_energy };
+    let size = |(reach, of_energy): (f64, f64)| {
+        let size = if reach > NO_SIZE * of_energy { reach } else { of_energy };
+        let size = size.min((LARGE * of_energy).max(1.0));
         if size > 0.0 && size.is_finite() { size } else { 1.0 }
     };
-    of_energy.into_iter().enumerate().map(size).collect()
+    let of_energy = probe.of_energy(length);
+    (0..y.len()).map(|i| probe.reach(i, length)).zip(of_energy).map(size).collect()
 }
 
 /// A start, and what is near it.
@@ -62,22 +53,6 @@ impl Probe<'_> {
     /// How large a state is or becomes within a time.
     fn reach(&self, i: usize, time: f64) -> f64 {
         self.y[i].abs().max((self.rates[i] * time).abs())
-    }
-
-    /// For how long Euler's step is right to the sizes that it has itself, in the states that have `own` ones.
-    fn time(&mut self, length: f64, own: &[bool]) -> f64 {
-        let mut step = length * LONGER.powi(-TRIES);
-        for _ in 0..TRIES {
-            let longer = step * LONGER;
-            let there = self.later(longer);
-            let Some(there) = self.rates_at(self.t + longer, &there) else { break };
-            let is_right = |i: usize| ((there[i] - self.rates[i]) * longer).abs() <= self.reach(i, longer);
-            if !(0..self.y.len()).filter(|&i| own[i]).all(is_right) {
-                break;
-            }
-            step = longer;
-        }
-        step
     }
 
     /// The sizes that the energy tells; 0 where it tells none.
