@@ -11,7 +11,8 @@ use validation::catalogue;
 
 /// Units in those of the scene, powers of ten.
 const UNITS: [i32; 5] = [-9, -3, 0, 3, 9];
-/// One choice of units in so many is drawn; `UNITS=1` takes all, `UNITS_OF_MOTIONS=1` for verdicts on motions.
+/// One choice of units in so many is drawn; `UNITS=1` takes all, `UNITS_OF_MOTIONS=1` for verdicts on
+/// motions.
 const ONE_IN: usize = 10;
 /// The answer of one scene takes a second: its brackets are too long.
 const LONG: (&str, usize) = ("bicycle", 60);

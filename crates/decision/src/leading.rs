@@ -26,7 +26,8 @@ pub struct LeadingDifference {
     pub exponent: usize,
     /// `y_k / ((k + 1)(k + 2))`, length n.
     pub coefficient: Vec<f64>,
-    /// The time after which a later term of `y` is longer than this one, by `M`; 0 where that tells no length.
+    /// The time after which a later term of `y` is longer than this one, by `M`; 0 where that tells no
+    /// length.
     pub reach: f64,
     /// Whether the exponent is that of the numbers as written: the image of its coefficient is not zero, and
     /// those of all lower ones are zero in two fields.

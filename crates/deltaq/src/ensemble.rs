@@ -56,8 +56,8 @@ pub struct Ensemble {
     metric: Metric,
     /// The equations once more, in whose words a member says why it stopped: for all threads.
     words: Arc<Mutex<Equations>>,
-    /// The same in multipliers, where pivots were chosen at the scene's own values of what varies: for members
-    /// at whose values they vanish.
+    /// The same in multipliers, where pivots were chosen at the scene's own values of what varies: for
+    /// members at whose values they vanish.
     without_pivots: Option<Box<Ensemble>>,
 }
 

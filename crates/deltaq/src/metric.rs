@@ -110,8 +110,8 @@ impl Metric {
         }
     }
 
-    /// What the round-off of each coordinate is a part of: its own size; where that is less, the largest one in
-    /// its unit, or the way of that kinetic length in it, whichever is less.
+    /// What the round-off of each coordinate is a part of: its own size; where that is less, the largest
+    /// one in its unit, or the way of that kinetic length in it, whichever is less.
     pub(crate) fn round_off_sizes(&self, inertia: &[f64], sizes: &[f64], length: f64) -> Vec<f64> {
         let is_alone = |i: usize| (0..sizes.len()).all(|j| j == i || self.units[j] != self.units[i]);
         let others = |i: usize| if is_alone(i) { vec![0.0; sizes.len()] } else { sizes.to_vec() };
@@ -119,8 +119,8 @@ impl Metric {
         (0..sizes.len()).map(size).collect()
     }
 
-    /// What a coordinate may come to that tells no size itself: the largest of `sizes` in its unit, or the way
-    /// of that kinetic length in it, whichever is less.
+    /// What a coordinate may come to that tells no size itself: the largest of `sizes` in its unit, or the
+    /// way of that kinetic length in it, whichever is less.
     pub(crate) fn likely_size(&self, i: usize, inertia: &[f64], sizes: &[f64], length: f64) -> Option<f64> {
         let same_unit = (0..sizes.len()).filter(|&j| self.units[j] == self.units[i]).map(|j| sizes[j]);
         let way = inertia.get(i).map(|unit| length / unit);

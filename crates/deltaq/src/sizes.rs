@@ -7,8 +7,9 @@ use crate::metric::subtract;
 
 /// A state under this part of the size that the energy tells is round-off.
 const NO_SIZE: f64 = 1e-14;
-/// A size over 1, and over this part of what the energy tells, is no size: runs may be long.
-const LARGE: f64 = 1e-4;
+/// A size over 1, and over this part of what the energy tells, is no size: runs may be long. So much of what
+/// forces would do within the run without a change counts as energy.
+const LARGE: f64 = 1e-5;
 /// States are moved by this part of their size to see what depends on them; those that tell none, by
 /// `LEAST` and so much more each time until something does.
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
@@ -17,14 +18,15 @@ const MOVES: usize = 11;
 /// What changes by less than this part of it does not depend on what was moved.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
-/// The size of each state at `(t, y)`, by which an absolute tolerance is multiplied: how large it is there, or
-/// becomes by its rate within the length of the run; at most 1, or where numbers are large at most 10⁻⁴ of
-/// what follows. So a motion of 10⁻¹² m is resolved as well as one of 1 m.
+/// The size of each state at `(t, y)`, by which an absolute tolerance is multiplied: how large it is there,
+/// or becomes by its rate within the length of the run; at most 1, or where numbers are large at most 10⁻⁵
+/// of what follows. So a motion of 10⁻¹² m is resolved as well as one of 1 m.
 ///
 /// What is zero or round-off has the size that changes a coordinate by as much as the energy allows it within
-/// the length `T`, `|M_ii| Δqᵢ² = E T²` with `E = max(vᵀ|M|v, T² v̇ᵀ|M|v̇)`, or as the largest one in its unit
-/// moves, if that is less; or else a velocity, `Δqᵢ/T`. A state that neither depends on has the size that the
-/// others give it within `T`; or else the one that changes theirs by as much; 1 where nothing does.
+/// the length `T`, `|M_ii| Δqᵢ² = E T²` with `E = max(vᵀ|M|v, (10⁻⁵ T)² v̇ᵀ|M|v̇)`, or as the largest one
+/// in its unit moves, if that is less; or else a velocity, `Δqᵢ/T`. A state that neither depends on has the
+/// size that the others give it within `T`; or else the one that changes theirs by as much; 1 where nothing
+/// does.
 pub(crate) fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], length: f64) -> Vec<f64> {
     let mut rates = vec![0.0; y.len()];
     let found = compiled.rates(t, y, &mut rates).and_then(|()| compiled.outputs(t, y));
@@ -104,8 +106,8 @@ impl Probe<'_> {
         let (point, [speed, change]) = ((full(&q), full(&v)), [full(&v), full(&change)]);
         let inertia = self.metric.inertia(self.t, &point.0, &point.1).0;
         let of = |metric: &mut Metric, x: &[f64]| metric.length(self.t, &point.0, &point.1, x);
-        let energy = of(self.metric, &speed).max(of(self.metric, &change));
-        let speeds: Vec<f64> = speed.iter().zip(&change).map(|(v, d)| v.abs().max(d.abs())).collect();
+        let energy = of(self.metric, &speed).max(LARGE * of(self.metric, &change));
+        let speeds: Vec<f64> = speed.iter().zip(&change).map(|(v, d)| v.abs().max(LARGE * d.abs())).collect();
         let places: Vec<f64> = point.0.iter().zip(&speeds).map(|(q, v)| q.abs().max(v * time)).collect();
         let likely = |sizes: &[f64], length: f64| -> Vec<f64> {
             (0..q.len()).map(|i| self.metric.likely_size(i, &inertia, sizes, length).unwrap_or(0.0)).collect()

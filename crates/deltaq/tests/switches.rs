@@ -14,7 +14,8 @@ fn solve(scene: &Scene) -> Result<Motion, SolveError> {
     solve_choice(scene, &choices(scene)[0], &Settings::default())
 }
 
-/// Forces with `x(10)` from rest, for `t₀ = 0`: `∫ (10 − t) F dt` in closed form, tails under 1e-300 left out.
+/// Forces with `x(10)` from rest, for `t₀ = 0`: `∫ (10 − t) F dt` in closed form, tails under 1e-300 left
+/// out.
 fn switches() -> Vec<(&'static str, f64)> {
     let (pi, w) = (std::f64::consts::PI, 0.009);
     let logistic = 4.5 + w * w * pi * pi / 6.0;

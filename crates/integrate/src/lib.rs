@@ -18,7 +18,8 @@
 //!
 //! | method | order | order of the dense output | for |
 //! |---|---|---|---|
-//! | [`Method::Taylor`] | from the tolerance: 22 at 1e-9, 29 at 1e-12 | that of the step | smooth non-stiff problems with Taylor series, any accuracy |
+//! | [`Method::Taylor`] | from the tolerance: 22 at 1e-9, 29 at 1e-12 | that of the step | smooth non-stiff
+//! problems with Taylor series, any accuracy |
 //! | [`Method::Dop853`] | 8 | 7 | non-stiff problems, high accuracy |
 //! | [`Method::Tsit45`] | 5 | 4 | non-stiff problems, low accuracy |
 //! | [`Method::Bdf`] | 1 to 5 | that of the step | stiff problems |

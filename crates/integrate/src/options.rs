@@ -133,7 +133,8 @@ impl Options {
         (0..n).map(|i| self.absolute_tolerance_of(size(i))).collect()
     }
 
-    /// That of a component of this size; a start in the tail of a pulse, at 1e-304 of it, asks for none of zero.
+    /// That of a component of this size; a start in the tail of a pulse, at 1e-304 of it, asks for none of
+    /// zero.
     pub(crate) fn absolute_tolerance_of(&self, size: f64) -> f64 {
         const LEAST: f64 = 1e-200;
         (self.absolute_tolerance * size).max(LEAST)

@@ -6,8 +6,8 @@
 //! v_d = K v_i + c ,      K = −A_d⁻¹ A_i ,   c = −A_d⁻¹ b .
 //! ```
 //!
-//! Coefficients of different velocities are compared as if all had the same kinetic energy, `a_ij |M_jj|^(−1/2)`,
-//! so that the choice does not depend on units.
+//! Coefficients of different velocities are compared as if all had the same kinetic energy, `a_ij
+//! |M_jj|^(−1/2)`, so that the choice does not depend on units.
 
 use std::collections::BTreeMap;
 

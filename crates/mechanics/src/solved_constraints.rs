@@ -132,8 +132,8 @@ impl SolvedConstraints {
     }
 }
 
-/// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of its
-/// expression.
+/// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of
+/// its expression.
 fn candidates(matrix: &SparseMatrix<Entry>, taken: &BTreeMap<usize, usize>, speeds: &[f64]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for (i, row) in matrix.rows().iter().enumerate().filter(|(i, _)| !taken.values().any(|p| p == i)) {

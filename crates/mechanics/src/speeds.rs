@@ -6,9 +6,9 @@ use crate::elimination::LinearForms;
 use crate::{State, System};
 
 impl System {
-    /// `|∂²L/∂vᵢ²|^(−1/2)` at `state`, in the unit of the coordinate's velocity over that of `√L`. A coordinate
-    /// without inertia has the least that makes it as fast as the others in one of the linear `constraints`;
-    /// 1 where there is no such one.
+    /// `|∂²L/∂vᵢ²|^(−1/2)` at `state`, in the unit of the coordinate's velocity over that of `√L`. A
+    /// coordinate without inertia has the least that makes it as fast as the others in one of the linear
+    /// `constraints`; 1 where there is no such one.
     pub(crate) fn speeds(&self, constraints: &LinearForms, state: &State) -> Vec<f64> {
         let system = self.clone(); // second derivatives are built in a graph of their own
         let g = &system.graph;

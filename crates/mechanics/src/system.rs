@@ -62,8 +62,8 @@ pub struct System {
     pub constraints: Vec<Expr>,
     /// `Q(q, v, t)`, one a coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
-    /// What has to be no less than zero for `L`, `f` and `Q` as they were written, where their simpler forms do
-    /// not say so: `√x √x` is `x`, for `x ≥ 0`.
+    /// What has to be no less than zero for `L`, `f` and `Q` as they were written, where their simpler
+    /// forms do not say so: `√x √x` is `x`, for `x ≥ 0`.
     pub domains: Vec<Expr>,
     /// Times at which a step is to end, where something is switched, in any order; those outside of a run do
     /// not count.

@@ -2,10 +2,10 @@
 //!
 //! A [`Graph`] holds expressions in which every value stands once: equal expressions are the same node
 //! ([`Expr`]), and so common subexpressions need no search. Constructors keep a canonical form: like
-//! terms and factors are merged, numbers are exact fractions while they fit, of any decimal exponent, signs come out of odd and
-//! even functions, P sin²u + P cos²u is P. Products of sums are multiplied out by [`Graph::expand`]
-//! only. One source serves every use: [`Graph::latex`] for the reader, [`Graph::derivative`] for the
-//! equations, and [`Graph::compile`] for numbers in any [`Scalar`] type.
+//! terms and factors are merged, numbers are exact fractions while they fit, of any decimal exponent, signs
+//! come out of odd and even functions, P sin²u + P cos²u is P. Products of sums are multiplied out by
+//! [`Graph::expand`] only. One source serves every use: [`Graph::latex`] for the reader,
+//! [`Graph::derivative`] for the equations, and [`Graph::compile`] for numbers in any [`Scalar`] type.
 //!
 //! ```
 //! use std::collections::HashMap;

@@ -1,6 +1,7 @@
 //! Products that stay finite where their factors overflow, such as `1/(1 + exp u)` and `1/cosh²u`.
 //!
-//! With `X = exp g = σ(g)/σ(−g)`, `σ(g) = 1/(1 + exp(−g))`, a sum of powers of `X` from the `l`-th to the `h`-th is
+//! With `X = exp g = σ(g)/σ(−g)`, `σ(g) = 1/(1 + exp(−g))`, a sum of powers of `X` from the `l`-th to the
+//! `h`-th is
 //!
 //! ```text
 //! Σ aⱼ Xʲ = Xˡ · σ(−g)^(l−h) · Σ aⱼ σ(g)^(j−l) σ(−g)^(h−j) ,

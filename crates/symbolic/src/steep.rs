@@ -125,7 +125,8 @@ impl Graph {
             .collect()
     }
 
-    /// Of factors that overflow together, so that the product does not, only the unit is steep, like a `tanh`.
+    /// Of factors that overflow together, so that the product does not, only the unit is steep, like a
+    /// `tanh`.
     fn steep_product(
         &self,
         factors: &[(Expr, Rational)],

@@ -1,4 +1,5 @@
-//! Quotients whose parts overflow where they themselves are moderate: values, derivatives, series, number types.
+//! Quotients whose parts overflow where they themselves are moderate: values, derivatives, series, number
+//! types.
 
 use crate::read;
 use std::collections::HashMap;

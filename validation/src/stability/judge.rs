@@ -97,6 +97,9 @@ pub struct Allowance {
     /// So are errors under this part of the whole way, the tolerance asked for: of a motion that hardly
     /// begins nobody asks for more.
     pub asked: f64,
+    /// Time up to which the motion was asked for. One that stops before goes as far as its way up to there
+    /// in proportion: tolerances are parts of sizes that states have within the whole run.
+    pub end: f64,
     /// So many coordinates, the first ones, are compared.
     pub compared: usize,
     /// Each coordinate and multiplier is judged by its own estimate, and the worst of them is the verdict;
@@ -143,6 +146,8 @@ pub fn judge(
         }
     }
     let doubt = motion.doubt.as_ref().map(|doubt| &doubt.because[..]);
+    let reached = (motion.end() - motion.start()) / (allowance.end - motion.start());
+    let allowance = Allowance { asked: allowance.asked / reached.clamp(f64::MIN_POSITIVE, 1.0), ..allowance };
     let word = |samples: &Vec<Sample>| verdict(samples, &motion.ending, doubt, allowance);
     let worse = |a: Verdict, b: Verdict| if b.badness() > a.badness() { b } else { a };
     Ok(samples[1..].iter().map(word).fold(word(&samples[0]), worse))

@@ -168,7 +168,7 @@ impl Long {
                     &mut motion,
                     &mut metric,
                     &mut known,
-                    Allowance { floor: FLOOR, asked: 0.0, compared: usize::MAX, each: false },
+                    Allowance { floor: FLOOR, asked: 0.0, end: self.duration, compared: usize::MAX, each: false },
                 )?
             }
         };

@@ -52,13 +52,13 @@ impl Answering {
     }
 
     /// Errors that are passed over whatever the estimate says.
-    fn allowance(self, compared: usize, each: bool) -> Allowance {
+    fn allowance(self, compared: usize, each: bool, end: f64) -> Allowance {
         match self {
             Answering::Method(method) => {
                 let asked = tolerance(method);
-                Allowance { floor: FLOOR.max(BETTER_THAN_IT_KNOWS * asked * TIGHTER), asked, compared, each }
+                Allowance { floor: FLOOR.max(BETTER_THAN_IT_KNOWS * asked * TIGHTER), asked, end, compared, each }
             }
-            Answering::Steps(_) => Allowance { floor: FLOOR, asked: 0.0, compared, each },
+            Answering::Steps(_) => Allowance { floor: FLOOR, asked: 0.0, end, compared, each },
         }
     }
 }
@@ -204,7 +204,7 @@ impl Question {
         for (method, motion) in &mut motions {
             let steps = motion.as_ref().map_or(0, |motion| motion.work.steps);
             let verdict = match (motion, &subject, &mut known) {
-                (Ok(motion), Ok(subject), Some(known)) => self.judged(motion, &subject.measured, known, *method)?,
+                (Ok(motion), Ok(subject), Some(known)) => self.judged(motion, subject, known, *method)?,
                 (Err(cause), ..) => Verdict::Refused { t: None, cause: cause.clone() },
                 (_, Err(cause), _) => Verdict::Refused { t: None, cause: cause.clone() },
                 (Ok(_), Ok(_), None) => unreachable!("there is a reference where there is a motion"),
@@ -215,10 +215,10 @@ impl Question {
         Ok(cells)
     }
 
-    fn judged(&self, motion: &mut Motion, measured: &System, known: &mut Known, by: Answering) -> Result<Verdict> {
-        let allowance = by.allowance(self.compared, self.each);
+    fn judged(&self, motion: &mut Motion, subject: &Subject, known: &mut Known, by: Answering) -> Result<Verdict> {
+        let allowance = by.allowance(self.compared, self.each, subject.end);
         let refused = |error: deltaq::SolveError| Verdict::Refused { t: None, cause: error.to_string() };
-        Ok(judge(motion, &mut Metric::new(measured)?, known, allowance).unwrap_or_else(refused))
+        Ok(judge(motion, &mut Metric::new(&subject.measured)?, known, allowance).unwrap_or_else(refused))
     }
 }
 

@@ -100,7 +100,8 @@ impl Ensemble {
         (motions, seconds)
     }
 
-    /// A member of `ensemble`, whose pivots vanish there, in these equations; multipliers and invariants by name.
+    /// A member of `ensemble`, whose pivots vanish there, in these equations; multipliers and invariants by
+    /// name.
     fn in_words_of(
         &self,
         ensemble: &Ensemble,

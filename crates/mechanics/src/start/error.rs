@@ -84,8 +84,8 @@ pub enum StartError {
     /// `A` has no full row rank.
     #[error("the constraints are dependent at the start: smallest singular value of the scaled constraint Jacobian {ratio:.1e} of the largest, limit {limit:.0e} (singular values {}){}", values(.singular_values), redundant(.combination))]
     DependentConstraints {
-        /// The combination of constraints whose derivatives by the velocities vanish: numbers of constraints, from
-        /// 1, with their factors; empty where a constraint has none by itself.
+        /// The combination of constraints whose derivatives by the velocities vanish: numbers of
+        /// constraints, from 1, with their factors; empty where a constraint has none by itself.
         combination: Vec<(usize, f64)>,
         /// Singular values of the scaled `A`, falling.
         singular_values: Vec<f64>,
