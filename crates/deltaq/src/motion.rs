@@ -12,7 +12,7 @@ use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::method::Chosen;
 use crate::metric::subtract;
-use crate::single_run::{UNITS, move_digits};
+use crate::single_run::terms_of_invariants;
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::watch::Watch;
@@ -163,16 +163,15 @@ impl Motion {
         for pass in [true, false] {
             for (&t, kept) in times.iter().zip(&kept) {
                 let looser = if pass { None } else { Some(self.looser.outputs(&mut self.compiled, t).ok()?) };
-                let mut moved = || {
-                    let mut state = self.kept.state(&mut self.compiled, t).ok()?;
-                    move_digits(&mut state, |_| UNITS);
-                    self.compiled.outputs(t, &state).ok().map(|outputs| outputs.invariants)
+                let mut terms = || {
+                    let state = self.kept.state(&mut self.compiled, t).ok()?;
+                    terms_of_invariants(&mut self.compiled, t, &state, self.kept.sizes())
                 };
                 let Some(looser) = looser else {
-                    clear &= watch.is_clear(t, kept, &mut moved);
+                    clear &= watch.is_clear(t, kept, &mut terms);
                     continue;
                 };
-                if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut moved) {
+                if let Some(because) = watch.complaint(t, [kept, &looser], &invariants, &mut terms) {
                     return Some(Doubt { from: before, because });
                 }
                 before = t;

@@ -15,6 +15,8 @@ const LARGE: f64 = 1e-5;
 const MOVE: f64 = 1.0 / (1 << 20) as f64;
 const LEAST: f64 = 1e-30;
 const MOVES: usize = 11;
+/// Changes of the last digits are a sample; round-off may be so many times as large.
+const DIGITS: f64 = 4.0;
 /// What changes by less than this part of it does not depend on what was moved.
 const SEEN: f64 = 1.0 / (1 << 30) as f64;
 
@@ -31,7 +33,9 @@ pub(crate) fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f
     let mut rates = vec![0.0; y.len()];
     let found = compiled.rates(t, y, &mut rates).and_then(|()| compiled.outputs(t, y));
     let Ok(here) = found else { return vec![1.0; y.len()] };
-    let mut probe = Probe { compiled, metric, t, y, rates, here };
+    let noise = Noise::of(compiled, t, y, &rates, &here);
+    rates.iter_mut().zip(&noise.rates).filter(|(rate, noise)| rate.abs() <= **noise).for_each(|(rate, _)| *rate = 0.0);
+    let mut probe = Probe { compiled, metric, t, y, rates, here, noise };
     let size = |(reach, of_energy): (f64, f64)| {
         let size = if reach > NO_SIZE * of_energy { reach } else { of_energy };
         let size = size.min((LARGE * of_energy).max(1.0));
@@ -49,6 +53,40 @@ struct Probe<'a> {
     y: &'a [f64],
     rates: Vec<f64>,
     here: Outputs,
+    noise: Noise,
+}
+
+/// What round-off of the states makes of what is computed from them: a difference under it says nothing.
+struct Noise {
+    rates: Vec<f64>,
+    coordinates: Vec<f64>,
+    velocities: Vec<f64>,
+}
+
+impl Noise {
+    /// The largest change under states moved by some units of their last digit, up or down.
+    fn of(compiled: &mut Compiled, t: f64, y: &[f64], rates: &[f64], here: &Outputs) -> Noise {
+        let none = |x: &[f64]| vec![0.0; x.len()];
+        let (coordinates, velocities) = (none(&here.coordinates), none(&here.velocities));
+        let mut noise = Noise { rates: none(rates), coordinates, velocities };
+        let join = |noise: &mut [f64], there: &[f64], here: &[f64]| {
+            let changes = there.iter().zip(here).map(|(there, here)| DIGITS * (there - here).abs());
+            noise.iter_mut().zip(changes).for_each(|(noise, change)| *noise = noise.max(change));
+        };
+        for pattern in 1..=3 {
+            let part = |i: usize| if (i + 1) * (pattern + 1) % 5 % 2 == 0 { f64::EPSILON } else { -f64::EPSILON };
+            let moved: Vec<f64> = y.iter().enumerate().map(|(i, y)| y + 2.0 * part(i) * y).collect();
+            let mut there = none(rates);
+            if compiled.rates(t, &moved, &mut there).is_ok() {
+                join(&mut noise.rates, &there, rates);
+            }
+            if let Ok(there) = compiled.outputs(t, &moved) {
+                join(&mut noise.coordinates, &there.coordinates, &here.coordinates);
+                join(&mut noise.velocities, &there.velocities, &here.velocities);
+            }
+        }
+        noise
+    }
 }
 
 impl Probe<'_> {
@@ -62,8 +100,11 @@ impl Probe<'_> {
         let (place, velocity) = self.likely(time.abs());
         let mut share = |probe: &mut Self, y: &[f64]| {
             let there = probe.compiled.outputs(probe.t, y).ok()?;
-            let places = largest_part(&seen(&there.coordinates, &probe.here.coordinates), &place);
-            places.or_else(|| largest_part(&seen(&there.velocities, &probe.here.velocities), &velocity))
+            let places =
+                largest_part(&seen(&there.coordinates, &probe.here.coordinates, &probe.noise.coordinates), &place);
+            places.or_else(|| {
+                largest_part(&seen(&there.velocities, &probe.here.velocities, &probe.noise.velocities), &velocity)
+            })
         };
         let moved = (0..self.y.len()).map(|j| self.moved(j, time, &mut share).unwrap_or(0.0));
         let mut sizes: Vec<f64> = moved.collect();
@@ -86,7 +127,7 @@ impl Probe<'_> {
             };
             let moved: Vec<f64> = self.y.iter().zip(sizes).enumerate().map(by).collect();
             let Some(there) = self.rates_at(self.t, &moved) else { continue };
-            for (largest, change) in driven.iter_mut().zip(seen(&there, &self.rates)) {
+            for (largest, change) in driven.iter_mut().zip(seen(&there, &self.rates, &self.noise.rates)) {
                 *largest = largest.max((change * time / MOVE).abs());
             }
         }
@@ -121,7 +162,8 @@ impl Probe<'_> {
         for j in (0..sizes.len()).filter(|&j| sizes[j] == 0.0 && self.reach(j, time) == 0.0).collect::<Vec<_>>() {
             let mut share = |probe: &mut Self, y: &[f64]| {
                 let there = probe.rates_at(probe.t, y)?;
-                let changes: Vec<f64> = seen(&there, &probe.rates).iter().map(|change| change * time).collect();
+                let changes: Vec<f64> =
+                    seen(&there, &probe.rates, &probe.noise.rates).iter().map(|change| change * time).collect();
                 largest_part(&changes, sizes)
             };
             found[j] = self.moved(j, time, &mut share).unwrap_or(0.0);
@@ -156,9 +198,12 @@ impl Probe<'_> {
 }
 
 /// The differences that are more than round-off.
-fn seen(there: &[f64], here: &[f64]) -> Vec<f64> {
-    let is_seen = |(there, here): (&f64, &f64)| Some(there - here).filter(|d| d.abs() > SEEN * here.abs());
-    there.iter().zip(here).map(|pair| is_seen(pair).unwrap_or(0.0)).collect()
+fn seen(there: &[f64], here: &[f64], noise: &[f64]) -> Vec<f64> {
+    let difference = |((there, here), noise): ((&f64, &f64), &f64)| {
+        let difference = there - here;
+        if difference.abs() > noise.max(SEEN * here.abs()) { difference } else { 0.0 }
+    };
+    there.iter().zip(here).zip(noise).map(difference).collect()
 }
 
 /// The largest part that differences are of sizes; `None` where it is none.

@@ -31,6 +31,15 @@ impl Trajectory {
         }
     }
 
+    /// Sizes of the states of the first chart; none of a motion in equal steps.
+    pub(crate) fn sizes(&self) -> &[f64] {
+        match self {
+            Trajectory::TimeLoop(run) => &run.sizes,
+            Trajectory::Charts(legs) => &legs[0].0.sizes,
+            Trajectory::Discrete(_) => &[],
+        }
+    }
+
     /// End points of the steps.
     pub(crate) fn step_times(&self) -> Vec<f64> {
         match self {

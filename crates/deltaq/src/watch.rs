@@ -7,7 +7,6 @@ use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
 use crate::metric::subtract;
 use crate::settings::CERTAINTY;
-use crate::single_run::UNITS;
 
 /// A drift under this part of the terms of an invariant is round-off.
 const ROUND_OFF: f64 = 1e-11;
@@ -15,8 +14,8 @@ const ROUND_OFF: f64 = 1e-11;
 /// What round-off leaves of a coordinate or velocity that should be zero, over the largest one in its unit.
 const DIGITS: f64 = 1e-15;
 
-/// Gives the invariants with the last digits of the state changed.
-pub(crate) type Moved<'a> = &'a mut dyn FnMut() -> Option<Vec<f64>>;
+/// Tells how much was added up to each invariant.
+pub(crate) type Terms<'a> = &'a mut dyn FnMut() -> Option<Vec<f64>>;
 
 /// Holds `f = 0` and the invariants against the error estimate.
 #[derive(Clone)]
@@ -59,20 +58,19 @@ impl Watch {
         self.differences = (vec![0.0; 2 * start.coordinates.len()], vec![0.0; start.invariants.len()]);
     }
 
-    /// Whether nothing is off by more than round-off: no error estimate is needed. `moved` gives the
-    /// invariants with the last digits of the state changed, which tells what was added up to them.
-    pub(crate) fn is_clear(&mut self, t: f64, kept: &Outputs, moved: Moved) -> bool {
+    /// Whether nothing is off by more than round-off: no error estimate is needed.
+    pub(crate) fn is_clear(&mut self, t: f64, kept: &Outputs, terms: Terms) -> bool {
         self.put(t, kept);
-        if !self.constraints.evaluate(&self.inputs).iter().all(|f| f.may_be_zero() || !f.is_finite()) {
-            return false;
-        }
+        let hold = self.constraints.evaluate(&self.inputs).iter().all(|f| f.may_be_zero() || !f.is_finite());
+        hold && self.are_constant(kept, terms)
+    }
+
+    fn are_constant(&mut self, kept: &Outputs, terms: Terms) -> bool {
         if self.is_constant(kept) {
             return true;
         }
-        let Some(moved) = moved() else { return true };
-        for (size, change) in self.sizes.iter_mut().zip(subtract(&moved, &kept.invariants)) {
-            *size = size.max(change.abs() / (UNITS * f64::EPSILON));
-        }
+        let Some(terms) = terms() else { return true };
+        self.sizes.iter_mut().zip(terms).for_each(|(size, terms)| *size = size.max(terms));
         self.is_constant(kept)
     }
 
@@ -81,21 +79,22 @@ impl Watch {
         drifts.iter().zip(&self.sizes).all(|(drift, size)| drift.abs() <= ROUND_OFF * size)
     }
 
-    /// What is off by more than the two runs, at `t` and before, leave open; `moved` as in
-    /// [`Watch::is_clear`].
+    /// What is off by more than the two runs, at `t` and before, leave open.
     pub(crate) fn complaint(
         &mut self,
         t: f64,
         [kept, looser]: [&Outputs; 2],
         invariants: &[Named],
-        moved: Moved,
+        terms: Terms,
     ) -> Option<String> {
         let place = subtract(&kept.coordinates, &looser.coordinates);
         let differences = place.into_iter().chain(subtract(&kept.velocities, &looser.velocities));
         self.differences.0.iter_mut().zip(differences).for_each(|(d, now)| *d = d.max(now.abs()));
         let differences = subtract(&kept.invariants, &looser.invariants);
         self.differences.1.iter_mut().zip(differences).for_each(|(d, now)| *d = d.max(now.abs()));
-        if self.is_clear(t, kept, moved) { None } else { self.broken(t).or_else(|| self.drifting(t, kept, invariants)) }
+        self.put(t, kept);
+        let broken = self.broken(t);
+        broken.or_else(|| if self.are_constant(kept, terms) { None } else { self.drifting(t, kept, invariants) })
     }
 
     fn broken(&mut self, t: f64) -> Option<String> {

@@ -1,6 +1,6 @@
 //! Equations of motion turned into numbers: tapes and small linear solves, ready for any time integrator.
 
-use symbolic::{CompileError, Evaluator, Expr};
+use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar};
 
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::equations::Equations;
@@ -239,6 +239,19 @@ impl Compiled {
         }
         self.solve_instant(t, y)?;
         Ok(self.sizes.outputs(self.outputs.evaluate(&self.inputs)))
+    }
+
+    /// How much was added up to each invariant at `(t, y)`: [`Bounded::magnitude`], of states and unknowns as
+    /// they are.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn terms_of_invariants(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        self.solve_instant(t, y)?;
+        let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let mut outputs = Evaluator::new(self.outputs.tape().clone());
+        let values = outputs.evaluate(&inputs);
+        Ok(values[values.len() - self.sizes.invariants..].iter().map(|x| x.magnitude).collect())
     }
 
     /// Number of guards.

@@ -6,7 +6,7 @@ use super::modular::Modular;
 use super::rational::Exact;
 
 /// Numerators and denominators of small fractions are at most this.
-const SMALL: i128 = 1_000_000;
+const SMALL: i64 = 1_000_000;
 /// And powers of ten beside them.
 const MOST_TENS: i32 = 60;
 
@@ -14,22 +14,29 @@ impl Modular {
     /// The fraction with this image and a numerator and denominator of at most a million, or else the least
     /// power of ten times one: units are such powers.
     pub(crate) fn small_fraction(self) -> Option<Exact> {
-        let tens = |k: i32| Fraction::with_powers(1, 1, k, k);
-        (0..=MOST_TENS).flat_map(|k| [k, -k]).find_map(|k| {
-            let unit = Exact::rational(tens(k)?);
-            let found = (self * Self::fraction(unit)?).fraction_of_few_digits()?;
-            Exact::rational(tens(-k)?).mul(found)
-        })
+        let ten = Self::new(10);
+        let tens = [ten, ten.inverse()?];
+        let mut scaled = [self, self];
+        for k in 0..=MOST_TENS {
+            for (sign, scaled) in [1, -1].into_iter().zip(scaled) {
+                if let Some(found) = scaled.fraction_of_few_digits() {
+                    let unit = Fraction::with_powers(1, 1, -sign * k, -sign * k)?;
+                    return Exact::rational(unit).mul(found);
+                }
+            }
+            scaled = [scaled[0] * tens[0], scaled[1] * tens[1]];
+        }
+        None
     }
 
     fn fraction_of_few_digits(self) -> Option<Exact> {
-        let (mut r, mut s) = ((i128::from(Self::prime()), i128::from(self.value())), (0_i128, 1_i128));
+        let (mut r, mut s) = ((Self::prime() as i64, self.value() as i64), (0_i64, 1_i64));
         while r.1 > SMALL {
             let quotient = r.0 / r.1;
             r = (r.1, r.0 - quotient * r.1);
             s = (s.1, s.0 - quotient * s.1);
         }
-        let found = Exact::ratio(r.1, s.1).filter(|_| s.1.abs() <= SMALL)?;
+        let found = (s.1.abs() <= SMALL).then(|| Exact::ratio(r.1.into(), s.1.into()))??;
         (Self::fraction(found) == Some(self)).then_some(found)
     }
 }

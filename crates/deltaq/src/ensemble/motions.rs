@@ -8,7 +8,8 @@ use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::clock::Clock;
 use crate::error_estimate::Differences;
 use crate::metric::subtract;
-use crate::single_run::{UNITS, move_digits, outputs};
+use crate::single_run::{outputs, terms_of_invariants};
+use crate::sizes::sizes;
 use crate::watch::Watch;
 use crate::{Doubt, ErrorEstimate, Metric, SolveError};
 
@@ -211,8 +212,8 @@ impl Reader<'_> {
             } else {
                 continue;
             };
-            let mut moved = || moved(&mut self.compiled, t, y);
-            is_clear &= !options.estimate || self.watch.is_clear(t, &now, &mut moved);
+            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, t, y);
+            is_clear &= !options.estimate || self.watch.is_clear(t, &now, &mut terms);
             if !asked {
                 continue;
             }
@@ -222,7 +223,7 @@ impl Reader<'_> {
             }
             read.push(now);
         }
-        let doubt = if is_clear { None } else { self.broken(member.t, run) };
+        let doubt = if is_clear { None } else { self.broken(member, run) };
         Ok((read, options.estimate.then(|| differences.estimate(&self.metric)), doubt))
     }
 
@@ -234,13 +235,13 @@ impl Reader<'_> {
     }
 
     /// Where something is off by more than the two runs leave open.
-    fn broken(&mut self, start: f64, run: &MemberRun) -> Option<Doubt> {
-        let mut from = start;
+    fn broken(&mut self, member: &EnsembleMember, run: &MemberRun) -> Option<Doubt> {
+        let mut from = member.t;
         for (i, (&(t, _), y)) in self.instants.iter().zip(&run.states).enumerate() {
             let kept = self.at(run, i, t, y).ok()?;
             let looser = outputs(&mut self.compiled, t, &subtract(y, run.differences.get(i)?)).ok()?;
-            let mut moved = || moved(&mut self.compiled, t, y);
-            if let Some(because) = self.watch.complaint(t, [&kept, &looser], self.invariants, &mut moved) {
+            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, t, y);
+            if let Some(because) = self.watch.complaint(t, [&kept, &looser], self.invariants, &mut terms) {
                 return Some(Doubt { from, because });
             }
             from = t;
@@ -249,9 +250,7 @@ impl Reader<'_> {
     }
 }
 
-/// The invariants with the last digits of the state changed.
-fn moved(compiled: &mut Compiled, t: f64, y: &[f64]) -> Option<Vec<f64>> {
-    let mut y = y.to_vec();
-    move_digits(&mut y, |_| UNITS);
-    compiled.outputs(t, &y).ok().map(|outputs| outputs.invariants)
+fn terms(compiled: &mut Compiled, metric: &mut Metric, member: &EnsembleMember, t: f64, y: &[f64]) -> Option<Vec<f64>> {
+    let sizes = sizes(compiled, metric, member.t, &member.y, member.end - member.t);
+    terms_of_invariants(compiled, t, y, &sizes)
 }
