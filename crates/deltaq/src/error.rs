@@ -111,8 +111,8 @@ pub enum SolveError {
     },
     /// The search for free constants that satisfy the natural boundary condition takes too many steps.
     #[error(
-        "natural boundary condition at the horizon {horizon:?}: given up after {steps} steps in all; the search has come to motions beside a singularity, which \
-         take far more steps than the one it started from: a shorter horizon, another removal or constants that are given may help"
+        "natural boundary condition at the horizon {horizon:?}: given up after {steps} steps in all; the search has come to motions that take far more steps \
+         than the one it started from, as beside a singularity: a shorter horizon, another removal or constants that are given may help"
     )]
     Search {
         /// Horizon asked for.
