@@ -121,7 +121,7 @@ pub(crate) fn terms_of_invariants(compiled: &mut Compiled, t: f64, y: &[f64], si
 }
 
 /// 1 or −1, place by place.
-fn signs() -> impl Iterator<Item = f64> {
+pub(crate) fn signs() -> impl Iterator<Item = f64> {
     let next = |state: &u64| {
         let state = state ^ (state << 13);
         let state = state ^ (state >> 7);

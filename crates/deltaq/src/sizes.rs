@@ -4,6 +4,7 @@ use equations::{Compiled, Outputs};
 
 use crate::Metric;
 use crate::metric::subtract;
+use crate::single_run::signs;
 
 /// A state under this part of the size that the energy tells is round-off.
 const NO_SIZE: f64 = 1e-14;
@@ -73,9 +74,9 @@ impl Noise {
             let changes = there.iter().zip(here).map(|(there, here)| DIGITS * (there - here).abs());
             noise.iter_mut().zip(changes).for_each(|(noise, change)| *noise = noise.max(change));
         };
-        for pattern in 1..=3 {
-            let part = |i: usize| if (i + 1) * (pattern + 1) % 5 % 2 == 0 { f64::EPSILON } else { -f64::EPSILON };
-            let moved: Vec<f64> = y.iter().enumerate().map(|(i, y)| y + 2.0 * part(i) * y).collect();
+        for pattern in 0..3 {
+            let signs = signs().skip(pattern * y.len());
+            let moved: Vec<f64> = y.iter().zip(signs).map(|(y, sign)| y + sign * 2.0 * f64::EPSILON * y).collect();
             let mut there = none(rates);
             if compiled.rates(t, &moved, &mut there).is_ok() {
                 join(&mut noise.rates, &there, rates);
