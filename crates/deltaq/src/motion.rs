@@ -12,7 +12,7 @@ use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::method::Chosen;
 use crate::metric::subtract;
-use crate::single_run::terms_of_invariants;
+use crate::round_off::terms_of_invariants;
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::watch::Watch;

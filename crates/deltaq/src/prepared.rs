@@ -5,7 +5,8 @@ use integrate::{Method, Options, Start};
 use symbolic::Symbol;
 
 use crate::method::{Chosen, suited};
-use crate::single_run::{SingleRun, UNITS, chart_size, move_digits};
+use crate::round_off::{UNITS, move_digits};
+use crate::single_run::{SingleRun, chart_size};
 use crate::sizes::sizes;
 use crate::start_values::StartValues;
 use crate::{Metric, Setting, Settings, SolveError};

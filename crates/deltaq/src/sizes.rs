@@ -4,7 +4,7 @@ use equations::{Compiled, Outputs};
 
 use crate::Metric;
 use crate::metric::subtract;
-use crate::single_run::signs;
+use crate::round_off::signs;
 
 /// A state under this part of the size that the energy tells is round-off.
 const NO_SIZE: f64 = 1e-14;
