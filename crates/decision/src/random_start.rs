@@ -178,8 +178,8 @@ const CONSTANT: f64 = 1e-8;
 impl Root {
     /// The root of `square` that is to this one as at the start; `None` unless the same fraction is so here.
     fn times_constant(&self, square: Modular, at_start: f64) -> Option<Modular> {
-        let ratio = (square * (self.value * self.value).inverse()?).small_fraction()?;
         let there = at_start / self.at_start;
+        let ratio = (square * (self.value * self.value).inverse()?).small_fraction_near(there * there)?;
         if (ratio.to_f64() - there * there).abs() > CONSTANT * ratio.to_f64() {
             return None;
         }

@@ -14,17 +14,30 @@ impl Modular {
     /// The fraction with this image and a numerator and denominator of at most a million, or else the least
     /// power of ten times one: units are such powers.
     pub(crate) fn small_fraction(self) -> Option<Exact> {
+        self.fraction_about(0, MOST_TENS)
+    }
+
+    /// The same of a fraction that is about `size`.
+    pub(crate) fn small_fraction_near(self, size: f64) -> Option<Exact> {
+        let tens = size.abs().log10().round();
+        // a fraction of few digits is at most this many powers of ten from 1
+        if tens.abs() <= f64::from(MOST_TENS) { self.fraction_about(tens as i32, SMALL.ilog10() as i32) } else { None }
+    }
+
+    /// A fraction of few digits times `10^k`, `|k − tens| ≤ most`, the nearest `k` first.
+    fn fraction_about(self, tens: i32, most: i32) -> Option<Exact> {
         let ten = Self::new(10);
-        let tens = [ten, ten.inverse()?];
-        let mut scaled = [self, self];
-        for k in 0..=MOST_TENS {
+        let [up, down] = [ten, ten.inverse()?];
+        let about = if tens > 0 { down } else { up }.power(tens.unsigned_abs().into());
+        let mut scaled = [self * about; 2];
+        for k in 0..=most {
             for (sign, scaled) in [1, -1].into_iter().zip(scaled) {
                 if let Some(found) = scaled.fraction_of_few_digits() {
-                    let unit = Fraction::with_powers(1, 1, -sign * k, -sign * k)?;
-                    return Exact::rational(unit).mul(found);
+                    let power = tens - sign * k;
+                    return Exact::rational(Fraction::with_powers(1, 1, power, power)?).mul(found);
                 }
             }
-            scaled = [scaled[0] * tens[0], scaled[1] * tens[1]];
+            scaled = [scaled[0] * up, scaled[1] * down];
         }
         None
     }
@@ -56,5 +69,8 @@ mod tests {
         let small = |text: &str| Modular::exponential(decimal(text)).unwrap();
         assert_eq!(small("1e-40").power(10), small("1e-39"));
         assert_eq!(image("-2.5e-27").small_fraction(), Some(decimal("-2.5e-27")));
+        assert_eq!(image("-2.5e-27").small_fraction_near(2.5e-27), Some(decimal("-2.5e-27")));
+        assert_eq!(image("7e12").small_fraction_near(7e12), Some(decimal("7e12")));
+        assert_eq!(image("123.456789").small_fraction_near(123.456789), None);
     }
 }
