@@ -1,5 +1,6 @@
 //! The library as its user meets it: one program, one module a subject.
 
+mod charts;
 mod contradictions;
 mod errors;
 mod estimates;
