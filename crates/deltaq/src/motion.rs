@@ -9,6 +9,7 @@ use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::removals;
 use crate::clock::Clock;
 use crate::constants::resolve;
+use crate::error_estimate::larger;
 use crate::form::derive_in_form;
 use crate::method::Chosen;
 use crate::metric::subtract;
@@ -136,6 +137,12 @@ impl Motion {
         Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
     }
 
+    /// How much is added up to each multiplier at `t`, where that can be told.
+    pub(crate) fn terms_of_multipliers(&mut self, t: f64) -> Option<Vec<f64>> {
+        let y = self.states_at(t).ok()?;
+        self.compiled.terms_of_multipliers(t, &y).ok()
+    }
+
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
     ///
     /// # Errors
@@ -145,7 +152,7 @@ impl Motion {
         let mut drift = vec![0.0_f64; start.len()];
         for &t in times {
             for (d, (now, then)) in drift.iter_mut().zip(self.at(t)?.invariants.iter().zip(&start)) {
-                *d = d.max((now - then).abs());
+                *d = larger(*d, (now - then).abs());
             }
         }
         let names = self.equations.invariants.iter().map(|i| i.name.clone());

@@ -26,6 +26,23 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        let inputs = self.in_terms(t, y)?;
+        Ok(in_terms(&self.rates, &inputs).iter().map(|x| x.magnitude).collect())
+    }
+
+    /// The same of multipliers.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn terms_of_multipliers(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        let inputs = self.in_terms(t, y)?;
+        let values = in_terms(&self.outputs, &inputs);
+        let multipliers = &values[2 * self.sizes.coordinates..][..self.sizes.multipliers];
+        Ok(multipliers.iter().map(|x| x.magnitude).collect())
+    }
+
+    /// `t, y, constants, z`, with what was added up to `z`.
+    fn in_terms(&mut self, t: f64, y: &[f64]) -> Result<Vec<Bounded>, EvaluationFailure> {
         self.solve_instant(t, y)?;
         let known = self.sizes.known();
         let mut inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
@@ -34,7 +51,7 @@ impl Compiled {
             let first = known + block.first;
             inputs[first..].iter_mut().zip(terms).for_each(|(z, terms)| z.magnitude = z.magnitude.max(terms));
         }
-        Ok(in_terms(&self.rates, &inputs).iter().map(|x| x.magnitude).collect())
+        Ok(inputs)
     }
 }
 
