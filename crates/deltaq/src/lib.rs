@@ -84,6 +84,7 @@ mod method;
 mod metric;
 mod motion;
 mod prepared;
+mod round_off;
 mod runs;
 mod screening;
 mod settings;

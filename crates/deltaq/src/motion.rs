@@ -137,6 +137,23 @@ impl Motion {
         Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
     }
 
+    /// The states at `t` and how much is added up to their rates, where that can be told.
+    pub(crate) fn terms_of_rates(&mut self, t: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+        let y = self.states_at(t).ok()?;
+        let terms = self.compiled.terms_of_rates(t, &y).ok()?;
+        Some((y, terms))
+    }
+
+    /// The states of the looser run.
+    pub(crate) fn looser_state(&mut self, t: f64) -> Option<Vec<f64>> {
+        self.looser.state(&mut self.compiled, t).ok()
+    }
+
+    /// The sizes by which states were integrated.
+    pub(crate) fn sizes_of_states(&self) -> Vec<f64> {
+        self.kept.sizes().to_vec()
+    }
+
     /// How much is added up to each multiplier at `t`, where that can be told.
     pub(crate) fn terms_of_multipliers(&mut self, t: f64) -> Option<Vec<f64>> {
         let y = self.states_at(t).ok()?;
@@ -225,7 +242,7 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        motion.doubt = motion.broken(Watch::new(setting.system, &[])?);
+        motion.doubt = motion.broken(Watch::new(setting.system, &[])?).or_else(|| motion.rounded_off());
     }
     Ok(motion)
 }

@@ -7,4 +7,5 @@ mod estimates;
 mod examples;
 mod fits;
 mod gaps;
+mod round_off;
 mod switches;
