@@ -157,7 +157,7 @@ impl Motion {
     /// How much is added up to each multiplier at `t`, where that can be told.
     pub(crate) fn terms_of_multipliers(&mut self, t: f64) -> Option<Vec<f64>> {
         let y = self.states_at(t).ok()?;
-        self.compiled.terms_of_multipliers(t, &y).ok()
+        self.compiled.terms_of_multipliers(self.start(), t, &y).ok()
     }
 
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.

@@ -14,6 +14,8 @@ const FEW: usize = 4;
 const BETWEEN: f64 = 1e3;
 /// Part of a state over which its round-off is told.
 const TOLD: f64 = 1e-6;
+/// Part of a stopped motion that is looked at: just before a singularity all terms are large.
+const BEFORE_THE_END: f64 = 0.9;
 
 impl Motion {
     /// The doubt that begins where round-off of the rates has come to more than the runs differ by. What
@@ -57,7 +59,8 @@ impl Motion {
     /// Time, states and what is added up to their rates at equidistant instants, as far as that can be told.
     /// An infinite slope tells nothing.
     fn terms_along(&mut self, stretches: usize) -> Vec<(f64, Vec<f64>, Vec<f64>)> {
-        let times = self.grid(stretches).into_iter();
+        let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
+        let times = self.grid(stretches).into_iter().map(|t| start + part * (t - start));
         times
             .map_while(|t| {
                 let (y, mut terms) = self.terms_of_rates(t)?;

@@ -8,4 +8,5 @@ mod examples;
 mod fits;
 mod gaps;
 mod round_off;
+mod steep;
 mod switches;

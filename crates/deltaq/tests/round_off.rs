@@ -28,7 +28,7 @@ fn a_force_of_round_off_is_not_trusted() {
             let Ok(end) = motion.at(motion.end()) else { panic!("{force}") };
             let cause = cause.unwrap_or_else(|| panic!("{force}: {status}, {} instead of {truth}", end.coordinates[0]));
             // and they are wrong, indeed
-            assert!((end.coordinates[0] - truth).abs() > 1e-6, "{force}: {}", end.coordinates[0]);
+            assert!((end.coordinates[0] - truth).abs() > 1e-7, "{force}: {}", end.coordinates[0]);
             let is_told = status == "untrusted" || motion.end() < 1.0;
             assert!(is_told, "{force}: {status}, {cause}");
         }

@@ -26,26 +26,30 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
-        let inputs = self.in_terms(t, y)?;
+        let inputs = self.in_terms(t, y, y)?;
         Ok(in_terms(&self.rates, &inputs).iter().map(|x| x.magnitude).collect())
     }
 
-    /// The same of multipliers.
+    /// The same of multipliers, from a start at time `begin` on: what was added up to states since
+    /// then counts, too.
     ///
     /// # Errors
     /// As [`Compiled::rates`].
-    pub fn terms_of_multipliers(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
-        let inputs = self.in_terms(t, y)?;
+    pub fn terms_of_multipliers(&mut self, begin: f64, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        let rates = self.terms_of_rates(t, y)?;
+        let states: Vec<f64> = y.iter().zip(rates).map(|(y, term)| y.abs() + term * (t - begin).abs()).collect();
+        let inputs = self.in_terms(t, y, &states)?;
         let values = in_terms(&self.outputs, &inputs);
         let multipliers = &values[2 * self.sizes.coordinates..][..self.sizes.multipliers];
         Ok(multipliers.iter().map(|x| x.magnitude).collect())
     }
 
-    /// `t, y, constants, z`, with what was added up to `z`.
-    fn in_terms(&mut self, t: f64, y: &[f64]) -> Result<Vec<Bounded>, EvaluationFailure> {
+    /// `t, y, constants, z`, with what was added up to `y` and to `z`.
+    fn in_terms(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<Bounded>, EvaluationFailure> {
         self.solve_instant(t, y)?;
         let known = self.sizes.known();
         let mut inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        inputs[1..].iter_mut().zip(states).for_each(|(y, size)| y.magnitude = size.abs());
         for block in &mut self.equations_of_instant {
             let terms = terms_of_unknowns(block, &inputs, known);
             let first = known + block.first;

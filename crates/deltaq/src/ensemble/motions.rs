@@ -231,7 +231,7 @@ impl Reader<'_> {
                 let other = outputs(&mut self.compiled, t, &subtract(y, difference))?;
                 differences.add(&mut self.metric, t, &now, &other, t - member.t);
                 if differences.has_doubtful_multipliers() {
-                    differences.add_terms(self.compiled.terms_of_multipliers(t, y).ok());
+                    differences.add_terms(self.compiled.terms_of_multipliers(member.t, t, y).ok());
                 }
             }
             read.push(now);
