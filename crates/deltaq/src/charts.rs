@@ -16,7 +16,7 @@
 use integrate::{ProjectionReport, Solution, Work};
 use mechanics::ConstantsRule;
 
-use crate::choice::derive_at;
+use crate::choice::{derive_at, watch};
 use crate::later_chart::{Later, Names};
 use crate::table::as_derived;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
@@ -144,7 +144,9 @@ fn going_on(
     let points = [kept.ok()?, looser.ok()?].map(|outputs| own.handed_over(t, outputs));
     let (start, named) = &points[0];
     let (by, equations) = if here.equations.removal.is_some() {
-        ("canonical momenta", vakonomic::derive_from_momenta(system).ok()?.leave_out_unneeded())
+        let mut equations = vakonomic::derive_from_momenta(system).ok()?;
+        watch(&mut equations, system);
+        ("canonical momenta", equations.leave_out_unneeded())
     } else {
         let (label, formulation) = (String::new(), as_derived(here.equations.formulation)?.name);
         let choice = Choice { label, formulation, removal: None, constants: ConstantsRule::Zero };

@@ -28,14 +28,17 @@ pub struct ErrorEstimate {
     /// The coordinate with the largest difference over its own size, which is the largest value that it has
     /// or has moved by, and that quotient; `None` where all differences are round-off.
     pub worst: Option<(String, f64)>,
+    /// The multiplier with the largest difference over its own size, likewise.
+    pub worst_multiplier: Option<(String, f64)>,
 }
 
 impl ErrorEstimate {
-    /// Why a motion with this estimate is not to be trusted: in the kinetic metric or in one coordinate it is
-    /// over [`TRUSTED`], or no number.
+    /// Why a motion with this estimate is not to be trusted: in the kinetic metric, in one coordinate or in one
+    /// multiplier it is over [`TRUSTED`], or no number.
     pub fn complaint(&self) -> Option<String> {
         let whole = (String::new(), self.relative);
-        let one = self.worst.iter().map(|(name, relative)| (format!(" of {name}"), *relative));
+        let one =
+            self.worst.iter().chain(&self.worst_multiplier).map(|(name, relative)| (format!(" of {name}"), *relative));
         let (of, relative) = std::iter::once(whole).chain(one).find(|(_, relative)| !is_trusted(*relative))?;
         Some(format!("not to be trusted: relative error estimate{of} {relative:.1e}, limit {TRUSTED:.0e}"))
     }
@@ -81,7 +84,8 @@ pub fn error_estimates(
 ) -> Result<(Vec<ErrorEstimate>, ErrorEstimate), SolveError> {
     let mut metric = Metric::new(setting.system)?;
     let names: Vec<String> = setting.system.coordinates.iter().map(|c| c.name.clone()).collect();
-    let mut differences = Differences::from(&names, &setting.start.q);
+    let multipliers: Vec<String> = motion.equations.multipliers.iter().map(|m| m.name.clone()).collect();
+    let mut differences = Differences::from(&names, &multipliers, &setting.start.q);
     let direction = (motion.end() - motion.start()).signum();
     let asked = times.iter().zip(0..).map(|(&t, i)| (t, Some(i)));
     let mut instants: Vec<(f64, Option<usize>)> = motion.grid(SAMPLES).into_iter().map(|t| (t, None)).collect();
@@ -100,6 +104,9 @@ pub fn error_estimates(
         };
         read = Some(t);
         differences.add(&mut metric, t, &kept, &looser, 0.0);
+        if differences.has_doubtful_multipliers() {
+            differences.add_terms(motion.terms_of_multipliers(t));
+        }
         if let Some(i) = asked {
             so_far[i] = differences.estimate(&metric);
         }
@@ -115,18 +122,34 @@ pub(crate) struct Differences<'a> {
     scale: f64,
     coordinates: Vec<f64>,
     sizes: Vec<f64>,
+    names_of_multipliers: &'a [String],
     multipliers: Vec<f64>,
+    sizes_of_multipliers: Vec<f64>,
+    /// What was added up to each multiplier, as far as it was asked for.
+    terms: Vec<f64>,
     /// Largest kinetic length of the coordinates themselves, and of the unit of each at the first instant.
     length: f64,
     inertia: Vec<f64>,
 }
 
 impl<'a> Differences<'a> {
-    /// Of motions from these coordinates, with their names.
-    pub(crate) fn from(names: &'a [String], start: &'a [f64]) -> Self {
-        let zeros = vec![0.0; start.len()];
-        let (coordinates, sizes, multipliers, inertia) = (zeros.clone(), zeros, Vec::new(), Vec::new());
-        Differences { names, start, absolute: 0.0, scale: 0.0, coordinates, sizes, multipliers, length: 0.0, inertia }
+    /// Of motions from these coordinates, with the names of coordinates and multipliers.
+    pub(crate) fn from(names: &'a [String], names_of_multipliers: &'a [String], start: &'a [f64]) -> Self {
+        let (zeros, none) = (vec![0.0; start.len()], vec![0.0; names_of_multipliers.len()]);
+        Differences {
+            names,
+            start,
+            absolute: 0.0,
+            scale: 0.0,
+            coordinates: zeros.clone(),
+            sizes: zeros,
+            names_of_multipliers,
+            multipliers: none.clone(),
+            sizes_of_multipliers: none.clone(),
+            terms: none,
+            length: 0.0,
+            inertia: Vec::new(),
+        }
     }
 
     /// What the two runs are at `t`. Of a motion that is looked at rarely, its velocities times `reach` tell
@@ -145,30 +168,56 @@ impl<'a> Differences<'a> {
             *size = larger(*size, now);
             self.coordinates[i] = larger(self.coordinates[i], difference[i].abs());
         }
-        self.multipliers.resize(kept.multipliers.len(), 0.0);
         for (m, d) in self.multipliers.iter_mut().zip(subtract(&kept.multipliers, &looser.multipliers)) {
             *m = larger(*m, d.abs());
         }
+        for (size, m) in self.sizes_of_multipliers.iter_mut().zip(&kept.multipliers) {
+            *size = size.max(m.abs());
+        }
+    }
+
+    /// Whether a multiplier differs by more than is trusted, and by more than the round-off known so far.
+    pub(crate) fn has_doubtful_multipliers(&self) -> bool {
+        (0..self.multipliers.len()).any(|i| {
+            let d = self.multipliers[i];
+            d > (TRUSTED * self.sizes_of_multipliers[i]).max(ROUND_OFF * self.terms[i])
+        })
+    }
+
+    /// How much is added up to each multiplier at an instant.
+    pub(crate) fn add_terms(&mut self, terms: Option<Vec<f64>>) {
+        self.terms.iter_mut().zip(terms.into_iter().flatten()).for_each(|(most, term)| *most = most.max(term));
     }
 
     /// The estimate so far.
     pub(crate) fn estimate(&self, metric: &Metric) -> ErrorEstimate {
         let round_off = metric.round_off_sizes(&self.inertia, &self.sizes, self.length.max(self.scale));
-        let (d, sizes) = (&self.coordinates, &self.sizes);
-        let counts = |i: &usize| d[*i] > ROUND_OFF * round_off[*i] || d[*i].is_nan();
-        let each = (0..d.len()).filter(counts).map(|i| (&self.names[i], d[i] / sizes[i]));
-        let worst = each.max_by(|a, b| a.1.total_cmp(&b.1));
         ErrorEstimate {
             absolute: self.absolute,
             relative: relative_to(self.scale, self.absolute),
             coordinates: self.coordinates.clone(),
             multipliers: self.multipliers.clone(),
-            worst: worst.map(|(name, relative)| (name.clone(), relative)),
+            worst: worst(self.names, &self.coordinates, &self.sizes, &round_off),
+            worst_multiplier: worst(
+                self.names_of_multipliers,
+                &self.multipliers,
+                &self.sizes_of_multipliers,
+                &self.terms.iter().zip(&self.sizes_of_multipliers).map(|(a, b)| a.max(*b)).collect::<Vec<f64>>(),
+            ),
         }
     }
 }
 
+/// The name with the largest difference over its size, of those whose difference is more than round-off.
+fn worst(names: &[String], d: &[f64], sizes: &[f64], round_off: &[f64]) -> Option<(String, f64)> {
+    let counts = |i: &usize| d[*i] > ROUND_OFF * round_off[*i] || d[*i].is_nan();
+    let each = (0..d.len()).filter(counts).map(|i| (&names[i], d[i] / sizes[i]));
+    // NaN of either sign is the worst
+    let worst = each.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    worst.map(|(name, relative)| (name.clone(), relative))
+}
+
 /// The larger of the two; NaN stays.
-fn larger(a: f64, b: f64) -> f64 {
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }

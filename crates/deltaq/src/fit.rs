@@ -8,6 +8,7 @@ use integrate::{BoundaryError, ShootOptions, Shot, fit};
 use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, DVector};
 
+use crate::error_estimate::larger;
 use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the sum of squares is taken.
@@ -139,7 +140,7 @@ impl Differences {
         let instants = self.goal.chunks_exact(stride).map(|instants| &instants[stride - 1]);
         let each = motion.zip(instants);
         let gaps = each.map(|(now, (_, q, factor))| (factor * (DVector::from_column_slice(now) - q)).norm());
-        gaps.fold(0.0, f64::max)
+        gaps.fold(0.0, larger)
     }
 
     /// Number of coordinates.
@@ -203,7 +204,7 @@ impl Differences {
         let n = self.dimension();
         let lengths = |all: DVector<f64>| {
             let squares = all.as_slice().chunks_exact(n).map(|d| d.iter().map(|x| x * x).sum::<f64>());
-            squares.fold(0.0, f64::max).sqrt()
+            squares.fold(0.0, larger).sqrt()
         };
         self.at(constants, part, stride).map_or(f64::INFINITY, lengths)
     }

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use integrate::find_root;
 
-use crate::error_estimate::relative_to;
+use crate::error_estimate::{larger, relative_to};
 use crate::metric::{Metric, subtract};
 use crate::{CERTAINTY, Ending, Motion, SolveError};
 
@@ -165,23 +165,26 @@ pub fn compare_motions_by(
         let (q, v) = (&one.coordinates, &one.velocities);
         let difference = subtract(q, &two.coordinates);
         for (estimate, error) in estimates.iter_mut().zip([&first_error, &second_error]) {
-            *estimate = estimate.max(metric.length(t, q, v, error));
+            *estimate = larger(*estimate, metric.length(t, q, v, error));
         }
-        scale = scale.max(metric.distance(t, q, v, &origin.coordinates));
+        scale = larger(scale, metric.distance(t, q, v, &origin.coordinates));
         largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
         let doubted = [(&*first, t), (&*second, sampling.clock(t))].into_iter().any(|(motion, t)| motion.is_doubted(t));
         let limit = |estimate: f64, size: f64| {
             if doubted { f64::INFINITY } else { CERTAINTY * (estimate + ROUND_OFF * size) }
         };
         for i in 0..n {
-            own[i] = own[i].max(first_error[i].abs() + second_error[i].abs());
+            own[i] = larger(own[i], first_error[i].abs() + second_error[i].abs());
             sizes[i] = sizes[i].max(q[i].abs()).max((v[i] * (t - t0)).abs());
         }
         let (inertia, negative) = metric.inertia(t, q, v);
         indefinite |= negative;
         let round_off_sizes = metric.round_off_sizes(&inertia, &sizes, largest_length);
         let size = |i: usize| round_off_sizes[i];
-        imprecise = (0..n).map(|i| (own[i] / size(i), i)).filter(|(part, _)| *part >= SAME_ESTIMATE).max_by(larger);
+        imprecise = (0..n)
+            .map(|i| (own[i] / size(i), i))
+            .filter(|(part, _)| part.is_nan() || *part >= SAME_ESTIMATE)
+            .max_by(by_part);
         coordinates
             .push((0..n).map(|i| Difference { by: difference[i].abs(), limit: limit(own[i], size(i)) }).collect());
         let limit = limit(estimates[0] + estimates[1], largest_length);
@@ -189,10 +192,10 @@ pub fn compare_motions_by(
     }
     if sampling.rate < 0.0 {
         // the second motion started where the first one ended, with the error it had there
-        let largest = points.iter().fold(0.0_f64, |a, p| a.max(p.limit));
+        let largest = points.iter().fold(0.0_f64, |a, p| larger(a, p.limit));
         points.iter_mut().for_each(|p| p.limit = largest);
         for i in 0..n {
-            let largest = coordinates.iter().fold(0.0_f64, |a, d| a.max(d[i].limit));
+            let largest = coordinates.iter().fold(0.0_f64, |a, d| larger(a, d[i].limit));
             coordinates.iter_mut().for_each(|d| d[i].limit = largest);
         }
     }
@@ -206,9 +209,9 @@ pub fn compare_motions_by(
     let mut largest = 0.0_f64;
     let mut largest_by_coordinate = vec![0.0_f64; n];
     for (p, differences) in points.iter().zip(&coordinates).filter(|(p, _)| !certain || p.certain) {
-        largest = largest.max(p.gap);
+        largest = larger(largest, p.gap);
         for (l, d) in largest_by_coordinate.iter_mut().zip(differences) {
-            *l = l.max(d.by);
+            *l = larger(*l, d.by);
         }
     }
     let mut gap_at = |t: f64| -> f64 {
@@ -218,9 +221,10 @@ pub fn compare_motions_by(
         }
     };
     let passes = THRESHOLDS.map(|threshold| first_passing(&points, &mut gap_at, threshold));
-    let doubtful = coordinates.iter().flat_map(|all| all.iter().enumerate()).find(|(_, d)| d.by > d.limit);
+    let doubtful =
+        coordinates.iter().flat_map(|all| all.iter().enumerate()).find(|(_, d)| d.by > d.limit || d.by.is_nan());
     let certain_from = points.iter().find(|p| p.certain).map(|p| p.t);
-    let estimate = estimates[0].max(estimates[1]);
+    let estimate = larger(estimates[0], estimates[1]);
     let relative = relative_to(scale, estimate);
     let doubt = first.doubt.as_ref().or(second.doubt.as_ref());
     let verdict = if certain_from.is_some() {
@@ -281,8 +285,8 @@ impl Difference {
     }
 }
 
-fn larger(a: &(f64, usize), b: &(f64, usize)) -> Ordering {
-    a.0.total_cmp(&b.0)
+fn by_part(a: &(f64, usize), b: &(f64, usize)) -> Ordering {
+    a.0.abs().total_cmp(&b.0.abs())
 }
 
 /// When and why the first of the two stops that does, if one does.
@@ -309,7 +313,7 @@ impl Gap {
 
     /// What the gap was under at every instant, for all that was measured; infinite in doubt.
     pub fn bound(&self) -> f64 {
-        self.points.iter().fold(0.0, |a, p| a.max(p.gap + p.limit))
+        self.points.iter().fold(0.0, |a, p| larger(a, p.gap + p.limit))
     }
 
     /// The certainty limit at `t`: that of the first sample from `t` on, infinite after the last.

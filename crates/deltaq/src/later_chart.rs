@@ -9,13 +9,29 @@ use symbolic::Symbol;
 use crate::start_values::StartValues;
 use crate::{Prepared, SingleRun, SolveError};
 
-/// What the momentum of a coordinate is called in every chart.
-pub(crate) fn momentum(coordinate: &str) -> String {
-    format!("momentum {coordinate}")
+/// What charts have in common besides coordinates and velocities.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Quantity {
+    /// The momentum of the coordinate of this name.
+    Momentum(String),
+    /// Another multiplier or invariant of the formulation, which every chart calls alike.
+    Derived(String),
+    /// An invariant of the user's own, whatever it is called.
+    Watched(String),
 }
 
-/// What is handed over from chart to chart: a state, and multipliers or momenta by name.
-pub(crate) type Point = (State, HashMap<String, f64>);
+impl Quantity {
+    /// What the formulation calls so.
+    fn derived(name: &str) -> Quantity {
+        match name.strip_prefix("momentum ") {
+            Some(coordinate) => Quantity::Momentum(coordinate.into()),
+            None => Quantity::Derived(name.into()),
+        }
+    }
+}
+
+/// What is handed over from chart to chart: a state, and multipliers or momenta.
+pub(crate) type Point = (State, HashMap<Quantity, f64>);
 
 impl Prepared {
     /// The states at a point, as one run of the same motion may come to.
@@ -38,52 +54,54 @@ impl Prepared {
 #[derive(Clone)]
 pub(crate) struct Names {
     /// Of multipliers, then of invariants.
-    outputs: Vec<(String, f64)>,
-    constants: Vec<(String, f64)>,
+    outputs: Vec<(Quantity, f64)>,
+    constants: Vec<(Quantity, f64)>,
     of_removal: bool,
 }
 
 impl Names {
     pub(crate) fn of(equations: &Equations) -> Self {
         let g = &equations.graph;
-        let mut outputs: Vec<(String, f64)>;
-        let constants: Vec<(String, f64)>;
+        let mut outputs: Vec<(Quantity, f64)>;
+        let constants: Vec<(Quantity, f64)>;
         if let Some(removal) = &equations.removal {
             let memory = equations.free_constants.iter().filter_map(|c| Some(&removal.memory[c.memory?]));
-            constants = memory.map(|w| (momentum(&g.name(w.symbol)), -1.0)).collect();
-            outputs = removal.parameters.iter().map(|u| (momentum(&g.name(u.symbol)), 1.0)).collect();
+            constants = memory.map(|w| (Quantity::Momentum(g.name(w.symbol)), -1.0)).collect();
+            outputs = removal.parameters.iter().map(|u| (Quantity::Momentum(g.name(u.symbol)), 1.0)).collect();
             outputs.extend(constants.iter().cloned());
         } else {
-            outputs = equations.multipliers.iter().map(|mu| (mu.name.clone(), 1.0)).collect();
+            outputs = equations.multipliers.iter().map(|mu| (Quantity::derived(&mu.name), 1.0)).collect();
             constants = outputs.iter().take(equations.free_constants.len()).cloned().collect();
         }
-        outputs.extend(equations.invariants.iter().map(|c| (c.name.clone(), 1.0)));
+        let (derived, own) = equations.invariants.split_at(equations.invariants.len() - equations.watched);
+        outputs.extend(derived.iter().map(|c| (Quantity::derived(&c.name), 1.0)));
+        outputs.extend(own.iter().map(|c| (Quantity::Watched(c.name.clone()), 1.0)));
         Names { outputs, constants, of_removal: equations.removal.is_some() }
     }
 
     /// State and named quantities; those of a costate that was left out are missing, for they are zero.
     pub(crate) fn handed_over(&self, t: f64, outputs: Outputs) -> Point {
         let values = outputs.multipliers.into_iter().chain(outputs.invariants);
-        let named = self.outputs.iter().zip(values).map(|((name, sign), x)| (name.clone(), sign * x)).collect();
+        let named = self.outputs.iter().zip(values).map(|((quantity, sign), x)| (quantity.clone(), sign * x)).collect();
         (State { t, q: outputs.coordinates, v: outputs.velocities }, named)
     }
 
     /// The free constants.
-    pub(crate) fn constants(&self, named: &HashMap<String, f64>) -> Vec<f64> {
+    pub(crate) fn constants(&self, named: &HashMap<Quantity, f64>) -> Vec<f64> {
         values(&self.constants, named)
     }
 
-    /// Whether all that `others` name has a value here: only costates that are zero may be missing.
+    /// Whether all that `others` have has a value here: only costates that are zero may be missing.
     pub(crate) fn give(&self, others: &Names) -> bool {
-        let known = |name: &str| self.outputs.iter().any(|(own, _)| own == name);
-        let may_be_zero = |name: &str| self.of_removal && name.starts_with(&momentum(""));
-        others.outputs.iter().all(|(name, _)| known(name) || may_be_zero(name))
+        let known = |quantity: &Quantity| self.outputs.iter().any(|(own, _)| own == quantity);
+        let may_be_zero = |quantity: &Quantity| self.of_removal && matches!(quantity, Quantity::Momentum(_));
+        others.outputs.iter().all(|(quantity, _)| known(quantity) || may_be_zero(quantity))
     }
 }
 
 /// Each with its sign; zero where it is missing.
-fn values(names: &[(String, f64)], named: &HashMap<String, f64>) -> Vec<f64> {
-    names.iter().map(|(name, sign)| sign * named.get(name).copied().unwrap_or(0.0)).collect()
+fn values(names: &[(Quantity, f64)], named: &HashMap<Quantity, f64>) -> Vec<f64> {
+    names.iter().map(|(quantity, sign)| sign * named.get(quantity).copied().unwrap_or(0.0)).collect()
 }
 
 /// A chart after the first, in which everything is read off as in the first.

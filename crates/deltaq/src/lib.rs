@@ -78,6 +78,7 @@ mod gap;
 mod gap_search;
 mod growth;
 mod integrability;
+mod last_digits;
 mod later_chart;
 mod membership;
 mod method;

@@ -4,6 +4,8 @@ use mechanics::System;
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use symbolic::{CompileError, Evaluator, Symbol};
 
+use crate::error_estimate::larger;
+
 /// The length `sqrt(Δqᵀ |M| Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
 ///
 /// `|M|` has the eigenvalues of `M` without their signs: it is `M` where that is positive semidefinite, and
@@ -131,7 +133,7 @@ impl Metric {
 
     /// `max |fᵢ(t, q, v)|`, 0 where there is no constraint.
     pub fn constraint_residual(&mut self, t: f64, q: &[f64], v: &[f64]) -> f64 {
-        self.at(t, q, v).1.iter().fold(0.0, |a, f| a.max(f.abs()))
+        self.at(t, q, v).1.iter().fold(0.0, |a, f| larger(a, f.abs()))
     }
 }
 

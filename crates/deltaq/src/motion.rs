@@ -9,10 +9,11 @@ use crate::charts::{self, ChartChange, Course, Runs};
 use crate::choice::removals;
 use crate::clock::Clock;
 use crate::constants::resolve;
+use crate::error_estimate::larger;
 use crate::form::derive_in_form;
+use crate::last_digits::terms_of_invariants;
 use crate::method::Chosen;
 use crate::metric::subtract;
-use crate::round_off::terms_of_invariants;
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::watch::Watch;
@@ -136,6 +137,29 @@ impl Motion {
         Ok((kept, self.looser.outputs(&mut self.compiled, t)?))
     }
 
+    /// The states at `t` and how much is added up to their rates, where that can be told.
+    pub(crate) fn terms_of_rates(&mut self, t: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+        let y = self.states_at(t).ok()?;
+        let terms = self.compiled.terms_of_rates(t, &y).ok()?;
+        Some((y, terms))
+    }
+
+    /// The states of the looser run.
+    pub(crate) fn looser_state(&mut self, t: f64) -> Option<Vec<f64>> {
+        self.looser.state(&mut self.compiled, t).ok()
+    }
+
+    /// The sizes by which states were integrated.
+    pub(crate) fn sizes_of_states(&self) -> Vec<f64> {
+        self.kept.sizes().to_vec()
+    }
+
+    /// How much is added up to each multiplier at `t`, where that can be told.
+    pub(crate) fn terms_of_multipliers(&mut self, t: f64) -> Option<Vec<f64>> {
+        let y = self.states_at(t).ok()?;
+        self.compiled.terms_of_multipliers(self.start(), t, &y).ok()
+    }
+
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
     ///
     /// # Errors
@@ -145,7 +169,7 @@ impl Motion {
         let mut drift = vec![0.0_f64; start.len()];
         for &t in times {
             for (d, (now, then)) in drift.iter_mut().zip(self.at(t)?.invariants.iter().zip(&start)) {
-                *d = d.max((now - then).abs());
+                *d = larger(*d, (now - then).abs());
             }
         }
         let names = self.equations.invariants.iter().map(|i| i.name.clone());
@@ -218,7 +242,7 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        motion.doubt = motion.broken(Watch::new(setting.system, &[])?);
+        motion.doubt = motion.broken(Watch::new(setting.system, &[])?).or_else(|| motion.rounded_off());
     }
     Ok(motion)
 }

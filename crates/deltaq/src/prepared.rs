@@ -4,8 +4,8 @@ use equations::{Compiled, Equations, Plan, Role};
 use integrate::{Method, Options, Start};
 use symbolic::Symbol;
 
+use crate::last_digits::{UNITS, move_digits};
 use crate::method::{Chosen, suited};
-use crate::round_off::{UNITS, move_digits};
 use crate::single_run::{SingleRun, chart_size};
 use crate::sizes::sizes;
 use crate::start_values::StartValues;

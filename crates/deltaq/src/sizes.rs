@@ -3,8 +3,8 @@
 use equations::{Compiled, Outputs};
 
 use crate::Metric;
+use crate::last_digits::signs;
 use crate::metric::subtract;
-use crate::round_off::signs;
 
 /// A state under this part of the size that the energy tells is round-off.
 const NO_SIZE: f64 = 1e-14;

@@ -5,6 +5,7 @@ use equations::{Named, Outputs};
 use mechanics::System;
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
+use crate::error_estimate::larger;
 use crate::metric::subtract;
 use crate::settings::CERTAINTY;
 
@@ -89,9 +90,9 @@ impl Watch {
     ) -> Option<String> {
         let place = subtract(&kept.coordinates, &looser.coordinates);
         let differences = place.into_iter().chain(subtract(&kept.velocities, &looser.velocities));
-        self.differences.0.iter_mut().zip(differences).for_each(|(d, now)| *d = d.max(now.abs()));
+        self.differences.0.iter_mut().zip(differences).for_each(|(d, now)| *d = larger(*d, now.abs()));
         let differences = subtract(&kept.invariants, &looser.invariants);
-        self.differences.1.iter_mut().zip(differences).for_each(|(d, now)| *d = d.max(now.abs()));
+        self.differences.1.iter_mut().zip(differences).for_each(|(d, now)| *d = larger(*d, now.abs()));
         self.put(t, kept);
         let broken = self.broken(t);
         broken.or_else(|| if self.are_constant(kept, terms) { None } else { self.drifting(t, kept, invariants) })

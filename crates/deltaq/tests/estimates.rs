@@ -53,3 +53,36 @@ fn a_coordinate_at_rest_in_zero_has_no_error() {
     let (_, whole, _) = swing(&Settings::default(), &[]);
     assert_eq!((whole.coordinates[1], whole.complaint()), (0.0, None), "{whole:?}");
 }
+
+/// The estimate of an oscillator of 1 rad/s whose force on `y`, which a constraint holds, is this: the
+/// multiplier is minus the force.
+fn held(force: &str, settings: &Settings) -> ErrorEstimate {
+    let text = format!(
+        "title = \"Held\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\n[system]\n\
+         lagrangian = \"(x'^2 + y'^2)/2 - x^2/2\"\nconstraints = [\"y'\"]\nforces = {{ y = \"{force}\" }}\n\
+         [start]\nvelocities = {{ \"x'\" = 1 }}\n[run]\nduration = 3\n"
+    );
+    let scene = Scene::parse("held", &text).unwrap_or_else(|e| panic!("{e}"));
+    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("linear constraints");
+    let mut motion = solve_choice(&scene, &chetaev, settings).expect("a motion");
+    let estimate = error_estimates(&mut motion, setting(&scene), &[]).expect("in range").1;
+    assert!(motion.is_complete(), "{:?}", motion.ending);
+    estimate
+}
+
+#[test]
+fn a_multiplier_that_is_not_known_makes_a_motion_untrusted() {
+    let loose = Settings { tolerance: 1e-6, method: Some(Method::Dop853), ..Settings::default() };
+    let estimate = held("cos(1e6*x)", &loose);
+    assert!(estimate.relative < 1e-4 && estimate.multipliers[0] > 1e-2, "{estimate:?}");
+    let complaint = estimate.complaint().expect("not to be trusted");
+    assert!(complaint.contains("relative error estimate of lambda"), "{complaint}");
+    // ∞ − ∞ from x = 0.71 on
+    let estimate = held("exp(1000*x) - exp(999*x)", &loose);
+    let complaint = estimate.complaint().expect("not to be trusted");
+    assert!(complaint.contains("relative error estimate of lambda") && complaint.contains("NaN"), "{complaint}");
+    // round-off of what cancels is no error: (x + 1)² − x² − 2x − 1
+    for force in ["0", "x", "1e6*((x + 1)^2 - x^2 - 2*x - 1)", "1e6*(sin(x)^2 + cos(x)^2 - 1)"] {
+        assert_eq!(held(force, &Settings::default()).complaint(), None, "{force}");
+    }
+}

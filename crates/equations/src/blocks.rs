@@ -32,6 +32,16 @@ pub enum EvaluationFailure {
         /// Length at which the iteration ends.
         limit: f64,
     },
+    /// The return of a state onto its constraint did not converge.
+    #[error("no return onto the constraint after {iterations} Newton steps (last step {step:.1e}, limit {limit:.0e})")]
+    NotProjected {
+        /// Steps taken.
+        iterations: usize,
+        /// Relative length of the last step.
+        step: f64,
+        /// Length that counts as convergence.
+        limit: f64,
+    },
 }
 
 /// Where the numbers of one block are, and how it is solved.

@@ -1,6 +1,6 @@
 //! Equations of motion turned into numbers: tapes and small linear solves, ready for any time integrator.
 
-use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar};
+use symbolic::{CompileError, Evaluator, Expr};
 
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::equations::Equations;
@@ -16,9 +16,9 @@ use crate::series::Series;
 /// Evaluation needs `&mut self` because registers are reused; clone it for another thread.
 #[derive(Clone)]
 pub struct Compiled {
-    equations_of_instant: Vec<CompiledBlock>,
-    rates: Evaluator<f64>,
-    outputs: Evaluator<f64>,
+    pub(crate) equations_of_instant: Vec<CompiledBlock>,
+    pub(crate) rates: Evaluator<f64>,
+    pub(crate) outputs: Evaluator<f64>,
     /// The chosen plan, where there is another than the plain one, and how often it was not to be trusted.
     planned: Option<Planned>,
     left: Vec<usize>,
@@ -31,9 +31,9 @@ pub struct Compiled {
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
     series: Option<Series>,
     plain_series: Option<Series>,
-    sizes: Sizes,
+    pub(crate) sizes: Sizes,
     /// `t, y, constants, z` in this order.
-    inputs: Vec<f64>,
+    pub(crate) inputs: Vec<f64>,
     /// `z` from which blocks that are not linear are solved.
     anchor: Vec<f64>,
 }
@@ -241,19 +241,6 @@ impl Compiled {
         Ok(self.sizes.outputs(self.outputs.evaluate(&self.inputs)))
     }
 
-    /// How much was added up to each invariant at `(t, y)`: [`Bounded::magnitude`], of states and unknowns as
-    /// they are.
-    ///
-    /// # Errors
-    /// As [`Compiled::rates`].
-    pub fn terms_of_invariants(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
-        self.solve_instant(t, y)?;
-        let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
-        let mut outputs = Evaluator::new(self.outputs.tape().clone());
-        let values = outputs.evaluate(&inputs);
-        Ok(values[values.len() - self.sizes.invariants..].iter().map(|x| x.magnitude).collect())
-    }
-
     /// Number of guards.
     pub fn guards(&self) -> usize {
         self.sizes.guards
@@ -362,7 +349,7 @@ impl Compiled {
         self.inputs[1..1 + y.len()].copy_from_slice(y);
     }
 
-    fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
+    pub(crate) fn solve_instant(&mut self, t: f64, y: &[f64]) -> Result<(), EvaluationFailure> {
         self.load(t, y);
         self.solve_blocks(Blocks::All)
     }

@@ -156,6 +156,8 @@ pub struct Equations {
     pub multipliers: Vec<Named>,
     /// Quantities that stay constant along the motion.
     pub invariants: Vec<Named>,
+    /// How many of these, the last ones, are the user's own: their names may be any.
+    pub watched: usize,
     /// Projection onto the constraint, where the states can leave it.
     pub projection: Option<ConstraintProjection>,
     /// Expressions in `(t, y)` whose zero is a singularity of the equations.
@@ -194,6 +196,7 @@ impl Equations {
             velocities: Vec::new(),
             multipliers: Vec::new(),
             invariants: Vec::new(),
+            watched: 0,
             projection: None,
             guards: Vec::new(),
             domains: Vec::new(),

@@ -4,7 +4,7 @@ use symbolic::{CompileError, Evaluator, LANES, Lanes, Scalar, SeriesTape, Series
 
 use crate::equations::{Block, Equations};
 use crate::plan::Plan;
-use crate::projection::{LIMIT, STEPS};
+use crate::projection::{LEFT, LIMIT, STEPS};
 use crate::series::Series;
 use mechanics::fresh_symbol;
 
@@ -199,6 +199,7 @@ impl Projection {
         let n = self.places.len();
         let mut moved = vec![[0.0; LANES]; n];
         let mut under_way = [true; LANES];
+        let mut left = [false; LANES];
         for _ in 0..STEPS {
             let values = self.program.evaluate(inputs);
             let (change, rest) = values.split_at(n);
@@ -223,9 +224,15 @@ impl Projection {
             }
             for l in 0..LANES {
                 under_way[l] &= step[l] > LIMIT * speed[l];
+                left[l] = under_way[l] && step[l] > LEFT * speed[l];
             }
             if !under_way.contains(&true) {
                 break;
+            }
+        }
+        for l in 0..LANES {
+            if left[l] || !moved.iter().all(|row| row[l].is_finite()) {
+                moved[0][l] = f64::NAN;
             }
         }
         let mut squares = [0.0; LANES];

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use symbolic::{Expr, Symbol};
 
 use crate::definitions::{apart, symbols_behind};
-use crate::equations::{Block, Equations, LeftOut, Role};
+use crate::equations::{Block, Equations, LeftOut, Named, Role};
 
 impl Equations {
     /// Leaves out what the motion does not need, and writes down what went.
@@ -145,7 +145,12 @@ impl Equations {
         self.states.retain(|y| !dropped.contains(&y.symbol));
         self.blocks.retain(|b| b.unknowns.iter().any(|z| !dropped.contains(z)));
         if !dropped.is_empty() {
-            self.invariants.retain(|i| symbols_behind(&g, &self.definitions, [i.expression]).is_disjoint(&dropped));
+            let is_kept = |i: &Named| symbols_behind(&g, &self.definitions, [i.expression]).is_disjoint(&dropped);
+            let mut own = self.invariants.split_off(self.invariants.len() - self.watched);
+            self.invariants.retain(is_kept);
+            own.retain(is_kept);
+            self.watched = own.len();
+            self.invariants.extend(own);
         }
         self.graph = g;
     }

@@ -72,6 +72,7 @@ mod plan;
 mod planned;
 mod projection;
 mod recombination;
+mod round_off;
 mod series;
 
 pub use blocks::EvaluationFailure;

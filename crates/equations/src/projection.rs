@@ -9,6 +9,8 @@ use mechanics::linear::{Factors, PIVOT_LIMIT, Singular};
 /// Newton steps allowed; a step under this length relative to the velocity ends the iteration.
 pub(crate) const STEPS: usize = 12;
 pub(crate) const LIMIT: f64 = 4.0 * f64::EPSILON;
+/// What is left after all of them may be this long: round-off of constraints that nearly depend.
+pub(crate) const LEFT: f64 = 1e-9;
 
 /// Minimizes `δvᵀ M δv` subject to `f(q, v + δv, t) = 0`, by Newton steps
 ///
@@ -64,10 +66,12 @@ impl Projector {
         let n = self.places.len();
         let size = n + self.constraints;
         let mut moved = vec![0.0; n];
-        for _ in 0..STEPS {
+        let (mut iterations, mut relative) = (0, 0.0);
+        while iterations < STEPS {
             let values = self.program.evaluate(inputs);
             let (matrix, f) = values.split_at(size * size);
             if f.iter().all(|&x| x == 0.0) {
+                relative = 0.0;
                 break;
             }
             self.right[..n].fill(0.0);
@@ -88,9 +92,13 @@ impl Projector {
                 step = step.max(self.right[i].abs());
                 speed = speed.max(y[place].abs());
             }
-            if step <= LIMIT * speed || !step.is_finite() {
+            (iterations, relative) = (iterations + 1, if step == 0.0 { 0.0 } else { step / speed });
+            if relative <= LIMIT || !moved.iter().all(|x| x.is_finite()) {
                 break;
             }
+        }
+        if relative > LEFT || !moved.iter().all(|x| x.is_finite()) {
+            return Err(EvaluationFailure::NotProjected { iterations, step: relative, limit: LEFT });
         }
         Ok(moved.iter().map(|x| x * x).sum::<f64>().sqrt())
     }

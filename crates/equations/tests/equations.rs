@@ -2,9 +2,12 @@
 
 use std::collections::HashMap;
 
-use equations::{Block, Compiled, Equations, EvaluationFailure, Named, Plan, Role, StateVariable};
+use equations::{
+    Block, Compiled, ConstraintProjection, Equations, EvaluationFailure, LaneEquations, Named, Plan, Role,
+    StateVariable,
+};
 use mechanics::System;
-use symbolic::{Expr, Graph};
+use symbolic::{Expr, Graph, LANES, Matrix};
 
 const REGULAR: &str = "whatever the test needs";
 
@@ -250,4 +253,37 @@ fn a_chain_is_eliminated_in_definitions_and_dependent_rows_are_left_to_be_refuse
     assert_eq!(plan.left, [0]);
     let failure = Compiled::with_plan(&twice, &plan).unwrap().rates(0.0, &y, &mut one).unwrap_err();
     assert!(matches!(failure, EvaluationFailure::Singular { .. }), "{failure}");
+}
+
+/// `arctan(8 (v − 1)) = 0` from `v = 3`: Newton's method goes farther away with every step.
+#[test]
+fn a_return_that_does_not_converge_is_a_failure() {
+    let states = [("x", Role::Position, "v"), ("v", Role::Velocity, "0")];
+    let mut astray = equations(&[], &states, &[], &["x"], &["v"]);
+    let g = &astray.graph;
+    let (v, f) = (g.symbol("v"), parse(g, "atan(8*(v - 1))"));
+    astray.projection = Some(ConstraintProjection {
+        velocities: vec![v],
+        constraints: vec![f],
+        jacobian: Matrix::from_fn(1, 1, |_, _| g.derivative(f, v)),
+        metric: Matrix::from_fn(1, 1, |_, _| g.one()),
+    });
+    let mut compiled = Compiled::new(&astray).unwrap();
+    let mut near = [0.0, 1.05];
+    compiled.project(0.0, &mut near).unwrap();
+    assert!((near[1] - 1.0).abs() < 1e-14, "{near:?}");
+    // one step is exact to the last digit: nothing is left, whatever its length was
+    compiled.project(0.0, &mut [0.0, 1.0]).unwrap();
+    let failure = compiled.project(0.0, &mut [0.0, 3.0]).unwrap_err();
+    assert!(
+        matches!(failure, EvaluationFailure::NotProjected { .. } | EvaluationFailure::Singular { .. }),
+        "{failure}"
+    );
+    // in lanes, too: only the lane that fails
+    let plan = Plan::choose(&astray, Some(&[0.0, 0.0, 1.0])).unwrap();
+    let mut lanes = LaneEquations::new(&astray, &plan, &[0.0, 0.0, 1.0]).unwrap().unwrap();
+    let mut speeds = [1.05; LANES];
+    speeds[3] = 3.0;
+    let moved = lanes.project(&[0.0; LANES], &mut [[0.0; LANES], speeds]);
+    assert!((0..LANES).all(|l| moved[l].is_nan() == (l == 3)), "{moved:?}");
 }

@@ -35,6 +35,11 @@ pub(crate) fn chetaev() -> Choice {
     Choice { label: "Chetaev".into(), formulation: "chetaev", removal: None, constants: ConstantsRule::Zero }
 }
 
+/// The power of 1000 nearest to `scale`; 1 where there is none.
+fn round(scale: f64) -> f64 {
+    if scale > 0.0 && scale.is_finite() { 1000_f64.powf(scale.log(1000.0).round()) } else { 1.0 }
+}
+
 impl Point {
     /// Moves to a steady motion near by.
     pub(crate) fn settle(&mut self) -> Result<State, LinearError> {
@@ -48,9 +53,9 @@ impl Point {
             let y = self.y.clone();
             let (rates, jacobian) = (self.rates(&y)?, self.jacobian(&y)?);
             let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| jacobian[(kept[i], kept[j])]);
-            let [values, rates] = [&y, &rates].map(|of| kept.iter().map(|&i| of[i]).collect::<Vec<f64>>());
-            let residual = DVector::from_vec(rates.clone());
-            match moving(&matrix, &values, &rates) {
+            let residual = DVector::from_iterator(kept.len(), kept.iter().map(|&i| rates[i]));
+            let (scales, moving) = moving(self, &kept, &matrix)?;
+            match moving {
                 // on, as long as it becomes better
                 None if residual.norm() > 0.5 * last || residual.norm() == 0.0 => return self.state(),
                 Some(Moving { place, rate, limit }) if iterations == ITERATIONS => {
@@ -65,8 +70,22 @@ impl Point {
                 None => along(kept[i], k),
                 Some(k) => jacobian[(kept[i], speeds[k])],
             });
-            let svd = SingularValues::of(&columns);
-            let step = svd.solve(&-residual, FLAT * svd.values.max());
+            // rows by their size, columns in round units, lest those of small units look flat
+            let scale = |i: usize| kept.iter().position(|&k| k == i).map_or(1.0, |k| scales[k]);
+            let units = DVector::from_fn(2 * m, |k, _| match k.checked_sub(m) {
+                None => {
+                    let reach = |&p: &usize| scale(p) / jacobian[(p, speeds[k])].abs();
+                    round(places.iter().map(reach).fold(f64::INFINITY, f64::min))
+                }
+                Some(k) => round(scale(speeds[k])),
+            });
+            let sizes = DVector::from_fn(kept.len(), |i, _| {
+                let size: f64 = matrix.row(i).iter().zip(&scales).map(|(a, s)| a.abs() * s).sum();
+                if size > 0.0 { size } else { 1.0 }
+            });
+            let scaled = DMatrix::from_fn(kept.len(), 2 * m, |i, k| columns[(i, k)] * units[k] / sizes[i]);
+            let svd = SingularValues::of(&scaled);
+            let step = svd.solve(&-residual.component_div(&sizes), FLAT * svd.values.max()).component_mul(&units);
             self.displace(&places, &speeds, &step.as_slice()[..m])?;
             for (&w, change) in speeds.iter().zip(&step.as_slice()[m..]) {
                 self.y[w] += change;

@@ -55,6 +55,7 @@ mod error;
 mod find;
 mod linearization;
 mod point;
+mod scales;
 mod spectrum;
 mod sweep;
 mod weyl;

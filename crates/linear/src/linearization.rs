@@ -43,12 +43,13 @@ pub struct Linearization {
     velocities: Vec<usize>,
 }
 
-/// Rates up to this, over the sum of what they are made of to first order and 1, count as none.
+/// Rates up to this part of what is added up to them count as none.
 const STEADY: f64 = 1e-9;
 
 /// The equations of `choice` to first order about the start of `setting`, which has to be a steady motion.
 ///
-/// A rate counts as none up to 1e-9 of `1 + Σ |J_ij y_j|`.
+/// A rate counts as none up to 1e-9 of `Σ |J_ij| s_j` and what is added up to it, with `s` as far as states
+/// can be moved before `J` is another one, at most 1 for a coordinate.
 ///
 /// # Errors
 /// [`LinearError::NotSteady`], [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
@@ -105,8 +106,8 @@ impl Linearization {
         if depends_on_time(point) {
             return Err(LinearError::TimeDependent { formulation: form.into() });
         }
-        let (found, rates) = Linearization::at(point, true)?;
-        let Some(Moving { place, rate, limit }) = moving(&found.matrix, &found.values, &rates) else {
+        let (found, kept) = Linearization::at(point, true)?;
+        let Some(Moving { place, rate, limit }) = moving(point, &kept, &found.matrix)?.1 else {
             return Ok(found);
         };
         let carried: Vec<&str> = found.carried.iter().map(|c| &c.name[..]).collect();
@@ -115,11 +116,11 @@ impl Linearization {
         Err(LinearError::NotSteady { formulation: form.into(), state, rate, limit, carried })
     }
 
-    /// About a point, with the rates of its states.
-    fn at(point: &mut Point, is_steady: bool) -> Result<(Linearization, Vec<f64>), LinearError> {
+    /// About a point, with the places of its states.
+    fn at(point: &mut Point, is_steady: bool) -> Result<(Linearization, Vec<usize>), LinearError> {
         let y = point.y.clone();
         let jacobian = point.jacobian(&y)?;
-        let noise = point.noise(&jacobian)?;
+        let noise = point.noise(&y, &jacobian)?;
         let carried = point.carried()?;
         let rates = point.rates(&y)?;
         let kept: Vec<usize> = (0..y.len()).filter(|i| !carried.contains(i)).collect();
@@ -142,7 +143,7 @@ impl Linearization {
             coordinates: places(&COORDINATES),
             velocities: places(&VELOCITIES),
         };
-        Ok((found, kept.iter().map(|&i| rates[i]).collect()))
+        Ok((found, kept))
     }
 
     /// The eigenvalues that belong to these coordinates and their velocities, and to what is coupled with
@@ -191,15 +192,22 @@ pub(crate) struct Moving {
     pub(crate) limit: f64,
 }
 
-/// The state whose rate is most over its limit, if any is.
-pub(crate) fn moving(matrix: &DMatrix<f64>, values: &[f64], rates: &[f64]) -> Option<Moving> {
-    let limits = matrix.row_iter().map(|row| {
-        let size: f64 = row.iter().zip(values).map(|(a, y)| (a * y).abs()).sum();
-        STEADY * (1.0 + size)
+/// [`Point::scales`] of the states `kept`, whose Jacobian is `matrix`; and the one whose rate is most over
+/// its limit, if any is.
+pub(crate) fn moving(
+    point: &mut Point,
+    kept: &[usize],
+    matrix: &DMatrix<f64>,
+) -> Result<(Vec<f64>, Option<Moving>), LinearError> {
+    let y = point.y.clone();
+    let (rates, terms, scales) = (point.rates(&y)?, point.terms()?, point.scales(kept, matrix));
+    let over = kept.iter().zip(matrix.row_iter()).enumerate().filter_map(|(place, (&i, row))| {
+        let size: f64 = row.iter().zip(&scales).map(|(a, s)| a.abs() * s).sum();
+        let (rate, limit) = (rates[i], STEADY * (size + terms[i]));
+        (rate.abs() > limit).then_some(Moving { place, rate, limit })
     });
-    let all = rates.iter().zip(limits).enumerate();
-    let over = all.map(|(place, (&rate, limit))| Moving { place, rate, limit }).filter(|m| m.rate.abs() > m.limit);
-    over.max_by(|a, b| (a.rate.abs() / a.limit).total_cmp(&(b.rate.abs() / b.limit)))
+    let most = over.max_by(|a, b| (a.rate.abs() / a.limit).total_cmp(&(b.rate.abs() / b.limit)));
+    Ok((scales, most))
 }
 
 /// Eigenvalues of some of the states.

@@ -21,6 +21,10 @@ pub(crate) const COORDINATES: [Role; 3] = [Role::Position, Role::DisplacementPar
 pub(crate) const VELOCITIES: [Role; 3] = [Role::Velocity, Role::QuasiVelocity, Role::ParameterRate];
 /// Points beside it.
 const SAMPLES: usize = 3;
+/// How far they are, in parts of the states or of 1; 0: the point itself.
+const APART: [f64; 9] = [1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15, 0.0];
+/// An entry has to be so many times what the last digits of the states change it by.
+const DIGITS: f64 = 100.0;
 /// Entries up to this part of the largest in their row or column are no dependence.
 const INDEPENDENT: f64 = 1e-10;
 
@@ -59,12 +63,12 @@ impl Point {
         if values.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(LinearError::NotFinite { t }) }
     }
 
-    /// How far entries of the Jacobian are off, by what they change where the last digits of `y` do.
-    pub(crate) fn noise(&mut self, jacobian: &DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
+    /// How far entries of the Jacobian at `y` are off, by what they change where the last digits of `y` do.
+    pub(crate) fn noise(&mut self, y: &[f64], jacobian: &DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
         let mut random = Weyl::default();
-        let mut noise = DMatrix::zeros(self.y.len(), self.y.len());
+        let mut noise = DMatrix::zeros(y.len(), y.len());
         for _ in 0..SAMPLES {
-            let y: Vec<f64> = self.y.iter().map(|x| x * (1.0 + 4.0 * f64::EPSILON * random.number())).collect();
+            let y: Vec<f64> = y.iter().map(|x| x * (1.0 + 4.0 * f64::EPSILON * random.number())).collect();
             noise = noise.sup(&(self.jacobian(&y)? - jacobian).abs());
         }
         Ok(noise)
@@ -89,21 +93,26 @@ impl Point {
         }
     }
 
-    /// Which rates depend on which states, at random points a tenth away, or nearer if need be.
+    /// How much is added up to each rate at the point.
+    pub(crate) fn terms(&mut self) -> Result<Vec<f64>, LinearError> {
+        let t = self.t;
+        self.compiled.terms_of_rates(t, &self.y).map_err(|failure| LinearError::Evaluation { t, failure })
+    }
+
+    /// Which rates depend on which states, at random points near by: a trap of a micrometre is not seen from
+    /// a tenth of a metre.
     fn dependences(&mut self) -> Result<DMatrix<bool>, LinearError> {
         let n = self.y.len();
         let mut random = Weyl::default();
         let mut coupled = DMatrix::from_element(n, n, false);
-        for _ in 0..SAMPLES {
-            let mut near = |apart: f64| {
-                let moved = |x: &f64| x + apart * x.abs().max(1.0) * random.number();
-                let y: Vec<f64> = self.y.iter().map(moved).collect();
-                self.jacobian(&y)
-            };
-            let jacobian = near(0.1).or_else(|_| near(0.01)).or_else(|_| near(0.001))?;
+        for apart in APART.iter().flat_map(|apart| [apart; SAMPLES]) {
+            let y: Vec<f64> = self.y.iter().map(|x| x + apart * x.abs().max(1.0) * random.number()).collect();
+            let found = self.jacobian(&y).and_then(|jacobian| Ok((self.noise(&y, &jacobian)?, jacobian)));
+            let Ok((noise, jacobian)) = found else { continue };
             let largest = |i: usize, j: usize| jacobian.row(i).amax().max(jacobian.column(j).amax());
             for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-                coupled[(i, j)] |= jacobian[(i, j)].abs() > INDEPENDENT * largest(i, j);
+                let limit = (INDEPENDENT * largest(i, j)).max(DIGITS * noise[(i, j)]);
+                coupled[(i, j)] |= jacobian[(i, j)].abs() > limit;
             }
         }
         Ok(coupled)

@@ -1,6 +1,7 @@
 //! Steady motions whose eigenvalues are known, and everything that is refused.
 
 mod chains;
+mod scales;
 
 use deltaq::{Choice, Setting, Settings, SolveError, choices, removals, setting};
 use linear::{LinearError, Linearization, Spectrum, find_steady, linearize, linearize_at, sweep};

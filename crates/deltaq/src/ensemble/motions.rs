@@ -7,8 +7,8 @@ use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::clock::Clock;
 use crate::error_estimate::Differences;
+use crate::last_digits::terms_of_invariants;
 use crate::metric::subtract;
-use crate::round_off::terms_of_invariants;
 use crate::single_run::outputs;
 use crate::sizes::sizes;
 use crate::watch::Watch;
@@ -71,9 +71,18 @@ impl Ensemble {
         let invariants = &self.equations().invariants;
         let (compiled, metric) = (&self.varying.prepared().compiled, &self.metric);
         let names: Vec<String> = self.system.coordinates.iter().map(|c| c.name.clone()).collect();
+        let multipliers: Vec<String> = self.equations().multipliers.iter().map(|m| m.name.clone()).collect();
         let read = shared(options.threads, members.len(), 1, |take| {
             let (compiled, metric, watch) = (compiled.clone(), metric.clone(), watch.clone());
-            let mut reader = Reader { names: &names, compiled, metric, watch, invariants, instants: &instants };
+            let mut reader = Reader {
+                names: &names,
+                multipliers: &multipliers,
+                compiled,
+                metric,
+                watch,
+                invariants,
+                instants: &instants,
+            };
             let mut done = Vec::new();
             while let Some(index) = take() {
                 if let Ok(run) = &runs[index] {
@@ -180,6 +189,7 @@ fn instants(members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions
 
 struct Reader<'a> {
     names: &'a [String],
+    multipliers: &'a [String],
     compiled: Compiled,
     metric: Metric,
     watch: Watch,
@@ -201,7 +211,7 @@ impl Reader<'_> {
         self.metric.set_parameters(parameters);
         let start = outputs(&mut self.compiled, member.t, &member.y)?;
         self.watch.begin(member.t, &start, parameters);
-        let mut differences = Differences::from(self.names, &start.coordinates);
+        let mut differences = Differences::from(self.names, self.multipliers, &start.coordinates);
         let mut read = Vec::with_capacity(run.states.len());
         let mut is_clear = true;
         for (i, (&(t, asked), y)) in self.instants.iter().zip(&run.states).enumerate() {
@@ -221,6 +231,9 @@ impl Reader<'_> {
             if let Some(difference) = run.differences.get(i) {
                 let other = outputs(&mut self.compiled, t, &subtract(y, difference))?;
                 differences.add(&mut self.metric, t, &now, &other, t - member.t);
+                if differences.has_doubtful_multipliers() {
+                    differences.add_terms(self.compiled.terms_of_multipliers(member.t, t, y).ok());
+                }
             }
             read.push(now);
         }

@@ -7,8 +7,8 @@ use integrate::{Interrupt, LANES, Lane, LaneProblem, LaneStart, Options, Project
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
+use crate::last_digits::{UNITS, move_digits};
 use crate::metric::subtract;
-use crate::round_off::{UNITS, move_digits};
 use crate::single_run::SingleRun;
 use crate::sizes::sizes;
 use crate::{Ending, Metric, SolveError, TIGHTER};

@@ -1,0 +1,55 @@
+//! Round-off that both runs share is in no difference of theirs.
+
+use deltaq::{Motion, Settings, choices, error_estimate, setting, solve_choice};
+use integrate::Method;
+use scene::Scene;
+
+/// The motion of a particle under this force from x = 0 at this speed, up to this time; and its status.
+fn pushed(force: &str, speed: f64, duration: f64, method: Option<Method>) -> (Motion, &'static str, Option<String>) {
+    let text = format!(
+        "title = \"Pushed\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
+         forces = {{ x = \"{force}\" }}\n[start]\nvelocities = {{ \"x'\" = {speed:?} }}\n[run]\nduration = {duration:?}\n"
+    );
+    let scene = Scene::parse("pushed", &text).unwrap_or_else(|e| panic!("{e}"));
+    let settings = Settings { method, ..Settings::default() };
+    let mut motion = solve_choice(&scene, &choices(&scene)[0], &settings).expect("a motion");
+    let estimate = error_estimate(&mut motion, setting(&scene)).expect("in range");
+    let (status, cause) = estimate.status(&motion);
+    (motion, status, cause)
+}
+
+/// 1 − cos u and eᵘ − 1 of small u lose their digits, and the motions with them.
+#[test]
+fn a_force_of_round_off_is_not_trusted() {
+    // x'' = −x² to 1e-16, and x'' = −x to 1e-13
+    for (force, truth) in [("-(1 - cos(1e-8*x))*2e16", 0.9204757107), ("-(exp(1e-13*x) - 1)*1e13", 1_f64.sin())] {
+        for method in [None, Some(Method::Dop853), Some(Method::Radau5)] {
+            let (mut motion, status, cause) = pushed(force, 1.0, 1.0, method);
+            let Ok(end) = motion.at(motion.end()) else { panic!("{force}") };
+            let cause = cause.unwrap_or_else(|| panic!("{force}: {status}, {} instead of {truth}", end.coordinates[0]));
+            // and they are wrong, indeed
+            assert!((end.coordinates[0] - truth).abs() > 1e-7, "{force}: {}", end.coordinates[0]);
+            let is_told = status == "untrusted" || motion.end() < 1.0;
+            assert!(is_told, "{force}: {status}, {cause}");
+        }
+    }
+}
+
+/// The same forces written otherwise, and what is large, fast or long without a loss of digits.
+#[test]
+fn a_force_that_keeps_its_digits_is_trusted() {
+    for (force, speed, duration) in [
+        ("-4e16*sin(0.5e-8*x)^2", 1.0, 1.0),
+        ("-x", 1.0, 1000.0),
+        ("-1e6*x", 1.0, 10.0),
+        ("-9.81*sin(x)", 1.0, 100.0),
+        ("9.81 - 9.81", 0.0, 100.0),
+        ("cos(x) - 1", 1e-3, 10.0),
+        ("cos(1000*t)", 0.0, 10.0),
+        ("1e-12*cos(x) - 1e-12", 1e-6, 1.0),
+        ("0", 0.0, 1.0),
+    ] {
+        let (motion, status, cause) = pushed(force, speed, duration, None);
+        assert!(motion.is_complete() && cause.is_none(), "{force}: {status}, {cause:?}");
+    }
+}
