@@ -144,6 +144,24 @@ impl Motion {
         Some((y, terms))
     }
 
+    /// `−∂ẏ_i/∂y_i` at `(t, y)` where it is positive and no round-off, or else 0; states have these sizes.
+    pub(crate) fn decay_of_states(&mut self, t: f64, y: &[f64], sizes: &[f64]) -> Option<Vec<f64>> {
+        let direction = (self.end() - self.start()).signum();
+        let (mut here, mut there) = (vec![0.0; y.len()], vec![0.0; y.len()]);
+        let terms = self.compiled.terms_of_rates(t, y).ok()?;
+        self.compiled.rates(t, y, &mut here).ok()?;
+        let mut decay = vec![0.0; y.len()];
+        for i in 0..y.len() {
+            let (step, mut moved) = (f64::EPSILON.sqrt() * sizes[i].max(y[i].abs()), y.to_vec());
+            moved[i] += step;
+            if self.compiled.rates(t, &moved, &mut there).is_ok() {
+                let change = direction * (here[i] - there[i]);
+                decay[i] = if change > 16.0 * f64::EPSILON * terms[i] { change / step } else { 0.0 };
+            }
+        }
+        Some(decay)
+    }
+
     /// The states of the looser run.
     pub(crate) fn looser_state(&mut self, t: f64) -> Option<Vec<f64>> {
         self.looser.state(&mut self.compiled, t).ok()

@@ -1,8 +1,9 @@
 //! Round-off of the equations themselves, which both runs of a motion share.
 //!
 //! A rate to which `s` is added up is known to `ε s`, with `ε` the distance of numbers beside 1. What this
-//! makes of a state within a time, `∫ ε s dt`, is no bound of its error, which may grow or average out; but
-//! where it is no small part of the state, and more than the two runs differ by, no estimate is to be trusted.
+//! makes of a state within a time, `r' = ε s − λ r` with `λ = max(0, −∂ẏ/∂y)` of the state itself, is no bound
+//! of its error, which may grow or average out; but where it is no small part of the state, and more than the
+//! two runs differ by, no estimate is to be trusted.
 
 use crate::settings::CERTAINTY;
 use crate::{Doubt, Motion};
@@ -38,8 +39,11 @@ impl Motion {
         for pair in looked.windows(2) {
             let [(before, _, first), (t, kept, second)] = pair else { continue };
             let looser = self.looser_state(*t)?;
+            let decay = self.decay_of_states(*t, kept, &sizes)?;
+            let time = (t - before).abs();
             for i in 0..sizes.len() {
-                sums[i] += 0.5 * f64::EPSILON * (first[i] + second[i]) * (t - before).abs();
+                let held = if decay[i] > 0.0 { -(-decay[i] * time).exp_m1() / decay[i] } else { time };
+                sums[i] = sums[i] * (-decay[i] * time).exp() + 0.5 * f64::EPSILON * (first[i] + second[i]) * held;
                 differences[i] = differences[i].max((kept[i] - looser[i]).abs());
                 if sums[i] > TOLD * sizes[i] && sums[i] > CERTAINTY * differences[i] {
                     let state = self.equations.graph.name(self.equations.states[i].symbol);

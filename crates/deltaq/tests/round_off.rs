@@ -48,6 +48,7 @@ fn a_force_that_keeps_its_digits_is_trusted() {
         ("cos(1000*t)", 0.0, 10.0),
         ("1e-12*cos(x) - 1e-12", 1e-6, 1.0),
         ("0", 0.0, 1.0),
+        ("-1e9*(x' - cos(t))", 1.0, 3.0),
     ] {
         let (motion, status, cause) = pushed(force, speed, duration, None);
         assert!(motion.is_complete() && cause.is_none(), "{force}: {status}, {cause:?}");
