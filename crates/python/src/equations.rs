@@ -134,7 +134,8 @@ impl Equations {
         result
     }
 
-    /// What `read` writes, so many numbers at each point, where the equations are compiled as `method` needs them.
+    /// What `read` writes, so many numbers at each point, where the equations are compiled as `method`
+    /// needs them.
     fn rows(
         &self,
         py: Python<'_>,

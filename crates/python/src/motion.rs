@@ -59,8 +59,8 @@ impl Names {
 }
 
 impl Outputs {
-    /// From `rows`, one an instant, of `count`: those that are missing become NaN. `count` is `None` where there
-    /// is one instant, given as a number.
+    /// From `rows`, one an instant, of `count`: those that are missing become NaN. `count` is `None` where
+    /// there is one instant, given as a number.
     pub(crate) fn new(
         py: Python<'_>,
         rows: &[Row],
@@ -137,8 +137,8 @@ pub(crate) struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// As arguments of `System.solve`. Where seconds ended the motion, the same number of them may lead elsewhere:
-    /// it is then asked for up to the end that it came to.
+    /// As arguments of `System.solve`. Where seconds ended the motion, the same number of them may lead
+    /// elsewhere: it is then asked for up to the end that it came to.
     fn arguments<'py>(&self, py: Python<'py>, end: f64, is_complete: bool) -> PyResult<Bound<'py, PyDict>> {
         let Asked { choice, form, times, settings } = self;
         let arguments = PyDict::new(py);
@@ -160,9 +160,9 @@ impl Asked<'_> {
 
 /// One motion: the trajectory of a system under one formulation, with its error estimate.
 ///
-/// `times` are those asked for; all arrays belong to them. What the motion did not reach is NaN: `reached` counts
-/// the times that it did, `status` and `cause` say why. `at(t)` gives any other time; a motion that was pickled or
-/// copied is integrated anew for it, once.
+/// `times` are those asked for; all arrays belong to them. What the motion did not reach is NaN: `reached`
+/// counts the times that it did, `status` and `cause` say why. `at(t)` gives any other time; a motion that
+/// was pickled or copied is integrated anew for it, once.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Motion {
     /// None of one that was pickled, until it is read off.
@@ -354,7 +354,8 @@ impl Motion {
 impl Motion {
     /// Everything at time t, read off the dense output (order 7 for dop853).
     ///
-    /// t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError elsewhere.
+    /// t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError
+    /// elsewhere.
     #[pyo3(signature = (t))]
     fn at(&self, py: Python<'_>, t: Floats<'_>) -> PyResult<Outputs> {
         let (t, start, end) = (times(&t)?, self.start, self.end);

@@ -70,10 +70,12 @@ impl System {
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
-    /// `linearize` over the values of one number, and where stability changes between them: `deltaq linearize --sweep`.
+    /// `linearize` over the values of one number, and where stability changes between them: `deltaq
+    /// linearize --sweep`.
     ///
-    /// over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier ("mu0_1").
-    /// Between neighbours of different stability the value where it changes is found by bisection.
+    /// over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier
+    /// ("mu0_1"). Between neighbours of different stability the value where it changes is found by
+    /// bisection.
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (over, formulation="chetaev", *, free=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize_over(

@@ -49,8 +49,8 @@ impl State {
 /// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others. guess:
 /// velocities near which the others are sought. project: move given velocities onto the constraints.
 /// removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
-/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times at
-/// which a step ends, where something is switched. notes: remarks.
+/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
+/// at which a step ends, where something is switched. notes: remarks.
 ///
 /// >>> sledge = deltaq.System(
 /// ...     coordinates=["x", "y", "phi"],

@@ -84,8 +84,8 @@ class System:
     coordinate to its start. velocities: some ("x'") to their start; constraints supply the others. guess:
     velocities near which the others are sought. project: move given velocities onto the constraints.
     removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
-    multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times at
-    which a step ends, where something is switched. notes: remarks.
+    multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
+    at which a step ends, where something is switched. notes: remarks.
 
     >>> sledge = deltaq.System(
     ...     coordinates=["x", "y", "phi"],
@@ -227,10 +227,12 @@ class System:
         mu0: _Floats | None = None,
         constants: _Constants | None = None,
     ) -> LinearizationSweep:
-        """`linearize` over the values of one number, and where stability changes between them: `deltaq linearize --sweep`.
+        """`linearize` over the values of one number, and where stability changes between them: `deltaq
+        linearize --sweep`.
 
-        over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier ("mu0_1").
-        Between neighbours of different stability the value where it changes is found by bisection.
+        over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier
+        ("mu0_1"). Between neighbours of different stability the value where it changes is found by
+        bisection.
         """
     def prove(self, almost_every_start: bool = False) -> Proof:
         """Proves that no multipliers mu0 make the vakonomic motion Chetaev's, from the start or from almost every one.
@@ -511,9 +513,9 @@ class StabilityChange:
 class Motion:
     """One motion: the trajectory of a system under one formulation, with its error estimate.
 
-    `times` are those asked for; all arrays belong to them. What the motion did not reach is NaN: `reached` counts
-    the times that it did, `status` and `cause` say why. `at(t)` gives any other time; a motion that was pickled or
-    copied is integrated anew for it, once.
+    `times` are those asked for; all arrays belong to them. What the motion did not reach is NaN: `reached`
+    counts the times that it did, `status` and `cause` say why. `at(t)` gives any other time; a motion that
+    was pickled or copied is integrated anew for it, once.
     """
     system: Final[System]
     """The system that moves."""
@@ -578,7 +580,8 @@ class Motion:
     def at(self, t: _Floats) -> Outputs:
         """Everything at time t, read off the dense output (order 7 for dop853).
 
-        t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError elsewhere.
+        t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError
+        elsewhere.
         """
     def to_arrow(self) -> Any:
         """A pyarrow.Table, a row a time: t, coordinates, velocities (x'), multipliers, invariants, observables.
