@@ -2,7 +2,7 @@
 
 const HEADINGS = {
   parameter: "Parameters", start: "Start", velocity: "Start velocities", multiplier: "Multipliers μ₀ (vakonomic, κ)",
-  costate: "Costates P(t₀) (removed constraint)", kappa: "Between Chetaev and vakonomic", run: "Run",
+  costate: "Costates P(t₀)", kappa: "Between Chetaev and vakonomic", run: "Run",
 };
 
 const short = (x) => String(Number(x.toPrecision(6)));
@@ -12,7 +12,8 @@ const GREEK = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", theta: "θ", 
 
 // A name as it is read: Greek letters, primes, an index below.
 export function readable(name) {
-  if (name.startsWith("P0_")) return `P<sub>${readable(name.slice(3))}</sub>`;
+  // a costate of one removal has that behind it
+  if (name.startsWith("P0_")) return `P<sub>${readable(name.slice(3).split("@")[0])}</sub>`;
   const [, stem, index, primes] = /^(.*?)_?(\d*)('*)$/.exec(name);
   const [head, ...rest] = stem.split("_");
   const [, word, digits] = /^(\D*)(\d*)$/.exec(head) ?? [null, head, ""];
@@ -21,23 +22,53 @@ export function readable(name) {
 }
 
 export class Controls {
-  // `set` is told every change: the name, and the number or null for that of the text.
+  // `set` is told every change: numbers by name, or null for that of the text.
   constructor(element, set) {
     Object.assign(this, { element, set, rows: new Map() });
   }
 
   // Rows for what can be varied, with the numbers that are set.
   build(controls, set) {
-    this.element.replaceChildren();
-    this.rows.clear();
+    this.clear();
+    const all = document.createElement("button");
+    all.type = "button";
+    all.id = "all";
+    all.textContent = "all as in the text";
+    all.addEventListener("click", () => {
+      const changed = [...this.rows.values()].filter((entry) => entry.changed);
+      for (const entry of changed) this.put(entry, entry.control.value, false);
+      this.set(Object.fromEntries(changed.flatMap(({ control }) => namesOf(control)).map((name) => [name, null])), false);
+    });
+    this.element.append(all);
     for (const [kind, heading] of Object.entries(HEADINGS)) {
       const of = controls.filter((control) => control.kind === kind);
-      if (!of.length) continue;
-      const group = document.createElement("fieldset");
-      group.innerHTML = `<legend>${heading}</legend>`;
-      for (const control of of) group.append(this.row(control, set[control.name]));
-      this.element.append(group);
+      // costates of each removal on their own
+      for (const motion of new Set(of.map((control) => control.motion))) {
+        const group = document.createElement("fieldset");
+        group.innerHTML = "<legend></legend>";
+        group.firstChild.textContent = motion === undefined ? heading : `${heading}, ${motion}`;
+        if (motion !== undefined) group.dataset.motion = motion;
+        for (const control of of.filter((control) => control.motion === motion)) {
+          group.append(this.row(control, namesOf(control).map((name) => set[name]).find((x) => x !== undefined)));
+        }
+        this.element.append(group);
+      }
     }
+    this.touched();
+  }
+
+  clear() {
+    this.element.replaceChildren();
+    this.rows.clear();
+  }
+
+  // Groups of motions that are not shown are not used.
+  shown(labels) {
+    for (const group of this.element.querySelectorAll("fieldset[data-motion]")) group.hidden = !labels.includes(group.dataset.motion);
+  }
+
+  touched() {
+    this.element.querySelector("#all").disabled = ![...this.rows.values()].some(({ changed }) => changed);
   }
 
   row(control, given) {
@@ -45,7 +76,8 @@ export class Controls {
     const row = document.createElement("div");
     row.className = "row";
     row.innerHTML = `<label>${readable(name)}<small></small></label><input type="range" min="0" max="1000" step="1">
-      <input type="number" step="any"><button type="button" class="plain" title="as in the text" aria-label="${name} as in the text">↺</button>`;
+      <input type="number" step="any"><button type="button" class="plain" title="as in the text" >↺</button>`;
+    row.querySelector("button").setAttribute("aria-label", `${name} as in the text`);
     // a unit is whatever the text says
     row.querySelector("small").textContent = unit;
     const [slider, number, back] = row.querySelectorAll("input, button");
@@ -58,33 +90,59 @@ export class Controls {
       const [low, high] = entry.bounds;
       const x = Number((low + ((high - low) * slider.value) / 1000).toPrecision(5));
       number.value = short(x);
-      this.mark(entry, true);
-      this.set(name, x, true);
+      this.give(entry, x, true);
     });
-    slider.addEventListener("change", () => this.set(name, Number(number.value), false));
+    slider.addEventListener("change", () => this.give(entry, Number(number.value), false));
     number.addEventListener("change", () => {
       const x = Number(number.value);
       if (number.value.trim() === "" || !Number.isFinite(x)) return this.reset(entry);
       this.put(entry, x, true);
-      this.set(name, x, false);
+      this.give(entry, x, false);
     });
     back.addEventListener("click", () => this.reset(entry));
     this.put(entry, given ?? value, given !== undefined);
     return row;
   }
 
+  // A number of one's own. What a search finds of the costates of a removal is found together: with one of them
+  // given, the others are, too, and stay what they were.
+  give(entry, x, moving) {
+    const numbers = { [entry.control.name]: x };
+    this.mark(entry, true);
+    for (const other of this.beside(entry)) {
+      if (other.changed || other.number.value === "") continue;
+      this.mark(other, true);
+      numbers[other.control.name] = other.used ?? Number(other.number.value);
+    }
+    this.set(numbers, moving);
+  }
+
+  // The rows that a search finds together with this one.
+  beside({ control }) {
+    if (control.motion === undefined) return [];
+    return [...this.rows.values()].filter((other) => other.control.motion === control.motion && other.control.value === null);
+  }
+
   reset(entry) {
-    this.put(entry, entry.control.value, false);
-    this.set(entry.control.name, null, false);
+    const together = entry.control.value === null ? this.beside(entry) : [entry];
+    for (const other of together) this.put(other, other.control.value, false);
+    this.set(Object.fromEntries(together.flatMap(({ control }) => namesOf(control)).map((name) => [name, null])), false);
   }
 
   mark(entry, changed) {
     entry.changed = changed;
     entry.row.classList.toggle("changed", changed);
+    if (this.element.querySelector("#all")) this.touched();
   }
 
   // Puts a number there; the slider widens where it does not reach.
   put(entry, x, changed) {
+    entry.used = x;
+    if (x === null) {
+      // found with the motion
+      entry.number.value = "";
+      return this.mark(entry, changed);
+    }
     const [low, high] = entry.bounds;
     if (x < low || x > high) entry.bounds = [Math.min(low, x), Math.max(high, x)];
     const [from, to] = entry.bounds;
@@ -93,17 +151,15 @@ export class Controls {
     this.mark(entry, changed);
   }
 
-  // Numbers that the program found, where none is set.
-  found(values) {
-    for (const { name, value } of values) {
-      const entry = this.rows.get(name);
-      if (entry && !entry.changed && entry.control.kind === "costate") this.put(entry, value, false);
+  // Numbers that motions were computed with, where none is set. A costate that is none of their constants is zero.
+  found(motions) {
+    for (const { label, constants } of motions.filter(({ refused }) => !refused)) {
+      const used = (control) => constants.find(({ name }) => control.name === `${name}@${label}`)?.value ?? 0;
+      const found = [...this.rows.values()].filter(({ control, changed }) => control.motion === label && !changed);
+      for (const entry of found) this.put(entry, used(entry.control), false);
     }
   }
-
-  // What stands there of a kind.
-  values(kind) {
-    const of = [...this.rows.values()].filter(({ control }) => control.kind === kind);
-    return of.map(({ control, number }) => [control.name, Number(number.value)]);
-  }
 }
+
+// The names by which a number is set: that of a costate may be set for all removals at once.
+const namesOf = ({ name }) => (name.includes("@") ? [name, name.split("@")[0]] : [name]);

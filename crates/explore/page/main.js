@@ -7,7 +7,7 @@ import { Engine, compile } from "./engine.js";
 import { look, swatch } from "./look.js";
 import { Samples } from "./samples.js";
 import { Stage } from "./stage.js";
-import { decode, encode, remember, state } from "./state.js";
+import { decode, encode, forget, remember, state, turn } from "./state.js";
 import { Text } from "./text.js";
 import { equations, verdict } from "./words.js";
 
@@ -35,13 +35,24 @@ const curves = new Curves(element("plot"), element("curve"), (t) => {
   clock.pause();
   clock.go(t);
 });
-const controls = new Controls(element("numbers"), (name, value, moving) => set(name, value, moving));
+const controls = new Controls(element("numbers"), (numbers, moving) => set(numbers, moving));
 const text = new Text({ area: element("area"), marks: element("marks"), faults: element("faults") }, (typed) => {
-  state.scene = OWN;
-  state.text = typed;
-  element("scene").value = OWN;
+  const write = () => Object.assign(state, { scene: OWN, text: typed });
+  if (own()) write();
+  else turn(write);
+  keep();
+  remember();
   readScene(false);
 });
+
+// The last text of one's own: it can be chosen again.
+let draft = null;
+
+function keep() {
+  draft = state.text ?? draft;
+  element("scene").querySelector(`[value=${OWN}]`).hidden = draft === null;
+  element("scene").value = own() ? OWN : state.scene;
+}
 
 const builtIn = (name) => scenes.find((scene) => scene.name === name);
 const own = () => state.text !== null;
@@ -69,9 +80,60 @@ function say(message, bad = false) {
   element("said").classList.toggle("bad", bad);
 }
 
+// What is shown in words belongs to what was asked before.
+function outdated() {
+  asked += 1;
+  wordsEngine.stop();
+  element("deciding").hidden = true;
+  for (const id of ["verdict", "equations"]) {
+    element(id).replaceChildren();
+    element(id).setAttribute("aria-busy", "true");
+  }
+}
+
+function busy(id, is) {
+  element(id).setAttribute("aria-busy", String(is));
+}
+
+// No motion is shown; with a reason there is none.
+function empty(reason = null) {
+  asked += 1;
+  clearTimeout(resting);
+  clock.pause();
+  for (const id of ["view", "graph"]) {
+    element(id).classList.add("void");
+    busy(id, reason === null);
+  }
+  for (const id of ["play", "bar"]) element(id).disabled = true;
+  element("refused").hidden = reason === null;
+  element("refused").textContent = reason ?? "";
+  element("busy").hidden = true;
+  if (reason === null) return;
+  for (const id of ["verdict", "equations"]) busy(id, false);
+  say(reason, true);
+}
+
+// Something is shown again.
+function filled() {
+  for (const id of ["view", "graph"]) {
+    element(id).classList.remove("void");
+    busy(id, false);
+  }
+  for (const id of ["play", "bar"]) element(id).disabled = false;
+  element("refused").hidden = true;
+}
+
 // Reads the scene; with `anew` it is another one.
 async function readScene(anew) {
-  remember();
+  outdated();
+  if (anew) {
+    motionsEngine.stop();
+    empty();
+    say("");
+    controls.clear();
+    element("title").replaceChildren();
+    element("legend").replaceChildren();
+  }
   const reply = await motionsEngine.ask("scene", question("scene"));
   if (!reply) return;
   const { answer } = reply;
@@ -79,8 +141,7 @@ async function readScene(anew) {
     const faults = answer.faults ?? [{ line: 0, column: 0, length: 0, message: answer.refused }];
     text.mark(faults, answer.message ?? answer.refused);
     const [{ line, message }] = faults;
-    say(line ? `line ${line}: ${message}` : message, true);
-    return;
+    return empty(line ? `line ${line}: ${message}` : message);
   }
   text.mark([]);
   scene = answer;
@@ -114,10 +175,13 @@ function legend(answers = []) {
       state.off = state.off.filter((other) => other !== label).concat(box.checked ? [] : [label]);
       remember();
       row.classList.toggle("off", !box.checked);
+      controls.shown(shown());
+      outdated();
       motions(false, false);
     });
     return row;
   });
+  controls.shown(on);
   // whoever has the focus on one of them keeps it
   const focused = [...element("legend").querySelectorAll("input")].indexOf(document.activeElement);
   element("legend").replaceChildren(...labels);
@@ -142,18 +206,15 @@ async function motions(glance, anew) {
   if (glance || anew) {
     resting = setTimeout(() => number === asked && motions(false, false), anew ? 0 : 200);
   } else {
-    controls.found(reply.answer.motions?.flatMap((motion) => motion.constants ?? []) ?? []);
-    decide();
+    controls.found(reply.answer.motions ?? []);
+    if (reply.answer.motions) decide();
   }
 }
 
 let drawn = 0;
 let first;
 
-function show(reply, anew) {
-  const { answer } = reply;
-  if (answer.faults || answer.refused) return say(answer.message ?? answer.refused, true);
-  const samples = new Samples(reply, scene.coordinates);
+function draw(samples, anew) {
   clock.samples = samples;
   if (anew) {
     const length = samples.end - samples.start;
@@ -165,8 +226,17 @@ function show(reply, anew) {
   stage.show(samples, anew);
   clock.span(samples.start, samples.end);
   curves.show(samples, state.curve);
-  if (!answer.motions.some(({ refused }) => !refused)) {
-    say(answer.motions.map(({ label, refused }) => `${label}: ${refused}`).join(" "), true);
+  filled();
+}
+
+function show(reply, anew) {
+  const { answer } = reply;
+  if (answer.faults || answer.refused) return empty(answer.message ?? answer.refused);
+  const samples = new Samples(reply, scene.coordinates);
+  if (answer.motions.length && answer.motions.every(({ refused }) => refused)) {
+    empty(answer.motions.map(({ label, refused }) => `${label}: ${refused}`).join(" "));
+  } else {
+    draw(samples, anew);
   }
   if (anew || answer.motions.some(({ error }) => error !== null)) legend(answer.motions);
   // for tests and for who looks behind the page
@@ -176,47 +246,63 @@ function show(reply, anew) {
 // What takes longer, in the other worker.
 async function decide() {
   say("deciding …");
-  const more = { motions: shown() };
+  element("deciding").hidden = false;
+  const [more, number] = [{ motions: shown() }, asked];
   const reply = await wordsEngine.ask("decision", question("decision", more));
-  if (!reply) return;
-  const { answer } = reply;
+  if (number !== asked) return;
+  element("deciding").hidden = true;
+  busy("verdict", false);
+  const answer = reply?.answer ?? { refused: "The decision was stopped." };
   element("verdict").innerHTML = verdict(answer.faults ? { refused: answer.message } : answer);
   say(answer.refused ?? answer.message ?? answer.verdict, Boolean(answer.refused ?? answer.message));
   window.decided = answer;
   const written = await wordsEngine.ask("equations", question("equations", more));
+  if (number !== asked) return;
+  busy("equations", false);
   if (written) element("equations").innerHTML = equations(written.answer.faults ? { refused: written.answer.message } : written.answer);
 }
 
-function set(name, value, moving) {
-  const kind = scene.controls.find((control) => control.name === name)?.kind;
-  if (value === null) delete state.set[name];
-  else state.set[name] = value;
-  if (kind === "costate" && value !== null) Object.assign(state.set, Object.fromEntries(controls.values("costate")), { [name]: value });
+// Sets numbers by name; null takes that of the text.
+function set(numbers, moving) {
+  const before = JSON.stringify(state.set);
+  for (const [name, value] of Object.entries(numbers)) {
+    if (value === null) delete state.set[name];
+    else state.set[name] = value;
+  }
   remember();
+  if (JSON.stringify(state.set) !== before) outdated();
   // κ brings a motion of its own, which goes with it
   const hasKappa = scene.motions.some(({ formulation }) => formulation === "kappa");
-  if (kind === "kappa" && hasKappa === (value === null)) return kappa();
+  const isKappa = (name) => scene.controls.find((control) => control.name === name)?.kind === "kappa";
+  const turned = Object.entries(numbers).some(([name, value]) => isKappa(name) && hasKappa === (value === null));
+  if (turned) return kappa();
   motions(moving, false);
 }
 
 async function kappa() {
   const reply = await motionsEngine.ask("scene", question("scene"));
-  if (!reply?.answer.motions) return;
-  scene.motions = reply.answer.motions;
+  if (!reply) return;
+  scene.motions = reply.answer.motions ?? scene.motions;
   legend();
   motions(false, false);
 }
 
 function choose(name) {
-  Object.assign(state, { scene: name, text: null, set: {}, on: [], off: [], time: 0 });
+  turn(() => Object.assign(state, { scene: name, text: name === OWN ? draft : null, set: {}, on: [], off: [], time: 0 }));
+  keep();
+  element("notice").hidden = true;
   text.put(sceneText());
   clock.t = 0;
-  readScene(true).then(() => clock.play());
+  readScene(true).then(play);
 }
 
-function openTab(name) {
+function play() {
+  if (!element("play").disabled) clock.play();
+}
+
+function openTab(name, isChosen = true) {
   state.tab = name;
-  remember();
+  if (isChosen) remember();
   for (const tab of document.querySelectorAll("[role=tab]")) {
     const open = tab.dataset.tab === name;
     tab.setAttribute("aria-selected", open);
@@ -229,7 +315,7 @@ function keys(event) {
   if (event.target.matches("input, select, textarea, button, summary") || event.ctrlKey || event.metaKey || event.altKey) return;
   const far = event.shiftKey ? 10 : 1;
   const actions = {
-    " ": () => clock.toggle(), ArrowLeft: () => clock.step(-far), ArrowRight: () => clock.step(far),
+    " ": () => element("play").click(), ArrowLeft: () => clock.step(-far), ArrowRight: () => clock.step(far),
     Home: () => clock.step(-100), End: () => clock.step(100), "+": () => stage.magnify(1.25), "-": () => stage.magnify(0.8),
     0: () => stage.reset(),
   };
@@ -256,6 +342,7 @@ function listen() {
     element("busy").hidden = true;
     say("stopped", true);
   });
+  element("undecided").addEventListener("click", () => wordsEngine.stop());
   for (const tab of document.querySelectorAll("[role=tab]")) tab.addEventListener("click", () => openTab(tab.dataset.tab));
   element("link").addEventListener("click", async () => {
     state.time = clock.t;
@@ -291,14 +378,20 @@ function redraw() {
 // Everything as the address says; without a word there, as the page was made.
 async function restore() {
   const otherwise = chosen ? { scene: chosen.text === null ? chosen.name : OWN, text: chosen.text, set: { ...chosen.set } } : {};
-  const readable = decode(location.hash, otherwise);
-  if (!own() && !builtIn(state.scene)) state.scene = scenes[0].name;
-  element("scene").value = own() ? OWN : state.scene;
+  forget();
+  let fault = decode(location.hash, otherwise);
+  if (!own() && !builtIn(state.scene)) {
+    fault = `there is no scene ${state.scene} here`;
+    state.scene = scenes[0].name;
+  }
+  // it stays there, and the address as it is, until something is chosen
+  element("notice").hidden = fault === null;
+  element("notice").textContent = `The link cannot be read: ${fault}.`;
+  keep();
   text.put(sceneText());
-  openTab(state.tab);
+  openTab(state.tab, false);
   await readScene(true);
-  if (!readable) say("The link cannot be read.", true);
-  if (!state.time) clock.play();
+  if (!state.time) play();
 }
 
 async function begin() {

@@ -1,5 +1,5 @@
-// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers: the page in a browser without network, against the native
-// program; or its numbers only.
+// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown: the page in a browser without network, against the
+// native program; or its numbers only; or whether what is shown is what was computed.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
@@ -8,6 +8,8 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 import puppeteer from "puppeteer-core";
+
+import * as checks from "./shown.test.mjs";
 
 const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
 // Milliseconds may be BUSY times as many, as other things may run beside; the figures are told.
@@ -272,9 +274,14 @@ async function looks() {
   }
 }
 
+const tools = { open, link, must, after, choose, slide, type, said, OWN, url, pictures };
+// one that breaks off does not hide what the others find
+const shown = Object.values(checks).map((check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`)));
+
 try {
-  const all = [opening, everyScene, sliders, fingers, ownText, looks];
-  for (const part of what === "numbers" ? [ownText] : all) await part();
+  const all = [opening, everyScene, sliders, fingers, ownText, looks, ...shown];
+  const parts = { all, numbers: [ownText], shown }[what];
+  for (const part of parts) await part();
 } catch (error) {
   complaints.push(error.stack);
 } finally {

@@ -40,7 +40,8 @@ function markup(text) {
   const pieces = text.split(/```math\n([\s\S]*?)\n```/);
   const prose = (piece) =>
     piece.split("\n").map((line) => line.trim()).filter(Boolean)
-      .map((line) => (line.startsWith("- ") ? `<li>${inline(line.slice(2))}</li>` : `<p>${inline(line)}</p>`)).join("");
+      .map((line) => (line.startsWith("- ") ? `<ul><li>${inline(line.slice(2))}</li></ul>` : `<p>${inline(line)}</p>`))
+      .join("").replaceAll("</ul><ul>", "");
   return pieces.map((piece, i) => (i % 2 ? formula(piece) : prose(piece))).join("");
 }
 

@@ -3,17 +3,19 @@
 use std::f64::consts::PI;
 
 use deltaq::given_costates;
+use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Value, json};
 
-use crate::subject::Subject;
+use crate::subject::{Subject, costate_of};
 
 /// The parameter of the family between Chetaev's and the vakonomic motion.
 const KAPPA: &str = "kappa";
 /// A slider for it goes up to this, in 1/s.
 const MOST_KAPPA: f64 = 20.0;
 
-/// All numbers that can be set, each an object: parameters, start, multipliers, costates, κ, duration.
+/// All numbers that can be set, each an object: parameters, start, multipliers, costates of each removal, κ,
+/// duration.
 pub(crate) fn of(subject: &Subject) -> Vec<Value> {
     let Subject { scene, choices } = subject;
     let (system, start, g) = (&scene.system, &scene.start, &scene.system.graph);
@@ -40,10 +42,15 @@ pub(crate) fn of(subject: &Subject) -> Vec<Value> {
     for (i, &mu) in scene.multipliers.iter().enumerate() {
         controls.push(control(&format!("mu{}", i + 1), "multiplier", "", mu, around(mu, mu.abs().max(2.0))));
     }
-    for (name, p) in choices.iter().flat_map(|choice| given_costates(scene, choice)) {
-        let known = controls.iter().any(|known: &Value| known["name"] == *name);
-        if !known {
-            controls.push(control(&name, "costate", "", p, around(p, p.abs().max(10.0))));
+    for choice in choices {
+        for (name, p) in given_costates(scene, choice) {
+            let mut row = control(&costate_of(choice, &name), "costate", "", p, around(p, p.abs().max(10.0)));
+            // what a search finds is known with the motion only
+            if matches!(choice.constants, ConstantsRule::Natural { .. }) {
+                row["value"] = Value::Null;
+            }
+            row["motion"] = choice.label.as_str().into();
+            controls.push(row);
         }
     }
     if !system.constraints.is_empty() && system.coordinates.iter().all(|c| c.name != KAPPA) {

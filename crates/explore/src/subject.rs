@@ -13,6 +13,11 @@ pub(crate) struct Subject {
     pub(crate) choices: Vec<Choice>,
 }
 
+/// The name of a costate at the start in one motion only: `P0_w` is that of all removals that have a `w`.
+pub(crate) fn costate_of(choice: &Choice, name: &str) -> String {
+    format!("{name}@{}", choice.label)
+}
+
 impl Subject {
     /// Reads the scene and sets the costates.
     pub(crate) fn of(question: &Question) -> Result<Subject, SceneError> {
@@ -25,11 +30,12 @@ impl Subject {
             choices = asked.filter_map(|label| choices.iter().find(|c| c.label == *label).cloned()).collect();
         }
         for choice in &mut choices {
-            let given = |name: &String| costates.iter().find(|(known, _)| known == name).map(|(_, x)| *x);
+            let named = |name: &str| costates.iter().find(|(known, _)| known == name).map(|(_, x)| *x);
+            let given = |name: &String| named(&costate_of(choice, name)).or_else(|| named(name));
             let before = given_costates(&scene, choice);
             if before.iter().any(|(name, _)| given(name).is_some()) {
-                let values = before.iter().map(|(name, before)| given(name).unwrap_or(*before));
-                choice.constants = ConstantsRule::Given(values.collect());
+                let values = before.iter().map(|(name, before)| given(name).unwrap_or(*before)).collect();
+                choice.constants = ConstantsRule::Given(values);
             }
         }
         Ok(Subject { scene, choices })

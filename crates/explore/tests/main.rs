@@ -63,19 +63,46 @@ fn motions_are_those_of_the_library() {
 }
 
 #[test]
+fn a_costate_is_that_of_one_removal() {
+    let labels = ["removed constraint (arc-length)", "removed constraint (along-x)"];
+    let constants = |set: Value| {
+        let question =
+            json!({ "ask": "motions", "name": "sledge", "text": SLEDGE, "set": set, "motions": labels, "steps": 4 });
+        let (answer, _) = ask(question);
+        labels.map(|label| {
+            let motions = answer["motions"].as_array().unwrap();
+            motions.iter().find(|motion| motion["label"] == label).unwrap()["constants"].clone()
+        })
+    };
+    let free = constants(json!({}));
+    let set = constants(json!({ "P0_y@removed constraint (along-x)": 1.5 }));
+    assert_eq!(set[0], free[0]);
+    assert_eq!(set[1], json!([{ "name": "P0_y", "value": 1.5 }]));
+    let both = constants(json!({ "P0_y": 1.5 }));
+    assert_eq!((&both[0][1]["value"], &both[1]), (&json!(1.5), &set[1]));
+}
+
+#[test]
 fn kappa_and_what_can_be_varied() {
     let (free, _) = ask(json!({ "ask": "scene", "name": "sledge", "text": SLEDGE }));
     let names = |answer: &Value| -> Vec<String> {
         answer["controls"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap().to_owned()).collect()
     };
-    let expected = "g alpha k x y phi x' phi' mu1 P0_x P0_y kappa duration";
+    let expected = "g alpha k x y phi x' phi' mu1 \
+                    P0_x@removed constraint (arc-length) P0_y@removed constraint (arc-length) \
+                    P0_y@removed constraint (along-x) \
+                    P0_x@removed constraint (quasi-velocities) P0_y@removed constraint (quasi-velocities) kappa duration";
     assert_eq!(names(&free).join(" "), expected);
     let labels = |answer: &Value| -> Vec<String> {
         answer["motions"].as_array().unwrap().iter().map(|m| m["label"].as_str().unwrap().to_owned()).collect()
     };
     assert!(!labels(&free).contains(&"between, κ".to_string()));
     for control in free["controls"].as_array().unwrap() {
-        let [low, value, high] = ["low", "value", "high"].map(|name| control[name].as_f64().unwrap());
+        // removals of the scene start from costates that a search finds, the automatic one from zero
+        let is_found = control["kind"] == "costate" && control["motion"] != "removed constraint (quasi-velocities)";
+        assert_eq!(control["value"].is_null(), is_found, "{control}");
+        let [low, high] = ["low", "high"].map(|name| control[name].as_f64().unwrap());
+        let value = control["value"].as_f64().unwrap_or(low);
         assert!(low <= value && value <= high && low < high, "{control}");
     }
     let set = json!({ "kappa": 2.0 });
@@ -219,7 +246,8 @@ fn sliders_keep_what_begins_elsewhere() {
 fn moved(scene: &Value, part: f64) -> serde_json::Map<String, Value> {
     let controls = scene["controls"].as_array().unwrap().iter().filter(|control| control["kind"] != "kappa");
     let set = |control: &Value| {
-        let [value, low, high] = ["value", "low", "high"].map(|name| control[name].as_f64().unwrap());
+        // a costate that a search finds stands nowhere before
+        let [value, low, high] = ["value", "low", "high"].map(|name| control[name].as_f64().unwrap_or_default());
         let shortened = if control["name"] == "duration" { 0.1 } else { 1.0 };
         (control["name"].as_str().unwrap().to_owned(), json!(shortened * value + part * (high - low)))
     };

@@ -1,17 +1,20 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
+use std::collections::HashMap;
+
 use deltaq::{
     Choice, FORM_WORDS, FORMULATIONS, Fits, Form, Settings, default_constants, formulation, formulation_in,
     removal_names, removals,
 };
 use integrate::{Interrupt, Method, Projection};
 use mechanics::{ConstantsRule, Removal};
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{IntoPyDict, PyDict, PyString};
 use scene::Scene;
 
-use crate::arrays::FloatList;
+use crate::arrays::{Floats, list};
 use crate::{background, errors};
 
 /// How to integrate, and the flag that ends it.
@@ -58,7 +61,26 @@ pub(crate) fn fits(word: &str) -> PyResult<Fits> {
 }
 
 fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
-    PyValueError::new_err(format!("unknown {what} `{name}`; known: {}", known.collect::<Vec<_>>().join(", ")))
+    errors::unknown(format!("unknown {what} `{name}`; known: {}", known.collect::<Vec<_>>().join(", ")))
+}
+
+/// The number of a multiplier at the start, from 1, whose name is that of the free constant: `mu0_1`.
+pub(crate) fn multiplier(name: &str) -> Option<usize> {
+    name.strip_prefix("mu0_")?.parse().ok()
+}
+
+/// A name for a number of a scene as scenes and commands have it: they call the multiplier `mu0_1` `mu1`.
+pub(crate) fn spelt_name(name: String) -> PyResult<String> {
+    match (multiplier(&name), name.strip_prefix("mu").and_then(|i| i.parse::<usize>().ok())) {
+        (Some(i), _) => Ok(format!("mu{i}")),
+        (None, Some(i)) => Err(errors::unknown(format!("unknown name `{name}`: this multiplier is called mu0_{i}"))),
+        (None, None) => Ok(name),
+    }
+}
+
+/// Numbers by name as scenes have the names.
+pub(crate) fn spelt(numbers: HashMap<String, f64>) -> PyResult<HashMap<String, f64>> {
+    numbers.into_iter().map(|(name, x)| Ok((spelt_name(name)?, x))).collect()
 }
 
 /// The name of the formulation in that form.
@@ -114,18 +136,23 @@ fn pick(scene: &Scene, name: Option<&str>) -> PyResult<Removal> {
 /// Free constants from the arguments `constants` and `mu0`.
 pub(crate) fn constants(
     constants: Option<&Bound<'_, PyAny>>,
-    mu0: Option<FloatList<'_>>,
+    mu0: Option<Floats<'_>>,
 ) -> PyResult<Option<ConstantsRule>> {
     match (constants, mu0) {
         (Some(_), Some(_)) => Err(PyTypeError::new_err("either constants or mu0, not both")),
         (None, None) => Ok(None),
-        (None, Some(mu0)) => Ok(Some(ConstantsRule::Given(list(&mu0)))),
+        (None, Some(mu0)) => Ok(Some(ConstantsRule::Given(list("mu0", &mu0)?))),
         (Some(rule), None) => rule_from(rule).map(Some),
     }
 }
 
-fn list(array: &FloatList<'_>) -> Vec<f64> {
-    array.as_array().iter().copied().collect()
+/// The rule as an argument of Python has it.
+pub(crate) fn rule_value<'py>(py: Python<'py>, rule: &ConstantsRule) -> PyResult<Bound<'py, PyAny>> {
+    match rule {
+        ConstantsRule::Zero => "zero".into_bound_py_any(py),
+        ConstantsRule::Natural { horizon } => [("horizon", *horizon)].into_py_dict(py).map(Bound::into_any),
+        ConstantsRule::Given(values) => values.into_bound_py_any(py),
+    }
 }
 
 fn rule_from(rule: &Bound<'_, PyAny>) -> PyResult<ConstantsRule> {
@@ -142,6 +169,6 @@ fn rule_from(rule: &Bound<'_, PyAny>) -> PyResult<ConstantsRule> {
             _ => Err(PyValueError::new_err(format!("{expected}: {table}"))),
         };
     }
-    let values: FloatList = rule.extract().map_err(|_| PyTypeError::new_err(format!("{expected}: {rule}")))?;
-    Ok(ConstantsRule::Given(list(&values)))
+    let values: Floats = rule.extract().map_err(|_| PyTypeError::new_err(format!("{expected}: {rule}")))?;
+    Ok(ConstantsRule::Given(list("constants", &values)?))
 }

@@ -1,7 +1,9 @@
 //! Arrays of Python as slices, and results as arrays.
 
+use equations::EvaluationFailure;
 use mechanics::System;
-use numpy::{AllowTypeChange, PyArray1, PyArrayDyn, PyArrayLike1, PyArrayLikeDyn, PyArrayMethods};
+use numpy::ndarray::Dimension;
+use numpy::{AllowTypeChange, Element, PyArray, PyArray1, PyArrayDyn, PyArrayLikeDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,8 +13,6 @@ use crate::errors;
 
 /// Anything that numpy reads as numbers, of any shape.
 pub(crate) type Floats<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
-/// Anything that numpy reads as a list of numbers.
-pub(crate) type FloatList<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
 
 /// An array that is handed back.
 pub(crate) type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
@@ -65,6 +65,23 @@ pub(crate) fn times(array: &Floats) -> PyResult<Rows> {
     Ok(Rows { values: finite("t", view.iter().copied().collect())?, width: 1, count })
 }
 
+/// The finite numbers of a list, named `name`, of shape `(k,)`.
+pub(crate) fn list(name: &str, array: &Floats) -> PyResult<Vec<f64>> {
+    let view = array.as_array();
+    let refused = |found: String| Err(PyValueError::new_err(format!("{name} {found}; a list or an array is needed")));
+    match view.shape() {
+        [_] => finite(name, view.iter().copied().collect()),
+        [] => refused("is a number".into()),
+        other => refused(format!("has shape {other:?}")),
+    }
+}
+
+/// `t` where it lies between `start` and `end`, at both of which the last digit of `t` does not count.
+pub(crate) fn within(t: f64, start: f64, end: f64) -> Option<f64> {
+    let room = f64::EPSILON * start.abs().max(t.abs()).max(1e-300);
+    (start - room <= t && t <= end + room).then(|| t.clamp(start, end))
+}
+
 /// The common number of rows: `None` where all are single.
 pub(crate) fn common(rows: &[(&str, &Rows)]) -> PyResult<Option<usize>> {
     let mut common: Option<(&str, usize)> = None;
@@ -94,7 +111,19 @@ pub(crate) fn array<'py>(py: Python<'py>, values: Vec<f64>, count: Option<usize>
     PyArray1::from_vec(py, values).reshape(shape)
 }
 
-/// Columns by name: element `i` of each row, as an array of shape `(count,)`, or a number for a single row.
+/// [`array`] of a result, which nobody is to change.
+pub(crate) fn fixed<'py>(py: Python<'py>, values: Vec<f64>, count: Option<usize>, tail: &[usize]) -> Array<'py> {
+    array(py, values, count, tail).map(read_only)
+}
+
+/// The array, which cannot be written to any more.
+pub(crate) fn read_only<T: Element, D: Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
+    array.readwrite().make_nonwriteable();
+    array
+}
+
+/// Columns by name: element `i` of each row, as an array of shape `(count,)` that ends in NaN where rows are
+/// missing, or a number for a single row.
 pub(crate) fn columns<'py, 'a>(
     py: Python<'py>,
     names: &[String],
@@ -103,29 +132,65 @@ pub(crate) fn columns<'py, 'a>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (i, name) in names.iter().enumerate() {
-        let column: Vec<f64> = rows.clone().map(|row| row[i]).collect();
+        let mut column: Vec<f64> = rows.clone().map(|row| row[i]).collect();
+        column.resize(count.unwrap_or(1), f64::NAN);
         match count {
-            Some(_) => dict.set_item(name, PyArray1::from_vec(py, column))?,
+            Some(_) => dict.set_item(name, read_only(PyArray1::from_vec(py, column)))?,
             None => dict.set_item(name, column[0])?,
         }
     }
     Ok(dict)
 }
 
-/// Expressions of t, q and v of a system at the given points, row after row, and how many points there are.
-pub(crate) fn at_points(
-    system: &System,
-    [t, q, v]: [Floats<'_>; 3],
-    expressions: impl Fn(&System) -> Vec<Expr>,
-) -> PyResult<(Vec<f64>, Option<usize>)> {
-    let n = system.dimension();
-    let (t, q, v) = (times(&t)?, Rows::read("q", &q, n)?, Rows::read("v", &v, n)?);
-    let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
-    let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
-    let mut program = system.evaluator(&inputs, &expressions(system)).map_err(errors::solve)?;
-    let mut values = Vec::new();
-    for i in 0..count.unwrap_or(1) {
-        values.extend_from_slice(program.evaluate(&[t.row(i), q.row(i), v.row(i)].concat()));
+/// Points at which expressions of t, q and v are asked for.
+pub(crate) struct Points {
+    rows: [Rows; 3],
+    pub(crate) count: Option<usize>,
+}
+
+impl Points {
+    /// Reads t, q and v of a system of that dimension.
+    pub(crate) fn read([t, q, v]: [Floats<'_>; 3], dimension: usize) -> PyResult<Points> {
+        let (t, q, v) = (times(&t)?, Rows::read("q", &q, dimension)?, Rows::read("v", &v, dimension)?);
+        let count = common(&[("q", &q), ("v", &v), ("t", &t)])?;
+        Ok(Points { rows: [t, q, v], count })
     }
-    Ok((values, count))
+
+    /// The expressions of a system at each point, row after row.
+    pub(crate) fn values(&self, system: &System, expressions: &[Expr]) -> PyResult<Vec<f64>> {
+        let inputs = [&[system.time][..], &system.positions(), &system.velocities()].concat();
+        let mut program = system.evaluator(&inputs, expressions).map_err(errors::solve)?;
+        let mut values = Vec::new();
+        for i in 0..self.count.unwrap_or(1) {
+            values.extend_from_slice(program.evaluate(&self.rows.each_ref().map(|rows| rows.row(i)).concat()));
+        }
+        Ok(values)
+    }
+}
+
+/// Times and states at which something is asked for.
+pub(crate) struct States {
+    t: Rows,
+    y: Rows,
+    pub(crate) count: Option<usize>,
+}
+
+impl States {
+    pub(crate) fn read(t: &Floats<'_>, y: &Floats<'_>, width: usize) -> PyResult<States> {
+        let (t, y) = (times(t)?, Rows::read("y", y, width)?);
+        let count = common(&[("y", &y), ("t", &t)])?;
+        if t.count().is_some() && y.count().is_none() {
+            return Err(PyValueError::new_err("t has several entries, y has a single row"));
+        }
+        Ok(States { t, y, count })
+    }
+
+    /// Calls `body` with each time and state.
+    pub(crate) fn each(&self, mut body: impl FnMut(f64, &[f64]) -> Result<(), EvaluationFailure>) -> PyResult<()> {
+        for i in 0..self.count.unwrap_or(1) {
+            let time = self.t.row(i)[0];
+            body(time, self.y.row(i)).map_err(|error| errors::evaluation(&error, time))?;
+        }
+        Ok(())
+    }
 }

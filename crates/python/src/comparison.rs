@@ -7,8 +7,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::array;
-use crate::motion::{Motion, Sampled};
+use crate::arrays::fixed;
+use crate::errors;
+use crate::motion::{Asked, Motion, Sampled};
+use crate::results::kept;
 use crate::system::System;
 
 /// How a gap grows near the start: gap = length * (t - t0)**exponent.
@@ -24,6 +26,8 @@ pub(crate) struct Growth {
     length: f64,
 }
 
+kept!(Growth: exponent uncertainty coefficient length);
+
 /// The leading term of the second motion minus the first, by Taylor coefficients of their accelerations.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct LeadingTerm {
@@ -37,6 +41,8 @@ pub(crate) struct LeadingTerm {
     proved: bool,
 }
 
+kept!(LeadingTerm: exponent coefficient length proved);
+
 /// Two motions compared.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Pair {
@@ -45,7 +51,7 @@ pub(crate) struct Pair {
     /// Label of the second motion.
     second: String,
     /// "same", "different" or "undecided".
-    verdict: &'static str,
+    verdict: String,
     /// Why the verdict is undecided, else None.
     because: Option<String>,
     /// First time at which the gap passes each threshold (1e-6, 1e-3, 0.1); None where it never does.
@@ -72,6 +78,11 @@ pub(crate) struct Pair {
     predicted: Option<Py<LeadingTerm>>,
 }
 
+kept!(
+    Pair: first second verdict because tau largest_gap largest_by_coordinate certain_from error_estimates end
+    times gap limit growth predicted
+);
+
 #[pymethods]
 impl Pair {
     fn __repr__(&self) -> String {
@@ -90,12 +101,14 @@ pub(crate) struct Fit {
     /// The best constants by name; None where no constants lead to a motion over the whole time.
     constants: Option<Py<PyDict>>,
     /// "same", "different" or "undecided" of what is left; None as for `constants`.
-    verdict: Option<&'static str>,
+    verdict: Option<String>,
     /// Largest gap that is left; None as for `constants`.
     largest_gap: Option<f64>,
     /// Whether the constants follow from those of the target, and nothing was searched.
     by_identity: bool,
 }
+
+kept!(Fit: run target constants verdict largest_gap by_identity);
 
 #[pymethods]
 impl Fit {
@@ -113,7 +126,7 @@ pub(crate) struct Decided {
     /// Label of the run that is to be met.
     motion: String,
     /// "some", "none" or "undecided".
-    answer: &'static str,
+    answer: String,
     /// Whether the answer is proved, in exact numbers or as an identity.
     proved: bool,
     /// The Taylor order that proves "none", or through which "some" was checked; None where there is neither.
@@ -129,6 +142,8 @@ pub(crate) struct Decided {
     /// Least mismatch of accelerations over the motion's own, None where nothing could be computed.
     mismatch: Option<f64>,
 }
+
+kept!(Decided: family motion answer proved order because constants dimension identity mismatch);
 
 #[pymethods]
 impl Decided {
@@ -164,7 +179,7 @@ impl Decided {
         let dimension = membership.as_ref().filter(|_| answer == "some").map(|m| m.decision.set.dimension());
         let mismatch = membership.as_ref().map(|m| m.decision.least / m.decision.acceleration);
         let identity = membership.and_then(|m| m.section).map(|section| section.expressions);
-        let constants = constants.transpose()?;
+        let (constants, answer) = (constants.transpose()?, answer.into());
         Ok(Decided { family, motion, answer, proved, order, because, constants, dimension, identity, mismatch })
     }
 }
@@ -175,7 +190,7 @@ pub(crate) struct Run {
     /// Label: the formulation, and the removal where there are several.
     label: String,
     /// Name of the formulation.
-    formulation: &'static str,
+    formulation: String,
     /// Name of the removal, None where the formulation needs none.
     removal: Option<String>,
     /// The motion, None where there is none.
@@ -183,6 +198,8 @@ pub(crate) struct Run {
     /// Why there is no motion, None where there is one.
     error: Option<String>,
 }
+
+kept!(Run: label formulation removal motion error);
 
 #[pymethods]
 impl Run {
@@ -210,11 +227,13 @@ pub(crate) struct Comparison {
     contradictions: Vec<String>,
 }
 
+kept!(Comparison: system integrability runs pairs fits decided contradictions);
+
 #[pymethods]
 impl Comparison {
     /// The pair of two runs, in either order, named by label, or by formulation for the first of its kind.
     ///
-    /// KeyError where there is no such run, or where the two were not compared.
+    /// UnknownNameError where there is no such run, KeyError where the two were not compared.
     #[pyo3(signature = (a, b))]
     fn pair(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<Py<Pair>> {
         let (one, two) = (self.label(a)?, self.label(b)?);
@@ -225,8 +244,8 @@ impl Comparison {
 
     /// "same", "different" or "undecided" for two runs, named as in `pair`.
     #[pyo3(signature = (a, b))]
-    fn verdict(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<&'static str> {
-        Ok(self.pair(py, a, b)?.get().verdict)
+    fn verdict(&self, py: Python<'_>, a: &str, b: &str) -> PyResult<String> {
+        Ok(self.pair(py, a, b)?.get().verdict.clone())
     }
 
     fn __repr__(&self) -> String {
@@ -239,19 +258,17 @@ impl Comparison {
         let runs = || self.runs.iter().map(Py::get);
         let found = runs().find(|r| r.label == name).or_else(|| runs().find(|r| r.formulation == name));
         let known = || runs().map(|r| r.label.as_str()).collect::<Vec<_>>().join(", ");
-        found
-            .map(|r| r.label.clone())
-            .ok_or_else(|| PyKeyError::new_err(format!("no run `{name}`; there are {}", known())))
+        found.map(|r| r.label.clone()).ok_or_else(|| errors::unknown(format!("no run `{name}`; there are {}", known())))
     }
 
     pub(crate) fn new(system: &Bound<'_, System>, compared: Compared) -> PyResult<Comparison> {
         let py = system.py();
-        let Compared { scene, integrability, runs, pairs, fits, decided, contradictions } = compared;
+        let Compared { scene, settings, integrability, runs, pairs, fits, decided, contradictions } = compared;
         let labels: Vec<String> = runs.iter().map(|r| r.0.label.clone()).collect();
         let names: Vec<&str> = scene.system.coordinates.iter().map(|c| c.name.as_str()).collect();
         let vector = |values: Vec<f64>| {
             let count = Some(values.len());
-            array(py, values, count, &[]).map(Bound::unbind)
+            fixed(py, values, count, &[]).map(Bound::unbind)
         };
         let pair = |p: deltaq::Pair| -> PyResult<Py<Pair>> {
             let (verdict, because) = words(&p.gap);
@@ -274,7 +291,7 @@ impl Comparison {
             let pair = Pair {
                 first: labels[p.first].clone(),
                 second: labels[p.second].clone(),
-                verdict,
+                verdict: verdict.into(),
                 because,
                 tau: tau.unbind(),
                 largest_gap: p.gap.largest,
@@ -300,7 +317,7 @@ impl Comparison {
                 run: labels[f.run].clone(),
                 target: labels[f.target].clone(),
                 constants: constants.transpose()?,
-                verdict: f.fitted.as_ref().map(|m| words(&m.gap).0),
+                verdict: f.fitted.as_ref().map(|m| words(&m.gap).0.into()),
                 largest_gap: f.fitted.as_ref().map(|m| m.gap.largest),
                 by_identity: f.by_identity,
             };
@@ -308,11 +325,14 @@ impl Comparison {
         };
         let run = |(choice, outcome): (deltaq::Choice, Result<Sampled, deltaq::SolveError>)| {
             let (motion, error) = match outcome {
-                Ok(sampled) => (Some(Py::new(py, Motion::new(system, sampled)?)?), None),
+                Ok(sampled) => {
+                    let asked = Asked { choice: &choice, form: "auto", times: None, settings: &settings };
+                    (Some(Py::new(py, Motion::new(system, sampled, &asked)?)?), None)
+                }
                 Err(error) => (None, Some(error.to_string())),
             };
             let removal = choice.removal.map(|r| r.name);
-            Py::new(py, Run { label: choice.label, formulation: choice.formulation, removal, motion, error })
+            Py::new(py, Run { label: choice.label, formulation: choice.formulation.into(), removal, motion, error })
         };
         let membership = |d: deltaq::Decided| {
             Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)
@@ -340,6 +360,7 @@ fn words(gap: &Gap) -> (&'static str, Option<String>) {
 /// A comparison, with its motions read off.
 pub(crate) struct Compared {
     scene: Scene,
+    settings: deltaq::Settings,
     integrability: String,
     contradictions: Vec<String>,
     runs: Vec<(deltaq::Choice, Result<Sampled, deltaq::SolveError>)>,
@@ -358,5 +379,6 @@ pub(crate) fn compare(scene: Scene, fits: Fits, settings: &deltaq::Settings) -> 
     let read = |motion| Sampled::new(motion, deltaq::setting(&scene), None);
     let runs = runs.into_iter().map(|run| (run.choice, run.outcome.and_then(read))).collect();
     let integrability = integrability.to_string();
-    Ok(Compared { integrability, contradictions, runs, pairs, fits, decided, scene })
+    let settings = settings.clone();
+    Ok(Compared { integrability, contradictions, runs, pairs, fits, decided, scene, settings })
 }

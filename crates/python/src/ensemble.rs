@@ -10,7 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{FloatList, array, finite};
+use crate::arguments::{multiplier, spelt_name};
+use crate::arrays::{Floats, fixed, list, within};
+use crate::results::kept;
 use crate::system::System;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.
@@ -27,8 +29,9 @@ impl Varied {
             if name == "time" || name == "duration" {
                 return Err(PyValueError::new_err(format!("{name} is the same for all members")));
             }
-            let array: FloatList = array.extract()?;
-            values.insert(name.clone(), finite(&name, array.as_array().iter().copied().collect())?);
+            let array: Floats = array.extract()?;
+            spelt_name(name.clone())?;
+            values.insert(name.clone(), list(&name, &array)?);
         }
         let mut all = values.iter();
         let Some((first, count)) = all.next().map(|(name, values)| (name, values.len())) else {
@@ -46,7 +49,12 @@ impl Varied {
 
     /// A multiplier that varies.
     pub(crate) fn multiplier(&self) -> Option<&String> {
-        self.values.keys().find(|name| name.strip_prefix("mu").is_some_and(|i| i.parse::<usize>().is_ok()))
+        self.values.keys().find(|name| multiplier(name).is_some())
+    }
+
+    /// The names as scenes have them.
+    fn names(&self) -> Vec<String> {
+        self.values.keys().filter_map(|name| spelt_name(name.clone()).ok()).collect()
     }
 
     fn row(&self, member: usize) -> Vec<f64> {
@@ -85,7 +93,7 @@ struct Columns {
     invariants: (Vec<String>, Cube),
     error_estimate: Vec<f64>,
     relative_error_estimate: Vec<f64>,
-    status: Vec<&'static str>,
+    status: Vec<String>,
     cause: Vec<Option<String>>,
     reached: Vec<usize>,
     alone: Vec<Option<String>>,
@@ -115,36 +123,31 @@ impl Cube {
         let (dict, members) = (PyDict::new(py), self.values.len() / (self.times * self.width).max(1));
         for (i, name) in names.iter().enumerate() {
             let column = self.values.iter().skip(i).step_by(self.width).copied().collect();
-            dict.set_item(name, array(py, column, Some(members), &[self.times])?)?;
+            dict.set_item(name, fixed(py, column, Some(members), &[self.times])?)?;
         }
         Ok(dict)
     }
 }
 
-/// The times at which a run is read off, ascending, from the start on, by default the end; and the end.
-pub(crate) fn times(given: Option<FloatList<'_>>, scene: &Scene) -> PyResult<(Vec<f64>, f64)> {
-    let end = setting(scene).end;
-    let Some(given) = given else { return Ok((vec![end], end)) };
-    let times = finite("times", given.as_array().iter().copied().collect())?;
-    let start = scene.start.t;
-    if let Some(early) = times.iter().find(|&&t| t < start) {
-        return Err(PyValueError::new_err(format!("times contains {early}, before the start {start}")));
+/// The times at which a run is read off, ascending, from the start on, and its end: the last of them or, of a
+/// single start, that of the scene.
+pub(crate) fn times(given: &Floats<'_>, scene: &Scene) -> PyResult<(Vec<f64>, f64)> {
+    let (start, times) = (scene.start.t, list("times", given)?);
+    let refused = |text: String| Err(PyValueError::new_err(format!("times{text}")));
+    if let Some(pair) = times.windows(2).find(|pair| pair[1] < pair[0]) {
+        return refused(format!(": {} comes after {}; ascending order is needed", pair[1], pair[0]));
     }
-    match times.windows(2).find(|pair| pair[1] < pair[0]) {
-        Some(pair) => {
-            Err(PyValueError::new_err(format!("times: {} comes after {}; ascending order is needed", pair[1], pair[0])))
-        }
-        None => {
-            let end = times.last().copied().filter(|&t| t > start).unwrap_or(end);
-            Ok((times, end))
-        }
-    }
+    let reached: Option<Vec<f64>> = times.iter().map(|&t| within(t, start, f64::INFINITY)).collect();
+    let Some(times) = reached else { return refused(format!(" contains {}, before the start {start}", times[0])) };
+    let end = times.last().copied().filter(|&t| t > start).unwrap_or(setting(scene).end);
+    Ok((times, end))
 }
 
 impl Task {
     pub(crate) fn run(self) -> Result<Integrated, SolveError> {
         let Task { varied, scene, choice, times, end, settings, options } = self;
-        let names: Vec<&str> = varied.values.keys().map(String::as_str).collect();
+        let names = varied.names();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let ensemble = deltaq::Ensemble::new(&scene, &choice, &names, &settings)?.until(end);
         let (equations, n) = (ensemble.equations(), scene.system.dimension());
         let cube = |width: usize| Cube::new(varied.count, times.len(), width);
@@ -188,7 +191,7 @@ impl Columns {
         self.error_estimate.push(estimate.map_or(f64::NAN, |estimate| estimate.absolute));
         self.relative_error_estimate.push(estimate.map_or(f64::NAN, |estimate| estimate.relative));
         let (status, cause) = motion.as_ref().map_or(("refused", refused), MemberMotion::status);
-        self.status.push(status);
+        self.status.push(status.into());
         self.cause.push(cause);
         self.alone.push(motion.and_then(|motion| motion.run.alone));
     }
@@ -203,7 +206,7 @@ pub(crate) struct Ensemble {
     /// The system that moves.
     system: Py<System>,
     /// Name of the formulation.
-    formulation: &'static str,
+    formulation: String,
     /// Name of the removal, None where the formulation needs none.
     removal: Option<String>,
     /// Times, shape (k,), in the unit of time of the system.
@@ -226,7 +229,7 @@ pub(crate) struct Ensemble {
     /// The error estimate over the largest distance from the start at these times, shape (m,).
     relative_error_estimate: Py<PyArrayDyn<f64>>,
     /// Per member "completed", "untrusted" (too large an error estimate), "stopped" or "refused" (no motion).
-    status: Vec<&'static str>,
+    status: Vec<String>,
     /// Of each member why it is not completed, else None.
     cause: Vec<Option<String>>,
     /// Of each member how many of the times it reached.
@@ -237,29 +240,34 @@ pub(crate) struct Ensemble {
     seconds: f64,
 }
 
+kept!(
+    Ensemble: system formulation removal times varied coordinate_names coordinates velocities multipliers
+    invariants error_estimate relative_error_estimate status cause reached alone seconds
+);
+
 impl Ensemble {
     pub(crate) fn new(system: &Bound<'_, System>, integrated: Integrated) -> PyResult<Ensemble> {
         let py = system.py();
         let Integrated { varied: Varied { values, count: m }, times, names, choice, done } = integrated;
         let k = times.len();
-        let cube = |cube: Cube| array(py, cube.values, Some(m), &[k, cube.width]).map(Bound::unbind);
+        let cube = |cube: Cube| fixed(py, cube.values, Some(m), &[k, cube.width]).map(Bound::unbind);
         let varied = PyDict::new(py);
         for (name, values) in values {
-            varied.set_item(name, array(py, values, Some(m), &[])?)?;
+            varied.set_item(name, fixed(py, values, Some(m), &[])?)?;
         }
         Ok(Ensemble {
             system: system.clone().unbind(),
-            formulation: choice.formulation,
+            formulation: choice.formulation.into(),
             removal: choice.removal.map(|removal| removal.name),
-            times: array(py, times, Some(k), &[])?.unbind(),
+            times: fixed(py, times, Some(k), &[])?.unbind(),
             varied: varied.unbind(),
             coordinate_names: names,
             coordinates: cube(done.coordinates)?,
             velocities: cube(done.velocities)?,
             multipliers: done.multipliers.1.columns(py, &done.multipliers.0)?.unbind(),
             invariants: done.invariants.1.columns(py, &done.invariants.0)?.unbind(),
-            error_estimate: array(py, done.error_estimate, Some(m), &[])?.unbind(),
-            relative_error_estimate: array(py, done.relative_error_estimate, Some(m), &[])?.unbind(),
+            error_estimate: fixed(py, done.error_estimate, Some(m), &[])?.unbind(),
+            relative_error_estimate: fixed(py, done.relative_error_estimate, Some(m), &[])?.unbind(),
             status: done.status,
             cause: done.cause,
             reached: done.reached,

@@ -15,8 +15,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arrays::{Array, FloatList, Floats, Rows, array, common, times};
+use crate::arrays::{Array, Floats, States, array, fixed, list, within};
 use crate::motion::{Names, Outputs, observed, work};
+use crate::results::{Reduced, kept};
+use crate::system::System;
 use crate::{arguments, background, ensemble, errors};
 
 /// The equations of motion y' = F(t, y) of a system under one formulation.
@@ -26,8 +28,12 @@ use crate::{arguments, background, ensemble, errors};
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Equations {
     ready: Mutex<Prepared>,
+    /// Those that no thread works with: each call takes one, and brings it back.
+    spare: Mutex<Vec<Prepared>>,
     scene: Mutex<Scene>,
     dimension: usize,
+    system: Py<System>,
+    given: ConstantsRule,
     /// Name of the formulation.
     #[pyo3(get)]
     formulation: &'static str,
@@ -45,12 +51,14 @@ pub(crate) struct Equations {
 /// One run of the time loop, without a second one: only its tolerance tells anything of its error.
 #[pyclass(frozen, get_all, module = "deltaq")]
 pub(crate) struct Trajectory {
-    /// The times asked for that were reached, shape (k,).
+    /// The times asked for, shape (k,).
     times: Py<PyArrayDyn<f64>>,
     /// States y at `times`, shape (k, m); `Equations.outputs` reads coordinates and all else off them.
     states: Py<PyArrayDyn<f64>>,
+    /// How many of the times it reached: from there on the states are NaN.
+    reached: usize,
     /// "completed" or "stopped".
-    status: &'static str,
+    status: String,
     /// Why the run stopped, None where it is complete.
     cause: Option<String>,
     /// What the run cost, as in `Motion.work`.
@@ -59,6 +67,8 @@ pub(crate) struct Trajectory {
     seconds: f64,
 }
 
+kept!(Trajectory: times states reached status cause work seconds);
+
 #[pymethods]
 impl Trajectory {
     fn __repr__(&self) -> String {
@@ -66,29 +76,21 @@ impl Trajectory {
     }
 }
 
-/// Calls `body` with each row of `t` and `y`: the row's number, time and state.
-fn each(t: &Rows, y: &Rows, mut body: impl FnMut(f64, &[f64]) -> Result<(), EvaluationFailure>) -> PyResult<()> {
-    for i in 0..y.count().unwrap_or(1) {
-        let time = t.row(i)[0];
-        body(time, y.row(i)).map_err(|error| errors::evaluation(&error, time))?;
-    }
-    Ok(())
-}
-
 impl Equations {
     /// Derives and compiles those of a scene; constants that are natural at a horizon are zero by default.
     pub(crate) fn derived(
-        py: Python<'_>,
-        scene: Scene,
+        system: &Bound<'_, System>,
         (formulation, removal): (&str, Option<&str>),
         given: Option<ConstantsRule>,
     ) -> PyResult<Equations> {
+        let (py, scene) = (system.py(), system.get().scene().clone());
         let (settings, interrupt) = arguments::settings("auto", 1e-11, true, 1_000_000, None, None)?;
         let is_given = given.is_some();
         let (scene, mut choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         if !is_given && matches!(choice.constants, ConstantsRule::Natural { .. }) {
             choice.constants = ConstantsRule::Zero;
         }
+        let given = choice.constants.clone();
         let work = move || {
             let equations = derive_at(&scene.system, &scene.start, &choice)?;
             let made = prepare(setting(&scene), equations, &choice.constants, &settings)?;
@@ -96,20 +98,19 @@ impl Equations {
         };
         let made = background::run(py, &interrupt, work)?;
         let (made, scene) = made.map_err(|error: SolveError| errors::solve(error))?;
-        Ok(Equations::new(made, scene))
-    }
-
-    pub(crate) fn new(ready: Prepared, scene: Scene) -> Equations {
-        let equations = &ready.equations;
-        Equations {
+        let equations = &made.equations;
+        Ok(Equations {
+            system: system.clone().unbind(),
+            given,
+            spare: Mutex::default(),
             dimension: scene.system.dimension(),
             scene: Mutex::new(scene),
             formulation: equations.formulation,
             removal: equations.removal.as_ref().map(|r| r.name.clone()),
             states: equations.states.iter().map(|y| equations.graph.name(y.symbol)).collect(),
             constants: constant_names(equations),
-            ready: Mutex::new(ready),
-        }
+            ready: Mutex::new(made),
+        })
     }
 
     fn ready(&self) -> MutexGuard<'_, Prepared> {
@@ -120,40 +121,40 @@ impl Equations {
         self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Reads `t` and `y`, calls `body` with the compiled equations, from the same guess in each call.
-    fn evaluate<T>(
-        &self,
-        t: &Floats<'_>,
-        y: &Floats<'_>,
-        body: impl FnOnce(&mut Compiled, &Rows, &Rows) -> PyResult<T>,
-    ) -> PyResult<(T, Option<usize>)> {
-        let (t, y) = (times(t)?, Rows::read("y", y, self.states.len())?);
-        let count = common(&[("y", &y), ("t", &t)])?;
-        if t.count().is_some() && y.count().is_none() {
-            return Err(PyValueError::new_err("t has several entries, y has a single row"));
+    /// Calls `body` with equations that no other thread has, from the same guess in each call.
+    fn with<T>(&self, body: impl FnOnce(&mut Prepared) -> T) -> T {
+        let spare = || self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = spare().pop();
+        let mut ready = kept.unwrap_or_else(|| self.ready().clone());
+        if !ready.guess.is_empty() {
+            ready.compiled.set_guess(&ready.guess);
         }
-        let mut ready = self.ready();
-        let Prepared { compiled, guess, .. } = &mut *ready;
-        if !guess.is_empty() {
-            compiled.set_guess(guess);
-        }
-        Ok((body(compiled, &t, &y)?, count))
+        let result = body(&mut ready);
+        spare().push(ready);
+        result
     }
 
-    /// What `read` writes, `width` numbers at each `t` and `y`.
+    /// What `read` writes, so many numbers at each point, where the equations are compiled as `method`
+    /// needs them.
     fn rows(
         &self,
-        t: &Floats<'_>,
-        y: &Floats<'_>,
-        width: usize,
-        mut read: impl FnMut(&mut Compiled, f64, &[f64], &mut [f64]) -> Result<(), EvaluationFailure>,
-    ) -> PyResult<(Vec<f64>, Option<usize>)> {
-        self.evaluate(t, y, |compiled, t, y| {
-            let mut values = vec![0.0; width * y.count().unwrap_or(1)];
+        py: Python<'_>,
+        at: &States,
+        (width, method): (usize, Method),
+        mut read: impl FnMut(&mut Compiled, f64, &[f64], &mut [f64]) -> Result<(), EvaluationFailure> + Send,
+    ) -> PyResult<Vec<f64>> {
+        let work = |ready: &mut Prepared| {
+            ready.complete(method).map_err(errors::solve)?;
+            let mut values = vec![0.0; width * at.count.unwrap_or(1)];
             let mut rows = values.chunks_exact_mut(width.max(1));
-            each(t, y, |t, y| rows.next().map_or(Ok(()), |row| read(compiled, t, y, row)))?;
+            at.each(|t, y| rows.next().map_or(Ok(()), |row| read(&mut ready.compiled, t, y, row)))?;
             Ok(values)
-        })
+        };
+        py.detach(|| self.with(work))
+    }
+
+    fn at(&self, t: &Floats<'_>, y: &Floats<'_>) -> PyResult<States> {
+        States::read(t, y, self.states.len())
     }
 
     fn code(&self, language: Language) -> PyResult<String> {
@@ -254,34 +255,32 @@ impl Equations {
     /// Rates y' = F(t, y), of the shape of y.
     #[pyo3(signature = (t, y))]
     fn rates<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
-        let width = self.states.len();
-        let (values, count) = self.rows(&t, &y, width, Compiled::rates)?;
-        array(py, values, count, &[width])
+        let (width, at) = (self.states.len(), self.at(&t, &y)?);
+        array(py, self.rows(py, &at, (width, Method::Dop853), Compiled::rates)?, at.count, &[width])
     }
 
     /// The exact Jacobian dF/dy, shape (m, m) or (k, m, m): [i, j] is the derivative of rate i by state j.
     #[pyo3(signature = (t, y))]
     fn jacobian<'py>(&self, py: Python<'py>, t: Floats<'_>, y: Floats<'_>) -> Array<'py> {
-        let width = self.states.len();
-        self.ready().complete(Method::Radau5).map_err(errors::solve)?;
-        let (values, count) = self.rows(&t, &y, width * width, Compiled::jacobian)?;
-        array(py, values, count, &[width, width])
+        let (width, at) = (self.states.len(), self.at(&t, &y)?);
+        array(py, self.rows(py, &at, (width * width, Method::Radau5), Compiled::jacobian)?, at.count, &[width, width])
     }
 
     /// Coordinates, velocities, multipliers and invariants at (t, y).
     #[pyo3(signature = (t, y))]
     fn outputs(&self, py: Python<'_>, t: Floats<'_>, y: Floats<'_>) -> PyResult<Outputs> {
-        let mut observables = Observables::of(&self.scene().system).map_err(errors::solve)?;
-        let (rows, count) = self.evaluate(&t, &y, |compiled, t, y| {
+        let at = self.at(&t, &y)?;
+        let work = |ready: &mut Prepared| -> PyResult<_> {
+            let mut observables = Observables::of(&self.scene().system).map_err(errors::solve)?;
             let mut rows = Vec::new();
-            each(t, y, |t, y| {
-                rows.push(observed(&mut observables, t, compiled.outputs(t, y)?));
+            at.each(|t, y| {
+                rows.push(observed(&mut observables, t, ready.compiled.outputs(t, y)?));
                 Ok(())
             })?;
-            Ok(rows)
-        })?;
-        let names = Names::of(&self.ready().equations, &observables);
-        Outputs::new(py, &rows, self.dimension, &names, count)
+            Ok((rows, Names::of(&ready.equations, &observables)))
+        };
+        let (rows, names) = py.detach(|| self.with(work))?;
+        Outputs::new(py, &rows, self.dimension, &names, at.count)
     }
 
     /// Accelerations q'' at one point, shape (n,): t a number, q and v of shape (n,).
@@ -292,12 +291,12 @@ impl Equations {
         &self,
         py: Python<'py>,
         t: f64,
-        q: FloatList<'_>,
-        v: FloatList<'_>,
-        mu: Option<FloatList<'_>>,
+        q: Floats<'_>,
+        v: Floats<'_>,
+        mu: Option<Floats<'_>>,
     ) -> Array<'py> {
-        let values = |array: &FloatList| array.as_array().iter().copied().collect::<Vec<f64>>();
-        let (q, v, mu) = (values(&q), values(&v), mu.as_ref().map(values).unwrap_or_default());
+        let mu = mu.map_or(Ok(Vec::new()), |mu| list("mu", &mu))?;
+        let (q, v) = (list("q", &q)?, list("v", &v)?);
         for (name, list) in [("q", &q), ("v", &v)] {
             if list.len() != self.dimension {
                 let (found, needed) = (list.len(), self.dimension);
@@ -306,12 +305,8 @@ impl Equations {
         }
         let (y, places) = self.state(&q, &v, &mu)?;
         let mut rates = vec![0.0; y.len()];
-        let mut ready = self.ready();
-        let Prepared { compiled, guess, .. } = &mut *ready;
-        if !guess.is_empty() {
-            compiled.set_guess(guess);
-        }
-        compiled.rates(t, &y, &mut rates).map_err(|error| errors::evaluation(&error, t))?;
+        let work = |ready: &mut Prepared| ready.compiled.rates(t, &y, &mut rates);
+        py.detach(|| self.with(work)).map_err(|error| errors::evaluation(&error, t))?;
         array(py, places.into_iter().map(|i| rates[i]).collect(), None, &[self.dimension])
     }
 
@@ -328,7 +323,7 @@ impl Equations {
     fn integrate(
         &self,
         py: Python<'_>,
-        times: FloatList<'_>,
+        times: Floats<'_>,
         method: &str,
         tolerance: f64,
         project: bool,
@@ -337,11 +332,10 @@ impl Equations {
         time_limit: Option<f64>,
     ) -> PyResult<Trajectory> {
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
-        let (mut times, end) = ensemble::times(Some(times), &self.scene())?;
-        let mut ready = self.ready();
-        let is_end = |&t: &f64| t == ready.t || t == end;
-        let options = Options {
-            method: settings.method.unwrap_or(ready.method.method),
+        let scene = self.scene();
+        let (times, end) = ensemble::times(&times, &scene)?;
+        let is_end = |&t: &f64| t == scene.start.t || t == end;
+        let mut options = Options {
             projection: settings.projection,
             max_steps,
             max_step: settings.max_step,
@@ -349,33 +343,45 @@ impl Equations {
             interrupt: Some(time_limit.map_or(interrupt.clone(), |seconds| interrupt.within(seconds))),
             ..Options::with_tolerance(tolerance)
         };
-        let ready = &mut *ready;
-        let run = || -> Result<_, SolveError> {
+        let run = |ready: &mut Prepared| -> Result<_, SolveError> {
+            options.method = settings.method.unwrap_or(ready.method.method);
             ready.complete(options.method)?;
             let clock = Instant::now();
             let run = ready.integrate(end, &options)?;
-            times.retain(|&t| t <= run.end());
+            let reached: Vec<f64> = times.iter().map_while(|&t| within(t, scene.start.t, run.end())).collect();
             let width = ready.start.len();
-            let mut states = vec![0.0; width * times.len()];
-            for (&t, row) in times.iter().zip(states.chunks_exact_mut(width)) {
+            let mut states = vec![f64::NAN; width * times.len()];
+            for (&t, row) in reached.iter().zip(states.chunks_exact_mut(width)) {
                 run.states_at(&mut ready.compiled, t, row);
             }
-            Ok((run, states, clock.elapsed().as_secs_f64()))
+            Ok((run, reached.len(), states, clock.elapsed().as_secs_f64()))
         };
-        let (run, states, seconds) = background::run(py, &interrupt, run)?.map_err(errors::solve)?;
+        let ran = background::run(py, &interrupt, || self.with(run))?;
+        let (run, reached, states, seconds) = ran.map_err(errors::solve)?;
         let (status, cause) = match &run.solution.status {
             Status::Completed => ("completed", None),
             Status::Stopped { t, cause } => ("stopped", Some(format!("stopped at t = {t}: {cause}"))),
         };
         let count = Some(times.len());
         Ok(Trajectory {
-            states: array(py, states, count, &[self.states.len()])?.unbind(),
-            times: array(py, times, count, &[])?.unbind(),
-            status,
+            states: fixed(py, states, count, &[self.states.len()])?.unbind(),
+            times: fixed(py, times, count, &[])?.unbind(),
+            reached,
+            status: status.into(),
             cause,
             work: work(py, &run.solution.work)?,
             seconds,
         })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let (py, Equations { system, formulation, removal, given, .. }) = (slf.py(), slf.get());
+        let state = PyDict::new(py);
+        state.set_item("system", system)?;
+        state.set_item("formulation", formulation)?;
+        state.set_item("removal", removal)?;
+        state.set_item("constants", arguments::rule_value(py, given)?)?;
+        Ok((py.import("deltaq")?.getattr("_again")?, ("Equations", state)))
     }
 
     fn _repr_latex_(&self) -> String {

@@ -1,9 +1,14 @@
 //! Exceptions: one class for each error of the library that a caller can meet.
 
+use std::path::Path;
+
 use equations::EvaluationFailure;
 use pyo3::create_exception;
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyOSError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{IntoPyDict, PyType};
+use scene::SceneErrorKind;
 
 create_exception!(deltaq, DeltaqError, PyException, "What deltaq refuses, and why.");
 create_exception!(
@@ -21,7 +26,36 @@ create_exception!(deltaq, EvaluationError, SolveError, "Equations that cannot be
 create_exception!(deltaq, BoundaryError, SolveError, "No free constants meet the condition at the horizon.");
 create_exception!(deltaq, CallError, SolveError, "The time integrator was called wrongly.");
 
+/// `UnknownNameError`: one class for all names, which two classes have been caught by.
+pub(crate) fn unknown_name(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let class = CLASS.get_or_try_init(py, || {
+        let bases = (py.get_type::<DeltaqError>(), py.get_type::<PyValueError>());
+        let text = "A name that means nothing where it stands: of a formulation, a removal, a number, a run.";
+        let said = [("__module__", "deltaq"), ("__doc__", text)].into_py_dict(py)?;
+        let class = py.get_type::<PyType>().call1(("UnknownNameError", bases, said))?;
+        PyResult::Ok(class.cast_into::<PyType>()?.unbind())
+    })?;
+    Ok(class.bind(py))
+}
+
+/// The name means nothing, as the text says.
+pub(crate) fn unknown(text: String) -> PyErr {
+    Python::attach(|py| unknown_name(py).map_or_else(|error| error, |class| PyErr::from_type(class.clone(), text)))
+}
+
+/// What the operating system says of a file, of the class that Python has for that.
+pub(crate) fn file(path: &Path, error: &std::io::Error) -> PyErr {
+    let text = error.to_string();
+    let words = text.split(" (os error").next().unwrap_or(&text).to_owned();
+    PyOSError::new_err((error.raw_os_error(), words, path.as_os_str().to_owned()))
+}
+
 pub(crate) fn scene(py: Python<'_>, error: &scene::SceneError) -> PyErr {
+    if let (0, SceneErrorKind::UnknownName { .. }) = (error.line, &*error.kind) {
+        // the text is that of scenes and commands
+        return unknown(error.to_string().replace("(mu1, …)", "(mu0_1, …)"));
+    }
     let raised = SceneError::new_err(error.to_string());
     let value = raised.value(py);
     let set = value
@@ -54,8 +88,8 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::NoPrinciple { .. }
         | Error::Step { .. }
         | Error::Breakpoint { .. }
-        | Error::Member { .. }
-        | Error::UnknownFormulation { .. } => SolveError::new_err(text),
+        | Error::Member { .. } => SolveError::new_err(text),
+        Error::UnknownFormulation { .. } => unknown(text),
     }
 }
 

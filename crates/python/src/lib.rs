@@ -12,8 +12,10 @@ mod equations;
 mod errors;
 mod linearization;
 mod motion;
+mod proof;
 mod questions;
 mod reading;
+mod results;
 mod scene_text;
 mod system;
 
@@ -31,11 +33,13 @@ mod _native {
         SceneError, SolveError, StartError,
     };
     #[pymodule_export]
-    use crate::linearization::Linearization;
+    use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
     #[pymodule_export]
     use crate::motion::{Motion, Outputs};
     #[pymodule_export]
     use crate::reading::{_read_again, load, parse};
+    #[pymodule_export]
+    use crate::results::_again;
     #[pymodule_export]
     use crate::system::{State, System};
 
@@ -49,6 +53,7 @@ mod _native {
         module.add("FORMULATIONS", names(deltaq::FORMULATIONS.iter().map(|f| f.name).collect())?)?;
         let methods = Method::ALL.into_iter().filter(|method| method.is_built_in());
         module.add("METHODS", names(methods.map(Method::name).collect())?)?;
+        module.add("UnknownNameError", crate::errors::unknown_name(module.py())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -1,18 +1,19 @@
 //! Motions, read off at many times.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use deltaq::{ErrorEstimate, Seconds, Setting, SolveError, constant_names, error_estimates};
-use integrate::Work;
+use deltaq::{Choice, ErrorEstimate, Seconds, Setting, Settings, SolveError, constant_names, error_estimates};
+use integrate::{Method, Projection, Work};
 use mechanics::Observables;
 use numpy::PyArrayDyn;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
-use scene::Scene;
 
-use crate::arrays::{FloatList, Floats, array, columns, finite, times};
+use crate::arguments::rule_value;
+use crate::arrays::{Floats, columns, fixed, times, within};
 use crate::errors;
+use crate::results::kept;
 use crate::system::System;
 
 /// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.
@@ -30,6 +31,8 @@ pub(crate) struct Outputs {
     observables: Py<PyDict>,
 }
 
+kept!(Outputs: coordinates velocities multipliers invariants observables);
+
 /// A row of outputs, and the observables there.
 pub(crate) type Row = (equations::Outputs, Vec<f64>);
 
@@ -37,22 +40,6 @@ pub(crate) type Row = (equations::Outputs, Vec<f64>);
 pub(crate) fn observed(observables: &mut Observables, t: f64, row: equations::Outputs) -> Row {
     let values = observables.at(t, &row.coordinates, &row.velocities).to_vec();
     (row, values)
-}
-
-/// The times asked for; the run of the scene then ends at the last of them.
-pub(crate) fn times_of_run(times: Option<FloatList<'_>>, scene: &mut Scene) -> PyResult<Option<Vec<f64>>> {
-    let times = times.map(|times| finite("times", times.as_array().iter().copied().collect())).transpose()?;
-    if let Some(times) = &times {
-        let start = scene.start.t;
-        if let Some(early) = times.iter().find(|&&t| t < start) {
-            return Err(PyValueError::new_err(format!("times contains {early}, before the start {start}")));
-        }
-        let last = times.iter().fold(start, |a, &b| a.max(b));
-        if last > start {
-            scene.duration = last - start;
-        }
-    }
-    Ok(times)
 }
 
 /// Names of multipliers, invariants and observables.
@@ -72,7 +59,8 @@ impl Names {
 }
 
 impl Outputs {
-    /// From `rows`, one an instant; `count` is `None` where there is one instant, given as a number.
+    /// From `rows`, one an instant, of `count`: those that are missing become NaN. `count` is `None` where
+    /// there is one instant, given as a number.
     pub(crate) fn new(
         py: Python<'_>,
         rows: &[Row],
@@ -81,7 +69,12 @@ impl Outputs {
         count: Option<usize>,
     ) -> PyResult<Outputs> {
         let flat = |pick: fn(&equations::Outputs) -> &[f64]| rows.iter().flat_map(|(r, _)| pick(r).to_vec()).collect();
-        let matrix = |pick| array(py, flat(pick), count, &[dimension]).map(Bound::unbind);
+        let missing = count.unwrap_or(rows.len()) - rows.len();
+        let matrix = |pick| {
+            let mut values: Vec<f64> = flat(pick);
+            values.resize(values.len() + missing * dimension, f64::NAN);
+            fixed(py, values, count, &[dimension]).map(Bound::unbind)
+        };
         Ok(Outputs {
             coordinates: matrix(|r| &r.coordinates)?,
             velocities: matrix(|r| &r.velocities)?,
@@ -96,6 +89,7 @@ impl Outputs {
 pub(crate) struct Sampled {
     motion: deltaq::Motion,
     times: Vec<f64>,
+    /// One at each of the times that were reached.
     rows: Vec<Row>,
     coordinates: Vec<String>,
     observables: Observables,
@@ -108,36 +102,74 @@ pub(crate) struct Sampled {
 const INSTANTS: usize = 101;
 
 impl Sampled {
-    /// Reads `motion` off at those of `times` that it reached.
+    /// Reads `motion` off at those of `times`, in ascending order, that it reached.
     pub(crate) fn new(
         mut motion: deltaq::Motion,
         setting: Setting,
         times: Option<Vec<f64>>,
     ) -> Result<Sampled, SolveError> {
-        let mut times = times.unwrap_or_else(|| {
+        let times = times.unwrap_or_else(|| {
             let end = setting.end - setting.start.t;
             (0..INSTANTS).map(|i| setting.start.t + end * i as f64 / (INSTANTS - 1) as f64).collect()
         });
-        times.retain(|&t| t <= motion.end());
-        let (so_far, estimate) = error_estimates(&mut motion, setting, &times)?;
-        let (times, so_far): (Vec<_>, _) = times.into_iter().zip(so_far).filter(|(t, _)| *t <= motion.end()).unzip();
+        let reached = |motion: &deltaq::Motion| -> Vec<f64> {
+            times.iter().map_while(|&t| within(t, motion.start(), motion.end())).collect()
+        };
+        let asked = reached(&motion);
+        let (mut so_far, estimate) = error_estimates(&mut motion, setting, &asked)?;
+        let reached = reached(&motion);
+        so_far.truncate(reached.len());
         let mut observables = Observables::of(setting.system)?;
         let row = |&t: &f64| Ok(observed(&mut observables, t, motion.at(t)?));
-        let rows = times.iter().map(row).collect::<Result<_, SolveError>>()?;
+        let rows = reached.iter().map(row).collect::<Result<_, SolveError>>()?;
         let coordinates = setting.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let dimension = setting.system.dimension();
         Ok(Sampled { motion, times, rows, coordinates, observables, so_far, estimate, dimension })
     }
 }
 
+/// What a motion was asked by: it is asked by it again where one that was pickled is read off.
+pub(crate) struct Asked<'a> {
+    pub(crate) choice: &'a Choice,
+    pub(crate) form: &'a str,
+    pub(crate) times: Option<&'a [f64]>,
+    pub(crate) settings: &'a Settings,
+}
+
+impl Asked<'_> {
+    /// As arguments of `System.solve`. Where seconds ended the motion, the same number of them may lead
+    /// elsewhere: it is then asked for up to the end that it came to.
+    fn arguments<'py>(&self, py: Python<'py>, end: f64, is_complete: bool) -> PyResult<Bound<'py, PyDict>> {
+        let Asked { choice, form, times, settings } = self;
+        let arguments = PyDict::new(py);
+        arguments.set_item("formulation", choice.formulation)?;
+        arguments.set_item("removal", choice.removal.as_ref().map(|removal| &removal.name))?;
+        arguments.set_item("constants", rule_value(py, &choice.constants)?)?;
+        arguments.set_item("form", form)?;
+        arguments.set_item("method", settings.method.map_or("auto", Method::name))?;
+        arguments.set_item("tolerance", settings.tolerance)?;
+        arguments.set_item("project", settings.projection == Projection::EveryStep)?;
+        arguments.set_item("max_steps", settings.max_steps)?;
+        arguments.set_item("max_step", Some(settings.max_step).filter(|step| step.is_finite()))?;
+        let last = times.and_then(|times| times.last().copied());
+        let last = if settings.time_limit.is_some() && !is_complete { Some(end) } else { last };
+        arguments.set_item("times", last.map(|t| vec![t]))?;
+        Ok(arguments)
+    }
+}
+
 /// One motion: the trajectory of a system under one formulation, with its error estimate.
 ///
-/// `times` are those asked for and reached; all arrays belong to them. `at(t)` gives any other time.
+/// `times` are those asked for; all arrays belong to them. What the motion did not reach is NaN: `reached`
+/// counts the times that it did, `status` and `cause` say why. `at(t)` gives any other time; a motion that
+/// was pickled or copied is integrated anew for it, once.
 #[pyclass(frozen, module = "deltaq")]
 pub(crate) struct Motion {
-    motion: Mutex<(deltaq::Motion, Observables)>,
-    names: Names,
-    dimension: usize,
+    /// None of one that was pickled, until it is read off.
+    motion: OnceLock<Arc<Integrated>>,
+    /// Arguments of `System.solve` that give it again.
+    #[pyo3(get)]
+    _asked: Py<PyDict>,
     /// The system that moves.
     #[pyo3(get)]
     system: Py<System>,
@@ -146,13 +178,16 @@ pub(crate) struct Motion {
     coordinate_names: Vec<String>,
     /// Name of the formulation.
     #[pyo3(get)]
-    formulation: &'static str,
+    formulation: String,
     /// Name of the removal, None where the formulation needs none.
     #[pyo3(get)]
     removal: Option<String>,
     /// Times, shape (k,), in the unit of time of the system.
     #[pyo3(get)]
     times: Py<PyArrayDyn<f64>>,
+    /// How many of the times it reached.
+    #[pyo3(get)]
+    reached: usize,
     /// Coordinates q at `times`, shape (k, n), in the units of the system.
     #[pyo3(get)]
     coordinates: Py<PyArrayDyn<f64>>,
@@ -184,7 +219,7 @@ pub(crate) struct Motion {
     /// "completed", "untrusted" (the estimate is doubted or too large, for all or for one coordinate),
     /// "stopped".
     #[pyo3(get)]
-    status: &'static str,
+    status: String,
     /// Why the motion is not completed, else None.
     #[pyo3(get)]
     cause: Option<String>,
@@ -199,14 +234,14 @@ pub(crate) struct Motion {
     end: f64,
     /// The time-stepping method and why it was taken.
     #[pyo3(get)]
-    method: Option<(&'static str, String)>,
+    method: Option<(String, String)>,
     /// Name of the form of the equations that was integrated, and why.
     #[pyo3(get)]
-    form: (&'static str, String),
+    form: (String, String),
     /// Times from which the motion went on by "multipliers" or by "canonical momenta", because pivots became
     /// small.
     #[pyo3(get)]
-    charts: Vec<(f64, &'static str)>,
+    charts: Vec<(f64, String)>,
     /// Values of the free constants, by name.
     #[pyo3(get)]
     constants: Py<PyDict>,
@@ -220,6 +255,16 @@ pub(crate) struct Motion {
     #[pyo3(get)]
     seconds: Py<PyDict>,
 }
+
+kept!(
+    Motion: _asked system coordinate_names formulation removal times reached coordinates velocities
+    multipliers invariants observables error_estimate relative_error_estimate coordinate_error_estimates
+    multiplier_error_estimates status cause doubt start end method form charts constants work projection
+    seconds, motion = OnceLock::new()
+);
+
+/// A motion, and the program of what is observed in it.
+type Integrated = Mutex<(deltaq::Motion, Observables)>;
 
 /// What a run cost, by name.
 pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
@@ -235,7 +280,7 @@ pub(crate) fn work(py: Python<'_>, work: &Work) -> PyResult<Py<PyDict>> {
 }
 
 impl Motion {
-    pub(crate) fn new(system: &Bound<'_, System>, sampled: Sampled) -> PyResult<Motion> {
+    pub(crate) fn new(system: &Bound<'_, System>, sampled: Sampled, asked: &Asked<'_>) -> PyResult<Motion> {
         let py = system.py();
         let Sampled { motion, times, rows, coordinates: coordinate_names, observables: program, .. } = sampled;
         let Sampled { so_far, estimate, dimension, .. } = sampled;
@@ -244,7 +289,8 @@ impl Motion {
         let Outputs { coordinates, velocities, multipliers, invariants, observables } =
             Outputs::new(py, &rows, dimension, &names, count)?;
         let (status, cause) = estimate.status(&motion);
-        let coordinate_errors = so_far.iter().flat_map(|e| e.coordinates.clone()).collect();
+        let mut coordinate_errors: Vec<f64> = so_far.iter().flat_map(|e| e.coordinates.clone()).collect();
+        coordinate_errors.resize(times.len() * dimension, f64::NAN);
         let multiplier_errors = so_far.iter().map(|e| &e.multipliers[..]);
         let constants = constant_names(&motion.equations).into_iter().zip(motion.constants.iter().copied());
         let projection = PyDict::new(py);
@@ -254,12 +300,13 @@ impl Motion {
         let Seconds { derive, compile, integrate } = motion.seconds;
         let seconds = [("derive", derive), ("compile", compile), ("integrate", integrate)];
         Ok(Motion {
-            dimension,
+            _asked: asked.arguments(py, motion.end(), motion.is_complete())?.unbind(),
+            reached: rows.len(),
             system: system.clone().unbind(),
             coordinate_names,
-            formulation: motion.equations.formulation,
+            formulation: motion.equations.formulation.into(),
             removal: motion.equations.removal.as_ref().map(|r| r.name.clone()),
-            times: array(py, times, count, &[])?.unbind(),
+            times: fixed(py, times, count, &[])?.unbind(),
             coordinates,
             velocities,
             multipliers,
@@ -267,23 +314,39 @@ impl Motion {
             observables,
             error_estimate: estimate.absolute,
             relative_error_estimate: estimate.relative,
-            coordinate_error_estimates: array(py, coordinate_errors, count, &[dimension])?.unbind(),
+            coordinate_error_estimates: fixed(py, coordinate_errors, count, &[dimension])?.unbind(),
             multiplier_error_estimates: columns(py, &names.multipliers, multiplier_errors, count)?.unbind(),
-            status,
+            status: status.into(),
             cause,
             doubt: motion.doubt.as_ref().map(|doubt| doubt.because.clone()),
             start: motion.start(),
             end: motion.end(),
-            method: motion.method.as_ref().map(|chosen| (chosen.method.name(), chosen.why.clone())),
-            form: (motion.form.chosen.name, motion.form.chosen.why.clone()),
-            charts: motion.charts.iter().map(|chart| (chart.t, chart.by)).collect(),
+            method: motion.method.as_ref().map(|chosen| (chosen.method.name().into(), chosen.why.clone())),
+            form: (motion.form.chosen.name.into(), motion.form.chosen.why.clone()),
+            charts: motion.charts.iter().map(|chart| (chart.t, chart.by.into())).collect(),
             constants: constants.into_py_dict(py)?.unbind(),
             work: work(py, &motion.work)?,
             projection: projection.unbind(),
             seconds: seconds.into_py_dict(py)?.unbind(),
-            names,
-            motion: Mutex::new((motion, program)),
+            motion: OnceLock::from(Arc::new(Mutex::new((motion, program)))),
         })
+    }
+}
+
+impl Motion {
+    /// What is read off; of a motion that was pickled it is integrated anew.
+    fn integrated(&self, py: Python<'_>) -> PyResult<&Integrated> {
+        if self.motion.get().is_none() {
+            let again = self.system.bind(py).call_method("solve", (), Some(self._asked.bind(py)))?;
+            let again = again.cast_into::<Motion>()?;
+            let Motion { motion, end, .. } = again.get();
+            if within(self.end, self.start, *end).is_none() {
+                let text = format!("integrated anew, the motion ends at {end} and not at {}", self.end);
+                return Err(errors::EvaluationError::new_err(text));
+            }
+            motion.get().cloned().into_iter().for_each(|motion| drop(self.motion.set(motion)));
+        }
+        self.motion.get().map(|motion| &**motion).ok_or_else(|| PyRuntimeError::new_err("the motion was not kept"))
     }
 }
 
@@ -291,21 +354,26 @@ impl Motion {
 impl Motion {
     /// Everything at time t, read off the dense output (order 7 for dop853).
     ///
-    /// t is a number or of shape (k,), from start to end; ValueError elsewhere.
+    /// t is a number or of shape (k,), from start to end, where its last digit does not count; ValueError
+    /// elsewhere.
     #[pyo3(signature = (t))]
     fn at(&self, py: Python<'_>, t: Floats<'_>) -> PyResult<Outputs> {
-        let t = times(&t)?;
-        let instants: Vec<f64> = (0..t.count().unwrap_or(1)).map(|i| t.row(i)[0]).collect();
-        if let Some(outside) = instants.iter().find(|&t| !(self.start..=self.end).contains(t)) {
-            let (start, end) = (self.start, self.end);
-            return Err(PyValueError::new_err(format!("t = {outside} is outside of the motion, {start} to {end}")));
-        }
-        let rows = {
-            let (motion, program) = &mut *self.motion.lock().unwrap_or_else(PoisonError::into_inner);
-            let row = |&t: &f64| Ok(observed(program, t, motion.at(t)?));
-            instants.iter().map(row).collect::<Result<Vec<_>, SolveError>>().map_err(errors::solve)?
+        let (t, start, end) = (times(&t)?, self.start, self.end);
+        let inside = |i| {
+            let t = t.row(i)[0];
+            let outside = || PyValueError::new_err(format!("t = {t} is outside of the motion, {start} to {end}"));
+            within(t, start, end).ok_or_else(outside)
         };
-        Outputs::new(py, &rows, self.dimension, &self.names, t.count())
+        let instants: Vec<f64> = (0..t.count().unwrap_or(1)).map(inside).collect::<PyResult<_>>()?;
+        let integrated = self.integrated(py)?;
+        let read = || {
+            let (motion, program) = &mut *integrated.lock().unwrap_or_else(PoisonError::into_inner);
+            let row = |&t: &f64| Ok(observed(program, t, motion.at(t)?));
+            let rows = instants.iter().map(row).collect::<Result<Vec<_>, SolveError>>()?;
+            Ok((rows, Names::of(&motion.equations, program)))
+        };
+        let (rows, names) = py.detach(read).map_err(|error: SolveError| errors::solve(error))?;
+        Outputs::new(py, &rows, self.coordinate_names.len(), &names, t.count())
     }
 
     fn __repr__(&self) -> String {

@@ -2,7 +2,9 @@
 
 use std::convert::Infallible;
 
-use deltaq::{EnsembleOptions, Settings, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice};
+use deltaq::{
+    EnsembleOptions, Settings, SolveError, Sweep, SweepPoint, number_of_threads, over_threads, setting, solve_choice,
+};
 use integrate::Interrupt;
 use picture::Style;
 use pyo3::exceptions::PyValueError;
@@ -10,12 +12,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scenery::{Drawn, moving};
 
-use crate::arrays::{FloatList, Floats, Rows};
+use crate::arrays::{Floats, Rows, list};
 use crate::comparison::{Comparison, compare};
 use crate::ensemble::{self, Ensemble, Varied};
 use crate::equations::Equations;
-use crate::linearization::Linearization;
-use crate::motion::{self, Motion, Sampled};
+use crate::linearization::{Linearization, LinearizationSweep};
+use crate::motion::{Asked, Motion, Sampled};
 use crate::system::System;
 use crate::{arguments, background, errors};
 
@@ -33,15 +35,14 @@ impl System {
     /// array([0., 0., 1.])
     #[pyo3(signature = (formulation="chetaev", removal=None, *, mu0=None, constants=None))]
     fn equations(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         formulation: &str,
         removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
+        mu0: Option<Floats<'_>>,
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Equations> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        Equations::derived(py, self.scene().clone(), (formulation, removal), given)
+        Equations::derived(slf, (formulation, removal), given)
     }
 
     /// The equations of motion to first order about the start, which has to be a steady motion.
@@ -59,7 +60,7 @@ impl System {
         at: Option<f64>,
         find: bool,
         removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
+        mu0: Option<Floats<'_>>,
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Linearization> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
@@ -69,9 +70,38 @@ impl System {
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
 
+    /// `linearize` over the values of one number, and where stability changes between them: `deltaq
+    /// linearize --sweep`.
+    ///
+    /// over: one name to its values, shape (k,): a parameter, a start value ("x", "x'"), a multiplier
+    /// ("mu0_1"). Between neighbours of different stability the value where it changes is found by
+    /// bisection.
+    #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
+    #[pyo3(signature = (over, formulation="chetaev", *, free=None, find=false, removal=None, mu0=None, constants=None))]
+    fn linearize_over(
+        slf: &Bound<'_, Self>,
+        over: &Bound<'_, PyDict>,
+        formulation: &str,
+        free: Option<Vec<String>>,
+        find: bool,
+        removal: Option<&str>,
+        mu0: Option<Floats<'_>>,
+        constants: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<LinearizationSweep> {
+        let (py, given) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
+        let [(name, values)] = &over.iter().collect::<Vec<_>>()[..] else {
+            return Err(PyValueError::new_err(format!("over has {} names; one can vary", over.len())));
+        };
+        let name: String = name.extract()?;
+        let values = list(&name, &values.extract()?)?;
+        let scene = slf.get().scene().clone();
+        let (scene, choice) = arguments::choice(py, &Interrupt::default(), scene, (formulation, removal), given)?;
+        LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
+    }
+
     /// Derives and integrates the motion under a formulation, one of FORMULATIONS.
     ///
-    /// times: where it is read off, shape (k,), from the start to the last. By default 101 over `duration`.
+    /// times: where it is read off, shape (k,), ascending, to the last. By default 101 over `duration`.
     /// removal: a name in `removals`, "coordinates" or "quasi-velocities"; by default the first.
     /// mu0: start multipliers of the vakonomic formulations, shape (h,). By default those of the system.
     /// constants: free constants, "zero", {"horizon": T} (natural at T) or an array. By default those of the
@@ -97,9 +127,9 @@ impl System {
     fn solve(
         slf: &Bound<'_, Self>,
         formulation: &str,
-        times: Option<FloatList<'_>>,
+        times: Option<Floats<'_>>,
         removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
+        mu0: Option<Floats<'_>>,
         constants: Option<Bound<'_, PyAny>>,
         form: &str,
         method: &str,
@@ -111,21 +141,32 @@ impl System {
     ) -> PyResult<Motion> {
         let (py, given) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
         let (settings, interrupt) = arguments::settings(method, tolerance, project, max_steps, max_step, time_limit)?;
-        let (formulation, form) = arguments::in_form(form, formulation)?;
-        let settings = Settings { form, ..settings };
+        let (formulation, in_form) = arguments::in_form(form, formulation)?;
+        let settings = Settings { form: in_form, ..settings };
         let scene = slf.get().scene().clone();
         let (mut scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
-        let times = motion::times_of_run(times, &mut scene)?;
-        let work = move || {
-            let motion = solve_choice(&scene, &choice, &settings)?;
-            Sampled::new(motion, setting(&scene), times)
+        let times = match times {
+            None => None,
+            Some(times) => {
+                let (times, end) = ensemble::times(&times, &scene)?;
+                scene.duration = end - scene.start.t;
+                Some(times)
+            }
         };
-        Motion::new(slf, background::run(py, &interrupt, work)?.map_err(errors::solve)?)
+        let (limits, instants) = (settings.clone(), times.clone());
+        let work = move || {
+            let motion = solve_choice(&scene, &choice, &limits)?;
+            Ok((Sampled::new(motion, setting(&scene), instants)?, choice))
+        };
+        let (sampled, choice) =
+            background::run(py, &interrupt, work)?.map_err(|error: SolveError| errors::solve(error))?;
+        let asked = Asked { choice: &choice, form, times: times.as_deref(), settings: &settings };
+        Motion::new(slf, sampled, &asked)
     }
 
     /// Integrates many motions at once, by Taylor series, under a formulation: starts or parameters differ.
     ///
-    /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu1", ...).
+    /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu0_1", ...).
     /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
     /// threads: 0 for one a processor; results do not depend on it. estimate: whether each member is run
     /// twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
@@ -143,10 +184,10 @@ impl System {
     fn ensemble(
         slf: &Bound<'_, Self>,
         formulation: &str,
-        times: Option<FloatList<'_>>,
+        times: Option<Floats<'_>>,
         vary: &Bound<'_, PyDict>,
         removal: Option<&str>,
-        mu0: Option<FloatList<'_>>,
+        mu0: Option<Floats<'_>>,
         constants: Option<Bound<'_, PyAny>>,
         tolerance: f64,
         project: bool,
@@ -160,7 +201,10 @@ impl System {
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
         let (scene, given) = (slf.get().scene().clone(), constants.is_some());
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
-        let (times, end) = ensemble::times(times, &scene)?;
+        let (times, end) = times.map_or_else(
+            || Ok((vec![setting(&scene).end], setting(&scene).end)),
+            |times| ensemble::times(&times, &scene),
+        )?;
         let varied = Varied::read(vary)?;
         let options = EnsembleOptions { threads, estimate };
         if let (true, Some(name)) = (given, varied.multiplier()) {
@@ -213,6 +257,7 @@ impl System {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
         let values: Vec<f64> = values.as_array().iter().copied().collect();
+        let names: Vec<String> = names.into_iter().map(arguments::spelt_name).collect::<PyResult<_>>()?;
         let (name, width) = (self.name(), names.len());
         let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;
@@ -233,12 +278,12 @@ impl System {
     /// The bodies along curves (label, formulation, times, coordinates of shape (k, n)) as an SVG that moves;
     /// None where nothing is seen to move. Between times a curve is straight.
     #[pyo3(signature = (curves))]
-    fn _moving(&self, curves: Vec<(String, String, FloatList<'_>, Floats<'_>)>) -> PyResult<Option<String>> {
+    fn _moving(&self, curves: Vec<(String, String, Floats<'_>, Floats<'_>)>) -> PyResult<Option<String>> {
         let mut scene = self.scene().clone();
         let mut motions = Vec::new();
         let mut end = scene.start.t;
         for (label, formulation, times, coordinates) in curves {
-            let times: Vec<f64> = times.as_array().iter().copied().collect();
+            let times = list("times", &times)?;
             let rows = Rows::read("coordinates", &coordinates, scene.system.dimension())?;
             end = times.iter().fold(end, |end, &t| end.max(t));
             let at = move |t: f64| -> Result<Vec<f64>, Infallible> {

@@ -1,21 +1,26 @@
 //! Systems from files and texts.
 
 use std::collections::HashMap;
+use std::fs::File;
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use scene::Scene;
 
+use crate::arguments::spelt;
 use crate::errors;
 use crate::system::{Overrides, System};
 
 /// A system from a scene file of at most 1 MiB.
 ///
-/// overrides: name to number: parameter, start value ("x", "x'"), "time", "duration", multiplier ("mu1").
+/// overrides: name to number: parameter, start value ("x", "x'"), "time", "duration", multiplier ("mu0_1").
+/// FileNotFoundError where there is no file; UnknownNameError for a name that the scene has not.
 #[pyfunction]
 #[pyo3(signature = (path, overrides=None))]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<String, f64>>) -> PyResult<System> {
-    let overrides: Overrides = overrides.into_iter().flatten().collect();
+    let overrides = spelt(overrides.unwrap_or_default())?.into_iter().collect();
+    // what the operating system refuses is its own error: FileNotFoundError, PermissionError, ...
+    drop(py.detach(|| File::open(&path)).map_err(|error| errors::file(&path, &error))?);
     let text = py.detach(|| Scene::read(&path)).map_err(|error| errors::scene(py, &error))?;
     System::read(py, ("", Some(&path)), text, overrides)
 }
@@ -29,7 +34,8 @@ pub(crate) fn parse(
     overrides: Option<HashMap<String, f64>>,
     name: &str,
 ) -> PyResult<System> {
-    System::read(py, (name, None), text.into(), overrides.into_iter().flatten().collect())
+    let overrides = spelt(overrides.unwrap_or_default())?.into_iter().collect();
+    System::read(py, (name, None), text.into(), overrides)
 }
 
 /// What a pickled system is read from.

@@ -67,13 +67,19 @@ pub(crate) struct Arguments<'py> {
     pub(crate) project: bool,
     pub(crate) multipliers: Option<Bound<'py, PyAny>>,
     pub(crate) duration: f64,
+    pub(crate) breakpoints: Vec<f64>,
+    pub(crate) notes: &'py str,
 }
 
 /// The text of the scene.
 pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
     let coordinates = &arguments.coordinates;
     let (units, start) = (entries(arguments.units.as_ref())?, entries(Some(&arguments.start))?);
-    let mut text = format!("title = {}\n[coordinates]\n", quoted(&arguments.title));
+    let mut text = format!("title = {}\n", quoted(&arguments.title));
+    if !arguments.notes.is_empty() {
+        let _ = writeln!(text, "notes = {}", scene::quoted(arguments.notes));
+    }
+    text += "[coordinates]\n";
     for (name, table) in [("units", &units), ("start", &start)] {
         if let Some((key, _)) = table.iter().find(|(key, _)| !coordinates.contains(key)) {
             let known = coordinates.join(", ");
@@ -105,6 +111,9 @@ pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
         let _ = writeln!(text, "[vakonomic]\nmultipliers = {}", value(multipliers)?);
     }
     let _ = writeln!(text, "[run]\nduration = {:?}", arguments.duration);
+    if !arguments.breakpoints.is_empty() {
+        let _ = writeln!(text, "breakpoints = {:?}", arguments.breakpoints);
+    }
     Ok(text)
 }
 

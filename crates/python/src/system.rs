@@ -7,11 +7,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use deltaq::{integrability, removals};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
 
-use crate::arrays::{Array, Floats, array, at_points};
+use crate::arguments::spelt;
+use crate::arrays::{Array, Floats, Points, array, fixed};
 use crate::errors;
+use crate::results::kept;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
 
 /// A point of a motion: time, coordinates, velocities.
@@ -24,6 +26,8 @@ pub(crate) struct State {
     /// Velocities, shape (n,), in units of the coordinates per unit of time.
     pub(crate) v: Py<PyArrayDyn<f64>>,
 }
+
+kept!(State: t q v);
 
 #[pymethods]
 impl State {
@@ -45,7 +49,8 @@ impl State {
 /// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others. guess:
 /// velocities near which the others are sought. project: move given velocities onto the constraints.
 /// removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
-/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run.
+/// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
+/// at which a step ends, where something is switched. notes: remarks.
 ///
 /// >>> sledge = deltaq.System(
 /// ...     coordinates=["x", "y", "phi"],
@@ -99,7 +104,7 @@ impl System {
     #[pyo3(signature = (
         coordinates, lagrangian, constraints=Formulas(Vec::new()), *, start, parameters=None, definitions=None, units=None,
         forces=None, observables=None, invariants=None, view=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
-        name="system", title=None
+        breakpoints=None, name="system", title=None, notes=""
     ))]
     fn new(
         py: Python<'_>,
@@ -121,8 +126,10 @@ impl System {
         multipliers: Option<Bound<'_, PyAny>>,
         time: f64,
         duration: f64,
+        breakpoints: Option<Vec<f64>>,
         name: &str,
         title: Option<String>,
+        notes: &str,
     ) -> PyResult<System> {
         let text = write(&Arguments {
             title: title.unwrap_or_else(|| name.into()),
@@ -146,6 +153,8 @@ impl System {
             project,
             multipliers,
             duration,
+            breakpoints: breakpoints.unwrap_or_default(),
+            notes,
         })?;
         System::read(py, (name, None), text, Overrides::new())
     }
@@ -168,6 +177,12 @@ impl System {
         self.scene().source.clone()
     }
 
+    /// Remarks, empty where there are none.
+    #[getter]
+    fn notes(&self) -> String {
+        self.scene().notes.clone()
+    }
+
     /// Names of the coordinates, length n.
     #[getter]
     fn coordinates(&self) -> Vec<String> {
@@ -176,8 +191,8 @@ impl System {
 
     /// Units of the coordinates, by name.
     #[getter]
-    fn units(&self) -> HashMap<String, String> {
-        self.scene().system.coordinates.iter().map(|c| (c.name.clone(), c.unit.clone())).collect()
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.scene().system.coordinates.iter().map(|c| (&c.name, &c.unit)).into_py_dict(py)
     }
 
     /// Number of coordinates, n.
@@ -188,9 +203,9 @@ impl System {
 
     /// Values of the parameters, by name.
     #[getter]
-    fn parameters(&self) -> HashMap<String, f64> {
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scene = self.scene();
-        scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).collect()
+        scene.system.parameters.iter().map(|p| (scene.system.graph.name(p.symbol), p.value)).into_py_dict(py)
     }
 
     /// The Lagrangian, as text.
@@ -209,11 +224,11 @@ impl System {
 
     /// The generalized forces other than zero, as text, by coordinate.
     #[getter]
-    fn forces(&self) -> HashMap<String, String> {
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scene = self.scene();
         let g = &scene.system.graph;
         let pairs = scene.system.coordinates.iter().zip(&scene.system.forces);
-        pairs.filter(|(_, force)| !g.is_zero(**force)).map(|(c, &force)| (c.name.clone(), g.plain(force))).collect()
+        pairs.filter(|(_, force)| !g.is_zero(**force)).map(|(c, &force)| (&c.name, g.plain(force))).into_py_dict(py)
     }
 
     /// The Lagrangian and the constraints in LaTeX: one `aligned` environment.
@@ -235,7 +250,7 @@ impl System {
     fn start(&self, py: Python<'_>) -> PyResult<State> {
         let mechanics::State { t, q, v } = self.scene().start.clone();
         let n = q.len();
-        Ok(State { t, q: array(py, q, None, &[n])?.unbind(), v: array(py, v, None, &[n])?.unbind() })
+        Ok(State { t, q: fixed(py, q, None, &[n])?.unbind(), v: fixed(py, v, None, &[n])?.unbind() })
     }
 
     /// Multipliers mu0 at the start of vakonomic motions, length h.
@@ -248,6 +263,12 @@ impl System {
     #[getter]
     fn duration(&self) -> f64 {
         self.scene().duration
+    }
+
+    /// Times at which a step ends, where something is switched.
+    #[getter]
+    fn breakpoints(&self) -> Vec<f64> {
+        self.scene().system.breakpoints.clone()
     }
 
     /// Names of removals for the removed-constraint formulation: those written by hand, then automatic ones.
@@ -271,6 +292,7 @@ impl System {
     /// 1.6
     #[pyo3(signature = (overrides))]
     fn replace(&self, py: Python<'_>, overrides: HashMap<String, f64>) -> PyResult<System> {
+        let overrides = spelt(overrides)?;
         let kept = self.overrides.iter().filter(|(name, _)| !overrides.contains_key(name)).cloned();
         let all = kept.chain(overrides.clone()).collect();
         System::read(py, (&self.name(), None), self.text.clone(), all)
@@ -291,8 +313,12 @@ impl System {
     /// Constraint residuals f(q, v, t), shape (h,) or (k, h); q, v: (n,) or (k, n); t: a number or (k,).
     #[pyo3(signature = (t, q, v))]
     fn constraint<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
-        let (values, count) = at_points(&self.scene().system, [t, q, v], |system| system.constraints.clone())?;
-        array(py, values, count, &[self.scene().system.constraints.len()])
+        let points = Points::read([t, q, v], self.dimension())?;
+        let (values, width) = py.detach(|| {
+            let system = &self.scene().system;
+            PyResult::Ok((points.values(system, &system.constraints)?, system.constraints.len()))
+        })?;
+        array(py, values, points.count, &[width])
     }
 
     /// Mass matrix M(q, v, t) = d²L/dv², shape (n, n) or (k, n, n); arguments as in `constraint`.
@@ -300,10 +326,13 @@ impl System {
     /// Distances of configurations are measured by it everywhere: sqrt(dq' M dq).
     #[pyo3(signature = (t, q, v))]
     fn mass<'py>(&self, py: Python<'py>, t: Floats<'_>, q: Floats<'_>, v: Floats<'_>) -> Array<'py> {
-        let (values, count) =
-            at_points(&self.scene().system, [t, q, v], |system| system.velocity_hessian().entries().to_vec())?;
-        let n = self.scene().system.dimension();
-        array(py, values, count, &[n, n])
+        let n = self.dimension();
+        let points = Points::read([t, q, v], n)?;
+        let values = py.detach(|| {
+            let system = &self.scene().system;
+            points.values(system, system.velocity_hessian().entries())
+        })?;
+        array(py, values, points.count, &[n, n])
     }
 
     fn __repr__(&self) -> String {

@@ -67,7 +67,7 @@ def test_runs_and_fits(sledge, comparison):
 
 
 def test_names(comparison):
-    with pytest.raises(KeyError, match="no run `hertz`"):
+    with pytest.raises(deltaq.UnknownNameError, match="no run `hertz`"):
         comparison.verdict("hertz", "chetaev")
     with pytest.raises(KeyError, match="not compared"):
         comparison.verdict("chetaev", "vakonomic-costate")

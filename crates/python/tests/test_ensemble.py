@@ -44,7 +44,7 @@ def test_parameters_against_single_motions(sledge, system, formulation):
 
 
 def test_free_constants(system):
-    varied = system.ensemble("vakonomic", [0, 3], vary={"mu1": [-0.2, 0.3]})
+    varied = system.ensemble("vakonomic", [0, 3], vary={"mu0_1": [-0.2, 0.3]})
     np.testing.assert_allclose(varied.multipliers["mu_1"][:, 0], [-0.2, 0.3], rtol=1e-15)
     given = system.ensemble("vakonomic", [0, 3], vary={"k": [0.7, 0.7]}, mu0=[0.3])
     # what varies is not put into the expressions: other round-off
@@ -96,7 +96,7 @@ def test_what_is_wrong_is_said(system):
     ]:
         with pytest.raises(ValueError, match=words):
             system.ensemble(vary=vary)
-    with pytest.raises(deltaq.SceneError, match="gg"):
+    with pytest.raises(deltaq.UnknownNameError, match="gg"):
         system.ensemble(vary={"gg": [1, 2]})
     for times, words in [([1, 0.5], "ascending"), ([-1], "before the start"), ([np.inf], "times contains")]:
         with pytest.raises(ValueError, match=words):

@@ -47,3 +47,19 @@ def test_what_is_not_steady_is_refused_found_or_frozen():
     frozen = swinging.linearize(at=0.0)
     np.testing.assert_allclose(frozen.eigenvalues.imag**2, 9 * np.cos(0.5), rtol=1e-14)
     assert not frozen.is_steady
+
+
+def test_where_stability_changes():
+    # a bead on a hoop that turns at w: the bottom is stable while w^2 < g/r = 9, then grows at sqrt(w^2 - 9)
+    bead = deltaq.System(
+        ["angle"], "angle'^2/2 + w^2*sin(angle)^2/2 + 9*cos(angle)", parameters={"w": 1.0}, start={"angle": 0}, velocities={"angle'": 0}
+    )
+    swept = bead.linearize_over({"w": [1.0, 2.0, 4.0, 5.0]})
+    np.testing.assert_array_equal(swept.values, [1, 2, 4, 5])
+    assert [point.unstable for point in swept.points] == [0, 0, 1, 1] and len(swept) == 4
+    np.testing.assert_allclose(swept.points[3].eigenvalues, [4, -4], rtol=1e-12)
+    [change] = swept.changes
+    assert (change.below, change.above, change.frequency) == (0, 1, 0) and abs(change.value - 3) < 1e-7 + change.width
+    np.testing.assert_array_equal(swept.points[1].matrix, bead.replace({"w": 2.0}).linearize().matrix)
+    with pytest.raises(ValueError, match="over has 2 names; one can vary"):
+        bead.linearize_over({"w": [1.0], "angle": [0.0]})

@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+import deltaq
+
 VALIDATION = Path(__file__).resolve().parents[3] / "validation"
 # the module is laid out beside the programs of its build
 PROGRAM = Path(os.environ.get("DELTAQ", Path(sys.prefix).parent / "release" / "deltaq"))
@@ -343,3 +345,22 @@ def test_what_is_changed_is_forged_or_cannot_be_read(tmp_path, name):
         assert code != VERIFIED or harmless(true, path, forged), (path, other, said)
         assert not re.search("Error", said), (path, other, said)
     print(name, *zip(("verified", "forged", "cannot be read"), counts))
+
+
+@pytest.mark.parametrize("almost_every", [False, True])
+def test_the_certificate_is_that_of_the_command(tmp_path, almost_every):
+    path = tmp_path / "certificate.json"
+    words = [PROGRAM, "prove", "sledge", "--out", path, *(["--almost-every"] if almost_every else [])]
+    subprocess.run(words, check=True, capture_output=True)
+    system = deltaq.load(VALIDATION / "scenes/sledge.toml")
+    proof = system.prove(almost_every_start=almost_every)
+    assert proof and proof.because is None and proof.certificate == json.loads(path.read_text())
+    proof.save(tmp_path / "ours.json")
+    assert (tmp_path / "ours.json").read_bytes() == path.read_bytes()
+
+
+def test_without_a_certificate_it_is_said_why(tmp_path):
+    proof = deltaq.System(["x"], "x'^2/2", start={"x": 0}, velocities={"x'": 1}).prove()
+    assert not proof and proof.certificate is None and proof.because == "nothing is constrained"
+    with pytest.raises(ValueError, match="no certificate: nothing is constrained"):
+        proof.save(tmp_path / "nothing.json")

@@ -13,8 +13,37 @@ STUBS = Path(deltaq.__file__).with_name("_native.pyi")
 TREE = ast.parse(STUBS.read_text())
 CLASSES = {node.name: node for node in TREE.body if isinstance(node, ast.ClassDef)}
 FUNCTIONS = {node.name: node for node in TREE.body if isinstance(node, ast.FunctionDef)}
-PYTHON = {"Sweep", "ensemble", "from_sympy", "sweep"}
+PYTHON = {"Proof", "Sweep", "ensemble", "from_sympy", "sweep"}
 VALUES = {node.target.id for node in TREE.body if isinstance(node, ast.AnnAssign) and not node.target.id.startswith("_")}
+
+
+def described(node, following):
+    """The docstring of a class or a function, or what stands below an attribute."""
+    if isinstance(node, ast.AnnAssign):
+        text = following.value.value if isinstance(following, ast.Expr) else None
+        return text if text is None else inspect.cleandoc(text)
+    return (ast.get_docstring(node) or "").strip()
+
+
+def stubbed(body):
+    """Names of classes, functions and attributes that can only be read, each with what is said of it."""
+    for node, following in zip(body, [*body[1:], None]):
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            yield node.name, described(node, following)
+        elif isinstance(node, ast.AnnAssign) and "Final" in ast.unparse(node.annotation):
+            yield node.target.id, described(node, following)
+
+
+def test_stubs_say_what_the_module_says():
+    wrong = {}
+    for name, text in stubbed(TREE.body):
+        if text != inspect.getdoc(getattr(_native, name)) and not name.startswith("_"):
+            wrong[name] = text
+    for owner, node in CLASSES.items():
+        for name, text in stubbed(node.body):
+            if not name.startswith("_") and text != inspect.getdoc(getattr(getattr(deltaq, owner), name)):
+                wrong[f"{owner}.{name}"] = text
+    assert not wrong
 
 
 def public(names):

@@ -44,7 +44,7 @@ def test_pictures(sledge, system, tmp_path):
         assert isinstance(figure, Figure) and len(figure.axes) == axes
         assert all(axis.has_data() and axis.get_ylabel() for axis in figure.axes)
         figure.savefig(tmp_path / "picture.png")
-    assert end.plot().axes[-1].get_xlabel() == "phi" and many.plot().axes[-1].get_xlabel() == "t"
+    assert end.plot().axes[-1].get_xlabel() == "phi (rad)" and many.plot().axes[-1].get_xlabel() == "t (s)"
     again = system.solve("vakonomic", [0, 1]).plot(ax=many.plot().axes)
     assert len(again.axes) == 3
     with pytest.raises(ValueError, match="ax has 1 axes; 3 are needed"):

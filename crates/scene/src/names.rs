@@ -220,7 +220,10 @@ fn overriding(name: &str) -> Option<&'static str> {
     match name {
         "time" => Some("the start time"),
         "duration" => Some("the length of the run"),
-        _ if name.strip_prefix("mu").is_some_and(|n| n.parse::<usize>().is_ok()) => Some("a multiplier"),
+        // `mu0_1` is the name that Python has for `mu1`
+        _ if name.strip_prefix("mu").is_some_and(|n| n.strip_prefix("0_").unwrap_or(n).parse::<usize>().is_ok()) => {
+            Some("a multiplier")
+        }
         _ => name.starts_with("P0_").then_some("a costate"),
     }
 }

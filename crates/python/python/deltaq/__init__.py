@@ -11,14 +11,13 @@
     table = deltaq.ensemble(system, vary={"g": [1.6]})  # a table of Arrow, or Parquet files
 
 Motions, ensembles, comparisons and sweeps have to_arrow, to_pandas, to_xarray and plot where these make sense; they
-need pyarrow, pandas, xarray and matplotlib, a cluster dask.distributed.
+need pyarrow, pandas, xarray and matplotlib, a cluster dask.distributed: deltaq[tables], [plot], [cluster].
 
-All arrays are of float64. Everything that deltaq refuses is a DeltaqError; a wrong shape or an unknown name is a ValueError.
+All arrays are of float64. Results cannot be written to, and can be pickled. Everything that deltaq refuses is a
+DeltaqError, an unknown name an UnknownNameError; a wrong shape is a ValueError, a missing file a FileNotFoundError.
 """
 
-from typing import TYPE_CHECKING, Any
-
-from . import _animate, _notebook, _plots, _tables
+from . import _animate, _notebook, _plots, _proof, _tables
 from ._native import (
     FORMULATIONS,
     METHODS,
@@ -36,6 +35,7 @@ from ._native import (
     Growth,
     LeadingTerm,
     Linearization,
+    LinearizationSweep,
     Motion,
     Outputs,
     Pair,
@@ -43,19 +43,21 @@ from ._native import (
     Run,
     SceneError,
     SolveError,
+    StabilityChange,
     StartError,
     State,
     System,
     Trajectory,
+    UnknownNameError,
     __version__,
+    _again,
     _read_again,
     load,
     parse,
 )
+from ._proof import Proof
+from ._sweep import Sweep, ensemble, sweep
 from ._sympy import from_sympy
-
-if TYPE_CHECKING:
-    from ._sweep import Sweep, ensemble, sweep
 
 __all__ = [
     "FORMULATIONS",
@@ -74,18 +76,22 @@ __all__ = [
     "Growth",
     "LeadingTerm",
     "Linearization",
+    "LinearizationSweep",
     "Motion",
     "Outputs",
     "Pair",
+    "Proof",
     "RemovalError",
     "Run",
     "SceneError",
     "SolveError",
+    "StabilityChange",
     "StartError",
     "State",
     "Sweep",
     "System",
     "Trajectory",
+    "UnknownNameError",
     "__version__",
     "ensemble",
     "from_sympy",
@@ -103,11 +109,4 @@ for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison,
         if _function is not None:
             setattr(_class, f"to_{_kind}", _function)
 
-
-def __getattr__(name: str) -> Any:
-    # these need pyarrow
-    if name in ("Sweep", "ensemble", "sweep"):
-        from . import _sweep
-
-        return getattr(_sweep, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+System.prove = _proof.prove

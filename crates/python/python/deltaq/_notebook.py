@@ -22,7 +22,7 @@ def motion(self: Motion) -> str:
         ["status", self.status if self.cause is None else f"{self.status}: {self.cause}"],
         ["error estimate", f"{self.error_estimate:.1e}"],
     ]
-    rows += [[name, f"{values[-1]:.9g} at the end"] for name, values in zip(self.coordinate_names, self.coordinates.T) if len(values)]
+    rows += [[name, f"{values[self.reached - 1]:.9g} at t = {self.times[self.reached - 1]:g}"] for name, values in zip(self.coordinate_names, self.coordinates.T) if self.reached]
     return _table(rows)
 
 

@@ -4,6 +4,8 @@ A part is called by its number. With a folder, every part is a file of its own, 
 whole: a call that was cut off goes on with those that are missing, and the answer is the same to the bit.
 """
 
+from __future__ import annotations
+
 import hashlib
 import itertools
 import json
@@ -11,11 +13,13 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pyarrow as pa
-import pyarrow.dataset as ds
-import pyarrow.parquet as pq
+from ._needs import needed
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+    import pyarrow.dataset as ds
 
 _KEY = b"deltaq"
 # Tasks that a cluster has at a time, for each of its threads.
@@ -50,16 +54,15 @@ def run(
             progress(len(done), count)
     parts = [done[part] for part in range(count)]
     if folder is None:
-        return pa.concat_tables(parts)
-    return ds.dataset([str(path) for path in parts], format="parquet")
+        return needed("pyarrow").concat_tables(parts)
+    return needed("pyarrow.dataset").dataset([str(path) for path in parts], format="parquet")
 
 
 def _computed(work: Callable[[int], pa.Table], parts: list[int], client: Any) -> Iterator[tuple[int, pa.Table]]:
     if client is None:
         yield from ((part, work(part)) for part in parts)
         return
-    from distributed import as_completed
-
+    as_completed = needed("distributed").as_completed
     [shared] = client.scatter([work], broadcast=True)
     waiting = iter(parts)
     ahead = _AHEAD * max(1, sum(client.nthreads().values()))
@@ -92,7 +95,7 @@ def _kept(folder: Path, count: int, identity: bytes) -> dict[int, Path]:
     kept = {}
     for path in sorted(folder.glob("part-*.parquet")):
         number = path.stem.removeprefix("part-")
-        found = (pq.read_schema(path).metadata or {}).get(_KEY)
+        found = (needed("pyarrow.parquet").read_schema(path).metadata or {}).get(_KEY)
         if found != identity or not number.isdigit() or int(number) >= count:
             raise ValueError(f"{path} is of another call, or of another version: remove it, or take another out")
         kept[int(number)] = path
@@ -104,7 +107,7 @@ def _write(folder: Path, part: int, table: pa.Table, identity: bytes) -> Path:
     handle, draft = tempfile.mkstemp(prefix=".part-", dir=folder)
     os.close(handle)
     try:
-        pq.write_table(table.replace_schema_metadata({_KEY: identity}), draft)
+        needed("pyarrow.parquet").write_table(table.replace_schema_metadata((table.schema.metadata or {}) | {_KEY: identity}), draft)
         os.chmod(draft, 0o644)
         os.replace(draft, path)
     except BaseException:

@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from ._native import Comparison, Ensemble, Motion
+from ._native import Comparison, Ensemble, Motion, UnknownNameError
+from ._needs import needed
+from ._tables import units
 
 COLOURS = {"chetaev": "#0072b2", "vakonomic": "#d55e00", "removed-constraint": "#009e73", "kappa": "#cc79a7"}
 _STYLES = {"chetaev": "-", "vakonomic": "--", "removed-constraint": "-.", "kappa": ":"}
@@ -22,25 +24,25 @@ _LINES = 200
 
 def _columns(count: int, ax: Any) -> Any:
     """Axes one above the other, for as many curves."""
-    import matplotlib.pyplot as plt
-
     if ax is not None:
         axes = np.atleast_1d(np.asarray(ax, dtype=object)).ravel()
         if len(axes) != count:
             raise ValueError(f"ax has {len(axes)} axes; {count} are needed")
         return axes
+    plt = needed("matplotlib.pyplot")
     figure, axes = plt.subplots(count, 1, sharex=True, figsize=(7.2, 2.4 + 1.4 * count), squeeze=False, layout="constrained")
+    # a notebook shows what is returned, and not once more what is open; a figure of the caller's stays open
+    plt.close(figure)
     return axes[:, 0]
 
 
-def _finished(axes: Any) -> Any:
-    axes[-1].set_xlabel("t")
-    figure = axes[0].figure
-    # a notebook shows what is returned, and not once more what is open
-    import matplotlib.pyplot as plt
+def _with_unit(name: str, units: dict[str, str]) -> str:
+    return f"{name} ({units[name]})" if units.get(name) else name
 
-    plt.close(figure)
-    return figure
+
+def _finished(axes: Any, units: dict[str, str]) -> Any:
+    axes[-1].set_xlabel(_with_unit("t", units))
+    return axes[0].figure
 
 
 def motion(self: Motion, ax: Any = None) -> Any:
@@ -48,9 +50,9 @@ def motion(self: Motion, ax: Any = None) -> Any:
     axes = _columns(len(self.coordinate_names), ax)
     for i, (name, axis) in enumerate(zip(self.coordinate_names, axes)):
         axis.plot(self.times, self.coordinates[:, i], label=self.formulation, **_look(self.formulation))
-        axis.set_ylabel(name)
+        axis.set_ylabel(_with_unit(name, units(self.system)))
     axes[0].legend(frameon=False)
-    return _finished(axes)
+    return _finished(axes, units(self.system))
 
 
 def ensemble(self: Ensemble, ax: Any = None) -> Any:
@@ -67,11 +69,11 @@ def ensemble(self: Ensemble, ax: Any = None) -> Any:
             axis.plot(self.times, self.coordinates[shown, :, i].T, color=colour, alpha=0.5, linewidth=0.8)
         else:
             axis.plot(values, self.coordinates[:, 0, i], ".", color=colour, markersize=3)
-        axis.set_ylabel(coordinate)
+        axis.set_ylabel(_with_unit(coordinate, units(self.system)))
     axes[0].set_title(f"{self.formulation}: {len(shown) if along else len(self)} of {len(self)} members", loc="left")
-    figure = _finished(axes)
+    figure = _finished(axes, units(self.system))
     if not along:
-        axes[-1].set_xlabel(name)
+        axes[-1].set_xlabel(_with_unit(name, units(self.system)))
     return figure
 
 
@@ -90,7 +92,7 @@ def comparison(self: Comparison, ax: Any = None) -> Any:
         for i, axis in enumerate(axes[:-1]):
             axis.plot(run.motion.times, run.motion.coordinates[:, i], label=run.label, linewidth=width, **_look(run.formulation))
     for name, axis in zip(names, axes):
-        axis.set_ylabel(name)
+        axis.set_ylabel(_with_unit(name, units(self.system)))
     below = axes[-1]
     labels = {run.label for run in runs}
     for pair in (pair for pair in self.pairs if {pair.first, pair.second} <= labels):
@@ -100,14 +102,14 @@ def comparison(self: Comparison, ax: Any = None) -> Any:
     for axis, columns in ((axes[0], 2), (below, 1)):
         if axis.get_legend_handles_labels()[0]:
             axis.legend(frameon=False, fontsize="small", loc="lower left", bbox_to_anchor=(0, 1), ncols=columns)
-    return _finished(axes)
+    return _finished(axes, units(self.system))
 
 
 def sweep(self: Any, column: str, ax: Any) -> Any:
     """See `Sweep.plot`."""
     table = self.to_arrow()
     if column not in table.column_names:
-        raise ValueError(f"no column {column!r}; there are {', '.join(table.column_names)}")
+        raise UnknownNameError(f"no column {column!r}; there are {', '.join(table.column_names)}")
     if table[column].type != "double":
         raise ValueError(f"the column {column!r} has words or counts; a column of numbers can be drawn")
     if len(self.over) > 2:
@@ -119,21 +121,19 @@ def sweep(self: Any, column: str, ax: Any) -> Any:
     if len(names) == 1:
         axis.plot(axes[0], values, color=COLOURS["vakonomic"])
         axis.plot(axes[0][contained], values[contained], "o", color="black", label="some constants")
-        axis.set_ylabel(column)
+        axis.set_ylabel(_with_unit(column, self.units))
     else:
-        from matplotlib.colors import LogNorm
-
         shape = [len(numbers) for numbers in axes]
         positive = values[np.isfinite(values) & (values > 0)]
-        norm = LogNorm(positive.min(), positive.max()) if positive.size else None
+        norm = needed("matplotlib.colors").LogNorm(positive.min(), positive.max()) if positive.size else None
         map = axis.pcolormesh(axes[1], axes[0], values.reshape(shape), norm=norm, shading="nearest", cmap="viridis")
-        axis.figure.colorbar(map, ax=axis, label=column)
+        axis.figure.colorbar(map, ax=axis, label=_with_unit(column, self.units))
         down, across = np.nonzero(contained.reshape(shape))
         axis.plot(axes[1][across], axes[0][down], "o", color="white", markeredgecolor="black", markersize=5, label="some constants")
-        axis.set_ylabel(names[0])
+        axis.set_ylabel(_with_unit(names[0], self.units))
     if contained.any():
         axis.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1))
-    figure = _finished([axis])
-    axis.set_xlabel(names[-1])
+    figure = axis.figure
+    axis.set_xlabel(_with_unit(names[-1], self.units))
     axis.set_title(self.title, loc="right", fontsize="small")
     return figure

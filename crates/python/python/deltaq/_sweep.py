@@ -1,29 +1,35 @@
-"""Sweeps and long ensembles: tables over processes and clusters."""
+"""Sweeps and long ensembles: tables over processes and clusters. pyarrow is imported only where a table is made."""
+
+from __future__ import annotations
 
 import hashlib
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import pyarrow as pa
-import pyarrow.dataset as ds
 
 from . import _parts
-from ._native import System, __version__
+from ._native import FORMULATIONS, System, UnknownNameError, __version__
+from ._needs import needed
+from ._tables import arrow_with_units, units, with_units
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+    import pyarrow.dataset as ds
 
 _COLUMNS = {
-    "verdict": pa.string(),
-    "apart": pa.float64(),
-    "largest": pa.float64(),
-    "limit": pa.float64(),
-    "answer": pa.string(),
-    "order": pa.int32(),
-    "dimension": pa.int32(),
-    "mismatch": pa.float64(),
-    "cause": pa.string(),
+    "verdict": "string",
+    "apart": "double",
+    "largest": "double",
+    "limit": "double",
+    "answer": "string",
+    "order": "int32",
+    "dimension": "int32",
+    "mismatch": "double",
+    "cause": "string",
 }
 _SWEEP_PART = 64
 _ENSEMBLE_PART = 4096
@@ -39,14 +45,15 @@ class _SweepPart:
         return math.prod(len(values) for values in self.over.values())
 
     def __call__(self, part: int) -> pa.Table:
+        pa = needed("pyarrow")
         first = part * self.size
         index = np.arange(first, min(first + self.size, self.count()))
         places = np.unravel_index(index, [len(values) for values in self.over.values()])
         values = np.stack([np.asarray(v)[i] for v, i in zip(self.over.values(), places)], axis=1)
         found = self.system._sweep_points(list(self.over), values, *self.options)
         columns = {name: pa.array(values[:, i]) for i, name in enumerate(self.over)}
-        columns |= {name: pa.array(found[name], kind) for name, kind in _COLUMNS.items()}
-        return pa.table(columns)
+        columns |= {name: pa.array(found[name], pa.type_for_alias(kind)) for name, kind in _COLUMNS.items()}
+        return arrow_with_units(pa.table(columns), _units(self.system))
 
 
 class Sweep:
@@ -59,24 +66,25 @@ class Sweep:
     accelerations over the motion's own), `cause` (why something is missing).
     """
 
-    def __init__(self, table: pa.Table | ds.Dataset, over: dict[str, npt.NDArray[np.float64]], title: str):
-        self.table, self.over, self.title = table, over, title
+    def __init__(self, table: pa.Table | ds.Dataset, over: dict[str, npt.NDArray[np.float64]], title: str, units: dict[str, str]):
+        self.table, self.over, self.title, self.units = table, over, title, units
 
     def to_arrow(self) -> pa.Table:
         """The table, in memory."""
-        return self.table if isinstance(self.table, pa.Table) else self.table.to_table()
+        return self.table if hasattr(self.table, "column_names") else self.table.to_table()
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame, a row a point."""
+        needed("pandas")
         return self.to_arrow().to_pandas()
 
     def to_xarray(self) -> Any:
         """An xarray.Dataset over what varies."""
-        import xarray
-
+        xarray = needed("xarray")
         shape, table = [len(values) for values in self.over.values()], self.to_arrow()
         cells = {name: table[name].to_numpy().reshape(shape) for name in _COLUMNS}
-        return xarray.Dataset({name: (list(self.over), values) for name, values in cells.items()}, dict(self.over))
+        data = xarray.Dataset({name: (list(self.over), values) for name, values in cells.items()}, dict(self.over))
+        return with_units(data, self.units)
 
     def plot(self, column: str = "apart", ax: Any = None) -> Any:
         """A column over one number as a line, over two as a map with dots where some constants do; a Figure."""
@@ -111,7 +119,7 @@ def sweep(
 ) -> Sweep:
     """Compares two motions of a system at all combinations of some values: `deltaq compare --sweep`.
 
-    over: name to values: parameters, start values ("x", "x'"), multipliers ("mu1"), costates ("P0_w") of the first
+    over: name to values: parameters, start values ("x", "x'"), multipliers ("mu0_1"), costates ("P0_w") of the first
     removal. formulations: two names; Chetaev's and the vakonomic motion by default or, where costates vary, that without
     constraints. tolerance, max_steps, max_step, time_limit: as in `System.solve`.
     client: a `dask.distributed.Client`, whose workers then compute; by default all processors of this machine.
@@ -119,20 +127,25 @@ def sweep(
     progress: called with the number of parts that are there, and of all.
 
     A row is a pure function of its numbers: no cluster, thread or part changes a bit of it. A start that there is not
-    is a row with a cause; a name that means nothing is a ValueError or a DeltaqError.
+    is a row with a cause; a name that means nothing is an UnknownNameError.
 
     >>> where = deltaq.sweep(sledge, {"k": [0.5, 1.0], "phi'": [0.5, 1.0, 1.5]})
     >>> len(where), where.to_xarray()["answer"].sel(k=0.5).values.tolist()
     (6, ['none proved', 'none proved', 'none proved'])
     """
-    values = {name: np.atleast_1d(np.asarray(numbers, dtype=float)) for name, numbers in over.items()}
+    needed("pyarrow")
+    values = {name: np.asarray(numbers, dtype=float) for name, numbers in over.items()}
     for name, numbers in values.items():
         if numbers.ndim != 1 or numbers.size == 0 or not np.isfinite(numbers).all():
-            raise ValueError(f"over: {name} has to be a list of finite numbers, not of shape {numbers.shape}")
+            found = "a number" if numbers.ndim == 0 else f"of shape {numbers.shape}"
+            raise ValueError(f"over: {name} has to be a list of finite numbers; it is {found}")
     if not values:
         raise ValueError("over is empty; it needs values for something that varies")
     if formulations is not None and len(formulations) != 2:
         raise ValueError(f"formulations names {len(formulations)}; two can be compared")
+    for name in formulations or ():
+        if name not in FORMULATIONS:
+            raise UnknownNameError(f"unknown formulation `{name}`; known: {', '.join(FORMULATIONS)}")
     chosen = None if formulations is None else list(formulations)
     limits = (chosen, tolerance, max_steps, max_step, time_limit)
     lists = {name: numbers.tolist() for name, numbers in values.items()}
@@ -143,7 +156,7 @@ def sweep(
     mark = _parts.identity(sweep=text, over=lists, limits=limits, part=part, version=__version__)
     count = -(-work.count() // part)
     table = _parts.run(work, count, mark, client=client, out=out, progress=progress)
-    return Sweep(table, values, system.title)
+    return Sweep(table, values, system.title, _units(system))
 
 
 class _EnsemblePart:
@@ -180,7 +193,12 @@ def ensemble(
     >>> table.column_names[:4], table.num_rows
     (['member', "set phi'", 't', 'x'], 4)
     """
-    values = {name: np.atleast_1d(np.asarray(numbers, dtype=float)) for name, numbers in vary.items()}
+    needed("pyarrow")
+    values = {name: np.asarray(numbers, dtype=float) for name, numbers in vary.items()}
+    for name, numbers in values.items():
+        if numbers.ndim != 1:
+            found = "is a number" if numbers.ndim == 0 else f"has shape {numbers.shape}"
+            raise ValueError(f"vary: {name} {found}; a list or an array is needed")
     lengths = {name: len(numbers) for name, numbers in values.items()}
     if not values or len(set(lengths.values())) > 1 or 0 in lengths.values():
         raise ValueError(f"vary needs as many values of each, and some: {lengths}")
@@ -193,9 +211,15 @@ def ensemble(
     listed.pop("threads", None)
     digests = {name: hashlib.sha256(numbers.tobytes()).hexdigest() for name, numbers in values.items()}
     text = _written(system)
-    mark = _parts.identity(ensemble=text, vary=digests, options=listed, part=part, version=__version__)
+    mark = _parts.identity(ensemble=text, first=0, vary=digests, options=listed, part=part, version=__version__)
     work = _EnsemblePart(system, values, part, options)
     return _parts.run(work, count, mark, client=client, out=out, progress=progress)
+
+
+def _units(system: System) -> dict[str, str]:
+    """`apart` is a time."""
+    known = units(system)
+    return known | ({"apart": known["t"]} if known else {})
 
 
 def _size(part: int) -> int:

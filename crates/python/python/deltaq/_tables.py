@@ -4,7 +4,31 @@ from typing import Any
 
 import numpy as np
 
-from ._native import Comparison, Ensemble, Motion
+from ._native import Comparison, Ensemble, Motion, System
+from ._needs import needed
+
+
+def units(system: System) -> dict[str, str]:
+    """Units by name: of coordinates, of velocities (x') and, where some coordinate has one, of the time t."""
+    places = {name: unit for name, unit in system.units.items() if unit}
+    return places | {f"{name}'": f"{unit}/s" for name, unit in places.items()} | ({"t": "s"} if places else {})
+
+
+def with_units(data: Any, units: dict[str, str]) -> Any:
+    """The dataset of xarray with the units as attributes."""
+    for name, unit in units.items():
+        for of in (name, f"set {name}"):
+            if of in data.variables:
+                data[of].attrs["units"] = unit
+    return data
+
+
+def arrow_with_units(table: Any, units: dict[str, str]) -> Any:
+    """The table of Arrow with the units as metadata of its columns."""
+    pa = needed("pyarrow")
+    unit = lambda name: units.get(name.removeprefix("set "))  # noqa: E731
+    fields = [field.with_metadata({"units": unit(field.name)}) if unit(field.name) else field for field in table.schema]
+    return table.cast(pa.schema(fields))
 
 
 def _named(motion: Motion | Ensemble) -> dict[str, np.ndarray]:
@@ -16,34 +40,36 @@ def _named(motion: Motion | Ensemble) -> dict[str, np.ndarray]:
 
 
 def motion_to_arrow(self: Motion) -> Any:
-    """A pyarrow.Table, a row a time: t, coordinates, velocities (x'), multipliers, invariants, observables."""
-    import pyarrow as pa
+    """A pyarrow.Table, a row a time: t, coordinates, velocities (x'), multipliers, invariants, observables.
 
-    return pa.table({"t": self.times} | _named(self))
+    What the motion did not reach is null; units are in the metadata of the columns.
+    """
+    pa = needed("pyarrow")
+    missing = np.arange(len(self.times)) >= self.reached
+    columns = {name: pa.array(values, mask=missing) for name, values in _named(self).items()}
+    return arrow_with_units(pa.table({"t": self.times} | columns), units(self.system))
 
 
 def motion_to_pandas(self: Motion) -> Any:
     """A pandas.DataFrame with the columns of `to_arrow`, of which t is the index."""
-    import pandas as pd
-
+    pd = needed("pandas")
     return pd.DataFrame(_named(self), index=pd.Index(self.times, name="t"))
 
 
 def motion_to_xarray(self: Motion) -> Any:
-    """An xarray.Dataset over t with the columns of `to_arrow`."""
-    import xarray
-
-    return xarray.Dataset({name: ("t", values) for name, values in _named(self).items()}, {"t": self.times})
+    """An xarray.Dataset over t with the columns of `to_arrow`; units are attributes."""
+    data = {name: ("t", values.copy()) for name, values in _named(self).items()}
+    return with_units(needed("xarray").Dataset(data, {"t": self.times}), units(self.system))
 
 
 def ensemble_to_arrow(self: Ensemble, first: int = 0) -> Any:
-    """A pyarrow.Table, a row a member and time: member (from first + 1 on), what varies ("set x"), t, coordinates,
-    velocities (x'), multipliers, invariants, error_estimate, status, cause. What a member did not reach is null."""
-    import pyarrow as pa
-
+    """A pyarrow.Table, a row a member and time: member (its place in the arrays, from `first` on), what varies
+    ("set x"), t, coordinates, velocities (x'), multipliers, invariants, error_estimate, status, cause. What a member
+    did not reach is null; units are in the metadata of the columns."""
+    pa = needed("pyarrow")
     members, instants = len(self), len(self.times)
     each = lambda values: np.repeat(np.asarray(values), instants)  # noqa: E731
-    columns = {"member": each(np.arange(first + 1, first + members + 1))}
+    columns = {"member": each(np.arange(first, first + members))}
     columns |= {f"set {name}": each(values) for name, values in self.varied.items()}
     columns |= {"t": np.tile(self.times, members)}
     arrays = {name: pa.array(values) for name, values in columns.items()}
@@ -53,27 +79,27 @@ def ensemble_to_arrow(self: Ensemble, first: int = 0) -> Any:
     arrays["error_estimate"] = pa.array(estimate, mask=np.isnan(estimate))
     for name, words in (("status", self.status), ("cause", self.cause)):
         arrays[name] = pa.array([word for word in words for _ in range(instants)], pa.string())
-    return pa.table(arrays)
+    return arrow_with_units(pa.table(arrays), units(self.system))
 
 
 def ensemble_to_pandas(self: Ensemble) -> Any:
     """A pandas.DataFrame with the columns of `to_arrow`."""
+    needed("pandas")
     return self.to_arrow().to_pandas()
 
 
 def ensemble_to_xarray(self: Ensemble) -> Any:
-    """An xarray.Dataset over member and t; what varies ("set x"), status and error_estimate over member."""
-    import xarray
-
-    data = {name: (("member", "t"), values) for name, values in _named(self).items()}
-    data |= {f"set {name}": ("member", values) for name, values in self.varied.items()}
-    data |= {"error_estimate": ("member", self.error_estimate), "status": ("member", self.status)}
-    return xarray.Dataset(data, {"t": self.times, "member": np.arange(1, len(self) + 1)})
+    """An xarray.Dataset over member, from 0, and t; what varies ("set x"), status and error_estimate over member."""
+    data = {name: (("member", "t"), values.copy()) for name, values in _named(self).items()}
+    data |= {f"set {name}": ("member", values.copy()) for name, values in self.varied.items()}
+    data |= {"error_estimate": ("member", self.error_estimate.copy()), "status": ("member", self.status)}
+    dataset = needed("xarray").Dataset(data, {"t": self.times, "member": np.arange(len(self))})
+    return with_units(dataset, units(self.system))
 
 
 def comparison_to_pandas(self: Comparison) -> Any:
     """A pandas.DataFrame, a row a pair: verdict, times to the thresholds, largest gap, growth, why not."""
-    import pandas as pd
+    pd = needed("pandas")
 
     def row(pair: Any) -> dict[str, Any]:
         times = {f"time to {threshold:g}": time for threshold, time in pair.tau.items()}

@@ -1,0 +1,194 @@
+// What the page shows is what was computed: numbers, verdicts, pictures, refusals, and the way back.
+
+import { createRequire } from "node:module";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+
+const SIZES = [[1280, 600], [400, 800], [1366, 657]];
+const BOTH = { scene: "sledge", on: ["removed constraint (arc-length)", "removed constraint (along-x)"], time: 1 };
+
+const sizes = async (check) => {
+  for (const [width, height] of SIZES) await check({ width, height }, `at ${width} × ${height}`);
+};
+
+// Costates of the motions that are shown, of each removal; what is none of its constants is zero.
+const used = (page) => page.evaluate(() => {
+  const names = [...document.querySelectorAll("fieldset[data-motion] .row")].map((row) => row.dataset.name.split("@"));
+  const motions = window.explored.answer.motions.map(({ label, constants }) => [label, constants]);
+  const of = ([name, label]) => motions.filter(([other]) => other === label).map(([, constants]) => constants.find((constant) => constant.name === name)?.value ?? 0);
+  return Object.fromEntries(names.flatMap(([name, label]) => of([name, label]).map((x) => [`${name}@${label}`, x])));
+});
+const rows = (page) => page.evaluate(() => Object.fromEntries([...document.querySelectorAll("fieldset[data-motion]:not([hidden]) .row")].map((row) =>
+  [row.dataset.name, Number(row.querySelector("input[type=number]").value)])));
+const set = (page, name, x) => page.evaluate((name, x) => {
+  const number = document.querySelector(`[data-name="${CSS.escape(name)}"] input[type=number]`);
+  number.value = x;
+  number.dispatchEvent(new Event("change"));
+}, name, x);
+const ends = (page) => page.evaluate(() => Object.fromEntries(window.explored.samples.motions.map((motion) =>
+  [motion.label, motion.value(motion.rows - 1, motion.columns.coordinate.x)])));
+const kept = (page) => page.evaluate(async () => {
+  await new Promise((resolve) => setTimeout(resolve, 400));
+  const base64 = location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/");
+  return JSON.parse(atob(base64)).set ?? {};
+});
+const near = (a, b) => Math.abs(a - b) <= 1e-5 * Math.max(1, Math.abs(b));
+
+// A slider shows the number that is used, and touching it at its own value moves nothing.
+export async function costates({ open, link, must, after }) {
+  await sizes(async (size, at) => {
+    const page = await open(link(BOTH), size);
+    const [computed, before] = [await used(page), await rows(page)];
+    must(Object.values(computed).some((x) => Math.abs(x - 38.2019394) < 1e-6), `no costate is 38.2019394 ${at}: ${JSON.stringify(computed)}`);
+    must(Object.keys(computed).length === 3 && Object.keys(before).length === 3, `${Object.keys(before)} are shown ${at}, ${Object.keys(computed)} used`);
+    for (const [name, x] of Object.entries(computed)) must(near(before[name], x), `${name}: ${before[name]} shown, ${x} used ${at}`);
+    const [name] = Object.keys(before);
+    const was = await ends(page);
+    await after(page, () => set(page, name, computed[name]));
+    const now = await ends(page);
+    for (const [label, x] of Object.entries(was)) must(Math.abs(now[label] - x) < 1e-4, `touching ${name} moves ${label} from ${x} to ${now[label]} ${at}`);
+    const touched = Object.keys(await kept(page));
+    must(touched.every((other) => other.endsWith(name.split("@")[1])), `touching ${name} sets ${touched} ${at}`);
+    await after(page, () => page.evaluate((name) => document.querySelector(`[data-name="${CSS.escape(name)}"] .plain`).click(), name));
+    must(Object.keys(await kept(page)).length === 0, `↺ leaves ${JSON.stringify(await kept(page))} in the address ${at}`);
+    await after(page, () => set(page, "phi", 0.5));
+    must(JSON.stringify(await kept(page)) === '{"phi":0.5}', `one number sets ${JSON.stringify(await kept(page))} ${at}`);
+    await after(page, () => set(page, name, 3));
+    await after(page, () => page.$eval("#all", (all) => all.click()));
+    const end = await ends(page);
+    must(JSON.stringify(await kept(page)) === "{}" && Object.entries(was).every(([label, x]) => end[label] === x), `not all is as in the text ${at}`);
+    for (const [other, x] of Object.entries(await used(page))) must(near((await rows(page))[other], x), `${other} is not shown as used ${at}`);
+    await page.close();
+  });
+}
+
+// A new scene, and a new number, stand under nothing that is older.
+export async function cleared({ open, link, must, slide }) {
+  await sizes(async (size, at) => {
+    const page = await open(link({ scene: "sledge", tab: "verdict" }), size);
+    await page.waitForFunction(() => document.getElementById("equations").textContent);
+    const seen = () => page.evaluate(() => {
+      const of = (id) => document.getElementById(id);
+      const hidden = (id) => getComputedStyle(of(id)).visibility === "hidden";
+      const busy = ["view", "graph", "verdict", "equations"].map((id) => of(id).getAttribute("aria-busy"));
+      return { words: of("verdict").textContent + of("equations").textContent, title: of("title").textContent, stage: hidden("stage"), plot: hidden("plot"), busy };
+    });
+    const before = await seen();
+    must(before.words && !before.stage && before.busy.every((busy) => busy !== "true"), `not at rest: ${JSON.stringify(before.busy)} ${at}`);
+    const at_once = await page.evaluate(() => {
+      const select = document.getElementById("scene");
+      select.value = "bicycle";
+      select.dispatchEvent(new Event("change"));
+      return [document.getElementById("verdict").textContent, document.getElementById("view").getAttribute("aria-busy")];
+    });
+    must(at_once[0] === "" && at_once[1] === "true", `a verdict stays: ${at_once} ${at}`);
+    const fresh = await seen();
+    must(fresh.words === "" && (fresh.stage || fresh.title.includes("icycle")), `the old picture stays ${at}`);
+    await page.waitForSelector("#deciding:not([hidden])", { timeout: 60000 });
+    must((await seen()).busy[2] === "true", `a decision does not say that it runs ${at}`);
+    await page.click("#undecided");
+    await page.waitForFunction(() => document.getElementById("verdict").textContent === "The decision was stopped.", { timeout: 5000 });
+    must(await page.$eval("#deciding", (element) => element.hidden), `a stopped decision runs on ${at}`);
+    await page.close();
+    const sledge = await open(link({ scene: "sledge" }), size);
+    await slide(sledge, "phi", 700, false);
+    must((await sledge.$eval("#verdict", (panel) => panel.textContent + panel.getAttribute("aria-busy"))) === "true", `a number moves, the verdict stays ${at}`);
+    await sledge.close();
+  });
+}
+
+// A number that is refused ends the motion that was shown, and it is said why.
+export async function refusals({ open, link, must, after, type, OWN }) {
+  await sizes(async (size, at) => {
+    const page = await open(link({ scene: "sledge" }), size);
+    for (const [name, x, words] of [["duration", -1, "duration"], ["k", 0, ""]]) {
+      await set(page, name, x);
+      await page.waitForSelector("#refused:not([hidden])", { timeout: 20000 });
+      const { message, box, playing, hidden } = await page.evaluate(() => {
+        const element = document.getElementById("refused");
+        element.scrollIntoView();
+        const { top, bottom, width } = element.getBoundingClientRect();
+        const playing = document.getElementById("play").getAttribute("aria-label") === "pause";
+        const hidden = getComputedStyle(document.getElementById("stage")).visibility === "hidden";
+        return { message: element.textContent, box: [top, bottom, width], playing, hidden };
+      });
+      must(message.includes(words) && message.length > 10, `refused without a word: ${message} ${at}`);
+      must(!playing && hidden, `the old motion plays on ${at}`);
+      must(box[0] >= 0 && box[1] <= size.height + 1 && box[2] > 100, `the message is not seen: ${box} ${at}`);
+      await after(page, () => page.$eval("#all", (all) => all.click()));
+      must(await page.$eval("#refused", (element) => element.hidden), `a refusal stays ${at}`);
+    }
+    await page.close();
+  });
+}
+
+// No part lies over another one, and nothing is wider than the window.
+export async function overlaps({ open, link, must, pictures }) {
+  await sizes(async (size, at) => {
+    for (const scene of ["sledge", "trailer", "ball-in-cone"]) {
+      const page = await open(link({ scene, time: 1 }), size);
+      const wrong = await page.evaluate(() => {
+        const boxes = ["title", "legend", "frame", "clock", "said", "graph"].map((id) => [id, document.getElementById(id).getBoundingClientRect()]);
+        const over = boxes.flatMap(([one, a], i) => boxes.slice(i + 1).filter(([, b]) => b.top < a.bottom - 1 && b.height > 0).map(([two]) => `${two} over ${one}`));
+        return [...over, ...(document.documentElement.scrollWidth > innerWidth ? ["too wide"] : [])];
+      });
+      must(wrong.length === 0, `${scene}: ${wrong.join(", ")} ${at}`);
+      await page.screenshot({ path: join(pictures, `${scene}-${size.width}x${size.height}.png`) });
+      await page.close();
+    }
+  });
+}
+
+// A text of one's own is there again after another scene, and the way back leads to it.
+export async function wayBack({ open, link, must, after, choose, type, OWN }) {
+  const page = await open(link({ scene: "disc", tab: "text" }));
+  await after(page, () => type(page, OWN));
+  await choose(page, "sledge");
+  must(!(await page.$eval("#area", (area) => area.value)).includes("Skate"), "the scene that was chosen has no text");
+  await choose(page, "own");
+  must((await page.$eval("#area", (area) => area.value)) === OWN, "a text of one's own is lost on choosing another scene");
+  const back = async (words) => {
+    await after(page, () => page.evaluate(() => history.back()));
+    must((await page.title()).includes(words), `the way back leads to ${await page.title()}, not to ${words}`);
+  };
+  await back("sledge");
+  await back("Skate");
+  must((await page.$eval("#area", (area) => area.value)) === OWN, "the way back loses a text");
+  await back("isc");
+  await page.close();
+}
+
+// A link that cannot be read is said to be one, and stays what it is, until something is chosen.
+export async function badLinks({ open, link, must, choose, url }) {
+  const cut = link({ scene: "disc", set: { g: 2 } }).slice(0, -3);
+  for (const address of [cut, `${url}#5`, `${url}#${Buffer.from("5").toString("base64url")}`, link({ scene: "nowhere" }), link({ scene: "disc", set: { g: "x" } })]) {
+    const page = await open(address);
+    await new Promise((resolve) => setTimeout(resolve, 800));
+    must((await page.$eval("#notice:not([hidden])", (notice) => notice.textContent).catch(() => "")).includes("cannot be read"), `nothing is said of ${address.slice(url.length)}`);
+    must(page.url() === address, "the address of a link that cannot be read is written over");
+    await choose(page, "turntable");
+    must(await page.$eval("#notice", (notice) => notice.hidden), "a notice stays");
+    await page.close();
+  }
+}
+
+// axe-core finds nothing serious.
+export async function axe({ open, link, must, said }) {
+  const source = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+  let passes = 0;
+  for (const scheme of ["light", "dark"]) {
+    for (const [width, height] of SIZES) {
+      for (const tab of ["numbers", "verdict", "equations", "text"]) {
+        const page = await open(link({ scene: "sledge", tab, time: 1 }), { width, height, scheme });
+        await page.evaluate(source);
+        const found = await page.evaluate(() => axe.run());
+        passes += found.passes.length;
+        const bad = found.violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+        for (const { id, nodes } of bad) must(false, `axe: ${id} at ${nodes.slice(0, 3).map(({ target }) => target)} (${tab}, ${scheme}, ${width} × ${height})`);
+        await page.close();
+      }
+    }
+  }
+  must(passes > 0, "axe looked at nothing");
+  said.push(`axe: ${passes} rules hold`);
+}
