@@ -74,6 +74,15 @@ pub fn print(numbers: &[f64]) -> String {
     text
 }
 
+/// The first line of a table, by RFC 4180: names with commas, quotation marks or ends of lines are quoted.
+pub fn header(names: &[String]) -> String {
+    let cell = |name: &String| match name.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", name.replace('"', "\"\"")),
+        false => name.clone(),
+    };
+    names.iter().map(cell).collect::<Vec<_>>().join(",") + "\n"
+}
+
 /// A cause as a cell of a table: in one line and quotation marks; empty without one.
 pub fn quoted(cause: &str) -> String {
     if cause.is_empty() { String::new() } else { format!("\"{}\"", cause.replace('"', "\"\"").replace('\n', " ")) }

@@ -60,14 +60,16 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
         seconds.integrate += clock.elapsed().as_secs_f64();
         motions.into_iter().map(Outcome::of).collect::<Vec<_>>()
     };
-    let mut sink = Sink::open(arguments.out.as_deref(), |file, told| match arguments.motion.format {
-        Format::Csv => resume(&mut answers, file, told, |answers| {
-            outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect()
-        }),
-        Format::Json => Ok(0),
+    let head = answers.head();
+    let (mut sink, mut reads_on) = Sink::open(arguments.out.as_deref(), &head, "ensemble", |lines, is_ours| {
+        // an answer in one piece begins anew
+        if arguments.motion.format == Format::Json {
+            return Ok(());
+        }
+        let first = |answers: &Answers| outcomes(0..1).iter().map(|first| answers.rows(0, first)).collect();
+        resume(&mut answers, lines, is_ours, first)
     })?;
     let bar = parallel::progress(members.count(), quiet);
-    let mut reads_on = answers.done > 0 || sink.write(&answers.head())?;
     while reads_on && answers.done < members.count() {
         bar.set_position(answers.done as u64);
         let next = (answers.done + CHUNK).min(members.count());

@@ -1,12 +1,12 @@
 //! `deltaq explore`: the page in which scenes are explored.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::fs::create_dir_all;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use validation::catalogue;
-use validation::report::{File, write_all};
+use validation::report::write_one;
 
 use crate::cli::ExploreArguments;
 
@@ -40,6 +40,9 @@ pub(crate) fn run(arguments: &ExploreArguments) -> Result<String> {
         page = page.replacen(CHOSEN, &CHOSEN.replace("null", &chosen), 1);
     }
     let out = &arguments.out;
-    write_all(Path::new("."), &[File { path: out.clone(), text: page }])?;
+    if let Some(folder) = out.parent() {
+        create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    }
+    write_one(out, &page)?;
     Ok(format!("{}: open it in a browser\n", out.display()))
 }

@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 
 use crate::answer::pretty;
 use crate::cli::{LinearizeArguments, TableFormat};
+use crate::columns::header;
 use crate::solve_command::choice;
 use validation::report::{File, sweep_picture, sweep_text, write_all};
 
@@ -64,7 +65,7 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
 
 /// One line an eigenvalue other than zero.
 fn csv(sweep: &Sweep) -> String {
-    let mut text = format!("{},real,imaginary,error\n", sweep.name);
+    let mut text = header(&[&sweep.name, "real", "imaginary", "error"].map(String::from));
     for point in &sweep.points {
         let x = point.value;
         let lines =

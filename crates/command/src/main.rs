@@ -23,13 +23,13 @@ mod stability_command;
 mod sweep_command;
 mod watch;
 
-use std::io::{IsTerminal, Write, stderr};
+use std::io::{self, ErrorKind, IsTerminal};
 use std::process::ExitCode;
 
 use anyhow::{Context, Error, Result};
 use clap::{CommandFactory, Parser};
 
-use answer::{Answer, Unwritten};
+use answer::{Answer, Unwritten, complain, plain, print_as_is};
 use cli::{Cli, Command};
 use deltaq::Contradicted;
 use random::parallel;
@@ -45,7 +45,13 @@ fn main() -> ExitCode {
         Err(told) if !told.use_stderr() => {
             let help = told.render();
             let terminal = std::io::stdout().is_terminal();
-            return printed(&if terminal { help.ansi().to_string() } else { help.to_string() }.into());
+            let help = if terminal { help.ansi().to_string() } else { help.to_string() };
+            return print_as_is(&help).map_or_else(|error| failed(&error), |_| ExitCode::SUCCESS);
+        }
+        // it names what was asked for
+        Err(error) if plain(&error.to_string()) != error.to_string() => {
+            complain(error.to_string().trim_end());
+            return ExitCode::from(2);
         }
         Err(error) => error.exit(),
     };
@@ -62,7 +68,7 @@ fn printed(answer: &Answer) -> ExitCode {
     match &answer.complaint {
         None => ExitCode::SUCCESS,
         Some(complaint) => {
-            let _ = writeln!(stderr(), "deltaq: {complaint}");
+            complain(&format!("deltaq: {complaint}"));
             ExitCode::from(3)
         }
     }
@@ -71,10 +77,17 @@ fn printed(answer: &Answer) -> ExitCode {
 /// The exit code of an error.
 fn code(error: &Error) -> u8 {
     match () {
-        () if error.is::<Unwritten>() => 1,
+        () if error.is::<Unwritten>() || error.chain().any(is_full) => 1,
         () if error.is::<Contradicted>() => 4,
         () => 2,
     }
+}
+
+/// Whether there is no room for what is to be written.
+fn is_full(cause: &(dyn std::error::Error + 'static)) -> bool {
+    use ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull, WriteZero};
+    let kind = cause.downcast_ref::<io::Error>().map(io::Error::kind);
+    kind.is_some_and(|kind| matches!(kind, FileTooLarge | QuotaExceeded | StorageFull | WriteZero))
 }
 
 /// Says what went wrong, and why, unless nobody listens any more.
@@ -85,7 +98,7 @@ fn failed(error: &Error) -> ExitCode {
             told += &format!("\n  {cause}");
         }
     }
-    let _ = writeln!(stderr(), "deltaq: {told}");
+    complain(&format!("deltaq: {told}"));
     ExitCode::from(code(error))
 }
 

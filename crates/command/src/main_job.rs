@@ -1,6 +1,7 @@
 //! The main job: every scene in every formulation, reports; and the check that committed reports still hold.
 
 use std::panic::resume_unwind;
+use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::thread::ScopedJoinHandle;
@@ -21,7 +22,7 @@ use validation::catalogue;
 use validation::report::{
     AuditReport, BicycleReport, EquivalenceReport, File, Headline, LiteratureReport, RealizationReport,
     StabilityReport, bench_files, bench_headline, bodies, difference_of_verdicts, overview, pictures, random_files,
-    random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all,
+    random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all, write_own,
 };
 
 /// A compared scene with its page and pictures.
@@ -225,7 +226,9 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
         let text = pretty("verdicts", &results.verdicts());
         files.push(File { path: "verdicts.json".into(), text });
     }
-    write_all(&out, &files)?;
+    // folders that nobody named are the project's own
+    let write = |named: &Option<PathBuf>| if named.is_some() { write_all } else { write_own };
+    write(&arguments.out)(&out, &files)?;
     let folder = match &arguments.measured {
         Some(folder) => folder.clone(),
         None if in_the_sources() => "target/measured".into(),
@@ -235,7 +238,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     if let Some(part) = &mut measured {
         let pages = part.files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
         pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
-        write_all(&folder, &part.files)?;
+        write(&arguments.measured)(&folder, &part.files)?;
     }
     let untold = if quiet { &results.comparisons[..] } else { &[] };
     let scenes = untold.iter().map(first_sentence);

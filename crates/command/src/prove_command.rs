@@ -1,13 +1,13 @@
 //! `deltaq prove`.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use deltaq::{Contradicted, PlainScene, certificate, membership};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::answer::{Answer, pretty};
+use crate::answer::{Answer, pretty, sorted};
 use crate::cli::{ProveArguments, TextOrJson};
-use validation::report::{membership_sentence, membership_value};
+use validation::report::{membership_sentence, membership_value, write_one};
 
 /// Writes the certificate; where there is none, says what is known instead.
 ///
@@ -27,7 +27,7 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
                 return Err(Contradicted(vec![format!("{}: {found}", scene.name)]).into());
             }
             let order = certificate.order;
-            let plain = plain(certificate.scene);
+            let plain = sorted(plain(certificate.scene));
             let digest = digest(&plain);
             let (exponents, circle, neper) = certificate.exponents;
             let value = json!({
@@ -51,7 +51,7 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
             if to_terminal {
                 return Ok(text.into());
             }
-            std::fs::write(out, text).with_context(|| format!("cannot write `{}`", out.display()))?;
+            write_one(out, &text)?;
             return Ok(match format {
                 TextOrJson::Text => {
                     let what = "no μ₀ makes the vakonomic motion Chetaev's";

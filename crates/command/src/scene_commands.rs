@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 use std::fs::OpenOptions;
-use std::io::{IsTerminal, Write as _};
+use std::io::{IsTerminal, Write as _, stderr};
 
 use anyhow::{Context, Result, bail};
 use scene::{Scene, SceneError};
 
+use crate::answer::plain;
 use crate::cli::{CheckArguments, NewArguments};
 use crate::schema::schema;
 use validation::catalogue;
@@ -38,7 +39,9 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<String> {
         match catalogue::find(name, &arguments.set.overrides) {
             Ok(scene) => text += &described(&scene),
             Err(catalogue::NotFound::Fault(error)) => {
-                error.each().for_each(|fault| eprintln!("{}", coloured(fault)));
+                error.each().for_each(|fault| {
+                    let _ = writeln!(stderr(), "{}", coloured(fault));
+                });
                 faults += error.each().count();
             }
             Err(nothing) => return Err(nothing.into()),
@@ -73,8 +76,8 @@ fn described(scene: &Scene) -> String {
 
 /// The fault, with its place in colour on a terminal.
 fn coloured(fault: &SceneError) -> String {
-    let alone = SceneError { also: Vec::new(), ..fault.clone() }.to_string();
-    if !std::io::stderr().is_terminal() {
+    let alone = plain(&SceneError { also: Vec::new(), ..fault.clone() }.to_string()).into_owned();
+    if !stderr().is_terminal() {
         return alone;
     }
     let (bold, red, plain) = ("\x1b[1m", "\x1b[1;31m", "\x1b[0m");

@@ -1,10 +1,12 @@
 //! Where an answer goes piece by piece: to the terminal, or to a file that has its name when it is whole.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Error, Result};
+use random::Lines;
+use validation::report::may_replace;
 
 use crate::answer;
 
@@ -19,31 +21,37 @@ pub(crate) enum Sink {
 }
 
 impl Sink {
-    /// To standard output or, with a name, to a file. What an earlier call has left of a file is kept, if
-    /// `keep` says how many bytes of it: those of whole rows.
-    pub(crate) fn open(path: Option<&Path>, keep: impl FnOnce(&File, &str) -> Result<u64>) -> Result<Sink> {
-        let Some(path) = path else { return Ok(Sink::Terminal) };
+    /// To standard output or, with a name, to a file, behind the head of the answer; `false` where nobody
+    /// reads on. `resume` reads what an earlier call has left of such a file behind its head, demands that it
+    /// is of this call (of this ensemble or sweep, which is `what`), and says what of it is kept.
+    pub(crate) fn open(
+        path: Option<&Path>,
+        head: &str,
+        what: &str,
+        resume: impl FnOnce(&mut Lines, &dyn Fn(bool) -> Result<()>) -> Result<()>,
+    ) -> Result<(Sink, bool)> {
+        let begun = |mut sink: Sink| sink.write(head).map(|reads_on| (sink, reads_on));
+        let Some(path) = path else { return begun(Sink::Terminal) };
         let name = path.file_name().with_context(|| format!("--out {} names no file", path.display()))?;
-        let open = |path: &Path| {
-            let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
-            file.with_context(|| format!("cannot write {}", path.display()))
-        };
+        may_replace(path)?;
         if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
             let file = OpenOptions::new().write(true).open(path);
-            return Ok(Sink::Device(file.with_context(|| format!("cannot write {}", path.display()))?, path.into()));
+            let file = file.with_context(|| format!("cannot write {}", path.display()))?;
+            return begun(Sink::Device(file, path.into()));
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
         let mut beside = name.to_os_string();
         beside.push(".part");
         let part = folder.join(beside);
-        let mut file = open(&part)?;
-        let told = part.display().to_string();
-        ensure!(file.try_lock().is_ok(), "{told} is being written by another call");
-        let length = keep(&file, &told)?;
-        file.set_len(length).with_context(|| format!("cannot write {told}"))?;
-        file.seek(SeekFrom::Start(length)).with_context(|| format!("cannot write {told}"))?;
-        Ok(Sink::Part(file, part, path.into()))
+        let foreign = |_: &str| {
+            let told = part.display();
+            Error::msg(format!("{told} is of another {what}, or of another version: remove it, or take another --out"))
+        };
+        let mut lines = Lines::open(&part, head, foreign)?;
+        resume(&mut lines, &|ours| if ours { Ok(()) } else { Err(foreign("")) })?;
+        let file = lines.go_on()?;
+        Ok((Sink::Part(file, part, path.into()), true))
     }
 
     /// Writes a piece; `false` where nobody reads on.

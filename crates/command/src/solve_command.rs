@@ -20,7 +20,7 @@ use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, pretty};
 use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments};
-use crate::columns::{Columns, error_row, named_columns, row};
+use crate::columns::{Columns, error_row, header, named_columns, row};
 use random::parallel;
 use validation::stability::Stepping;
 
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
                 row(t, now) + "," + &error_row(errors) + &observed + "\n"
             };
             let names = [columns.names(), columns.error_names(), program.names().to_vec()].concat();
-            names.join(",") + "\n" + &rows.map(line).collect::<String>()
+            header(&names) + &rows.map(line).collect::<String>()
         }
         Format::Json => {
             let mut value = json_of(&scene, &choice, &mut motion, &grid)?;

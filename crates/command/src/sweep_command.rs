@@ -1,24 +1,22 @@
 //! `deltaq compare --sweep`: where two motions part, over one or two numbers.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
-
 use anyhow::{Context, Result, bail, ensure};
 use deltaq::{Settings, Sweep, SweepPoint};
 
 use crate::cli::{CompareArguments, MOST_MEMBERS, Range};
-use crate::columns::quoted;
+use crate::columns::{header, quoted};
 use crate::main_job::protocol;
 use crate::sink::Sink;
 use crate::solve_command::limited;
-use random::parallel;
+use random::{Lines, parallel};
 use validation::catalogue;
 use validation::report::{Swept, sweep_files, write_all};
 
 /// Points computed before they are written down.
 const CHUNK: usize = 64;
 
-const COLUMNS: &str = "verdict,apart,largest,limit,answer,order,dimension,mismatch,cause";
+const COLUMNS: [&str; 9] =
+    ["verdict", "apart", "largest", "limit", "answer", "order", "dimension", "mismatch", "cause"];
 
 /// A table, one row a point; of a file that was cut off the rest is computed.
 pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
@@ -42,12 +40,10 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let computed = |index: usize| grid.begin(index) + &row(&sweep.point(&grid.point(index)));
     let path = arguments.output.out.as_ref().map(|folder| folder.join(format!("{}-sweep.csv", scene.name)));
     let mut done = 0;
-    let mut sink = Sink::open(path.as_deref(), |file, told| {
-        let (rows, bytes) = whole_rows(file, told, &grid, &computed)?;
-        done = rows;
-        Ok(bytes)
+    let (mut sink, mut reads_on) = Sink::open(path.as_deref(), &grid.head(), "sweep", |lines, is_ours| {
+        done = whole_rows(lines, is_ours, &grid, &computed)?;
+        Ok(())
     })?;
-    let mut reads_on = done > 0 || sink.write(&grid.head())?;
     let bar = parallel::progress(grid.count, quiet);
     while reads_on && done < grid.count {
         bar.set_position(done as u64);
@@ -115,7 +111,7 @@ impl<'a> Grid<'a> {
     }
 
     fn head(&self) -> String {
-        format!("{},{COLUMNS}\n", self.names().collect::<Vec<_>>().join(","))
+        header(&self.names().chain(COLUMNS).map(String::from).collect::<Vec<_>>())
     }
 
     /// How the row of a point begins.
@@ -124,26 +120,19 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// The rows that a file has already, whole ones, and their bytes with the names above. The first one has to
-/// be what is computed now.
-fn whole_rows(file: &File, told: &str, grid: &Grid, computed: &dyn Fn(usize) -> String) -> Result<(usize, u64)> {
-    let mut bytes = 0;
+/// The rows that a file has already, which are kept. The first one has to be what is computed now.
+fn whole_rows(
+    lines: &mut Lines,
+    is_ours: &dyn Fn(bool) -> Result<()>,
+    grid: &Grid,
+    computed: &dyn Fn(usize) -> String,
+) -> Result<usize> {
     let mut rows = 0;
-    let mut lines = BufReader::new(file);
-    loop {
-        let mut line = String::new();
-        lines.read_line(&mut line).with_context(|| format!("cannot read {told}"))?;
-        if !line.ends_with('\n') {
-            return Ok((rows, bytes));
-        }
-        let ours = if bytes == 0 {
-            line == grid.head()
-        } else {
-            rows += 1;
-            let is_first = rows == 1;
-            rows <= grid.count && line.starts_with(&grid.begin(rows - 1)) && (!is_first || line == computed(0))
-        };
-        ensure!(ours, "{told} is of another sweep, or of another version: remove it, or take another --out");
-        bytes += line.len() as u64;
+    while let Some(line) = lines.next_line()? {
+        let next = rows < grid.count && line.starts_with(&grid.begin(rows));
+        is_ours(next && (rows > 0 || line == computed(0)))?;
+        lines.keep(lines.at());
+        rows += 1;
     }
+    Ok(rows)
 }

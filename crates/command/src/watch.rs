@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 
-use crate::answer::print;
+use crate::answer::{complain, plain, print};
 use random::parallel;
 
 /// Exit code of a program ended by SIGINT, to a shell.
@@ -38,7 +38,7 @@ impl Watch {
             let so_far = so_far.lock().unwrap_or_else(PoisonError::into_inner);
             // nothing can be done about an answer that cannot be written: it ends here
             let _ = print(&so_far.answer);
-            eprintln!("deltaq: interrupted: {}", so_far.doing);
+            complain(&format!("deltaq: interrupted: {}", so_far.doing));
             std::process::exit(INTERRUPTED);
         };
         ctrlc::set_handler(interrupted).context("cannot listen to Ctrl-C")?;
@@ -47,7 +47,7 @@ impl Watch {
 
     /// Says what is done next, and what there is until then.
     pub(crate) fn tell(&self, doing: &str, answer: String) {
-        self.line.set_message(doing.to_owned());
+        self.line.set_message(plain(doing).into_owned());
         *self.so_far.lock().unwrap_or_else(PoisonError::into_inner) = SoFar { answer, doing: doing.to_owned() };
     }
 

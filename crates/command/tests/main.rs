@@ -6,6 +6,7 @@ mod compare_command;
 mod documents;
 mod ensemble_command;
 mod explore_command;
+mod kills;
 mod linearize_command;
 mod output;
 mod prove_command;

@@ -7,7 +7,10 @@ use std::process::{Output, Stdio};
 use crate::support::{answer, command, refused, text};
 
 /// Reports of the main job.
-const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/reports");
+const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/main-job");
+
+/// A scene with faults.
+const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
 
 /// One call of every command, and of none, but of `reports`, which is the whole main job.
 const ANSWERS: [&[&str]; 19] = [
@@ -54,7 +57,18 @@ fn an_answer_that_cannot_be_written_is_an_error() {
         assert!(stderr.contains("cannot write the answer") && stderr.contains("No space left"), "{stderr}");
     }
     for file in [&["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"][..], &["prove", "sledge"]] {
-        refused(&[file, &["--out", "/dev/full"]].concat(), &["cannot write", "/dev/full", "No space left"]);
+        let (_, stderr) = answer(&[file, &["--out", "/dev/full"]].concat(), 1);
+        for words in ["cannot write", "/dev/full", "No space left"] {
+            assert!(stderr.contains(words), "`{words}` is not in {stderr}");
+        }
+    }
+    refused(&["random", "--count", "1", "--quiet", "--log", "/dev/full"], &["is no file"]);
+    // complaints that cannot be written change no exit code
+    let full = || fs::File::options().write(true).open("/dev/full").expect("the device that is always full");
+    for arguments in [&["check", "sledge", "nothing"][..], &["check", BAD], &["solve", "nothing"]] {
+        fs::write(BAD, "[coordinates]\nx = {}\n").expect("written");
+        let output = command(arguments).stderr(full()).output().expect("the command runs");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
 }
 
@@ -139,4 +153,97 @@ fn what_cannot_be_written_to_a_folder_is_an_error() {
     for arguments in [&["random", "--index", "0"][..], &["stability", "--case", "blow-up", "--quiet"]] {
         refused(&[arguments, &["--out", out]].concat(), &["cannot create"]);
     }
+}
+
+#[test]
+fn no_text_of_others_reaches_a_terminal_as_an_order() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a\u{1b}]0;b\u{7}.toml");
+    let named = path.to_str().expect("UTF-8");
+    let (scene, _) = answer(&["new", "--from", "bowl"], 0);
+    let title = scene.lines().find(|line| line.starts_with("title")).expect("a title");
+    fs::write(&path, scene.replace(title, "title = \"bell\\u0007 \\u001b[31mred \\u009b32m\"")).expect("written");
+    let missing = folder.path().join("\u{1b}[2J");
+    let calls: [(&[&str], i32); 7] = [
+        (&["show", named], 0),
+        (&["check", named], 0),
+        (&["compare", named, "--set", "duration=0.1"], 0),
+        (&["compare", named, "--set", "duration=0.1", "--markdown"], 0),
+        (&["check", named, "--set", "\u{1b}[31m=1"], 2),
+        (&["solve", missing.to_str().expect("UTF-8"), "-f", "chetaev"], 2),
+        (&["solve", named, "--method", "\u{1b}[31m"], 2),
+    ];
+    for (arguments, code) in calls {
+        let (stdout, stderr) = answer(arguments, code);
+        let obeyed = |c: char| c.is_control() && !"\n\t".contains(c);
+        assert!(!(stdout.clone() + &stderr).contains(obeyed), "{arguments:?}: {stdout:?} {stderr:?}");
+        // the library that reads arguments leaves some out
+        assert!((stdout + &stderr).contains("\\u{1b}") || arguments.contains(&"--method"), "{arguments:?}");
+    }
+}
+
+#[test]
+fn pages_obey_no_text_of_a_scene_and_replace_only_what_is_ours() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, out) = (folder.path().join("own.toml"), folder.path().join("out"));
+    let [file, out_name] = [&file, &out].map(|path| path.to_str().expect("UTF-8"));
+    let (scene, _) = answer(&["new", "--from", "bowl"], 0);
+    let title = scene.lines().find(|line| line.starts_with("title")).expect("a title");
+    let bad = "<img src=x onerror=alert(1)> [x](javascript:alert(1))";
+    let invariants = format!("\n[observables]\n\"energy, {bad}\" = \"x^2\"\n");
+    fs::write(file, scene.replace(title, &format!("title = \"{bad}\"")) + &invariants).expect("written");
+    let call = ["compare", file, "--set", "duration=0.1", "--quiet", "--out", out_name];
+    answer(&call, 0);
+    let page = out.join("scenes/own.md");
+    let text = fs::read_to_string(&page).expect("a page");
+    assert!(!text.contains("<img") && !text.contains("](javascript"), "{text}");
+    assert!(text.contains("# &lt;img src=x"), "{text}");
+    // a name with a comma is one cell
+    let (table, _) = answer(&["solve", file, "-f", "chetaev", "--times", "0"], 0);
+    let names = table.lines().next().expect("names");
+    assert!(names.ends_with(&format!(",\"energy, {bad}\"")), "{names}");
+    // again, and not over what is not ours
+    answer(&call, 0);
+    fs::remove_file(out.join(".deltaq")).expect("the list");
+    fs::write(&page, "mine").expect("written");
+    refused(&call, &["is not of deltaq, and not replaced"]);
+    assert_eq!(fs::read_to_string(&page).expect("the page"), "mine");
+    let table = folder.path().join("m.csv");
+    fs::write(&table, "my,own\n").expect("written");
+    let members = ["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2", "--out"];
+    refused(&[&members[..], &[table.to_str().expect("UTF-8")]].concat(), &["m.csv is not of deltaq"]);
+    assert_eq!(fs::read_to_string(&table).expect("the table"), "my,own\n");
+}
+
+#[test]
+fn coordinates_are_in_the_order_of_the_scene() {
+    let (text, _) = answer(&["solve", "sledge", "-f", "chetaev", "--times", "0", "--format", "json"], 0);
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let names: Vec<&String> = value["velocities"].as_object().expect("an object").keys().collect();
+    assert_eq!(names, ["x", "y", "phi"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_without_memory_stops_with_a_cause() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("many.toml");
+    let each = |of: fn(usize) -> String, by: &str| (1..=60).map(of).collect::<Vec<_>>().join(by);
+    let coordinates = each(|i| format!("x{i} = {{ start = 0 }}"), "\n");
+    let lagrangian = each(|i| format!("x{i}'^2/2 - {i}*x{i}^2/2"), " + ");
+    let velocities = each(|i| format!("\"x{i}'\" = 1"), "\n");
+    let scene = format!(
+        "title = \"many\"\n[coordinates]\n{coordinates}\n[system]\nlagrangian = \"{lagrangian}\"\n\
+         [start.velocities]\n{velocities}\n[run]\nduration = 1e5\n"
+    );
+    fs::write(&file, scene).expect("written");
+    let call = format!(
+        "ulimit -v 700000; exec '{}' solve '{}' -f chetaev --times 0 --quiet",
+        env!("CARGO_BIN_EXE_deltaq"),
+        file.display()
+    );
+    let output = std::process::Command::new("sh").args(["-c", &call]).output().expect("a shell");
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{stderr}");
+    assert!(stderr.contains("no memory for more"), "{stderr}");
 }

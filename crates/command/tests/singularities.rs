@@ -62,3 +62,25 @@ fn of_bicycles_those_that_fall_stop_and_the_others_go_on() {
     has_names(falls["cause"].as_str().expect("a cause"));
     assert!(falls["steps"].as_u64().is_some_and(|steps| steps < SOON));
 }
+
+/// What is ever faster asks for ever shorter steps, and nothing by which the equations divide vanishes.
+#[test]
+fn steps_that_became_too_short_are_told_as_steps() {
+    let stopped = |arguments: &[&str]| {
+        let value = json(arguments, 3);
+        value["cause"].as_str().expect("a cause").to_owned()
+    };
+    let fast = tempfile::NamedTempFile::with_suffix(".toml").expect("a file");
+    let text = "title = \"ever faster\"\n[coordinates]\nx = { start = 0 }\n[system]\nlagrangian = \"x'^2/2\"\n\
+                forces.x = \"sin(exp(t))\"\n[start.velocities]\n\"x'\" = 1\n[run]\nduration = 40\n";
+    std::fs::write(fast.path(), text).expect("written");
+    let file = fast.path().to_str().expect("UTF-8");
+    let sledge = ["sledge", "-f", "vakonomic", "--set", "duration=1e6", "--max-steps", "200000"];
+    for scene in [&[file, "-f", "chetaev"][..], &sledge] {
+        let cause = stopped(&[&["solve"], scene, &["--times", "0"]].concat());
+        assert!(!cause.contains("singularity"), "{cause}");
+        for words in ["steps became too short", "changes fastest", "`breakpoints`", "--max-steps"] {
+            assert!(cause.contains(words), "`{words}` is not in {cause}");
+        }
+    }
+}

@@ -45,8 +45,9 @@ fn a_sweep_that_was_cut_off_goes_on_to_the_same_bytes() {
     let table = folder.path().join("turntable-sweep.csv");
     let whole = fs::read(&table).expect("the table");
     let part = folder.path().join("turntable-sweep.csv.part");
-    // within a row, right behind one, within the names, nothing at all
-    for length in [whole.len() / 2, whole.iter().rposition(|&b| b == b'\n').expect("rows"), 20, 0] {
+    // within a row, right behind one, right behind the names, within them, nothing at all
+    let names = whole.iter().position(|&b| b == b'\n').expect("names") + 1;
+    for length in [whole.len() / 2, whole.iter().rposition(|&b| b == b'\n').expect("rows"), names, 20, 0] {
         fs::write(&part, &whole[..length]).expect("written");
         fs::remove_file(&table).expect("there");
         sweep(path, &["--threads", "1"]);

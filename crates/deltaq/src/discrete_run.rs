@@ -1,5 +1,7 @@
 //! A discrete motion as states of the derived equations.
 
+use std::f64::consts::PI;
+
 use discrete::{DiscreteError, Trajectory};
 use equations::{Compiled, Equations};
 use integrate::{GAUGE_LIMIT, GAUGE_NODES, gauge_growth};
@@ -52,22 +54,32 @@ impl DiscreteRun {
         [self.times()[0], self.trajectory.end()]
     }
 
-    /// The first step within which the gauge of a steep function grows as [`integrate::Problem::gauges`] does
-    /// not let it, on the straight line from node to node: a step knows its middle only. `kept` is the length
-    /// of the steps of the run that is kept. What cannot be read off is no part of the motion.
+    /// The first step that knows nothing of what is within it, on the straight line from node to node: a step
+    /// knows its middle only. The gauge of a steep function grows as [`integrate::Problem::gauges`] does not
+    /// let it, or the rates jump with the angle of a point. `kept` is the length of the steps of the run that
+    /// is kept. What cannot be read off is no part of the motion.
     pub(crate) fn passed_over(&mut self, prepared: &mut Prepared, kept: f64) -> Option<PassedOver> {
         let Prepared { compiled, equations, .. } = prepared;
-        if compiled.gauges().is_empty() {
+        let angles = equations.angles();
+        if compiled.gauges().is_empty() && angles.is_empty() {
             return None;
         }
         let mut from: Option<Node> = None;
         for t in self.times().to_vec() {
             let mut y = vec![0.0; compiled.dimension()];
             let Ok(()) = self.state(compiled, t, &mut y) else { break };
-            if let Some(mut from) = from.replace((t, y.clone()))
-                && let (j, true) = steepest(compiled, &from, &(t, y.clone()))
-            {
-                let (begin, mut to, mut share) = (from.0, (t, y), 1.0);
+            let Some(from) = from.replace((t, y.clone())) else { continue };
+            let begin = from.0;
+            if let Some(j) = jump(compiled, &from, &(t, y.clone())) {
+                let angle = in_own_names(equations, angles[j]);
+                let cause = format!(
+                    "a step of {kept:.3e} passes over a jump of the rates, where {angle} passes from π to −π; steps can \
+                     end there by `breakpoints`, or take a method that chooses its own"
+                );
+                return Some(PassedOver { t: begin, cause });
+            }
+            if let (j, true) = steepest(compiled, &from, &(t, y.clone())) {
+                let (mut from, mut to, mut share) = (from, (t, y), 1.0);
                 while share > f64::EPSILON && steepest(compiled, &from, &to).1 {
                     let middle = between(&from, &to, 0.5);
                     // the half where it is steeper
@@ -122,6 +134,36 @@ type Node = (f64, Vec<f64>);
 fn between(from: &Node, to: &Node, theta: f64) -> Node {
     let at = |a: f64, b: f64| a + theta * (b - a);
     (at(from.0, to.0), from.1.iter().zip(&to.1).map(|(a, b)| at(*a, *b)).collect())
+}
+
+/// The first angle that passes from π to −π or back from node to node, where the rates jump with it.
+fn jump(compiled: &mut Compiled, from: &Node, to: &Node) -> Option<usize> {
+    /// Rates that differ by less than this part of the largest on both sides of a place do not jump there.
+    const ROUND_OFF: f64 = 1e-6;
+    const HALVINGS: usize = 45;
+    let places: [Node; GAUGE_NODES] = std::array::from_fn(|k| between(from, to, k as f64 / (GAUGE_NODES - 1) as f64));
+    for pair in places.windows(2) {
+        let passes = |a: f64, b: f64| (a - b).abs() > PI;
+        let (low, high) = (compiled.angles(pair[0].0, &pair[0].1), compiled.angles(pair[1].0, &pair[1].1));
+        for j in (0..low.len()).filter(|&j| passes(low[j], high[j])) {
+            let (mut low, mut high) = (pair[0].clone(), pair[1].clone());
+            for _ in 0..HALVINGS {
+                let middle = between(&low, &high, 0.5);
+                match passes(compiled.angles(low.0, &low.1)[j], compiled.angles(middle.0, &middle.1)[j]) {
+                    true => high = middle,
+                    false => low = middle,
+                }
+            }
+            let [mut before, mut behind] = [vec![0.0; low.1.len()], vec![0.0; low.1.len()]];
+            let read = compiled.rates(low.0, &low.1, &mut before).and(compiled.rates(high.0, &high.1, &mut behind));
+            let largest = before.iter().chain(&behind).fold(0.0_f64, |most, x| most.max(x.abs()));
+            let jumps = |(a, b): (&f64, &f64)| (a - b).abs() > ROUND_OFF * largest;
+            if read.is_err() || before.iter().zip(&behind).any(jumps) {
+                return Some(j);
+            }
+        }
+    }
+    None
 }
 
 /// The gauge that grows most from node to node, and whether it grows too much.

@@ -8,6 +8,9 @@ use mechanics::SingularValues;
 use nalgebra::{DMatrix, DVector};
 use symbolic::Expr;
 
+/// What helps where steps became too short and no divisor of the equations vanishes.
+const HELP: &str = "where something is switched, its times as `breakpoints` help, else a larger --max-steps";
+
 /// How a motion ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
@@ -40,7 +43,7 @@ impl Ending {
         before: &[(f64, Vec<f64>)],
     ) -> Ending {
         let Status::Stopped { t, cause } = &run.status else { return Ending::Completed };
-        let creeps = matches!(cause, StopCause::Creeping { .. });
+        let is_short = matches!(cause, StopCause::Creeping { .. } | StopCause::StepTooSmall { .. });
         let cause = match cause {
             StopCause::Event { index } if *index == equations.guards.len() => return Ending::Completed,
             StopCause::Event { index } => {
@@ -58,15 +61,23 @@ impl Ending {
                 format!("{} is no longer finite", symbol.unwrap_or_default())
             }
             StopCause::StepTooSmall { step, .. } => {
-                format!("the error asks for steps of {step:.1e}, which no longer move time: a singularity is near")
+                format!("the error asks for steps of {step:.1e}, which no longer move time")
             }
             other => other.to_string(),
         };
         let before = [before, &[(run.dense.start(), run.dense.start_state().to_vec())]].concat();
         let near = nearly_zero_guard(equations, compiled, &before, &run.dense);
         let near = near.or_else(|| nearly_dependent(equations, compiled, &before, &run.dense));
-        let near = near.or_else(|| if creeps { fastest(equations, compiled, &run.dense) } else { None });
-        Ending::Stopped { t: *t, cause: cause + &near.map_or(String::new(), |words| format!("; {words}")) }
+        let near = match near {
+            Some(words) if is_short => format!(": a singularity is near; {words}"),
+            Some(words) => format!("; {words}"),
+            None if is_short => {
+                let fastest = fastest(equations, compiled, &run.dense).map_or(String::new(), |words| words + "; ");
+                format!("; {fastest}{HELP}")
+            }
+            None => String::new(),
+        };
+        Ending::Stopped { t: *t, cause: cause + &near }
     }
 
     /// How the kept run ended, unless the looser one stopped while that went on, in a run over this time.

@@ -1,6 +1,10 @@
 //! Switches and pulses as they are usually written, late clocks, domains of formulas, pivots of ensembles.
 
-use deltaq::{Ensemble, EnsembleOptions, Motion, Settings, SolveError, choices, shared_text, solve_choice};
+use deltaq::{
+    Ensemble, EnsembleOptions, Motion, Settings, SolveError, Steps, choices, error_estimate, setting, shared_text,
+    solve_by_steps, solve_choice,
+};
+use discrete::Composition;
 use scene::Scene;
 
 fn scene(coordinates: &str, system: &str, velocities: &str, run: &str) -> Scene {
@@ -202,4 +206,35 @@ fn first_order_states_are_coordinates_without_mass_and_currents_rates_of_charges
     let end = solve(&motor).unwrap().at(1.0).unwrap();
     let [omega, i] = stepped(|[omega, i]| [25.0 * i, 10.0 * (12.0 - i - 0.5 * omega)], [0.0, 0.0], 1.0);
     assert!((end.velocities[0] - omega).abs() < 1e-9 && (end.velocities[1] - i).abs() < 1e-9, "{end:?} {omega} {i}");
+}
+
+#[test]
+fn equal_steps_end_where_the_rates_jump_with_an_angle() {
+    let run = |force: &str| {
+        let system = format!("lagrangian = \"x'^2/2\"\nforces.x = \"{force}\"");
+        let scene = scene("[coordinates]\nx = { start = 0 }", &system, "\"x'\" = 0", "duration = 10");
+        let steps = Steps { step: 0.01, composition: Composition::Fourth };
+        solve_by_steps(&scene, &choices(&scene)[0], steps, &Settings::default()).expect("a motion")
+    };
+    let jumps = run("atan2(sin(t), cos(t))");
+    let told = format!("{:?}", jumps.ending);
+    assert!((jumps.end() - std::f64::consts::PI).abs() < 0.02, "{told}");
+    assert!(told.contains("passes over a jump of the rates") && told.contains("breakpoints"), "{told}");
+    // nothing jumps
+    for force in ["cos(2*atan2(sin(t), cos(t)))", "atan2(sin(t), 2 + cos(t))"] {
+        assert!(run(force).is_complete(), "{force}: {:?}", run(force).ending);
+    }
+}
+
+#[test]
+fn a_motion_looked_at_after_whole_periods_only_has_its_size() {
+    // 200 periods, and 200 times at which sizes are taken
+    let period = 2.0 * std::f64::consts::PI;
+    let system = "lagrangian = \"x'^2/2 - x^2/2\"";
+    let scene =
+        scene("[coordinates]\nx = { start = 0 }", system, "\"x'\" = 1", &format!("duration = {:?}", 200.0 * period));
+    let mut motion = solve(&scene).expect("a motion");
+    let estimate = error_estimate(&mut motion, setting(&scene)).expect("an estimate");
+    assert_eq!(estimate.status(&motion), ("completed", None), "{estimate:?}");
+    assert!(estimate.relative < 1e-8, "{estimate:?}");
 }

@@ -24,6 +24,7 @@ pub struct Compiled {
     left: Vec<usize>,
     fallbacks: usize,
     guards: Evaluator<f64>,
+    angles: Evaluator<f64>,
     steep: Evaluator<f64>,
     gauges: Vec<fn(f64) -> f64>,
     projector: Option<Projector>,
@@ -98,6 +99,7 @@ impl Compiled {
             guards: equations.evaluator(&known, &guards)?,
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
             steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
+            angles: equations.evaluator(&known, &equations.angles())?,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             jacobian: None,
             series: None,
@@ -272,6 +274,12 @@ impl Compiled {
     pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) {
         self.load(t, y);
         arguments.copy_from_slice(self.steep.evaluate(&self.inputs[..self.sizes.known()]));
+    }
+
+    /// The angles of points in the equations: [`symbolic::Graph::angles`].
+    pub fn angles(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        self.load(t, y);
+        self.angles.evaluate(&self.inputs[..self.sizes.known()]).to_vec()
     }
 
     /// The matrices `∂R/∂z` of the blocks at `(t, y)`, row-major; of those that are not linear at the last

@@ -45,6 +45,14 @@ impl DenseOutput {
         }
     }
 
+    /// Whether there is memory for one more step; if not, the bytes that are stored.
+    pub(crate) fn has_memory(&mut self) -> Result<(), usize> {
+        let length = self.terms * self.dimension;
+        let stored = &mut self.coefficients;
+        let reserved = stored.try_reserve(length).or_else(|_| stored.try_reserve_exact(length));
+        reserved.map_err(|_| stored.len() * size_of::<f64>())
+    }
+
     /// Room for the coefficients of one more step: fill it, then `push` keeps it or `pop_room` drops it.
     pub(crate) fn room(&mut self) -> &mut [f64] {
         let length = self.terms * self.dimension;

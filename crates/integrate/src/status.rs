@@ -113,8 +113,8 @@ pub enum StopCause {
         /// [`crate::Options::max_steps`].
         limit: usize,
     },
-    /// Many steps hardly moved the time: they creep up to a singularity.
-    #[error("the last {steps} steps moved time by {moved:.1e} only: a singularity is near")]
+    /// Many steps hardly moved the time, at a singularity or at what is too fast for the length of the run.
+    #[error("the last {steps} steps moved time by {moved:.1e} only: steps became too short to come to the end")]
     Creeping {
         /// How many.
         steps: usize,
@@ -128,6 +128,13 @@ pub enum StopCause {
         ahead: f64,
         /// Time that the last stretch of attempts took.
         moved: f64,
+    },
+    /// There is no memory for the polynomials of more steps.
+    #[error("the steps so far take {} MB, and there is no memory for more: end earlier, or in an ensemble of one, which \
+             keeps what its times need", bytes / 1_000_000)]
+    Memory {
+        /// What the polynomials take.
+        bytes: usize,
     },
     /// [`crate::Options::interrupt`] was raised.
     #[error("interrupted")]

@@ -103,6 +103,9 @@ impl Record<'_, '_> {
             if let Some((ahead, moved)) = self.pace.is_over(self.options.patience) {
                 return Err(StopCause::Slow { ahead, moved });
             }
+            if self.options.dense == Dense::Everywhere {
+                self.dense.has_memory().map_err(|bytes| StopCause::Memory { bytes })?;
+            }
             let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {
                     system.count_rejected(rejected);

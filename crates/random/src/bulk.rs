@@ -1,13 +1,13 @@
 //! Many random systems over all processors, and what becomes of one that breaks a claim.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::fs::{self, File};
+use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Error, Result, anyhow, ensure};
 use proptest::strategy::ValueTree;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::claims::{CHECKS, make};
 use super::recipe::{draw, draw_null_test};
 use super::record::{Record, THOROUGH};
-use super::{Case, Kind, Recipe};
+use super::{Case, Kind, Lines, Recipe};
 use crate::parallel;
 
 /// Steps after which shrinking is content with what it has.
@@ -95,11 +95,19 @@ impl Batch {
         let mut batch = None;
         let mut records = BTreeMap::new();
         for path in logs {
-            let file = File::open(path).with_context(|| format!("log {}", path.display()))?;
-            let Read { batch: own, records: more, .. } = read(&file, path)?;
-            let own = own.with_context(|| format!("log {}: not a log of random systems", path.display()))?;
+            let place = || format!("log {}", path.display());
+            let text = fs::read(path).with_context(place)?;
+            // a last line that was cut off does not count
+            let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+            let text = std::str::from_utf8(&text[..whole]).with_context(place)?;
+            let mut lines = text.lines();
+            let own = lines.next().and_then(|head| serde_json::from_str(head).ok());
+            let own: Batch = own.with_context(|| format!("{}: not a log of random systems", place()))?;
             batch.get_or_insert_with(|| own.clone()).is_of(&own, path)?;
-            records.extend(more.into_iter().map(|record| (record.index, record)));
+            for line in lines {
+                let record: Record = serde_json::from_str(line).with_context(place)?;
+                records.insert(record.index, record);
+            }
         }
         Ok((batch.context("no log to merge")?, records.into_values().collect()))
     }
@@ -114,18 +122,17 @@ impl Batch {
     /// Records of an earlier run, and the file to go on with. A last line that was cut off is dropped.
     fn open_log(&self, path: &Path) -> Result<(Vec<Record>, File)> {
         let place = || format!("log {}", path.display());
-        let mut file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).with_context(place)?;
-        ensure!(file.try_lock().is_ok(), "{} is being written by another run", place());
-        let Read { batch, records, end } = read(&file, path)?;
-        batch.as_ref().map_or(Ok(()), |batch| self.is_of(batch, path))?;
-        file.set_len(end).with_context(place)?;
-        file.seek(SeekFrom::Start(end)).with_context(place)?;
-        if batch.is_none() {
-            let header = serde_json::to_string(self)? + "\n";
-            file.write_all(header.as_bytes()).with_context(place)?;
+        let foreign = |first: &str| match serde_json::from_str(first) {
+            Ok(other) => self.is_of(&other, path).err().unwrap_or_else(|| anyhow!("{} is in other words", place())),
+            Err(_) => Error::msg(format!("{}: not a log of random systems", place())),
+        };
+        let mut lines = Lines::open(path, &(serde_json::to_string(self)? + "\n"), foreign)?;
+        let mut records = Vec::new();
+        while let Some(line) = lines.next_line()? {
+            records.push(serde_json::from_str(&line).with_context(place)?);
+            lines.keep(lines.at());
         }
-        Ok((records, file))
+        Ok((records, lines.go_on()?))
     }
 
     /// The smallest system on which a claim of `theorem` still fails; `None` where the system itself passes.
@@ -137,37 +144,6 @@ impl Batch {
             notes: format!("{} Shrunk from {}.", scene.notes, self.name(index)),
             ..scene
         })
-    }
-}
-
-/// What a log holds.
-struct Read {
-    /// `None` of an empty file.
-    batch: Option<Batch>,
-    records: Vec<Record>,
-    /// Bytes of whole lines.
-    end: u64,
-}
-
-fn read(file: &File, path: &Path) -> Result<Read> {
-    let place = || format!("log {}", path.display());
-    let mut read = Read { batch: None, records: Vec::new(), end: 0 };
-    let mut reader = BufReader::new(file);
-    loop {
-        let mut line = String::new();
-        let length = reader.read_line(&mut line).with_context(place)?;
-        if !line.ends_with('\n') {
-            let is_log = read.batch.is_some() || line.trim().is_empty();
-            ensure!(is_log, "{}: not a log of random systems", place());
-            return Ok(read);
-        }
-        if read.batch.is_some() {
-            read.records.push(serde_json::from_str(&line).with_context(place)?);
-        } else {
-            let batch = serde_json::from_str(&line);
-            read.batch = Some(batch.with_context(|| format!("{}: not a log of random systems", place()))?);
-        }
-        read.end += length as u64;
     }
 }
 

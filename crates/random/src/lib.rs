@@ -11,6 +11,7 @@ mod claims;
 mod feature;
 mod finding;
 mod kind;
+mod lines;
 pub mod parallel;
 pub mod realization;
 mod recipe;
@@ -25,6 +26,7 @@ pub use claims::{CHECKS, Check, DIVERGES, Divergence, NullTest, make, null_test,
 pub use feature::{Edge, Far, Features, Part, Root, Switch};
 pub use finding::{Finding, Findings, Observation, Word};
 pub use kind::{Kind, Truth};
+pub use lines::Lines;
 pub use recipe::{MOST, Recipe, draw, draw_null_test, draw_recipe, recipes, recipes_of};
 pub use record::{Count, Open, Record, Summary, THOROUGH, milliseconds};
 pub use transform::{Rewritten, Scaling, augmented, recombined};

@@ -6,6 +6,9 @@ pub enum NameFault {
     /// Not a letter followed by letters, digits and underscores.
     #[error("a name is a letter followed by letters, digits and underscores")]
     NotIdentifier,
+    /// What a program for tables takes for a formula, or more than a line.
+    #[error("a name begins with none of = + - @, which tables take for formulas, and stands in one line")]
+    Formula,
     /// With primes.
     #[error("primes are time derivatives and are not part of a name")]
     Primed,

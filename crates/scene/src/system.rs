@@ -9,7 +9,7 @@ use super::names::{KAPPA, Names, Role};
 use super::order::in_order;
 use super::overrides::Overrides;
 use super::section::{Entry, Section, Source, Value};
-use crate::{SceneError, SceneErrorKind, format};
+use crate::{NameFault, SceneError, SceneErrorKind, format};
 use mechanics::{Parameter, System, Watched};
 
 /// Reads everything that makes the system, and the positions at the start.
@@ -210,6 +210,10 @@ fn watched(context: &mut Context, section: &str, constant: bool) -> Result<(), S
     }
     let Some(section) = context.root.section(section)? else { return Ok(()) };
     for entry in section.entries() {
+        if entry.key.starts_with(['=', '+', '-', '@']) || entry.key.contains(char::is_control) {
+            let kind = SceneErrorKind::InvalidName { name: entry.key.into(), fault: NameFault::Formula };
+            return Err(context.source.error(&entry.key_span, kind));
+        }
         let read = entry.text("an expression in quotes");
         let read = read.and_then(|text| context.names.parse_value(context.source, &context.system.graph, &text));
         let Some(value) = context.source.note(read) else { continue };

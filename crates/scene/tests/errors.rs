@@ -153,6 +153,10 @@ fn names() {
         fault_is(&error("k = 0.7", &format!("{function} = 3")), &NameFault::Reserved("a function"));
     }
     fault_is(&error("k = 0.7", "\"k'\" = 3"), &NameFault::Primed);
+    for name in ["=1+1", "@x", "-x", "+x", "two\\nlines", "bell\\u0007"] {
+        let observables = format!("[observables]\n\"{name}\" = \"x\"\n\n[start.velocities]");
+        fault_is(&error("[start.velocities]", &observables), &NameFault::Formula);
+    }
     fault_is(&error("phi = {", "\"phi'\" = {"), &NameFault::Primed);
     for bad in ["", "1", "k k", " y", "y ", "α", "a-b", "a+b", "(y)", "-y"] {
         fault_is(&error("k = 0.7", &format!("\"{bad}\" = 3")), &NameFault::NotIdentifier);

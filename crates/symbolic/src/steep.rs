@@ -125,6 +125,13 @@ impl Graph {
             .collect()
     }
 
+    /// The angles of points in `es`: each jumps by 2π where its point passes behind the origin.
+    pub fn angles(&self, es: &[Expr]) -> Vec<Expr> {
+        let arena = self.arena.borrow();
+        let all = arena.reachable(es, |_| true);
+        all.into_iter().filter(|&e| matches!(arena.node(e), Node::Atan2(..))).collect()
+    }
+
     /// Of factors that overflow together, so that the product does not, only the unit is steep, like a
     /// `tanh`.
     fn steep_product(

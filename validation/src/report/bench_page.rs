@@ -7,7 +7,7 @@ use integrate::Method;
 use serde_json::{Value, json};
 
 use crate::bench::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
-use crate::report::files::link;
+use crate::report::files::{inert, link};
 use crate::report::{File, Table};
 use deltaq::words::{enumerate, short};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
@@ -49,7 +49,7 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     page += &bench_table(benches);
     page += &ensemble_section(ensembles);
     for bench in benches {
-        let _ = writeln!(page, "\n## {}\n", bench.title);
+        let _ = writeln!(page, "\n## {}\n", inert(&bench.title));
         match picture(bench) {
             Ok(text) => {
                 files.push(File { path: format!("error-vs-time/{}.svg", bench.scene).into(), text });

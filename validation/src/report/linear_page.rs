@@ -8,13 +8,14 @@ use nalgebra::Complex;
 use scene::Scene;
 
 use crate::report::Table;
+use crate::report::files::inert;
 use deltaq::words::{enumerate, precise, short};
 use picture::{Axis, Curve, Panel, Picture, Style};
 
 /// What was linearized, a table with one line per value, the states that were `found`, what first order
 /// leaves open, and where stability changes.
 pub fn sweep_text(scene: &Scene, sweep: &Sweep, found: bool) -> String {
-    let mut text = format!("# {}\n\n", scene.title);
+    let mut text = format!("# {}\n\n", inert(&scene.title));
     let Some(SweepPoint { linearization, part, .. }) = sweep.points.first() else { return text };
     let names = |places: &[usize]| places.iter().map(|&i| linearization.states[i].clone()).collect::<Vec<_>>();
     let carried: Vec<String> =

@@ -32,7 +32,7 @@ pub use bodies::bodies;
 pub use deltaq::words::Headline;
 pub use deltaq::words::sentence as membership_sentence;
 pub use equivalence::EquivalenceReport;
-pub use files::{File, write_all};
+pub use files::{File, may_replace, write_all, write_one, write_own};
 pub use fill::fill;
 pub use linear_page::{sweep_picture, sweep_text};
 pub use literature::LiteratureReport;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 use deltaq::{Comparison, EquationStyle, derive_at, equations_text};
 
-use crate::report::files::image;
+use crate::report::files::{image, inert};
 use crate::report::{File, Headline, Table, membership, tables};
 use deltaq::words::{precise, short};
 use random::substitution;
@@ -18,17 +18,18 @@ pub fn scene_page(comparison: &mut Comparison, pictures: &[File]) -> Result<Stri
     let mut page = String::new();
     let scene = &comparison.scene;
     let Headline { verdict, why, sure } = Headline::of(comparison);
-    let _ = writeln!(page, "# {}\n\n**{verdict}**\n\n{why}\n\n{sure}", scene.title);
+    let [title, verdict, why, sure] = [&scene.title, &verdict, &why, &sure].map(|text| inert(text));
+    let _ = writeln!(page, "# {title}\n\n**{verdict}**\n\n{why}\n\n{sure}");
     let is_moving = |picture: &&File| picture.path.to_string_lossy().ends_with("-bodies.svg");
     let (moving, still): (Vec<&File>, Vec<&File>) = pictures.iter().partition(is_moving);
     for picture in moving {
         let _ = writeln!(page, "\n{}\n\nThe bodies under each formulation, from one start, in a loop.", image(picture));
     }
     if !scene.source.is_empty() {
-        let _ = writeln!(page, "\nSource: {}.", scene.source.trim_end_matches('.'));
+        let _ = writeln!(page, "\nSource: {}.", inert(scene.source.trim_end_matches('.')));
     }
     if !scene.notes.is_empty() {
-        let _ = writeln!(page, "\n{}", scene.notes);
+        let _ = writeln!(page, "\n{}", inert(&scene.notes));
     }
     page += &system(comparison);
     page += "\n## Start and constants\n\n";
@@ -110,7 +111,7 @@ fn system(comparison: &Comparison) -> String {
     for removal in choices.filter_map(|choice| choice.removal.as_ref()) {
         let parameters: Vec<String> =
             removal.parameters.iter().map(|u| format!("${}$", g.latex_symbol(u.symbol))).collect();
-        let _ = writeln!(text, "\nRemoval `{}`: parameters {}.", removal.name, parameters.join(", "));
+        let _ = writeln!(text, "\nRemoval `{}`: parameters {}.", inert(&removal.name), parameters.join(", "));
     }
     text
 }
@@ -131,7 +132,7 @@ fn equations(comparison: &Comparison) -> String {
             (as_derived.ok(), format!(", integrated as {form}: {}", motion.form.chosen.why))
         };
         let body = equations_text(derived.as_ref().unwrap_or(&motion.equations), EquationStyle::Latex);
-        let label = &run.choice.label;
+        let label = inert(&run.choice.label);
         let _ = writeln!(text, "\n<details><summary>{label}{integrated}</summary>\n\n{body}\n</details>");
     }
     text

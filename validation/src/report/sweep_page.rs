@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 use picture::{Axis, Curve, HeatMap, Picture, Style};
 
 use crate::report::File;
+use crate::report::files::inert;
 
 /// What varies: name, first value, last value, number of values.
 pub type Swept = (String, f64, f64, usize);
@@ -85,6 +86,7 @@ fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
     let some: Vec<&Point> = points.iter().filter(|point| point.has_some()).collect();
     let proved = points.iter().filter(|point| point.answer == "none proved").count();
     let names: Vec<&str> = ranges.iter().map(|(name, ..)| name.as_str()).collect();
+    let title = inert(title);
     let mut text = format!(
         "# {title} over {}\n\n**Of {} points {} are different, {} the same, {} undecided, {} without a motion. No {mark}: \
          proved at {proved}. Some do at {}.**\n",

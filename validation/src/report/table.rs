@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::files::inert;
+
 /// A table in Markdown, written row by row.
 ///
 /// ```
@@ -35,7 +37,8 @@ impl Table {
 
     /// Adds a row whose cells are as many as there are columns, however many these are.
     pub fn cells(&mut self, cells: impl IntoIterator<Item = String>) {
-        let cells: Vec<String> = cells.into_iter().map(|cell| cell.replace('|', "\\|").replace('\n', " ")).collect();
+        let cells: Vec<String> =
+            cells.into_iter().map(|cell| inert(&cell).replace('|', "\\|").replace('\n', " ")).collect();
         self.text += &line(&cells);
         self.rows += 1;
     }

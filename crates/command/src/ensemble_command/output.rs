@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::members::Members;
 use crate::answer::pretty;
 use crate::cli::Format;
-use crate::columns::{Columns, print, quoted, row};
+use crate::columns::{Columns, header, print, quoted, row};
 
 /// Members that a complaint describes.
 const DESCRIBED: usize = 3;
@@ -99,7 +99,7 @@ impl<'a> Answers<'a> {
     /// What stands before the members.
     pub(super) fn head(&self) -> String {
         if self.format == Format::Csv {
-            return self.names().join(",") + "\n";
+            return header(&self.names());
         }
         let value = json!({
             "scene": self.scene.name,
