@@ -8,6 +8,7 @@ mod properties;
 mod pulses;
 mod reference_motions;
 mod references;
+mod scales;
 mod stability;
 mod units;
 mod zero;

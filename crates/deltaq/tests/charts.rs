@@ -7,7 +7,8 @@ use scene::Scene;
 /// A sleigh that turns past heading 90°, where its pivot vanishes, with these invariants.
 fn sleigh(invariants: &str) -> Motion {
     let text = format!(
-        "title = \"sleigh\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\nphi = {{ start = 0.3 }}\n[system]\n\
+        "title = \"sleigh\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\n\
+         phi = {{ start = 0.3 }}\n[system]\n\
          lagrangian = \"((x' - 0.2*phi'*sin(phi))^2 + (y' + 0.2*phi'*cos(phi))^2 + phi'^2)/2 + 0.3*x\"\n\
          constraints = [\"y'*cos(phi) - x'*sin(phi)\"]\n{invariants}\n\
          [start]\nvelocities = {{ \"x'\" = 0.6, \"phi'\" = 1.1 }}\n[run]\nduration = 4\n"

@@ -8,7 +8,8 @@ use scene::Scene;
 fn pushed(force: &str, speed: f64, duration: f64, method: Option<Method>) -> (Motion, &'static str, Option<String>) {
     let text = format!(
         "title = \"Pushed\"\n[coordinates]\nx = {{ start = 0 }}\n[system]\nlagrangian = \"x'^2/2\"\n\
-         forces = {{ x = \"{force}\" }}\n[start]\nvelocities = {{ \"x'\" = {speed:?} }}\n[run]\nduration = {duration:?}\n"
+         forces = {{ x = \"{force}\" }}\n[start]\n\
+         velocities = {{ \"x'\" = {speed:?} }}\n[run]\nduration = {duration:?}\n"
     );
     let scene = Scene::parse("pushed", &text).unwrap_or_else(|e| panic!("{e}"));
     let settings = Settings { method, ..Settings::default() };

@@ -47,7 +47,8 @@ fn cases() -> Vec<(String, f64)> {
     let scene = |system: &str, velocities: &str| {
         format!(
             "title = \"steep\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\n[system]\n\
-             lagrangian = \"(x'^2 + y'^2)/2\"\n{system}\n[start]\nvelocities = {{ {velocities} }}\n[run]\nduration = 1\n"
+             lagrangian = \"(x'^2 + y'^2)/2\"\n{system}\n[start]\n\
+             velocities = {{ {velocities} }}\n[run]\nduration = 1\n"
         )
     };
     let mut cases = Vec::new();
