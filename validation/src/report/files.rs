@@ -47,7 +47,7 @@ pub(crate) fn inert(text: &str) -> String {
 
 /// Whether an address, which stands first in a text, is of the web or a plain path.
 fn is_harmless(text: &str) -> bool {
-    let address = text.trim_start().split([')', ' ', '\t', '\n']).next().unwrap_or_default();
+    let address = text.trim_start().split([')', ' ', '\n']).next().unwrap_or_default();
     let plain = |c: char| c.is_ascii_alphanumeric() || "-._/#%=".contains(c);
     ["https://", "http://", "mailto:"].iter().any(|scheme| address.starts_with(scheme)) || address.chars().all(plain)
 }
