@@ -33,8 +33,8 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// Why a motion with this estimate is not to be trusted: in the kinetic metric, in one coordinate or in one
-    /// multiplier it is over [`TRUSTED`], or no number.
+    /// Why a motion with this estimate is not to be trusted: in the kinetic metric, in one coordinate or in
+    /// one multiplier it is over [`TRUSTED`], or no number.
     pub fn complaint(&self) -> Option<String> {
         let whole = (String::new(), self.relative);
         let one =

@@ -1,9 +1,9 @@
 //! Round-off of the equations themselves, which both runs of a motion share.
 //!
 //! A rate to which `s` is added up is known to `ε s`, with `ε` the distance of numbers beside 1. What this
-//! makes of a state within a time, `r' = ε s − λ r` with `λ = max(0, −∂ẏ/∂y)` of the state itself, is no bound
-//! of its error, which may grow or average out; but where it is no small part of the state, and more than the
-//! two runs differ by, no estimate is to be trusted.
+//! makes of a state within a time, `r' = ε s − λ r` with `λ = max(0, −∂ẏ/∂y)` of the state itself, is no
+//! bound of its error, which may grow or average out; but where it is no small part of the state, and more
+//! than the two runs differ by, no estimate is to be trusted.
 
 use crate::settings::CERTAINTY;
 use crate::{Doubt, Motion};

@@ -1,4 +1,5 @@
-//! A file of lines that a run adds to and that goes on where it was cut off: tables of members, of points, logs.
+//! A file of lines that a run adds to and that goes on where it was cut off: tables of members, of points,
+//! logs.
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
