@@ -61,7 +61,8 @@ fn scales_change_no_motion() {
                             let apart = (there[i] * lengths[i] - here[i]).abs();
                             let size = here.iter().zip(&lengths).map(|(x, l)| x.abs() / l * lengths[i]);
                             let size = size.fold(0.0, f64::max);
-                            !(apart <= FACTOR * (own[i] + others[i] * lengths[i]) + ROUND_OFF * size)
+                            let is_near = apart <= FACTOR * (own[i] + others[i] * lengths[i]) + ROUND_OFF * size;
+                            !is_near
                         });
                         match far {
                             None => same += 1,

@@ -2,7 +2,7 @@
 
 use equations::Outputs;
 
-use crate::metric::subtract;
+use crate::metric::{larger, subtract};
 use crate::{Metric, Motion, Setting, SolveError};
 
 /// Instants at which it is taken.
@@ -226,9 +226,4 @@ fn worst(names: &[String], d: &[f64], sizes: &[f64], round_off: &[f64]) -> Optio
     // NaN of either sign is the worst
     let worst = each.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     worst.map(|(name, relative)| (name.clone(), relative))
-}
-
-/// The larger of the two; NaN stays.
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
 }

@@ -8,7 +8,7 @@ use integrate::{BoundaryError, ShootOptions, Shot, fit};
 use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, DVector};
 
-use crate::error_estimate::larger;
+use crate::metric::larger;
 use crate::{Metric, Motion, Prepared, Setting, Settings, SolveError, TIGHTER, solve};
 
 /// Instants at which the sum of squares is taken.

@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use integrate::find_root;
 
-use crate::error_estimate::{larger, relative_to};
-use crate::metric::{Metric, subtract};
+use crate::error_estimate::relative_to;
+use crate::metric::{Metric, larger, subtract};
 use crate::{CERTAINTY, Ending, Motion, SolveError};
 
 /// The difference of one coordinate has to be this many times the limit that *same* asks for to count as a

@@ -4,8 +4,6 @@ use mechanics::System;
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use symbolic::{CompileError, Evaluator, Symbol};
 
-use crate::error_estimate::larger;
-
 /// The length `sqrt(Δqᵀ |M| Δq)` with `M = ∂²L/∂v²`, and the constraint residuals, at a point of a motion.
 ///
 /// `|M|` has the eigenvalues of `M` without their signs: it is `M` where that is positive semidefinite, and
@@ -153,6 +151,11 @@ fn absolute_root(mass: &DMatrix<f64>) -> DMatrix<f64> {
 /// `None` for a matrix that is not finite, in which no iteration would end.
 fn eigen(mass: &DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
     mass.iter().all(|x| x.is_finite()).then(|| mass.clone().symmetric_eigen())
+}
+
+/// The larger of the two; NaN stays.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
 }
 
 pub(crate) fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {

@@ -5,8 +5,7 @@ use equations::{Named, Outputs};
 use mechanics::System;
 use symbolic::{Bounded, CompileError, Evaluator, Scalar, Symbol};
 
-use crate::error_estimate::larger;
-use crate::metric::subtract;
+use crate::metric::{larger, subtract};
 use crate::settings::CERTAINTY;
 
 /// A drift under this part of the terms of an invariant is round-off.
