@@ -5,9 +5,10 @@ use serde_json::{Map, Value, json};
 
 /// JSON Schema, draft 2020-12.
 pub(crate) fn schema() -> Value {
-    let mut schema = table(SCENE);
-    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
-    schema["title"] = json!("deltaq scene");
+    let mut schema = json!({ "$schema": "https://json-schema.org/draft/2020-12/schema", "title": "deltaq scene" });
+    if let (Value::Object(schema), Value::Object(table)) = (&mut schema, table(SCENE)) {
+        schema.extend(table);
+    }
     schema
 }
 
