@@ -9,8 +9,8 @@ use scene::Scene;
 
 use crate::arrays::fixed;
 use crate::errors;
+use crate::kept::kept;
 use crate::motion::{Asked, Motion, Sampled};
-use crate::results::kept;
 use crate::system::System;
 
 /// How a gap grows near the start: gap = length * (t - t0)**exponent.

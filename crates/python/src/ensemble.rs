@@ -12,7 +12,7 @@ use scene::Scene;
 
 use crate::arguments::{multiplier, spelt_name};
 use crate::arrays::{Floats, fixed, list, within};
-use crate::results::kept;
+use crate::kept::kept;
 use crate::system::System;
 
 /// What varies over the members of an ensemble: names, each with as many values as there are members.

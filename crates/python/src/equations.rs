@@ -16,8 +16,8 @@ use pyo3::types::PyDict;
 use scene::Scene;
 
 use crate::arrays::{Array, Floats, States, array, fixed, list, within};
+use crate::kept::{Reduced, kept};
 use crate::motion::{Names, Outputs, observed, work};
-use crate::results::{Reduced, kept};
 use crate::system::System;
 use crate::{arguments, background, ensemble, errors};
 

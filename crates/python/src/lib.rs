@@ -3,6 +3,7 @@
 //! Nothing is derived, integrated or decided here: arguments are read, the facade is called, arrays are
 //! handed back. What integrates runs on a thread of its own without Python's lock ([`background`]).
 
+mod again;
 mod arguments;
 mod arrays;
 mod background;
@@ -10,17 +11,19 @@ mod comparison;
 mod ensemble;
 mod equations;
 mod errors;
+mod kept;
 mod linearization;
 mod motion;
 mod proof;
 mod questions;
 mod reading;
-mod results;
 mod scene_text;
 mod system;
 
 #[pyo3::pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::again::_again;
     #[pymodule_export]
     use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
     #[pymodule_export]
@@ -38,8 +41,6 @@ mod _native {
     use crate::motion::{Motion, Outputs};
     #[pymodule_export]
     use crate::reading::{_read_again, load, parse};
-    #[pymodule_export]
-    use crate::results::_again;
     #[pymodule_export]
     use crate::system::{State, System};
 

@@ -13,7 +13,7 @@ use pyo3::types::{IntoPyDict, PyDict};
 use crate::arguments::rule_value;
 use crate::arrays::{Floats, columns, fixed, times, within};
 use crate::errors;
-use crate::results::kept;
+use crate::kept::kept;
 use crate::system::System;
 
 /// Coordinates, velocities, multipliers and invariants at one instant, or at k of them.

@@ -13,7 +13,7 @@ use scene::Scene;
 use crate::arguments::spelt;
 use crate::arrays::{Array, Floats, Points, array, fixed};
 use crate::errors;
-use crate::results::kept;
+use crate::kept::kept;
 use crate::scene_text::{Arguments, Formula, Formulas, write};
 
 /// A point of a motion: time, coordinates, velocities.

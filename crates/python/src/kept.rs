@@ -2,23 +2,15 @@
 
 use numpy::PyUntypedArray;
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
-
-use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
-use crate::ensemble::Ensemble;
-use crate::equations::Trajectory;
-use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
-use crate::motion::{Motion, Outputs};
-use crate::system::State;
+use pyo3::types::PyDict;
 
 /// `__reduce__` of a class by its fields, and the way back; what is no field follows with its value.
 macro_rules! kept {
     ($class:ident: $($field:ident)* $(, $own:ident = $value:expr)*) => {
         #[pyo3::pymethods]
         impl $class {
-            fn __reduce__<'py>(slf: &pyo3::Bound<'py, Self>) -> pyo3::PyResult<$crate::results::Reduced<'py>> {
+            fn __reduce__<'py>(slf: &pyo3::Bound<'py, Self>) -> pyo3::PyResult<$crate::kept::Reduced<'py>> {
                 use pyo3::types::{PyAnyMethods, PyDictMethods};
                 let state = pyo3::types::PyDict::new(slf.py());
                 $( state.set_item(stringify!($field), slf.getattr(stringify!($field))?)?; )*
@@ -27,10 +19,10 @@ macro_rules! kept {
             }
         }
 
-        impl $crate::results::Kept for $class {
+        impl $crate::kept::Kept for $class {
             fn again(state: &pyo3::Bound<'_, pyo3::types::PyDict>) -> pyo3::PyResult<Self> {
                 Ok($class {
-                    $($field: $crate::results::field(state, stringify!($field))?,)*
+                    $($field: $crate::kept::field(state, stringify!($field))?,)*
                     $($own: $value,)*
                 })
             }
@@ -63,30 +55,4 @@ fn fix(value: &Bound<'_, PyAny>) -> PyResult<()> {
         value.getattr("flags")?.setattr("writeable", false)?;
     }
     Ok(())
-}
-
-/// Equations are derived again.
-fn equations_again<'py>(state: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
-    let arguments = state.copy()?;
-    let system: Bound<'py, PyAny> = field(&arguments, "system")?;
-    arguments.del_item("system")?;
-    system.call_method("equations", (), Some(&arguments))
-}
-
-/// What a pickled or copied result is made from.
-#[pyfunction]
-pub(crate) fn _again<'py>(name: &Bound<'py, PyString>, state: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
-    macro_rules! among {
-        ($($class:ident)*) => {
-            match &*name.to_cow()? {
-                "Equations" => equations_again(state),
-                $(stringify!($class) => Ok(Bound::new(name.py(), $class::again(state)?)?.into_any()),)*
-                other => Err(PyTypeError::new_err(format!("no result is of the class {other}"))),
-            }
-        };
-    }
-    among!(
-        Comparison Decided Ensemble Fit Growth LeadingTerm Linearization LinearizationSweep Motion Outputs Pair Run
-        StabilityChange State Trajectory
-    )
 }

@@ -1,0 +1,39 @@
+//! What is made again from a pickle or a copy.
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::comparison::{Comparison, Decided, Fit, Growth, LeadingTerm, Pair, Run};
+use crate::ensemble::Ensemble;
+use crate::equations::Trajectory;
+use crate::kept::{Kept, field};
+use crate::linearization::{Linearization, LinearizationSweep, StabilityChange};
+use crate::motion::{Motion, Outputs};
+use crate::system::State;
+
+/// Equations are derived again.
+fn equations_again<'py>(state: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+    let arguments = state.copy()?;
+    let system: Bound<'py, PyAny> = field(&arguments, "system")?;
+    arguments.del_item("system")?;
+    system.call_method("equations", (), Some(&arguments))
+}
+
+/// What a pickled or copied result is made from.
+#[pyfunction]
+pub(crate) fn _again<'py>(name: &Bound<'py, PyString>, state: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+    macro_rules! among {
+        ($($class:ident)*) => {
+            match &*name.to_cow()? {
+                "Equations" => equations_again(state),
+                $(stringify!($class) => Ok(Bound::new(name.py(), $class::again(state)?)?.into_any()),)*
+                other => Err(PyTypeError::new_err(format!("no result is of the class {other}"))),
+            }
+        };
+    }
+    among!(
+        Comparison Decided Ensemble Fit Growth LeadingTerm Linearization LinearizationSweep Motion Outputs Pair Run
+        StabilityChange State Trajectory
+    )
+}
