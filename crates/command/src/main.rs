@@ -23,6 +23,7 @@ mod stability_command;
 mod sweep_command;
 mod watch;
 
+use std::borrow::Cow;
 use std::io::{self, ErrorKind, IsTerminal};
 use std::process::ExitCode;
 
@@ -49,7 +50,7 @@ fn main() -> ExitCode {
             return print_as_is(&help).map_or_else(|error| failed(&error), |_| ExitCode::SUCCESS);
         }
         // it names what was asked for
-        Err(error) if plain(&error.to_string()) != error.to_string() => {
+        Err(error) if matches!(plain(&error.to_string()), Cow::Owned(_)) => {
             complain(error.to_string().trim_end());
             return ExitCode::from(2);
         }

@@ -1,7 +1,7 @@
 //! `deltaq prove`.
 
 use anyhow::Result;
-use deltaq::{Contradicted, PlainScene, certificate, membership};
+use deltaq::{PlainScene, certificate, holds_beside_numbers, membership};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -20,12 +20,7 @@ pub fn run(arguments: &ProveArguments) -> Result<Answer> {
     let reason = match certificate(&scene, *almost_every)? {
         Err(reason) => reason,
         Ok(certificate) => {
-            // the numbers share little with the proof, and have no say but against it
-            if let Ok(Some(found)) = membership(&scene, scene.start.t + scene.duration)
-                && let Some(found) = found.contradiction()
-            {
-                return Err(Contradicted(vec![format!("{}: {found}", scene.name)]).into());
-            }
+            holds_beside_numbers(&scene)?;
             let order = certificate.order;
             let plain = sorted(plain(certificate.scene));
             let digest = digest(&plain);

@@ -6,9 +6,10 @@
 use std::fmt::{self, Display, Formatter};
 
 use decision::{Finding, Verdict as Floating};
+use scene::Scene;
 
 use crate::runs::{Decided, Pair};
-use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, formulation};
+use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, formulation, membership};
 
 /// Two results that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,6 +33,17 @@ pub(crate) const FAULT: &str = "This is a fault of the program: please report it
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("results contradict each other. {FAULT}{}", .0.iter().map(|found| format!("\n  {found}")).collect::<String>())]
 pub struct Contradicted(pub Vec<String>);
+
+/// What is computed in numbers shares little with a certificate ([`crate::certificate`]), and has no say but
+/// against it.
+///
+/// # Errors
+/// [`Contradicted`], with the name of the scene.
+pub fn holds_beside_numbers(scene: &Scene) -> Result<(), Contradicted> {
+    let numbers = membership(scene, scene.start.t + scene.duration).ok().flatten();
+    let found = numbers.and_then(|found| found.contradiction());
+    found.map_or(Ok(()), |found| Err(Contradicted(vec![format!("{}: {found}", scene.name)])))
+}
 
 fn contradiction(one: impl Into<String>, other: impl Into<String>) -> Contradiction {
     Contradiction { one: one.into(), other: other.into() }

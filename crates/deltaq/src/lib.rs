@@ -112,7 +112,7 @@ pub use choice::{
 pub use code::code;
 pub use comparison::{Comparison, Extent, compare, compare_unfitted};
 pub use constants::{constant_names, prepare};
-pub use contradiction::{Contradicted, Contradiction};
+pub use contradiction::{Contradicted, Contradiction, holds_beside_numbers};
 pub use doubt::Doubt;
 pub use ending::Ending;
 pub use ensemble::{

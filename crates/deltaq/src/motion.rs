@@ -143,11 +143,11 @@ impl Motion {
         Some((y, terms))
     }
 
-    /// `−∂ẏ_i/∂y_i` at `(t, y)` where it is positive and no round-off, or else 0; states have these sizes.
-    pub(crate) fn decay_of_states(&mut self, t: f64, y: &[f64], sizes: &[f64]) -> Option<Vec<f64>> {
+    /// `−∂ẏ_i/∂y_i` at `(t, y)` where it is positive and no round-off, or else 0; states have these sizes, and
+    /// so much is added up to their rates.
+    pub(crate) fn decay_of_states(&mut self, t: f64, y: &[f64], sizes: &[f64], terms: &[f64]) -> Option<Vec<f64>> {
         let direction = (self.end() - self.start()).signum();
         let (mut here, mut there) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-        let terms = self.compiled.terms_of_rates(t, y).ok()?;
         self.compiled.rates(t, y, &mut here).ok()?;
         let mut decay = vec![0.0; y.len()];
         for i in 0..y.len() {

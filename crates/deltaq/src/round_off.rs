@@ -26,8 +26,8 @@ impl Motion {
         let length = (self.end() - self.start()).abs();
         let sizes = self.sizes_of(&looked);
         let is_small = |terms: &Vec<f64>| {
-            let parts = terms.iter().zip(&sizes);
-            parts.into_iter().all(|(terms, size)| BETWEEN * f64::EPSILON * terms * length <= TOLD * size)
+            let mut parts = terms.iter().zip(&sizes);
+            parts.all(|(terms, size)| BETWEEN * f64::EPSILON * terms * length <= TOLD * size)
         };
         if looked.iter().all(|(_, _, terms)| is_small(terms)) {
             return None;
@@ -39,7 +39,7 @@ impl Motion {
         for pair in looked.windows(2) {
             let [(before, _, first), (t, kept, second)] = pair else { continue };
             let looser = self.looser_state(*t)?;
-            let decay = self.decay_of_states(*t, kept, &sizes)?;
+            let decay = self.decay_of_states(*t, kept, &sizes, second)?;
             let time = (t - before).abs();
             for i in 0..sizes.len() {
                 let held = if decay[i] > 0.0 { -(-decay[i] * time).exp_m1() / decay[i] } else { time };

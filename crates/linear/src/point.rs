@@ -107,12 +107,20 @@ impl Point {
         let mut coupled = DMatrix::from_element(n, n, false);
         for apart in APART.iter().flat_map(|apart| [apart; SAMPLES]) {
             let y: Vec<f64> = self.y.iter().map(|x| x + apart * x.abs().max(1.0) * random.number()).collect();
-            let found = self.jacobian(&y).and_then(|jacobian| Ok((self.noise(&y, &jacobian)?, jacobian)));
-            let Ok((noise, jacobian)) = found else { continue };
+            let Ok(jacobian) = self.jacobian(&y) else { continue };
             let largest = |i: usize, j: usize| jacobian.row(i).amax().max(jacobian.column(j).amax());
-            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-                let limit = (INDEPENDENT * largest(i, j)).max(DIGITS * noise[(i, j)]);
-                coupled[(i, j)] |= jacobian[(i, j)].abs() > limit;
+            let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+            let is_new = |&(i, j): &(usize, usize)| {
+                !coupled[(i, j)] && jacobian[(i, j)].abs() > INDEPENDENT * largest(i, j)
+            };
+            let new: Vec<(usize, usize)> = entries.filter(is_new).collect();
+            // noise takes Jacobians of its own, and has a say in what is new only
+            if new.is_empty() {
+                continue;
+            }
+            let Ok(noise) = self.noise(&y, &jacobian) else { continue };
+            for at in new {
+                coupled[at] = jacobian[at].abs() > DIGITS * noise[at];
             }
         }
         Ok(coupled)

@@ -1,6 +1,6 @@
 //! Certificates that no constants make the vakonomic motion Chetaev's.
 
-use deltaq::{Contradicted, PlainScene, certificate, membership};
+use deltaq::{PlainScene, certificate, holds_beside_numbers};
 use integrate::Interrupt;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -21,15 +21,11 @@ impl System {
         let (scene, interrupt) = (self.scene().clone(), Interrupt::default());
         let work = move || -> Result<_, deltaq::SolveError> {
             let found = certificate(&scene, almost_every_start)?;
-            // the numbers share little with the proof, and have no say but against it
-            let numbers = if found.is_ok() { membership(&scene, scene.start.t + scene.duration) } else { Ok(None) };
-            let against = numbers.ok().flatten().and_then(|found| found.contradiction().map(|words| words.to_string()));
-            Ok((found, against.map(|words| format!("{}: {words}", scene.name))))
+            let sound = if found.is_ok() { holds_beside_numbers(&scene) } else { Ok(()) };
+            Ok((found, sound))
         };
-        let (found, against) = background::run(py, &interrupt, work)?.map_err(errors::solve)?;
-        if let Some(words) = against {
-            return Err(errors::DeltaqError::new_err(Contradicted(vec![words]).to_string()));
-        }
+        let (found, sound) = background::run(py, &interrupt, work)?.map_err(errors::solve)?;
+        sound.map_err(|contradicted| errors::DeltaqError::new_err(contradicted.to_string()))?;
         let found = match found {
             Err(reason) => return Ok((None, Some(reason))),
             Ok(found) => found,

@@ -98,7 +98,8 @@ pub struct Allowance {
     /// begins nobody asks for more.
     pub asked: f64,
     /// Time up to which the motion was asked for. One that stops before goes as far as its way up to there
-    /// in proportion: tolerances are parts of sizes that states have within the whole run.
+    /// in proportion, but for [`TRUSTED`] of its own way at most: tolerances are parts of sizes that states
+    /// have within the whole run.
     pub end: f64,
     /// So many coordinates, the first ones, are compared.
     pub compared: usize,
@@ -147,7 +148,8 @@ pub fn judge(
     }
     let doubt = motion.doubt.as_ref().map(|doubt| &doubt.because[..]);
     let reached = (motion.end() - motion.start()) / (allowance.end - motion.start());
-    let allowance = Allowance { asked: allowance.asked / reached.clamp(f64::MIN_POSITIVE, 1.0), ..allowance };
+    let asked = allowance.asked / reached.clamp(f64::MIN_POSITIVE, 1.0);
+    let allowance = Allowance { asked: asked.min(TRUSTED.max(allowance.asked)), ..allowance };
     let word = |samples: &Vec<Sample>| verdict(samples, &motion.ending, doubt, allowance);
     let worse = |a: Verdict, b: Verdict| if b.badness() > a.badness() { b } else { a };
     Ok(samples[1..].iter().map(word).fold(word(&samples[0]), worse))

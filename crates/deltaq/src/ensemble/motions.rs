@@ -213,7 +213,7 @@ impl Reader<'_> {
         self.watch.begin(member.t, &start, parameters);
         let mut differences = Differences::from(self.names, self.multipliers, &start.coordinates);
         let mut read = Vec::with_capacity(run.states.len());
-        let mut is_clear = true;
+        let (mut is_clear, mut sizes) = (true, Vec::new());
         for (i, (&(t, asked), y)) in self.instants.iter().zip(&run.states).enumerate() {
             let now = self.at(run, i, t, y);
             let now = if asked {
@@ -223,7 +223,7 @@ impl Reader<'_> {
             } else {
                 continue;
             };
-            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, t, y);
+            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, &mut sizes, t, y);
             is_clear &= !options.estimate || self.watch.is_clear(t, &now, &mut terms);
             if !asked {
                 continue;
@@ -250,11 +250,11 @@ impl Reader<'_> {
 
     /// Where something is off by more than the two runs leave open.
     fn broken(&mut self, member: &EnsembleMember, run: &MemberRun) -> Option<Doubt> {
-        let mut from = member.t;
+        let (mut from, mut sizes) = (member.t, Vec::new());
         for (i, (&(t, _), y)) in self.instants.iter().zip(&run.states).enumerate() {
             let kept = self.at(run, i, t, y).ok()?;
             let looser = outputs(&mut self.compiled, t, &subtract(y, run.differences.get(i)?)).ok()?;
-            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, t, y);
+            let mut terms = || terms(&mut self.compiled, &mut self.metric, member, &mut sizes, t, y);
             if let Some(because) = self.watch.complaint(t, [&kept, &looser], self.invariants, &mut terms) {
                 return Some(Doubt { from, because });
             }
@@ -264,7 +264,17 @@ impl Reader<'_> {
     }
 }
 
-fn terms(compiled: &mut Compiled, metric: &mut Metric, member: &EnsembleMember, t: f64, y: &[f64]) -> Option<Vec<f64>> {
-    let sizes = sizes(compiled, metric, member.t, &member.y, member.end - member.t);
-    terms_of_invariants(compiled, t, y, &sizes)
+/// `sizes` are those of the member's states, once they are asked for.
+fn terms(
+    compiled: &mut Compiled,
+    metric: &mut Metric,
+    member: &EnsembleMember,
+    sizes: &mut Vec<f64>,
+    t: f64,
+    y: &[f64],
+) -> Option<Vec<f64>> {
+    if sizes.is_empty() {
+        *sizes = self::sizes(compiled, metric, member.t, &member.y, member.end - member.t);
+    }
+    terms_of_invariants(compiled, t, y, sizes)
 }
