@@ -223,7 +223,8 @@ impl<'a> Transport<'a> {
         Ok(())
     }
 
-    /// What adds up in `Δz`: `|J⁻¹| (‖J‖ |Δz| + ‖R_η‖ |η| + ‖R₀‖)`, by column; `‖·‖` sums all terms.
+    /// What adds up in `Δz`: `|J⁻¹| ((‖J‖ + |L| |U|) |Δz| + ‖R_η‖ |η| + ‖R₀‖)`, by column; `‖·‖` sums all terms.
+    /// Elimination, `J = L U` with rows in another order, adds up more than `J` where rows are nearly dependent.
     fn terms(&mut self, columns: &DMatrix<f64>, solved: &DMatrix<f64>) -> DMatrix<f64> {
         let shape = &self.family.shape;
         let (size, k, last) = (shape.unknowns, shape.costates, shape.constants);
@@ -247,6 +248,11 @@ impl<'a> Transport<'a> {
         let matrix = shape.instant(&self.values).matrix;
         let scaled = DMatrix::from_fn(size, size, |r, z| residuals[r] * matrix[r * size + z] * unknowns[z]);
         right.row_iter_mut().zip(residuals).for_each(|(mut row, factor)| row *= *factor);
+        let upper = DMatrix::from_row_slice(size, size, &self.matrix).upper_triangle();
+        if let Some(lower) = upper.tr_solve_upper_triangular(&scaled.transpose()) {
+            let own = DMatrix::from_fn(size, solved.ncols(), |z, c| (solved[(z, c)] / unknowns[z]).abs());
+            right += lower.transpose().abs() * (upper.abs() * own);
+        }
         let mut terms = scaled.try_inverse().map_or(right.clone(), |inverse| inverse.abs() * right);
         terms.row_iter_mut().zip(unknowns).for_each(|(mut row, scale)| row *= *scale);
         terms
