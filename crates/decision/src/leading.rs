@@ -26,9 +26,11 @@ pub struct LeadingDifference {
     pub exponent: usize,
     /// `y_k / ((k + 1)(k + 2))`, length n.
     pub coefficient: Vec<f64>,
-    /// The time after which a later term of `y` is longer than this one, by `M`; 0 where that tells no
+    /// The time after which a later term of `y` may be longer than this one, by `M`; 0 where that tells no
     /// length.
     pub reach: f64,
+    /// The time up to which a lower term, lost in its round-off, may be longer; 0 where all are zero.
+    pub from: f64,
     /// Whether the exponent is that of the numbers as written: the image of its coefficient is not zero, and
     /// those of all lower ones are zero in two fields.
     pub exact: bool,
@@ -36,7 +38,7 @@ pub struct LeadingDifference {
 
 impl Question<'_> {
     /// The leading term for the family's motion from `state` with `constants`; `None` if no coefficient up to
-    /// the twelfth stands out from its round-off, or none is there. An exact start gives an exact exponent,
+    /// the twelfth stands out from its round-off, or leads at any time, or none is there. An exact start gives an exact exponent,
     /// `constants` being decimals as written.
     pub fn leading_difference(
         &self,
@@ -58,11 +60,21 @@ impl Question<'_> {
         let coefficient = term(order);
         let values = |x: &[Bounded]| x.iter().map(|x| x.value).collect::<Vec<f64>>();
         let root = root_of_mass(coefficient.len(), &values(&series.mass), &values(&series.jacobian));
-        let reach = root.map_or(0.0, |root| {
-            let size = |x: &[f64]| (&root * DVector::from_column_slice(x)).norm();
-            let meets = |k: usize| (size(&coefficient) / size(&term(k))).powf(1.0 / (k - order) as f64);
-            (order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min)
+        let (reach, from) = root.map_or((0.0, f64::INFINITY), |root| {
+            let own = (&root * DVector::from_column_slice(&coefficient)).norm();
+            // what round-off may hide counts
+            let most = |k: usize| {
+                let over = ((k + 1) * (k + 2)) as f64;
+                let most = mismatch(k).map(|y| (y.value.abs() + y.round_off()) / over);
+                (root.abs() * DVector::from_iterator(coefficient.len(), most)).norm()
+            };
+            let meets = |k: usize| (own / most(k)).powf(1.0 / (k as f64 - order as f64));
+            let lower = if proved == Some(Some(order)) { 0..0 } else { 0..order };
+            ((order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min), lower.map(meets).fold(0.0, f64::max))
         });
+        if from >= reach && from > 0.0 {
+            return None;
+        }
         // removal parameters have no series among these inputs, and nonlinear constraints no such removal
         let coefficient = match self.family().lift {
             Some(_) => coefficient,
@@ -74,7 +86,8 @@ impl Question<'_> {
                 accelerations.into_iter().map(|x| x / ((order + 1) * (order + 2)) as f64).collect()
             }
         };
-        Some(LeadingDifference { exponent: order + 2, coefficient, reach, exact: proved == Some(Some(order)) })
+        let exact = proved == Some(Some(order));
+        Some(LeadingDifference { exponent: order + 2, coefficient, reach, from, exact })
     }
 
     /// The least mismatch `(∫ |y|²_M dt)^{1/2}` over all constants by the Taylor series at `state`, over that

@@ -188,12 +188,14 @@ impl Comparison {
 fn stands_out(predicted: &LeadingTerm, pair: &Pair, start: f64) -> bool {
     pair.gap.points.iter().any(|point| {
         let past = point.t - start;
-        past < LEADS * predicted.reach && predicted.length * past.powi(predicted.exponent as i32) > 2.0 * point.limit
+        let leads = predicted.from < LEADS * past && past < LEADS * predicted.reach;
+        leads && predicted.length * past.powi(predicted.exponent as i32) > 2.0 * point.limit
     })
 }
 
 fn is_another(growth: &Growth, predicted: &LeadingTerm) -> bool {
     growth.uncertainty < ACCURATE
+        && predicted.from < LEADS * growth.from
         && growth.to < LEADS * predicted.reach
         && (growth.exponent - f64::from(predicted.exponent)).abs() > ANOTHER
 }

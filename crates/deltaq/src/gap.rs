@@ -151,6 +151,7 @@ pub fn compare_motions_by(
     let mut largest_length = 0.0_f64;
     let (mut own, mut sizes, mut imprecise, mut indefinite) = (vec![0.0_f64; n], vec![0.0_f64; n], None, false);
     let mut read = t0;
+    let shared = [first.terms_of_coordinates_along(), second.terms_of_coordinates_along()];
     for t in sample_times(t0, end, sampling.instants) {
         let readings = (first.at_with_difference(t), second.at_with_difference(sampling.clock(t)));
         let ((one, first_error), (two, second_error)) = match readings {
@@ -170,13 +171,16 @@ pub fn compare_motions_by(
         scale = larger(scale, metric.distance(t, q, v, &origin.coordinates));
         largest_length = largest_length.max(metric.length(t, q, v, q)).max(metric.length(t, q, v, v) * (t - t0).abs());
         let doubted = [(&*first, t), (&*second, sampling.clock(t))].into_iter().any(|(motion, t)| motion.is_doubted(t));
-        let limit = |estimate: f64, size: f64| {
-            if doubted { f64::INFINITY } else { CERTAINTY * (estimate + ROUND_OFF * size) }
+        let limit = |estimate: f64, size: f64, added: f64| {
+            let round_off = (ROUND_OFF * size).max(f64::EPSILON * added);
+            if doubted { f64::INFINITY } else { CERTAINTY * (estimate + round_off) }
         };
         for i in 0..n {
             own[i] = larger(own[i], first_error[i].abs() + second_error[i].abs());
             sizes[i] = sizes[i].max(q[i].abs()).max((v[i] * (t - t0)).abs());
         }
+        let added = |i: usize| up_to(&shared[0], i, t).max(up_to(&shared[1], i, sampling.clock(t)));
+        let added: Vec<f64> = (0..n).map(added).collect();
         let (inertia, negative) = metric.inertia(t, q, v);
         indefinite |= negative;
         let round_off_sizes = metric.round_off_sizes(&inertia, &sizes, largest_length);
@@ -185,9 +189,9 @@ pub fn compare_motions_by(
             .map(|i| (own[i] / size(i), i))
             .filter(|(part, _)| part.is_nan() || *part >= SAME_ESTIMATE)
             .max_by(by_part);
-        coordinates
-            .push((0..n).map(|i| Difference { by: difference[i].abs(), limit: limit(own[i], size(i)) }).collect());
-        let limit = limit(estimates[0] + estimates[1], largest_length);
+        let of_coordinate = |i: usize| Difference { by: difference[i].abs(), limit: limit(own[i], size(i), added[i]) };
+        coordinates.push((0..n).map(of_coordinate).collect());
+        let limit = limit(estimates[0] + estimates[1], largest_length, metric.length(t, q, v, &added));
         points.push(GapPoint { t, gap: metric.length(t, q, v, &difference), limit, certain: false });
     }
     if sampling.rate < 0.0 {
@@ -271,6 +275,13 @@ pub fn compare_motions_by(
         scale,
         points,
     })
+}
+
+/// How much has been added up to coordinate `i` at `t`, straight between the times at which that is known.
+fn up_to(terms: &[(f64, Vec<f64>)], i: usize, t: f64) -> f64 {
+    let has_begun = |ends: &&[(f64, Vec<f64>)]| (t - ends[0].0) * (ends[1].0 - ends[0].0) >= 0.0;
+    let Some([(a, first), (b, last)]) = terms.windows(2).take_while(has_begun).last() else { return 0.0 };
+    first[i] + ((t - a) / (b - a)).min(1.0) * (last[i] - first[i])
 }
 
 /// The difference of a coordinate at an instant, and what it has to pass.

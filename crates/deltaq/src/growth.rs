@@ -37,7 +37,10 @@ pub struct LeadingTerm {
     pub coefficient: Vec<f64>,
     /// Its kinetic length.
     pub length: f64,
-    /// The time after which a later term makes more of the difference than this one.
+    /// The time up to which a lower term may make more of the difference, lost in its round-off; 0 where all
+    /// lower ones are zero.
+    pub from: f64,
+    /// The time after which a later term may make more of the difference than this one.
     pub reach: f64,
     /// Whether it is proved in exact numbers that this term is the first one: then the motions differ.
     pub proved: bool,

@@ -187,7 +187,8 @@ impl<'a> Pairing<'a> {
         let Some(term) = question.leading_difference(system, start, Some(&exact), constants) else { return Ok(None) };
         let length = Metric::new(system)?.length(start.t, &start.q, &start.v, &term.coefficient);
         let exponent = term.exponent as u32;
-        Ok(Some(LeadingTerm { exponent, coefficient: term.coefficient, length, reach: term.reach, proved: term.exact }))
+        let (from, reach, proved) = (term.from, term.reach, term.exact);
+        Ok(Some(LeadingTerm { exponent, coefficient: term.coefficient, length, from, reach, proved }))
     }
 
     /// The least mismatch over all constants by Taylor series at the start; no more than that up to `end`.

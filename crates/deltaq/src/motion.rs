@@ -177,6 +177,11 @@ impl Motion {
         self.compiled.terms_of_multipliers(self.start(), t, &y).ok()
     }
 
+    /// How much is added up to each coordinate at `t`, where that came to `states` of the states.
+    pub(crate) fn terms_of_coordinates(&mut self, t: f64, y: &[f64], states: &[f64]) -> Option<Vec<f64>> {
+        self.compiled.terms_of_coordinates(t, y, states).ok()
+    }
+
     /// Name, value at the start and largest deviation from it at `times`, of each invariant.
     ///
     /// # Errors

@@ -60,6 +60,24 @@ impl Motion {
         None
     }
 
+    /// How much has been added up to each coordinate since the start at a few times: no difference under round-off
+    /// of that says that motions differ. Nothing where it cannot be told.
+    pub(crate) fn terms_of_coordinates_along(&mut self) -> Vec<(f64, Vec<f64>)> {
+        let looked = self.terms_along(FEW);
+        let mut sums = vec![0.0; self.equations.states.len()];
+        let mut found = Vec::with_capacity(looked.len());
+        for (i, (t, y, terms)) in looked.iter().enumerate() {
+            if let Some((before, _, first)) = i.checked_sub(1).map(|i| &looked[i]) {
+                let both = first.iter().zip(terms).map(|(a, b)| 0.5 * (a + b) * (t - before).abs());
+                sums.iter_mut().zip(both).for_each(|(sum, part)| *sum += part);
+            }
+            let states: Vec<f64> = sums.iter().zip(y).map(|(sum, y)| sum + y.abs()).collect();
+            let Some(terms) = self.terms_of_coordinates(*t, y, &states) else { break };
+            found.push((*t, terms));
+        }
+        found
+    }
+
     /// Time, states and what is added up to their rates at equidistant instants, as far as that can be told.
     /// An infinite slope tells nothing.
     fn terms_along(&mut self, stretches: usize) -> Vec<(f64, Vec<f64>, Vec<f64>)> {

@@ -38,10 +38,23 @@ impl Compiled {
     pub fn terms_of_multipliers(&mut self, begin: f64, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         let rates = self.terms_of_rates(t, y)?;
         let states: Vec<f64> = y.iter().zip(rates).map(|(y, term)| y.abs() + term * (t - begin).abs()).collect();
-        let inputs = self.in_terms(t, y, &states)?;
-        let values = in_terms(&self.outputs, &inputs);
-        let multipliers = &values[2 * self.sizes.coordinates..][..self.sizes.multipliers];
-        Ok(multipliers.iter().map(|x| x.magnitude).collect())
+        let values = self.terms_of_outputs(t, y, &states)?;
+        Ok(values[2 * self.sizes.coordinates..][..self.sizes.multipliers].to_vec())
+    }
+
+    /// How much was added up to each coordinate at `(t, y)` whose states have come from sums of these sizes.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    pub fn terms_of_coordinates(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        let mut values = self.terms_of_outputs(t, y, states)?;
+        values.truncate(self.sizes.coordinates);
+        Ok(values)
+    }
+
+    fn terms_of_outputs(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        let inputs = self.in_terms(t, y, states)?;
+        Ok(in_terms(&self.outputs, &inputs).iter().map(|x| x.magnitude).collect())
     }
 
     /// `t, y, constants, z`, with what was added up to `y` and to `z`.

@@ -175,6 +175,17 @@ impl Case {
         self.same_by(theorem, claim, first, second, &Sampling::default());
     }
 
+    /// Whether two motions part by more than their errors and [`Case::floor`] leave open.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the first cannot be read off.
+    pub fn parts(&mut self, first: Which, second: &mut Motion, sampling: &Sampling) -> Result<bool, SolveError> {
+        let sampling = Sampling { instants: INSTANTS, ..*sampling };
+        let mut metric = self.metric.clone();
+        let gap = compare_motions_by(self.motion(first), second, &mut metric, &sampling)?;
+        Ok(finding(0, "", &gap, self.floor).word == Word::Fails)
+    }
+
     /// Notes whether two motions are the same, with clocks that differ.
     pub fn same_by(
         &mut self,

@@ -22,7 +22,8 @@ const COEFFICIENT: f64 = 1e-2;
 /// A predicted gap that does not reach this over the run says nothing: its growth cannot be measured.
 const VISIBLE: f64 = 1e-5;
 
-/// The growth is measured within this part of the time after which another term is the larger one.
+/// The growth is measured within this part of the time after which another term is the larger one, and after
+/// as many times that up to which one is.
 const WITHIN: f64 = 0.5;
 
 /// `q_vak − q_chet = y_k t^{k+2}/((k+1)(k+2))`, `y_k ≠ 0` first in the mismatch, for every `f`, `μ₀`.
@@ -44,8 +45,9 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     let claim = "the leading divergence is the predicted one";
     match growth(&mut case.vakonomic, &mut case.chetaev, &mut case.metric, &limit)? {
         None => case.found.undecided(5, claim, "the gap does not stand out from the errors near the start"),
-        Some(measured) if measured.to > WITHIN * predicted.reach => {
-            let note = format!("seen from t = {:.1e}, and leading until {:.1e}", measured.from, predicted.reach);
+        Some(measured) if measured.to > WITHIN * predicted.reach || predicted.from > WITHIN * measured.from => {
+            let leading = format!("leading from {:.1e} until {:.1e}", predicted.from, predicted.reach);
+            let note = format!("seen from t = {:.1e}, and {leading}", measured.from);
             case.found.undecided(5, claim, note);
         }
         Some(measured) if measured.uncertainty > UNCERTAIN => {

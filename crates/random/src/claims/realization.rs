@@ -1,6 +1,6 @@
 //! T8: what friction and added mass tend to, and the family between.
 
-use deltaq::Setting;
+use deltaq::{CERTAINTY, Metric, Motion, Setting, SolveError};
 
 use super::CheckError;
 use crate::case::{Which, equations};
@@ -17,6 +17,9 @@ const KAPPA: f64 = 1e1;
 const FEW: i32 = 3;
 /// Measured where the few have not shown it yet.
 const MORE: i32 = 4;
+
+/// Instants at which a motion's own error is asked for.
+const INSTANTS: usize = 20;
 
 /// What the distance must shrink by at last: ten, within this factor.
 const RATE: std::ops::RangeInclusive<f64> = 7.0..=14.0;
@@ -50,7 +53,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         judge(case, claim, what, |case, power| {
             let mut motion = realize(kind, STRENGTH * power, setting, &multipliers)?;
             let limit = if kind == Realization::Friction { &mut case.chetaev } else { &mut case.vakonomic };
-            Ok(distance(limit, &mut motion, &mut case.metric)?)
+            Ok([distance(limit, &mut motion, &mut case.metric)?, own_error(&mut motion, &mut case.metric)?])
         })?;
     }
     between(case)
@@ -69,22 +72,35 @@ fn between(case: &mut Case) -> Result<(), CheckError> {
         "kappa: distance at 100 over that at 1000",
         |case, power| {
             let mut motion = motion(case, KAPPA * power)?;
-            Ok(distance(&mut case.chetaev, &mut motion, &mut case.metric)?)
+            Ok([distance(&mut case.chetaev, &mut motion, &mut case.metric)?, own_error(&mut motion, &mut case.metric)?])
         },
     )
 }
 
-/// The last two distances must be about ten apart; `distance` is asked for at powers of ten.
+/// The largest difference of a motion's two runs, as a kinetic length.
+fn own_error(motion: &mut Motion, metric: &mut Metric) -> Result<f64, SolveError> {
+    let mut largest = 0.0_f64;
+    for t in motion.grid(INSTANTS) {
+        let (now, difference) = (motion.at(t)?, motion.difference_of_runs(t)?);
+        let n = now.coordinates.len();
+        largest = largest.max(metric.length(t, &now.coordinates, &now.velocities, &difference[..n]));
+    }
+    Ok(largest)
+}
+
+/// The last two distances must be about ten apart; `measured` gives distance and own error at powers of ten.
 fn judge(
     case: &mut Case,
     claim: &'static str,
     what: &'static str,
-    distance: impl Fn(&mut Case, f64) -> Result<f64, CheckError>,
+    measured: impl Fn(&mut Case, f64) -> Result<[f64; 2], CheckError>,
 ) -> Result<(), CheckError> {
     let mut distances = Vec::new();
-    let mut rate = f64::NAN;
+    let (mut rate, mut error) = (f64::NAN, 0.0_f64);
     for count in 1..=MORE {
-        distances.push(distance(case, 10_f64.powi(count - 1))?);
+        let [distance, own] = measured(case, 10_f64.powi(count - 1))?;
+        distances.push(distance);
+        error = error.max(own);
         if count < FEW {
             continue;
         }
@@ -93,6 +109,10 @@ fn judge(
             if count > FEW {
                 case.found.undecided(8, claim, "the motions come too close before they show a rate");
             }
+            return Ok(());
+        }
+        if before <= CERTAINTY * error {
+            case.found.undecided(8, claim, format!("distance {before:.1e}, own error {error:.1e}"));
             return Ok(());
         }
         rate = before / last;
