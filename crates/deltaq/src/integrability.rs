@@ -20,7 +20,7 @@ pub fn integrability(scene: &Scene) -> Result<Integrability, SolveError> {
         None => verdict,
         Some((0, depth)) => Integrability::Nonintegrable { depth },
         Some((integrals, _)) if integrals == constraints => Integrability::Integrable { exact: false },
-        Some((integrals, _)) => Integrability::PartlyIntegrable { integrals, constraints },
+        Some((integrals, _)) => Integrability::PartlyIntegrable { integrals, constraints, exact: false },
     })
 }
 

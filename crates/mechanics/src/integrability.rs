@@ -16,13 +16,14 @@ pub enum Integrability {
         /// Whether the brackets vanish by simplification; else ranks over a finite field say so.
         exact: bool,
     },
-    /// Some independent combinations of the constraints are total time derivatives, as far as points tell: no
-    /// more are.
+    /// Some independent combinations of the constraints are total time derivatives, and no more are.
     PartlyIntegrable {
         /// Number of integrable combinations.
         integrals: usize,
         /// Number of constraints.
         constraints: usize,
+        /// Whether all further brackets vanish by simplification; else ranks over a finite field say so.
+        exact: bool,
     },
     /// No combination of the constraints is integrable: every configuration can be reached.
     Nonintegrable {
@@ -71,11 +72,11 @@ impl std::fmt::Display for Integrability {
             Integrability::Unconstrained => write!(f, "no constraint"),
             Integrability::Integrable { exact: true } => write!(f, "integrable (brackets vanish identically)"),
             Integrability::Integrable { exact: false } => write!(f, "integrable (by ranks over a finite field)"),
-            Integrability::PartlyIntegrable { integrals, constraints } => {
+            Integrability::PartlyIntegrable { integrals, constraints, exact } => {
+                let by = if *exact { "further brackets vanish identically" } else { "by ranks over a finite field" };
                 write!(
                     f,
-                    "partly integrable: {integrals} of {constraints} constraints are integrable combinations at the \
-                     points tried, and nowhere more"
+                    "partly integrable: {integrals} of {constraints} constraints are integrable combinations ({by})"
                 )
             }
             Integrability::Nonintegrable { depth } => {
@@ -104,7 +105,8 @@ impl std::fmt::Display for Integrability {
 /// depends on time or `b ≠ 0`). Brackets `[X, Y] = Y_x X − X_x Y` are added until the rank stays; what it
 /// lacks is the number of integrals. Fields are differentiated exactly. Ranks are taken at points round
 /// `state` and the way up to `end`, in the scene's own sizes: a rank there is certain, and what adds none may
-/// do so elsewhere. So *integrable* is said only where every bracket vanishes by simplification.
+/// do so elsewhere, or be lost in round-off. So *integrable*, and *partly*, are said only where every further
+/// bracket vanishes by simplification.
 ///
 /// # Errors
 /// [`RemovalError::Dependent`] where `A` has no full row rank at `state`.
@@ -192,9 +194,7 @@ pub fn integrability(system: &System, state: &State, end: f64) -> Result<Integra
     Ok(match open {
         _ if integrals == 0 => Integrability::Nonintegrable { depth },
         None if integrals == h => Integrability::Integrable { exact: true },
-        Some(Undecided::AtPoints) | None if integrals < h => {
-            Integrability::PartlyIntegrable { integrals, constraints: h }
-        }
-        open => return undecided(open.unwrap_or(Undecided::AtPoints), depth, integrals),
+        None => Integrability::PartlyIntegrable { integrals, constraints: h, exact: true },
+        Some(why) => return undecided(why, depth, integrals),
     })
 }
