@@ -9,4 +9,5 @@ mod estimates;
 mod forms;
 mod generator;
 mod invariants;
+mod once_wrong;
 mod support;
