@@ -218,9 +218,9 @@ impl Number {
 
     /// A decimal literal such as `9.81` or `1e-3`; `None` where it is beyond the range of `f64`.
     ///
-    /// The digits before `e0` are those of a float that was rounded, as it is printed.
+    /// The digits before `e-0` are those of a float that was rounded, as it is printed.
     pub(crate) fn from_decimal(literal: &str) -> Option<Self> {
-        let rounded = literal.ends_with("e0");
+        let rounded = literal.ends_with("e-0");
         let x: f64 = literal.parse().ok()?;
         let mantissa = literal.split(['e', 'E']).next().unwrap_or(literal);
         let lost = x == 0.0 && mantissa.bytes().any(|c| matches!(c, b'1'..=b'9'));

@@ -233,3 +233,17 @@ fn multiples_of_pi_are_printed_as_such() {
     assert_eq!(g.plain(parse(&g, "3.1415926535897").unwrap()), "3.1415926535897");
     assert_eq!(g.latex(parse(&g, "3*pi/4 - x").unwrap()), r"\frac{3 \pi}{4} - x");
 }
+
+#[test]
+fn decimals_are_numbers_as_written_and_rounded_ones_stay_rounded() {
+    let g = Graph::new();
+    for text in ["1.5e0*x", "1.5e+0*x", "15e-1*x", "1.5*x"] {
+        let e = parse(&g, text).unwrap();
+        assert!(g.are_exact(&[e]) && g.plain(e) == "3*x/2", "{text}: {}", g.plain(e));
+    }
+    let rounded = g.mul(parse(&g, "x").unwrap(), parse(&g, "sqrt(2)").unwrap());
+    let number = g.mul(parse(&g, "x").unwrap(), parse(&g, "1.4142135623730951e-0").unwrap());
+    assert!(!g.are_exact(&[number]), "{}", g.plain(number));
+    assert_eq!(parse(&g, &g.plain(number)).unwrap(), number);
+    assert_ne!(rounded, number);
+}
