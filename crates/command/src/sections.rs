@@ -23,8 +23,8 @@ pub(crate) struct Part {
     pub(crate) files: Vec<File>,
 }
 
-/// Sections besides scenes, referee and times, in the order of the overview; with their rank, the longer their
-/// pieces the earlier.
+/// Sections besides scenes, referee and times, in the order of the overview; with their rank, the longer
+/// their pieces the earlier.
 pub(crate) const JOBS: [(Section, usize, fn(bool) -> Result<Vec<Part>>); 6] = [
     (Section::Random, 7, random_systems),
     (Section::Realization, 5, realization),

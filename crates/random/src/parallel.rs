@@ -49,8 +49,8 @@ pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<
     })
 }
 
-/// A job beside others, each on a thread of its own: no more of them work at once than there are threads, and
-/// where several wait for one, the least `rank` goes first. So no thread is idle while a job comes to its end.
+/// A job beside others, each on a thread of its own: no more of them work at once than there are threads,
+/// and where several wait for one, the least `rank` goes first. So no thread is idle while a job ends.
 pub fn in_turn<T>(rank: usize, job: impl FnOnce() -> T) -> T {
     turns::job(rank, threads(), job)
 }
