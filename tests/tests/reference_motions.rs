@@ -43,11 +43,10 @@ fn known(name: &str, label: &str, end: f64) -> Reference {
     let found = computed(&scene, label, &times(end)).unwrap();
     let a = found.agreement;
     println!(
-        "{name}, {label}, {end} s: reference error {:.1e} (methods {:.1e}; tolerances: Taylor {:.1e}, extrapolation {:.1e}); f {:.1e}; {:.2} s",
+        "{name}, {label}, {end} s: reference error {:.1e} (methods {:.1e}, tolerances {:.1e}); f {:.1e}; {:.2} s",
         found.error(),
         a.methods,
         a.taylor,
-        a.extrapolation,
         found.constraint_residual,
         clock.elapsed().as_secs_f64()
     );

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use serde_json::json;
 
 use crate::cli::{BenchArguments, ScalingArguments};
-use crate::main_job::bench_all;
+use crate::main_job::{bench_all, references};
 use random::parallel;
 use validation::bench::{Effort, ensemble_throughput};
 use validation::catalogue;
@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &BenchArguments, quiet: bool) -> Result<String> {
     let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();
     let given: Vec<&str> = arguments.scenes.iter().map(String::as_str).collect();
     let names: Vec<&str> = if given.is_empty() { all() } else { given };
-    let benches = bench_all(&names, &arguments.set.overrides, &effort, quiet)?;
+    let benches = bench_all(references(&names, &arguments.set.overrides, quiet)?, &effort, quiet)?;
     arguments.output.answer("bench", || bench_files(&benches, &[]), || bench_table(&benches), || bench_json(&benches))
 }
 

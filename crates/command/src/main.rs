@@ -16,6 +16,7 @@ mod prove_command;
 mod random_command;
 mod scene_commands;
 mod schema;
+mod sections;
 mod show_command;
 mod sink;
 mod solve_command;

@@ -15,14 +15,14 @@ use serde_json::{Value, json};
 
 use crate::answer::{Answer, pretty};
 use crate::cli::{Cli, JobArguments, ReportsArguments, Section, TextOrJson};
-use random::{Batch, Kind, parallel, substitution};
+use crate::sections::{JOBS, Part};
+use random::{parallel, substitution};
 use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
 use validation::catalogue;
 use validation::report::{
-    AuditReport, BicycleReport, EquivalenceReport, File, Headline, LiteratureReport, RealizationReport,
-    StabilityReport, bench_files, bench_headline, bodies, difference_of_verdicts, overview, pictures, random_files,
-    random_headline, random_verdicts, referees_section, scene_page, verdicts, write_all, write_own,
+    File, Headline, bench_files, bench_headline, bodies, difference_of_verdicts, overview, pictures, referees_section,
+    scene_page, verdicts, write_all, write_own,
 };
 
 /// A compared scene with its page and pictures.
@@ -51,21 +51,18 @@ pub(crate) fn scene_files(comparison: &mut Comparison) -> Result<Vec<File>> {
     Ok(files)
 }
 
-/// Random systems of the main job.
-const RANDOM_SYSTEMS: u64 = 1_000;
-
 /// Tolerance of the ensembles of the main job, and repeats of every way to integrate them.
 const ENSEMBLE_TOLERANCE: f64 = 1e-10;
 const ENSEMBLE_REPEATS: usize = 2;
 
-/// What a section besides the scenes has to say.
-struct Part {
-    page: &'static str,
-    headline: String,
-    /// For machines, under a name.
-    verdicts: Option<(&'static str, Value)>,
-    /// Its page and its pictures.
-    files: Vec<File>,
+/// The rank of the scenes among [`JOBS`]: they are first to answer.
+const SCENES_FIRST: usize = 0;
+
+/// The rank of the references that errors are taken against.
+const REFERENCES_THEN: usize = 1;
+
+fn finished<T>(job: ScopedJoinHandle<'_, T>) -> T {
+    job.join().unwrap_or_else(|panic| resume_unwind(panic))
 }
 
 /// What the main job computed.
@@ -78,93 +75,66 @@ struct Results {
 }
 
 impl Results {
+    /// What works at the same time shares the threads: so none is idle while a section comes to its end.
     fn of(sections: &[Section], names: &[&str], quiet: bool) -> Result<Results> {
-        // the referee is mostly another process: it works beside what follows, up to where times are measured
-        std::thread::scope(|scope| {
-            let asked = sections.contains(&Section::Casadi);
-            let referee = asked.then(|| scope.spawn(|| casadi_job::section(names)));
-            Results::beside(referee, sections, names, quiet)
-        })
+        let asked = |section: &Section| sections.contains(section);
+        let (scenes, prepared, parts, casadi) = std::thread::scope(|scope| {
+            // mostly another process
+            let referee = asked(&Section::Casadi).then(|| scope.spawn(|| casadi_job::section(names)));
+            let scenes = || parallel::in_turn(SCENES_FIRST, || compare_all(names, quiet));
+            let scenes = asked(&Section::Scenes).then(|| scope.spawn(scenes));
+            let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &[], quiet));
+            let prepared = asked(&Section::ErrorVsTime).then(|| scope.spawn(prepared));
+            let jobs = JOBS.iter().filter(|(section, ..)| asked(section));
+            let jobs: Vec<_> =
+                jobs.map(|(_, rank, job)| scope.spawn(|| parallel::in_turn(*rank, || job(quiet)))).collect();
+            let scenes = scenes.map(finished).transpose()?.unwrap_or_default();
+            let prepared = prepared.map(finished).transpose()?;
+            let mut parts = Vec::new();
+            for job in jobs {
+                parts.extend(finished(job)?);
+            }
+            Ok::<_, anyhow::Error>((scenes, prepared, parts, referee.map(finished).transpose()?))
+        })?;
+        // last, and one after the other: nothing else is to run beside what is timed
+        let measured = prepared.map(|prepared| Results::measured(prepared, names, quiet)).transpose()?;
+        let mut results = Results { comparisons: Vec::new(), scene_files: Vec::new(), parts, measured };
+        results.add_referee(casadi.as_ref(), scenes)?;
+        Ok(results)
     }
 
-    fn beside(
-        referee: Option<ScopedJoinHandle<'_, Result<Outcome>>>,
-        sections: &[Section],
-        names: &[&str],
-        quiet: bool,
-    ) -> Result<Results> {
-        let asked = |section| sections.contains(&section);
-        let mut scenes = if asked(Section::Scenes) { compare_all(names, quiet)? } else { Vec::new() };
-        let mut parts = Vec::new();
-        if asked(Section::Random) {
-            let batch = Batch { seed: 1, kinds: Kind::ALL.to_vec() };
-            let records = batch.run(0..RANDOM_SYSTEMS, None, quiet)?;
-            let verdicts = Some(("random", random_verdicts(&batch, &records)));
-            let (headline, files) = (random_headline(&records), random_files(&batch, &records)?);
-            parts.push(Part { page: "random.md", headline, verdicts, files });
+    fn measured(prepared: Vec<bench::Prepared>, names: &[&str], quiet: bool) -> Result<Part> {
+        let benches = bench_all(prepared, &Effort::brief(), quiet)?;
+        let mut ensembles = Vec::new();
+        if names.contains(&bench::ENSEMBLE_SCENE) {
+            ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;
         }
-        if asked(Section::Realization) {
-            let report = RealizationReport::new(quiet)?;
-            let (headline, verdicts) = (report.headline(), Some(("realization", report.verdicts())));
-            parts.push(Part { page: "realization.md", headline, verdicts, files: report.files()? });
-        }
-        if asked(Section::PaperAudit) {
-            let report = AuditReport::new()?;
-            let (headline, verdicts) = (report.headline(), Some(("paper audit", report.verdicts())));
-            parts.push(Part { page: "paper-audit.md", headline, verdicts, files: report.files() });
-        }
-        if asked(Section::Equivalence) {
-            let report = EquivalenceReport::new(quiet)?;
-            let (headline, verdicts) = (report.headline(), Some(("equivalence", report.verdicts())));
-            parts.push(Part { page: "equivalence.md", headline, verdicts, files: report.files() });
-            let report = LiteratureReport::new(quiet)?;
-            let (headline, verdicts) = (report.headline(), Some(("literature", report.verdicts())));
-            parts.push(Part { page: "literature.md", headline, verdicts, files: report.files() });
-        }
-        if asked(Section::Bicycle) {
-            let report = BicycleReport::new()?;
-            let (headline, verdicts) = (report.headline(), Some(("bicycle", report.verdicts())));
-            parts.push(Part { page: "bicycle.md", headline, verdicts, files: report.files()? });
-        }
-        if asked(Section::Stability) {
-            let report = StabilityReport::new(|_| true, quiet)?;
-            let (headline, verdicts) = (report.headline(), Some(("stability", report.verdicts())));
-            parts.push(Part { page: "stability.md", headline, verdicts, files: report.files()? });
-        }
-        let finished = |referee: ScopedJoinHandle<'_, _>| referee.join().unwrap_or_else(|panic| resume_unwind(panic));
-        let casadi = referee.map(finished).transpose()?;
-        if let Some(outcome) = &casadi {
+        let (headline, files) = (bench_headline(&benches), bench_files(&benches, &ensembles)?);
+        Ok(Part { page: "error-vs-time.md", headline, verdicts: None, files })
+    }
+
+    /// The pages of scenes with what the referee says of them.
+    fn add_referee(&mut self, casadi: Option<&Outcome>, scenes: Vec<SceneReport>) -> Result<()> {
+        if let Some(outcome) = casadi {
             let headline = casadi_job::headline(outcome);
             let headline = format!("Referees that share no derivation with this program: {headline}.");
             let verdicts = casadi_job::verdict_words(outcome).map(|words| ("casadi", words));
-            parts.insert(0, Part { page: "scenes/sledge.md#referees", headline, verdicts, files: Vec::new() });
+            self.parts.insert(0, Part { page: "scenes/sledge.md#referees", headline, verdicts, files: Vec::new() });
         }
-        let mut scene_files = Vec::new();
-        for report in &mut scenes {
-            let section = referees_section(&mut report.comparison, casadi.as_ref())?;
+        for mut report in scenes {
+            let section = referees_section(&mut report.comparison, casadi)?;
             if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
                 page.text += &section;
                 let name = &report.comparison.scene.name;
                 page.text += &format!("\nWith sliders, in a browser: [this scene](../explore.html#scene={name}).\n");
-                if asked(Section::ErrorVsTime) {
+                if self.measured.is_some() {
                     page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
                 }
             }
-            scene_files.extend(report.files.clone());
+            self.scene_files.extend(report.files);
+            self.comparisons.push(report.comparison);
         }
-        // last, and one after the other: nothing else is to run beside what is timed
-        let mut measured = None;
-        if asked(Section::ErrorVsTime) {
-            let benches = bench_all(names, &[], &Effort::brief(), quiet)?;
-            let mut ensembles = Vec::new();
-            if names.contains(&bench::ENSEMBLE_SCENE) {
-                ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;
-            }
-            let (headline, files) = (bench_headline(&benches), bench_files(&benches, &ensembles)?);
-            measured = Some(Part { page: "error-vs-time.md", headline, verdicts: None, files });
-        }
-        let comparisons = scenes.into_iter().map(|report| report.comparison).collect();
-        Ok(Results { comparisons, scene_files, parts, measured })
+        Ok(())
     }
 
     fn verdicts(&self) -> Value {
@@ -338,15 +308,14 @@ fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
     found.into_iter().zip(files).map(whole).collect()
 }
 
-/// References of all scenes over all processors, then measurements one after the other.
-pub(crate) fn bench_all(
-    names: &[&str],
-    overrides: &[(String, Number)],
-    effort: &Effort,
-    quiet: bool,
-) -> Result<Vec<Bench>> {
-    let prepared = parallel::try_map(names, quiet, |_| "references".into(), |name| bench::prepare(name, overrides))?;
-    let bar = parallel::progress(names.len(), quiet);
+/// References of these scenes, over all processors.
+pub(crate) fn references(names: &[&str], overrides: &[(String, Number)], quiet: bool) -> Result<Vec<bench::Prepared>> {
+    parallel::try_map(names, quiet, |_| "references".into(), |name| bench::prepare(name, overrides))
+}
+
+/// Measurements, one after the other.
+pub(crate) fn bench_all(prepared: Vec<bench::Prepared>, effort: &Effort, quiet: bool) -> Result<Vec<Bench>> {
+    let bar = parallel::progress(prepared.len(), quiet);
     let benches = prepared.into_iter().map(|prepared| {
         let measured = bench::measure(prepared, effort, |words| bar.set_message(words.to_string()));
         bar.inc(1);

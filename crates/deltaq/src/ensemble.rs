@@ -59,6 +59,8 @@ pub struct Ensemble {
     /// The same in multipliers, where pivots were chosen at the scene's own values of what varies: for
     /// members at whose values they vanish.
     without_pivots: Option<Box<Ensemble>>,
+    /// Only members that come to their end are asked for: see [`Ensemble::only_complete`].
+    only_complete: bool,
 }
 
 /// What a member starts from.
@@ -152,7 +154,20 @@ impl Ensemble {
             }
             false => None,
         };
-        Ok(Ensemble { varying, lanes, choice, system, starts, costates, end, settings, metric, words, without_pivots })
+        Ok(Ensemble {
+            varying,
+            lanes,
+            choice,
+            system,
+            starts,
+            costates,
+            end,
+            settings,
+            metric,
+            words,
+            without_pivots,
+            only_complete: false,
+        })
     }
 
     /// Members end at `end`, and not where the scene does.
@@ -163,6 +178,13 @@ impl Ensemble {
     /// Members take at most this many steps.
     pub(crate) fn at_most(mut self, max_steps: usize) -> Self {
         self.settings.max_steps = max_steps;
+        self
+    }
+
+    /// Members that take too many or too short steps in lanes are given up, and not integrated again to see
+    /// how far they come.
+    pub(crate) fn only_complete(mut self) -> Self {
+        self.only_complete = true;
         self
     }
 

@@ -19,7 +19,7 @@ pub(crate) struct Screening {
 
 impl Screening {
     pub(crate) fn new(ensemble: Ensemble) -> Self {
-        Screening { ensemble }
+        Screening { ensemble: ensemble.only_complete() }
     }
 
     /// The values among the first [`TOGETHER`] whose largest gap at every `stride`-th instant is under

@@ -7,16 +7,24 @@ use crate::equations::Equations;
 use crate::plan::Plan;
 
 /// `y(t + τ) = Σ_k c_k (τ/unit)^k` from the equations of motion in some plan and the blocks left in it.
-#[derive(Clone)]
 pub(crate) struct Series {
     tape: SeriesTape,
-    /// From the first expansion on.
+    /// From the first expansion on; nothing is kept in it from one to the next, and its room is large.
     workspace: Option<SeriesWorkspace<f64>>,
     /// Blocks that are solved numerically.
     left: Vec<usize>,
     /// Places in `(t, y, constants, z)` of what the tape takes.
     places: Vec<usize>,
     inputs: Vec<f64>,
+}
+
+/// Without the room to work in: most copies are only read.
+impl Clone for Series {
+    fn clone(&self) -> Self {
+        let Series { tape, workspace: _, left, places, inputs } = self;
+        let (tape, left, places, inputs) = (tape.clone(), left.clone(), places.clone(), inputs.clone());
+        Series { tape, workspace: None, left, places, inputs }
+    }
 }
 
 impl Series {

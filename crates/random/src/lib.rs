@@ -18,6 +18,7 @@ mod recipe;
 mod record;
 pub mod substitution;
 mod transform;
+mod turns;
 
 pub use build::{DURATION, REMOVAL};
 pub use bulk::{Batch, shrink};

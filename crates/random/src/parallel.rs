@@ -1,12 +1,18 @@
 //! Independent pieces of work over all processors, or over as many threads as the program was told.
 
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+
+use crate::turns;
+
+/// Where bars are drawn, each on a line of its own.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// A progress bar over `length` pieces, drawn on a terminal unless `quiet`.
 pub fn progress(length: usize, quiet: bool) -> ProgressBar {
-    let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(length as u64) };
+    let bar = if quiet { ProgressBar::hidden() } else { BARS.add(ProgressBar::new(length as u64)) };
     let style = ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar
@@ -32,9 +38,21 @@ pub fn threads() -> usize {
     deltaq::number_of_threads(THREADS.load(Ordering::Relaxed))
 }
 
-/// `work` of each item, over all processors, results in the order of the items.
+/// `work` of each item, over all processors, results in the order of the items. Within [`in_turn`] the items
+/// of several jobs share the threads.
 pub fn map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
-    deltaq::over_threads(threads(), items.len(), |index| work(&items[index]))
+    turns::shared(|turn| {
+        deltaq::over_threads(threads(), items.len(), |index| {
+            let _taken = turn.map(|rank| turns::take(rank, threads()));
+            work(&items[index])
+        })
+    })
+}
+
+/// A job beside others, each on a thread of its own: no more of them work at once than there are threads,
+/// and where several wait for one, the least `rank` goes first. So no thread is idle while a job ends.
+pub fn in_turn<T>(rank: usize, job: impl FnOnce() -> T) -> T {
+    turns::job(rank, threads(), job)
 }
 
 /// `work` of each item as [`map`] does it, with a progress bar for the current ones; the first failure.

@@ -1,4 +1,4 @@
-//! A motion computed by two methods, each at two tolerances.
+//! A motion computed by two methods, the one that is kept at two tolerances.
 
 use equations::Equations;
 use mechanics::{State, System};
@@ -27,8 +27,6 @@ pub struct Question<'a> {
 pub struct Agreement {
     /// Extrapolation and Taylor series, both at the tighter tolerance.
     pub methods: f64,
-    /// Extrapolation at two tolerances.
-    pub extrapolation: f64,
     /// Taylor series at two tolerances.
     pub taylor: f64,
 }
@@ -82,21 +80,22 @@ impl<T: Wide> Reference<T> {
     }
 }
 
-/// Tolerance of the first pair of runs over the accuracy asked for, and of the second pair over the first.
+/// Tolerance of the first run over the accuracy asked for, and of the second ones over the first.
 const FIRST: f64 = 1e-5;
 const TIGHTER: f64 = 1e-2;
 
 /// The tightest tolerance over the spacing of the numbers.
 const ROUND_OFF: f64 = 8.0;
 
-/// How often a tighter pair is tried.
+/// How often a tighter tolerance is tried.
 const TRIES: usize = 3;
 
 /// The motion at `times` with an error of at most `accuracy` (kinetic metric) in double-double arithmetic.
 ///
-/// Two methods, each at two tolerances: Gragg–Bulirsch–Stoer extrapolation over tapes with a linear solve per
-/// evaluation, and Taylor series of rates and residuals. They share start, tapes, the solution of one instant
-/// and the number type, not how they go from time to time. [`Reference::errors`] is how far the kept run,
+/// Two methods: Taylor series of rates and residuals, at two tolerances, and at the tighter one
+/// Gragg–Bulirsch–Stoer extrapolation over tapes with a linear solve per evaluation. They share start, tapes,
+/// the solution of one instant and the number type, not how they go from time to time.
+/// [`Reference::errors`] is how far the kept run,
 /// Taylor series at the tighter tolerance, is from the other method and from the looser tolerance. While that
 /// is over `accuracy`, tolerances become tighter, three times at most.
 ///
@@ -149,12 +148,12 @@ pub fn reference_in<T: Wide>(
     let runs = Runs::new(question, times)?;
     let tightest = ROUND_OFF * T::EPSILON;
     let mut tolerance = (accuracy * FIRST).max(tightest / TIGHTER);
-    let mut looser = runs.pair(tolerance)?;
+    let mut looser = runs.taylor(tolerance)?;
     let (mut error, mut next) = (f64::INFINITY, TIGHTER);
     for _ in 0..TRIES {
         tolerance = (tolerance * next).max(tightest);
-        let tighter = runs.pair(tolerance)?;
-        let found = runs.compared(&looser, &tighter)?;
+        let tighter = runs.taylor(tolerance)?;
+        let found = runs.compared(&looser, &tighter, &runs.extrapolation(tolerance)?)?;
         if found.error() <= accuracy {
             return Ok(found);
         }
@@ -169,11 +168,8 @@ pub fn reference_in<T: Wide>(
     Err(ReferenceError::NotReached { error, accuracy, epsilon: T::EPSILON })
 }
 
-/// One run of each method.
-struct Pair<T> {
-    taylor: Vec<Point<T>>,
-    extrapolation: Vec<Point<T>>,
-}
+/// Called at each of the times, with the state there.
+type Reached<'a, T> = &'a mut dyn FnMut(&mut Instant<T>, f64, &[T]) -> Result<(), ReferenceError>;
 
 /// What all runs share.
 struct Runs<'a, T> {
@@ -206,44 +202,53 @@ impl<'a, T: Wide> Runs<'a, T> {
         Ok(instant)
     }
 
-    /// Both methods at one tolerance.
-    fn pair(&self, tolerance: f64) -> Result<Pair<T>, ReferenceError> {
-        let mut pair = Pair { taylor: Vec::new(), extrapolation: Vec::new() };
-        let start = (self.question.start.t, &self.start.states[..]);
-        let into = |points: &mut Vec<Point<T>>, instant: &mut Instant<T>, t: f64, y: &[T]| {
-            points.push(instant.point(T::from_f64(t), y)?);
-            Ok(())
-        };
+    fn taylor(&self, tolerance: f64) -> Result<Vec<Point<T>>, ReferenceError> {
         let mut instant = self.instant()?;
         let mut taylor = Taylor::new(self.question.equations, &instant, tolerance)?;
-        taylor.integrate(&mut instant, start, self.times, |instant, t, y| into(&mut pair.taylor, instant, t, y))?;
-        extrapolation::integrate(&mut self.instant()?, start, self.times, tolerance, |instant, t, y| {
-            into(&mut pair.extrapolation, instant, t, y)
-        })?;
-        Ok(pair)
+        self.points(|start, reached| taylor.integrate(&mut instant, start, self.times, reached))
     }
 
-    /// The tighter pair of runs, compared with each other and with the looser pair.
-    fn compared(&self, looser: &Pair<T>, tighter: &Pair<T>) -> Result<Reference<T>, ReferenceError> {
-        let points = &tighter.taylor;
+    fn extrapolation(&self, tolerance: f64) -> Result<Vec<Point<T>>, ReferenceError> {
+        let mut instant = self.instant()?;
+        self.points(|start, reached| extrapolation::integrate(&mut instant, start, self.times, tolerance, reached))
+    }
+
+    /// What a method reaches at each time.
+    fn points(
+        &self,
+        method: impl FnOnce((f64, &[T]), Reached<T>) -> Result<(), ReferenceError>,
+    ) -> Result<Vec<Point<T>>, ReferenceError> {
+        let mut points = Vec::new();
+        method((self.question.start.t, &self.start.states), &mut |instant, t, y| {
+            points.push(instant.point(T::from_f64(t), y)?);
+            Ok(())
+        })?;
+        Ok(points)
+    }
+
+    /// The tighter runs, compared with each other and with the looser one.
+    fn compared(
+        &self,
+        looser: &[Point<T>],
+        tighter: &[Point<T>],
+        extrapolation: &[Point<T>],
+    ) -> Result<Reference<T>, ReferenceError> {
         let mut metric: Metric<T> = Metric::new(self.question.system)?;
         let mut agreement = Agreement::default();
         let (mut errors, mut masses, mut constraint_residual) = (Vec::new(), Vec::new(), 0.0_f64);
-        for (i, point) in points.iter().enumerate() {
+        for (i, point) in tighter.iter().enumerate() {
             metric.load(T::from_f64(self.times[i]), point);
             constraint_residual = constraint_residual.max(metric.constraint_residual());
-            let methods = metric.distance(point, &tighter.extrapolation[i]);
-            let taylor = metric.distance(point, &looser.taylor[i]);
-            let extrapolation = metric.distance(&tighter.extrapolation[i], &looser.extrapolation[i]);
+            let methods = metric.distance(point, &extrapolation[i]);
+            let taylor = metric.distance(point, &looser[i]);
             agreement.methods = agreement.methods.max(methods);
             agreement.taylor = agreement.taylor.max(taylor);
-            agreement.extrapolation = agreement.extrapolation.max(extrapolation);
             errors.push(methods.max(taylor));
             masses.push(metric.mass());
         }
         Ok(Reference {
             times: self.times.to_vec(),
-            points: points.clone(),
+            points: tighter.to_vec(),
             errors,
             agreement,
             constraint_residual,
