@@ -6,7 +6,6 @@ use deltaq::{Settings, choices, error_estimate, setting, solve_choice};
 use random::Scaling;
 use scene::Scene;
 use symbolic::SplitMix;
-use validation::catalogue;
 
 /// Factors of `L`, of lengths and of times.
 const ACTIONS: [f64; 3] = [1e-13, 1.0, 1e13];

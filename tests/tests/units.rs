@@ -7,7 +7,6 @@ use mechanics::Integrability;
 use random::Scaling;
 use scene::Scene;
 use symbolic::SplitMix;
-use validation::catalogue;
 
 /// Units in those of the scene, powers of ten.
 const UNITS: [i32; 5] = [-9, -3, 0, 3, 9];

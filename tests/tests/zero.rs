@@ -1,6 +1,7 @@
 //! What is zero at the start and switched on later stays in the equations: by steps, edges and bumps, at a
 //! time or a place on the way, in every form, removal and ensemble. And where it is lost, the motion says so.
 
+use catalogue::built_in;
 use deltaq::{
     Choice, Ensemble, EnsembleOptions, EnsembleStart, Form, Metric, Motion, Setting, Settings, Verdict, choices_among,
     compare_motions, derive_in_form, error_estimate, forms, multipliers_of, setting, solve, solve_choice,
@@ -8,7 +9,6 @@ use deltaq::{
 use mechanics::{ConstantsRule, Coordinate, Parameter, fresh_symbol};
 use scene::Scene;
 use symbolic::{Expr, SplitMix};
-use validation::catalogue::built_in;
 
 /// So many switched scenes are drawn; `SWITCHED` asks for more, 0 for all of them.
 const SWITCHED: usize = 40;

@@ -25,7 +25,6 @@ use anyhow::{Context, Result};
 use scene::Scene;
 use serde::Deserialize;
 
-use crate::catalogue;
 use random::parallel;
 use random::{Batch, Kind};
 

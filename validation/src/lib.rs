@@ -3,8 +3,6 @@
 pub mod audit;
 pub mod bench;
 pub mod casadi_job;
-pub mod catalogue;
 pub mod report;
 pub mod scaling;
 pub mod stability;
-pub mod trailer;

@@ -3,7 +3,6 @@
 use random::{Batch, Kind};
 use scene::Scene;
 use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, random};
-use validation::catalogue;
 
 const FEW: Amount = Amount { states: 50, times: 5 };
 

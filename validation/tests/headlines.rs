@@ -4,7 +4,6 @@ use deltaq::{Comparison, Metric, Settings, Verdict, choices, compare_motions, co
 use mechanics::ConstantsRule;
 use random::substitution;
 use scene::Scene;
-use validation::catalogue;
 use validation::report::Headline;
 
 fn compared(scene: Scene) -> Comparison {

@@ -1,7 +1,6 @@
 //! What the pictures of a scene show, and what they leave out.
 
 use deltaq::{Settings, choices, compare};
-use validation::catalogue;
 use validation::report::pictures;
 
 /// The picture of a kind of a built-in scene, if it is drawn.

@@ -7,7 +7,6 @@ use crate::cli::{BenchArguments, ScalingArguments};
 use crate::main_job::{bench_all, references};
 use random::parallel;
 use validation::bench::{Effort, ensemble_throughput};
-use validation::catalogue;
 use validation::report::{bench_files, bench_json, bench_table, ensemble_text, scaling_files, scaling_text};
 use validation::scaling::{FORMULATIONS, Limits, TRAILERS, measure};
 

@@ -201,7 +201,7 @@ pub struct CompareArguments {
     /// Fit no free constants, not even where nothing is decided.
     #[arg(long, value_name = "PART", conflicts_with = "with")]
     pub without: Option<Searched>,
-    /// Vary a parameter, a start value, `mu1`, … or `P0_w`, … and compare two motions at each value, both
+    /// Vary a parameter, a start value, `mu0_1`, … or `P0_w`, … and compare two motions at each value, both
     /// ends included: a table. The motions are Chetaev's and the vakonomic one, or of costates `P0_w` the one
     /// without constraints, or two given by `--formulation`. Several combine; with `--out` a file, which goes
     /// on where it was cut off.

@@ -13,7 +13,6 @@ use crate::solve_command::limited;
 use crate::sweep_command;
 use crate::watch::Watch;
 use random::substitution;
-use validation::catalogue;
 use validation::report::{summary, verdicts, write_all};
 
 /// Prints a summary of each scene as soon as it is compared; or returns pages or verdicts, or writes pages

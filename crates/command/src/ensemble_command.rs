@@ -18,6 +18,7 @@ use members::Members;
 use output::{Answers, Outcome, Seconds};
 use random::parallel;
 use resume::resume;
+use scene::Scene;
 
 /// Members integrated before they are written down.
 const CHUNK: usize = 4096;
@@ -29,7 +30,7 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
     let MotionArguments { formulation, form, free, .. } = &arguments.motion;
     let choice = choice(&base, (formulation, form), free)?;
     let members = Members::of(arguments, &base, &choice)?;
-    check_multipliers(&members, &choice, arguments)?;
+    check_multipliers(&base, &members, &choice, arguments)?;
     let end = setting(&base).end;
     let asked = arguments.motion.times.as_deref();
     let times = asked.map_or(Ok(vec![end]), |text| times(text, &base))?;
@@ -84,9 +85,9 @@ pub(crate) fn run(arguments: &EnsembleArguments, quiet: bool) -> Result<Answer> 
 }
 
 /// Multipliers vary only where a motion starts from those of the scene.
-fn check_multipliers(members: &Members, choice: &Choice, arguments: &EnsembleArguments) -> Result<()> {
-    let is_multiplier = |name: &&String| name.strip_prefix("mu").is_some_and(|i| i.parse::<usize>().is_ok());
-    let Some(name) = members.names.iter().find(is_multiplier) else { return Ok(()) };
+fn check_multipliers(scene: &Scene, members: &Members, choice: &Choice, arguments: &EnsembleArguments) -> Result<()> {
+    let multipliers = scene.multiplier_names();
+    let Some(name) = members.names.iter().find(|name| multipliers.contains(name)) else { return Ok(()) };
     let place = members.place(name);
     if !formulation(choice.formulation).is_some_and(|entry| entry.starts_multipliers) {
         bail!("{place}: `{name}` belongs to the vakonomic formulation, not to {}", choice.formulation);

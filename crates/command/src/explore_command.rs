@@ -5,7 +5,6 @@ use std::fs::create_dir_all;
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use validation::catalogue;
 use validation::report::write_one;
 
 use crate::cli::ExploreArguments;

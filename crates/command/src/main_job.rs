@@ -19,7 +19,6 @@ use crate::sections::{JOBS, Part};
 use random::{parallel, substitution};
 use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
-use validation::catalogue;
 use validation::report::{
     File, Headline, bench_files, bench_headline, bodies, difference_of_verdicts, overview, pictures, referees_section,
     scene_page, verdicts, write_all, write_own,
@@ -158,7 +157,8 @@ const ELSEWHERE: &str = "say what to do: without a command the main job runs, wh
 /// Whether the current folder belongs to the sources of this program.
 fn in_the_sources() -> bool {
     let here = std::env::current_dir().unwrap_or_default();
-    here.ancestors().any(|folder| folder.join("validation/scenes").is_dir() && folder.join("crates/command").is_dir())
+    here.ancestors()
+        .any(|folder| folder.join("crates/catalogue/scenes").is_dir() && folder.join("crates/command").is_dir())
 }
 
 /// Runs the main job and returns what to tell the user. Where it fails, nothing is written.

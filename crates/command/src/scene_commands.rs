@@ -10,7 +10,6 @@ use scene::{Scene, SceneError};
 use crate::answer::plain;
 use crate::cli::{CheckArguments, NewArguments};
 use crate::schema::schema;
-use validation::catalogue;
 
 const TEMPLATE: &str = include_str!("template.toml");
 

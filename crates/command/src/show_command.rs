@@ -14,7 +14,6 @@ use serde_json::json;
 
 use crate::answer::pretty;
 use crate::cli::{ShowArguments, TextOrJson};
-use validation::catalogue;
 
 /// The built-in scenes, then those of the pages about the literature, a line each.
 pub(crate) fn list(format: TextOrJson) -> Result<String> {

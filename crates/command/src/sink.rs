@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Error, Result};
+use anyhow::{Context, Error, Result, ensure};
 use random::Lines;
 use validation::report::may_replace;
 
@@ -44,6 +44,12 @@ impl Sink {
         let mut beside = name.to_os_string();
         beside.push(".part");
         let part = folder.join(beside);
+        let is_link = fs::symlink_metadata(&part).is_ok_and(|there| there.is_symlink());
+        ensure!(
+            !is_link,
+            "{} is a link, which is not written through: remove it, or take another --out",
+            part.display()
+        );
         let foreign = |_: &str| {
             let told = part.display();
             Error::msg(format!("{told} is of another {what}, or of another version: remove it, or take another --out"))

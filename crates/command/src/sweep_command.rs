@@ -9,7 +9,6 @@ use crate::main_job::protocol;
 use crate::sink::Sink;
 use crate::solve_command::limited;
 use random::{Lines, parallel};
-use validation::catalogue;
 use validation::report::{Swept, sweep_files, write_all};
 
 /// Points computed before they are written down.

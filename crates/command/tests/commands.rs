@@ -101,7 +101,7 @@ fn multipliers_and_constants_choose_the_motion() {
     assert_eq!(end(&[&vakonomic[..], &["--mu0", "0"]].concat()), zero);
     let negative = end(&[&vakonomic[..], &["--mu0", "-0.2"]].concat());
     assert!((negative - zero).abs() > 1e-3);
-    assert_eq!(end(&[&vakonomic[..], &["--set", "mu1=-0.2"]].concat()), negative);
+    assert_eq!(end(&[&vakonomic[..], &["--set", "mu0_1=-0.2"]].concat()), negative);
     let start = column(&json(&["sledge", "-f", "vakonomic", "--mu0", "-0.2", "--times", "0"]), "multipliers", "mu_1");
     assert_eq!(start, [-0.2]);
     // the costate form is another way to the same motion

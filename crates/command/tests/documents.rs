@@ -43,7 +43,7 @@ fn the_page_of_the_scene_format_is_true() {
         let written = [format!("`{name}`"), format!("`[{name}]`"), format!("`[{name}.NAME]`"), format!(" {name} = ")];
         assert!(written.iter().any(|written| page.contains(written)), "{name} is not on the page");
     }
-    let whole = ["tests/tests/scenes/rattleback-by-vectors.toml", "validation/scenes/sledge.toml"].map(read);
+    let whole = ["tests/tests/scenes/rattleback-by-vectors.toml", "crates/catalogue/scenes/sledge.toml"].map(read);
     let flat = |line: &str| line.split(" #").next().unwrap_or(line).split_whitespace().collect::<String>();
     let known: Vec<String> = whole.iter().flat_map(|text| text.lines()).map(flat).collect();
     let blocks: Vec<&str> = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();

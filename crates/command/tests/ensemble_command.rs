@@ -94,7 +94,7 @@ fn status_of(text: &str) -> usize {
 #[test]
 fn the_answer_does_not_depend_on_threads_and_is_written_whole() {
     let folder = tempfile::tempdir().expect("a folder");
-    let arguments = ["sledge", "-f", "vakonomic", "--vary", "mu1=-0.3..0.3:7", "--vary", "k=0.5..1:3"];
+    let arguments = ["sledge", "-f", "vakonomic", "--vary", "mu0_1=-0.3..0.3:7", "--vary", "k=0.5..1:3"];
     let (text, _) = answer(&arguments, 0);
     for threads in ["1", "3"] {
         let out = folder.path().join(threads).join("members.csv");
@@ -150,5 +150,5 @@ fn faults_have_their_place() {
     file("g,phi\n9,1,2\n", &["m.csv:2:5", "more numbers than the 2"]);
     file("g,gg\n9,1\n", &["m.csv:1:3", "`gg`", "alpha"]);
     file("duration\n9\n", &["m.csv:1:1", "--set"]);
-    file("mu1\n9\n", &["m.csv:1:1", "vakonomic"]);
+    file("mu0_1\n9\n", &["m.csv:1:1", "vakonomic"]);
 }

@@ -206,13 +206,28 @@ fn pages_obey_no_text_of_a_scene_and_replace_only_what_is_ours() {
     answer(&call, 0);
     fs::remove_file(out.join(".deltaq")).expect("the list");
     fs::write(&page, "mine").expect("written");
-    refused(&call, &["is not of deltaq, and not replaced"]);
+    refused(&call, &["is not of deltaq, as far as it and the list `.deltaq` tell, and not replaced"]);
     assert_eq!(fs::read_to_string(&page).expect("the page"), "mine");
     let table = folder.path().join("m.csv");
     fs::write(&table, "my,own\n").expect("written");
     let members = ["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2", "--out"];
     refused(&[&members[..], &[table.to_str().expect("UTF-8")]].concat(), &["m.csv is not of deltaq"]);
     assert_eq!(fs::read_to_string(&table).expect("the table"), "my,own\n");
+}
+
+#[cfg(unix)]
+#[test]
+fn nothing_is_written_through_a_link() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let calls = [&["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"][..], &["prove", "sledge"]];
+    for (name, link) in [("m.csv", "m.csv"), ("p.csv", "p.csv.part")] {
+        std::os::unix::fs::symlink(at("elsewhere"), at(link)).expect("a link");
+        for call in calls.iter().filter(|call| name == link || call[0] == "ensemble") {
+            refused(&[call, &["--out", at(name).to_str().expect("UTF-8")][..]].concat(), &["is a link, which is not"]);
+        }
+    }
+    assert!(!at("elsewhere").exists());
 }
 
 #[test]

@@ -30,7 +30,7 @@ pub use threads::{number_of_threads, over_threads};
 /// singularities, always where a block is left to solve numerically ([`Ensemble::refusal`]).
 ///
 /// ```
-/// # let text = include_str!("../../../validation/scenes/sledge.toml");
+/// # let text = include_str!("../../catalogue/scenes/sledge.toml");
 /// use deltaq::{Ensemble, EnsembleOptions, Settings, choices};
 /// let scene = scene::Scene::parse("sledge", text)?;
 /// let ensemble = Ensemble::new(&scene, &choices(&scene)[0], &["g", "phi"], &Settings::default())?;

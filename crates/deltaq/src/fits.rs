@@ -165,11 +165,7 @@ fn by_multipliers(
 
 /// The motions of a choice over its free constants, in lanes; `None` where these are no numbers of a start.
 fn screening(scene: &Scene, choice: &Choice, equations: &Equations, settings: &Settings) -> Option<Screening> {
-    let name = |(i, name): (usize, String)| match choice.removal {
-        None => format!("mu{}", i + 1),
-        Some(_) => name,
-    };
-    let names: Vec<String> = constant_names(equations).into_iter().enumerate().map(name).collect();
+    let names = constant_names(equations);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let choice = Choice { constants: ConstantsRule::Zero, ..choice.clone() };
     let settings = Settings { tolerance: SEARCH_TOLERANCE, ..settings.clone() };

@@ -143,8 +143,8 @@ impl Motion {
         Some((y, terms))
     }
 
-    /// `−∂ẏ_i/∂y_i` at `(t, y)` where it is positive and no round-off, or else 0; states have these sizes, and
-    /// so much is added up to their rates.
+    /// `−∂ẏ_i/∂y_i` at `(t, y)` where it is positive and no round-off, or else 0; `sizes` are those of
+    /// states, `terms` those of what adds up to their rates.
     pub(crate) fn decay_of_states(&mut self, t: f64, y: &[f64], sizes: &[f64], terms: &[f64]) -> Option<Vec<f64>> {
         let direction = (self.end() - self.start()).signum();
         let (mut here, mut there) = (vec![0.0; y.len()], vec![0.0; y.len()]);

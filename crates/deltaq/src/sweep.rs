@@ -55,7 +55,7 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// A sweep over `names`: parameters, start values, multipliers `mu1`, …, all as of [`Scene::parse_with`],
+    /// A sweep over `names`: parameters, start values, multipliers `mu0_1`, …, as in [`Scene::parse_with`],
     /// and costates `P0_w` of the first removal. What is compared are two `formulations`; if none are named
     /// Chetaev's and the vakonomic one or, where costates vary, the one without constraints.
     ///

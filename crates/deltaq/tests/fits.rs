@@ -41,15 +41,6 @@ impl Family<'_> {
     }
 }
 
-/// Names of the numbers that an ensemble varies in the place of the free constants of a run.
-fn varied(choice: &Choice, fitted: &FittedMotion) -> Vec<String> {
-    let name = |(i, (name, _)): (usize, &(String, f64))| match choice.removal {
-        None => format!("mu{}", i + 1),
-        Some(_) => name.clone(),
-    };
-    fitted.constants.iter().enumerate().map(name).collect()
-}
-
 /// Values on lines through `center`, and drawn ones around it.
 fn values(center: &[f64]) -> Vec<Vec<f64>> {
     let size = center.iter().fold(1.0, |a: f64, c| a.max(c.abs()));
@@ -81,8 +72,7 @@ fn swept(scene: &Scene, runs: &mut [deltaq::Run], fit: &Fit, fitted: &FittedMoti
     let settings = Settings::default();
     let center: Vec<f64> = fitted.constants.iter().map(|(_, c)| *c).collect();
     let choice = Choice { constants: ConstantsRule::Zero, ..runs[fit.run].choice.clone() };
-    let names = varied(&choice, fitted);
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let names: Vec<&str> = fitted.constants.iter().map(|(name, _)| name.as_str()).collect();
     let target = runs[fit.target].outcome.as_mut().expect("it was met");
     let ensemble = Ensemble::new(scene, &choice, &names, &settings).expect("an ensemble").until(target.end());
     let mut family = Family { ensemble, target, metric: Metric::new(&scene.system).expect("a metric") };

@@ -7,7 +7,7 @@ use symbolic::Graph;
 use super::*;
 
 pub(crate) fn scene(name: &str) -> Scene {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/scenes");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/catalogue/scenes");
     Scene::load(&std::path::Path::new(folder).join(name).with_extension("toml")).unwrap()
 }
 

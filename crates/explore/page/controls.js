@@ -17,7 +17,8 @@ export function readable(name) {
   const [, stem, index, primes] = /^(.*?)_?(\d*)('*)$/.exec(name);
   const [head, ...rest] = stem.split("_");
   const [, word, digits] = /^(\D*)(\d*)$/.exec(head) ?? [null, head, ""];
-  const below = [digits + index, ...rest.map((part) => GREEK[part] ?? part)].filter((part) => part !== "").join(" ");
+  const numbers = digits && index ? `${digits},${index}` : digits + index;
+  const below = [numbers, ...rest.map((part) => GREEK[part] ?? part)].filter((part) => part !== "").join(" ");
   return `${GREEK[word] ?? word}${below ? `<sub>${below}</sub>` : ""}${"′".repeat(primes.length)}`;
 }
 

@@ -1,5 +1,6 @@
-// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown: the page in a browser without network, against the
-// native program; or its numbers only; or whether what is shown is what was computed.
+// node test.mjs BROWSER DELTAQ PAGE PICTURES all|numbers|shown|SECONDS: the page in a browser without network, against
+// the native program; or its numbers only; or whether what is shown is what was computed; or whether it grows while
+// sliders are moved for so many seconds.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
@@ -9,11 +10,14 @@ import { pathToFileURL } from "node:url";
 
 import puppeteer from "puppeteer-core";
 
+import { growth } from "./growth.test.mjs";
 import * as checks from "./shown.test.mjs";
 
 const [executablePath, deltaq, file, pictures, what] = process.argv.slice(2);
 // Milliseconds may be BUSY times as many, as other things may run beside; the figures are told.
 const BUSY = 3;
+// Seconds of slider moves within all checks.
+const SECONDS = 10;
 const LIMITS = { megabytes: 4, first: 1000, sledge: 10, updates: 60, cone: 50, difference: 1e-12 };
 const OWN = `title = "Skate"
 [coordinates]
@@ -279,8 +283,9 @@ const tools = { open, link, must, after, choose, slide, type, said, OWN, url, pi
 const shown = Object.values(checks).map((check) => () => check(tools).catch((error) => complaints.push(`${check.name}: ${error.stack}`)));
 
 try {
-  const all = [opening, everyScene, sliders, fingers, ownText, looks, ...shown];
-  const parts = { all, numbers: [ownText], shown }[what];
+  const grows = () => growth(tools, Number(what) || SECONDS);
+  const all = [opening, everyScene, sliders, fingers, ownText, looks, ...shown, grows];
+  const parts = { all, numbers: [ownText], shown }[what] ?? [grows];
   for (const part of parts) await part();
 } catch (error) {
   complaints.push(error.stack);

@@ -39,8 +39,8 @@ pub(crate) fn of(subject: &Subject) -> Vec<Value> {
         let unit = coordinate.filter(|c| !c.unit.is_empty()).map_or(String::new(), |c| format!("{}/s", c.unit));
         controls.push(control(&name, "velocity", &unit, v, around(v, 2.0 * v.abs().max(0.5))));
     }
-    for (i, &mu) in scene.multipliers.iter().enumerate() {
-        controls.push(control(&format!("mu{}", i + 1), "multiplier", "", mu, around(mu, mu.abs().max(2.0))));
+    for (name, &mu) in scene.multiplier_names().iter().zip(&scene.multipliers) {
+        controls.push(control(name, "multiplier", "", mu, around(mu, mu.abs().max(2.0))));
     }
     for choice in choices {
         for (name, p) in given_costates(scene, choice) {

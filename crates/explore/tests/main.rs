@@ -6,7 +6,7 @@ use explore::{Answer, Explorer};
 use scene::Scene;
 use serde_json::{Value, json};
 
-const SLEDGE: &str = include_str!("../../../validation/scenes/sledge.toml");
+const SLEDGE: &str = include_str!("../../catalogue/scenes/sledge.toml");
 
 fn ask(question: Value) -> (Value, Vec<f64>) {
     ask_again(&mut Explorer::default(), question)
@@ -31,12 +31,12 @@ fn coordinates<'a>(motion: &Value, numbers: &'a [f64], row: usize, count: usize)
 fn motions_are_those_of_the_library() {
     let labels = ["Chetaev", "vakonomic", "removed constraint (arc-length)"];
     let question = |glance: bool| {
-        json!({ "ask": "motions", "name": "sledge", "text": SLEDGE, "set": { "phi": 0.5, "mu1": 0.25, "P0_y": 1.0 },
+        json!({ "ask": "motions", "name": "sledge", "text": SLEDGE, "set": { "phi": 0.5, "mu0_1": 0.25, "P0_y": 1.0 },
                 "motions": labels, "steps": 50, "glance": glance })
     };
     let (all, numbers) = ask(question(false));
     let (glance, coarse) = ask(question(true));
-    let set = [("phi".to_string(), 0.5), ("mu1".to_string(), 0.25)];
+    let set = [("phi".to_string(), 0.5), ("mu0_1".to_string(), 0.25)];
     let scene = Scene::parse_with("sledge", SLEDGE, &set).unwrap();
     for (i, label) in labels.iter().enumerate() {
         let mut choice = choices(&scene).into_iter().find(|choice| choice.label == *label).unwrap();
@@ -88,7 +88,7 @@ fn kappa_and_what_can_be_varied() {
     let names = |answer: &Value| -> Vec<String> {
         answer["controls"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap().to_owned()).collect()
     };
-    let expected = "g alpha k x y phi x' phi' mu1 \
+    let expected = "g alpha k x y phi x' phi' mu0_1 \
                     P0_x@removed constraint (arc-length) P0_y@removed constraint (arc-length) \
                     P0_y@removed constraint (along-x) \
                     P0_x@removed constraint (quasi-velocities) P0_y@removed constraint (quasi-velocities) kappa duration";

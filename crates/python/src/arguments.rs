@@ -1,7 +1,5 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
-use std::collections::HashMap;
-
 use deltaq::{
     Choice, FORM_WORDS, FORMULATIONS, Fits, Form, Settings, default_constants, formulation, formulation_in,
     removal_names, removals,
@@ -11,11 +9,44 @@ use mechanics::{ConstantsRule, Removal};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyString};
+use pyo3::types::{IntoPyDict, PyDict, PyMapping, PyString};
 use scene::Scene;
 
 use crate::arrays::{Floats, list};
 use crate::{background, errors};
+
+/// Any mapping, as a dict.
+pub(crate) struct Table<'py>(pub(crate) Bound<'py, PyDict>);
+
+/// Any mapping of names to numbers, in its order.
+pub(crate) struct Numbers(pub(crate) Vec<(String, f64)>);
+
+impl<'py> FromPyObject<'_, 'py> for Table<'py> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(table) = object.cast::<PyDict>() {
+            return Ok(Table(table.to_owned()));
+        }
+        match object.cast::<PyMapping>() {
+            Ok(mapping) => Ok(Table(PyDict::from_sequence(mapping.items()?.as_any())?)),
+            Err(_) => Err(PyTypeError::new_err(format!("{} where a dict is expected", object.get_type()))),
+        }
+    }
+}
+
+impl FromPyObject<'_, '_> for Numbers {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let Table(table) = object.extract()?;
+        table
+            .iter()
+            .map(|(name, number)| Ok((name.extract()?, number.extract()?)))
+            .collect::<PyResult<_>>()
+            .map(Numbers)
+    }
+}
 
 /// How to integrate, and the flag that ends it.
 pub(crate) fn settings(
@@ -60,27 +91,9 @@ pub(crate) fn fits(word: &str) -> PyResult<Fits> {
     found.map(|(_, fits)| *fits).ok_or_else(|| unknown("fits", word, words.iter().map(|(known, _)| *known)))
 }
 
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
+/// The refusal of a name that is none of those that are known.
+pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> PyErr {
     errors::unknown(format!("unknown {what} `{name}`; known: {}", known.collect::<Vec<_>>().join(", ")))
-}
-
-/// The number of a multiplier at the start, from 1, whose name is that of the free constant: `mu0_1`.
-pub(crate) fn multiplier(name: &str) -> Option<usize> {
-    name.strip_prefix("mu0_")?.parse().ok()
-}
-
-/// A name for a number of a scene as scenes and commands have it: they call the multiplier `mu0_1` `mu1`.
-pub(crate) fn spelt_name(name: String) -> PyResult<String> {
-    match (multiplier(&name), name.strip_prefix("mu").and_then(|i| i.parse::<usize>().ok())) {
-        (Some(i), _) => Ok(format!("mu{i}")),
-        (None, Some(i)) => Err(errors::unknown(format!("unknown name `{name}`: this multiplier is called mu0_{i}"))),
-        (None, None) => Ok(name),
-    }
-}
-
-/// Numbers by name as scenes have the names.
-pub(crate) fn spelt(numbers: HashMap<String, f64>) -> PyResult<HashMap<String, f64>> {
-    numbers.into_iter().map(|(name, x)| Ok((spelt_name(name)?, x))).collect()
 }
 
 /// The name of the formulation in that form.
@@ -163,7 +176,7 @@ fn rule_from(rule: &Bound<'_, PyAny>) -> PyResult<ConstantsRule> {
             other => Err(PyValueError::new_err(format!("{expected}: {other:?}"))),
         };
     }
-    if let Ok(table) = rule.cast::<PyDict>() {
+    if let Ok(Table(table)) = rule.extract() {
         return match (table.len(), table.get_item("horizon")?) {
             (1, Some(horizon)) => Ok(ConstantsRule::Natural { horizon: horizon.extract()? }),
             _ => Err(PyValueError::new_err(format!("{expected}: {table}"))),

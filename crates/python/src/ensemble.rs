@@ -10,7 +10,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene::Scene;
 
-use crate::arguments::{multiplier, spelt_name};
 use crate::arrays::{Floats, fixed, list, within};
 use crate::kept::kept;
 use crate::system::System;
@@ -30,7 +29,6 @@ impl Varied {
                 return Err(PyValueError::new_err(format!("{name} is the same for all members")));
             }
             let array: Floats = array.extract()?;
-            spelt_name(name.clone())?;
             values.insert(name.clone(), list(&name, &array)?);
         }
         let mut all = values.iter();
@@ -48,13 +46,8 @@ impl Varied {
     }
 
     /// A multiplier that varies.
-    pub(crate) fn multiplier(&self) -> Option<&String> {
-        self.values.keys().find(|name| multiplier(name).is_some())
-    }
-
-    /// The names as scenes have them.
-    fn names(&self) -> Vec<String> {
-        self.values.keys().filter_map(|name| spelt_name(name.clone()).ok()).collect()
+    pub(crate) fn multiplier(&self, scene: &Scene) -> Option<String> {
+        scene.multiplier_names().into_iter().find(|name| self.values.contains_key(name))
     }
 
     fn row(&self, member: usize) -> Vec<f64> {
@@ -146,8 +139,7 @@ pub(crate) fn times(given: &Floats<'_>, scene: &Scene) -> PyResult<(Vec<f64>, f6
 impl Task {
     pub(crate) fn run(self) -> Result<Integrated, SolveError> {
         let Task { varied, scene, choice, times, end, settings, options } = self;
-        let names = varied.names();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let names: Vec<&str> = varied.values.keys().map(String::as_str).collect();
         let ensemble = deltaq::Ensemble::new(&scene, &choice, &names, &settings)?.until(end);
         let (equations, n) = (ensemble.equations(), scene.system.dimension());
         let cube = |width: usize| Cube::new(varied.count, times.len(), width);

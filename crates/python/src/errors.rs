@@ -53,8 +53,7 @@ pub(crate) fn file(path: &Path, error: &std::io::Error) -> PyErr {
 
 pub(crate) fn scene(py: Python<'_>, error: &scene::SceneError) -> PyErr {
     if let (0, SceneErrorKind::UnknownName { .. }) = (error.line, &*error.kind) {
-        // the text is that of scenes and commands
-        return unknown(error.to_string().replace("(mu1, …)", "(mu0_1, …)"));
+        return unknown(error.to_string());
     }
     let raised = SceneError::new_err(error.to_string());
     let value = raised.value(py);

@@ -40,7 +40,7 @@ mod _native {
     #[pymodule_export]
     use crate::motion::{Motion, Outputs};
     #[pymodule_export]
-    use crate::reading::{_read_again, load, parse};
+    use crate::reading::{_read_again, built_in, load, parse};
     #[pymodule_export]
     use crate::system::{State, System};
 
@@ -52,6 +52,7 @@ mod _native {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let names = |list: Vec<&str>| PyTuple::new(module.py(), list);
         module.add("FORMULATIONS", names(deltaq::FORMULATIONS.iter().map(|f| f.name).collect())?)?;
+        module.add("SCENES", names(catalogue::built_in().map(|(name, _)| *name).collect())?)?;
         let methods = Method::ALL.into_iter().filter(|method| method.is_built_in());
         module.add("METHODS", names(methods.map(Method::name).collect())?)?;
         module.add("UnknownNameError", crate::errors::unknown_name(module.py())?)?;

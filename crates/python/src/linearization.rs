@@ -196,10 +196,9 @@ impl LinearizationSweep {
         (free, find): (Vec<String>, bool),
     ) -> PyResult<LinearizationSweep> {
         let (py, interrupt) = (system.py(), Interrupt::default());
-        let varied = arguments::spelt_name(name.into())?;
         let work = move || {
             let free: Vec<&str> = free.iter().map(String::as_str).collect();
-            linear::sweep(&scene, &choice, &free, (&varied, &values), find)
+            linear::sweep(&scene, &choice, &free, (name, &values), find)
         };
         let swept = background::run(py, &interrupt, work)?.map_err(refused)?;
         let count = Some(swept.points.len());

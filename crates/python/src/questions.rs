@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scenery::{Drawn, moving};
 
+use crate::arguments::Table;
 use crate::arrays::{Floats, Rows, list};
 use crate::comparison::{Comparison, compare};
 use crate::ensemble::{self, Ensemble, Varied};
@@ -80,7 +81,7 @@ impl System {
     #[pyo3(signature = (over, formulation="chetaev", *, free=None, find=false, removal=None, mu0=None, constants=None))]
     fn linearize_over(
         slf: &Bound<'_, Self>,
-        over: &Bound<'_, PyDict>,
+        over: Table<'_>,
         formulation: &str,
         free: Option<Vec<String>>,
         find: bool,
@@ -89,8 +90,8 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<LinearizationSweep> {
         let (py, given) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
-        let [(name, values)] = &over.iter().collect::<Vec<_>>()[..] else {
-            return Err(PyValueError::new_err(format!("over has {} names; one can vary", over.len())));
+        let [(name, values)] = &over.0.iter().collect::<Vec<_>>()[..] else {
+            return Err(PyValueError::new_err(format!("over has {} names; one can vary", over.0.len())));
         };
         let name: String = name.extract()?;
         let values = list(&name, &values.extract()?)?;
@@ -185,7 +186,7 @@ impl System {
         slf: &Bound<'_, Self>,
         formulation: &str,
         times: Option<Floats<'_>>,
-        vary: &Bound<'_, PyDict>,
+        vary: Table<'_>,
         removal: Option<&str>,
         mu0: Option<Floats<'_>>,
         constants: Option<Bound<'_, PyAny>>,
@@ -205,9 +206,9 @@ impl System {
             || Ok((vec![setting(&scene).end], setting(&scene).end)),
             |times| ensemble::times(&times, &scene),
         )?;
-        let varied = Varied::read(vary)?;
+        let varied = Varied::read(&vary.0)?;
         let options = EnsembleOptions { threads, estimate };
-        if let (true, Some(name)) = (given, varied.multiplier()) {
+        if let (true, Some(name)) = (given, varied.multiplier(&scene)) {
             return Err(PyValueError::new_err(format!("{name} varies, and mu0 or constants fix it")));
         }
         let task = ensemble::Task { varied, scene, choice, times, end, settings, options };
@@ -257,7 +258,6 @@ impl System {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
         let values: Vec<f64> = values.as_array().iter().copied().collect();
-        let names: Vec<String> = names.into_iter().map(arguments::spelt_name).collect::<PyResult<_>>()?;
         let (name, width) = (self.name(), names.len());
         let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;

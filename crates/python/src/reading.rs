@@ -1,13 +1,12 @@
 //! Systems from files and texts.
 
-use std::collections::HashMap;
 use std::fs::File;
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use scene::Scene;
 
-use crate::arguments::spelt;
+use crate::arguments::{Numbers, unknown};
 use crate::errors;
 use crate::system::{Overrides, System};
 
@@ -17,8 +16,8 @@ use crate::system::{Overrides, System};
 /// FileNotFoundError where there is no file; UnknownNameError for a name that the scene has not.
 #[pyfunction]
 #[pyo3(signature = (path, overrides=None))]
-pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<String, f64>>) -> PyResult<System> {
-    let overrides = spelt(overrides.unwrap_or_default())?.into_iter().collect();
+pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<Numbers>) -> PyResult<System> {
+    let overrides = overrides.map_or(Overrides::new(), |numbers| numbers.0);
     // what the operating system refuses is its own error: FileNotFoundError, PermissionError, ...
     drop(py.detach(|| File::open(&path)).map_err(|error| errors::file(&path, &error))?);
     let text = py.detach(|| Scene::read(&path)).map_err(|error| errors::scene(py, &error))?;
@@ -28,14 +27,27 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf, overrides: Option<HashMap<Stri
 /// A system from the text of a scene file. `name` stands for the file in errors; overrides as in `load`.
 #[pyfunction]
 #[pyo3(signature = (text, overrides=None, *, name="scene"))]
-pub(crate) fn parse(
-    py: Python<'_>,
-    text: &str,
-    overrides: Option<HashMap<String, f64>>,
-    name: &str,
-) -> PyResult<System> {
-    let overrides = spelt(overrides.unwrap_or_default())?.into_iter().collect();
+pub(crate) fn parse(py: Python<'_>, text: &str, overrides: Option<Numbers>, name: &str) -> PyResult<System> {
+    let overrides = overrides.map_or(Overrides::new(), |numbers| numbers.0);
     System::read(py, (name, None), text.into(), overrides)
+}
+
+/// The system of a built-in scene: one of SCENES, or "n-trailer-N", a car with N trailers.
+///
+/// overrides: as in `load`.
+///
+/// >>> deltaq.built_in("sledge", {"g": 1.6}).parameters["g"]
+/// 1.6
+///
+/// UnknownNameError for another name.
+#[pyfunction]
+#[pyo3(signature = (name, overrides=None))]
+pub(crate) fn built_in(py: Python<'_>, name: &str, overrides: Option<Numbers>) -> PyResult<System> {
+    let Some(text) = catalogue::text_of(name) else {
+        let known = catalogue::built_in().map(|(known, _)| *known).chain(["n-trailer-N"]);
+        return Err(unknown("built-in scene", name, known));
+    };
+    System::read(py, (name, None), text, overrides.map_or(Overrides::new(), |numbers| numbers.0))
 }
 
 /// What a pickled system is read from.

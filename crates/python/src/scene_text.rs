@@ -5,7 +5,9 @@ use std::fmt::Write;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyMapping, PySequence, PyString};
+use pyo3::types::{PyBool, PyMapping, PySequence, PyString};
+
+use crate::arguments::Table;
 
 /// A name or a formula: text, or an expression of SymPy.
 pub(crate) struct Formula(pub(crate) String);
@@ -48,8 +50,8 @@ fn unexpected(object: &Bound<'_, PyAny>, expected: &str) -> PyErr {
 }
 
 /// Names with what is said of them.
-fn entries<'py>(table: Option<&Bound<'py, PyDict>>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
-    let pairs = table.into_iter().flat_map(|table| table.iter());
+fn entries<'py>(table: Option<&Table<'py>>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
+    let pairs = table.into_iter().flat_map(|table| table.0.iter());
     pairs.map(|(key, entry)| Ok((key.extract::<Formula>()?.0, entry))).collect()
 }
 
@@ -57,10 +59,10 @@ fn entries<'py>(table: Option<&Bound<'py, PyDict>>) -> PyResult<Vec<(String, Bou
 pub(crate) struct Arguments<'py> {
     pub(crate) title: String,
     pub(crate) coordinates: Vec<String>,
-    pub(crate) units: Option<Bound<'py, PyDict>>,
-    pub(crate) start: Bound<'py, PyDict>,
+    pub(crate) units: Option<Table<'py>>,
+    pub(crate) start: Table<'py>,
     /// Sections whose entries are handed on as they are: name and entries.
-    pub(crate) tables: Vec<(&'static str, Option<Bound<'py, PyDict>>)>,
+    pub(crate) tables: Vec<(&'static str, Option<Table<'py>>)>,
     pub(crate) lagrangian: String,
     pub(crate) constraints: Vec<String>,
     pub(crate) time: f64,

@@ -1,6 +1,5 @@
 //! Systems, and what can be asked of them.
 
-use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -10,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use scene::Scene;
 
-use crate::arguments::spelt;
+use crate::arguments::{Numbers, Table};
 use crate::arrays::{Array, Floats, Points, array, fixed};
 use crate::errors;
 use crate::kept::kept;
@@ -102,7 +101,7 @@ impl System {
     #[new]
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
-        coordinates, lagrangian, constraints=Formulas(Vec::new()), *, start, parameters=None, definitions=None, units=None,
+        coordinates, lagrangian, constraints=None, *, start, parameters=None, definitions=None, units=None,
         forces=None, observables=None, invariants=None, view=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
         breakpoints=None, name="system", title=None, notes=""
     ))]
@@ -110,19 +109,19 @@ impl System {
         py: Python<'_>,
         coordinates: Formulas,
         lagrangian: Formula,
-        constraints: Formulas,
-        start: Bound<'_, PyDict>,
-        parameters: Option<Bound<'_, PyDict>>,
-        definitions: Option<Bound<'_, PyDict>>,
-        units: Option<Bound<'_, PyDict>>,
-        forces: Option<Bound<'_, PyDict>>,
-        observables: Option<Bound<'_, PyDict>>,
-        invariants: Option<Bound<'_, PyDict>>,
-        view: Option<Bound<'_, PyDict>>,
-        velocities: Option<Bound<'_, PyDict>>,
-        guess: Option<Bound<'_, PyDict>>,
+        constraints: Option<Formulas>,
+        start: Table<'_>,
+        parameters: Option<Table<'_>>,
+        definitions: Option<Table<'_>>,
+        units: Option<Table<'_>>,
+        forces: Option<Table<'_>>,
+        observables: Option<Table<'_>>,
+        invariants: Option<Table<'_>>,
+        view: Option<Table<'_>>,
+        velocities: Option<Table<'_>>,
+        guess: Option<Table<'_>>,
         project: bool,
-        removals: Option<Bound<'_, PyDict>>,
+        removals: Option<Table<'_>>,
         multipliers: Option<Bound<'_, PyAny>>,
         time: f64,
         duration: f64,
@@ -148,7 +147,7 @@ impl System {
                 ("removal", removals),
             ],
             lagrangian: lagrangian.0,
-            constraints: constraints.0,
+            constraints: constraints.map_or(Vec::new(), |constraints| constraints.0),
             time,
             project,
             multipliers,
@@ -291,10 +290,11 @@ impl System {
     /// >>> sledge.replace({"g": 1.6}).parameters["g"]
     /// 1.6
     #[pyo3(signature = (overrides))]
-    fn replace(&self, py: Python<'_>, overrides: HashMap<String, f64>) -> PyResult<System> {
-        let overrides = spelt(overrides)?;
-        let kept = self.overrides.iter().filter(|(name, _)| !overrides.contains_key(name)).cloned();
-        let all = kept.chain(overrides.clone()).collect();
+    fn replace(&self, py: Python<'_>, overrides: Numbers) -> PyResult<System> {
+        let Numbers(overrides) = overrides;
+        let is_new = |name: &String| overrides.iter().any(|(new, _)| new == name);
+        let kept = self.overrides.iter().filter(|(name, _)| !is_new(name)).cloned();
+        let all = kept.chain(overrides.iter().cloned()).collect();
         System::read(py, (&self.name(), None), self.text.clone(), all)
     }
 

@@ -36,7 +36,7 @@ def test_examples_run(path, tmp_path, monkeypatch):
 def test_the_page_about_clusters(tmp_path, monkeypatch, capsys):
     """Slurm's jobs are processes of this machine; their script is Slurm's."""
     monkeypatch.chdir(tmp_path)
-    Path("own.toml").write_text((ROOT / "validation/scenes/sledge.toml").read_text())
+    Path("own.toml").write_text((ROOT / "crates/catalogue/scenes/sledge.toml").read_text())
     scripts, asked = [], []
 
     def jobs(cores, processes, memory, walltime):
@@ -61,7 +61,7 @@ def test_the_page_about_clusters(tmp_path, monkeypatch, capsys):
 
 def test_examples_of_docstrings_run():
     """Those of the system come first: the others take it from there."""
-    objects = [deltaq.System, deltaq.sweep, deltaq.ensemble]
+    objects = [deltaq.System, deltaq.built_in, deltaq.sweep, deltaq.ensemble]
     for cls in vars(deltaq).copy().values():
         if isinstance(cls, type) and cls.__module__ == "deltaq":
             objects += [cls, *(member for name, member in vars(cls).items() if not name.startswith("_"))]
@@ -87,7 +87,7 @@ def test_the_notebook_runs(tmp_path):
 
 
 def test_the_removal_in_the_scene_format_is_one():
-    sledge = (ROOT / "validation/scenes/sledge.toml").read_text()
+    sledge = (ROOT / "crates/catalogue/scenes/sledge.toml").read_text()
     [removal] = [block for block in blocks("docs/scenes.md", "toml") if block.startswith("[removal.")]
     system = deltaq.parse(sledge[: sledge.index("[removal.")] + removal + "[run]\nduration = 1\n")
     assert system.removals[0] == "arc-length"

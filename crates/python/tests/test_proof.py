@@ -17,10 +17,11 @@ import pytest
 
 import deltaq
 
-VALIDATION = Path(__file__).resolve().parents[3] / "validation"
+ROOT = Path(__file__).resolve().parents[3]
+CATALOGUE = ROOT / "crates/catalogue"
 # the module is laid out beside the programs of its build
 PROGRAM = Path(os.environ.get("DELTAQ", Path(sys.prefix).parent / "release" / "deltaq"))
-SCRIPT = VALIDATION / "proof" / "verify.py"
+SCRIPT = ROOT / "validation/proof/verify.py"
 VERIFIED, FORGED, UNREADABLE = range(3)
 # all single changes in the place of a drawn part
 ALL = "PROOF_CHANGES" in os.environ
@@ -72,15 +73,15 @@ BUILT_IN = [
     ("scenes/ball-in-cone", 1, {}),
     ("scenes/three-cylinders", 4, {}),
     ("scenes/trailer", 4, {}),
-    ("equivalence/falling-disc", 2, {}),
-    ("equivalence/isokinetic", 1, {}),
-    ("equivalence/unicycle-in-potential", 1, {}),
+    ("classics/falling-disc", 2, {}),
+    ("classics/isokinetic", 1, {}),
+    ("classics/unicycle-in-potential", 1, {}),
 ]
 
 
 @pytest.mark.parametrize("scene, order, changes", BUILT_IN)
 def test_a_certificate_is_verified(tmp_path, scene, order, changes):
-    scene = VALIDATION / f"{scene}.toml"
+    scene = CATALOGUE / f"{scene}.toml"
     certificate = written(tmp_path, scene, **changes)
     assert certificate["order"] == order
     code, said = verdict(tmp_path, certificate, scene)
@@ -157,7 +158,7 @@ def test_of_random_systems(tmp_path, index):
 
 
 def test_the_script_alone_ends_with_its_code(tmp_path):
-    scene, path = VALIDATION / "scenes" / "sledge.toml", tmp_path / "certificate.json"
+    scene, path = CATALOGUE / "scenes" / "sledge.toml", tmp_path / "certificate.json"
     certificate = written(tmp_path, scene)
     for code, text in enumerate((path.read_text(), json.dumps(certificate | {"minor": 1}), "{")):
         path.write_text(text)
@@ -203,14 +204,14 @@ def test_a_parameter_is_no_velocity(tmp_path):
 
 
 def test_a_start_that_is_set_is_said(tmp_path):
-    scene = VALIDATION / "scenes" / "turntable.toml"
+    scene = CATALOGUE / "scenes" / "turntable.toml"
     other = written(tmp_path, scene, x=0.6, psi__=0.700001)
     code, said = verdict(tmp_path, other, scene)
     assert code == VERIFIED and "set: psi' = 0.700001, x = 0.6" in said and "start: t = 0, x = 0.6, " in said
     for sets in ({}, {"x": "0.6"}, {"x": "0.6", "psi'": "0.7"}):  # the last is the ball that turns with its table, which is vakonomic
         code, said = verdict(tmp_path, other | {"set": sets}, scene)
         assert code == FORGED and "at the start is not that of the file" in said
-    assert verdict(tmp_path, other, VALIDATION / "scenes" / "sledge.toml")[0] == FORGED
+    assert verdict(tmp_path, other, CATALOGUE / "scenes" / "sledge.toml")[0] == FORGED
 
 
 def test_another_scene_is_not_proved(tmp_path):
@@ -230,7 +231,7 @@ def test_another_scene_is_not_proved(tmp_path):
 
 def test_no_certificate_is_verified_where_there_are_multipliers(tmp_path):
     # straight ahead the particle is vakonomic with mu_0 = 0; everything but the minor is true
-    scene = VALIDATION / "scenes" / "particle.toml"
+    scene = CATALOGUE / "scenes" / "particle.toml"
     true = written(tmp_path, scene)
     minus, zeros = true["prime"] - 1, [0, 0]
     motion = {"x": [0, 1, *zeros], "y": [minus, 0, *zeros], "z": [0, minus, *zeros]}
@@ -328,12 +329,12 @@ def same_function(one, other):
     return True
 
 
-CHANGED = ["scenes/sledge", "scenes/particle", "scenes/turntable", "scenes/three-cylinders", "equivalence/unicycle-in-potential"]
+CHANGED = ["scenes/sledge", "scenes/particle", "scenes/turntable", "scenes/three-cylinders", "classics/unicycle-in-potential"]
 
 
 @pytest.mark.parametrize("name", CHANGED)
 def test_what_is_changed_is_forged_or_cannot_be_read(tmp_path, name):
-    scene = VALIDATION / f"{name}.toml"
+    scene = CATALOGUE / f"{name}.toml"
     true = written(tmp_path, scene)
     found = [(path, other) for path, other in changes(true) if path]
     counts = [0, 0, 0]
@@ -352,7 +353,7 @@ def test_the_certificate_is_that_of_the_command(tmp_path, almost_every):
     path = tmp_path / "certificate.json"
     words = [PROGRAM, "prove", "sledge", "--out", path, *(["--almost-every"] if almost_every else [])]
     subprocess.run(words, check=True, capture_output=True)
-    system = deltaq.load(VALIDATION / "scenes/sledge.toml")
+    system = deltaq.load(CATALOGUE / "scenes/sledge.toml")
     proof = system.prove(almost_every_start=almost_every)
     assert proof and proof.because is None and proof.certificate == json.loads(path.read_text())
     proof.save(tmp_path / "ours.json")

@@ -1,11 +1,14 @@
 """Results as values: they are pickled and copied, cannot be written to, have the shape that was asked for."""
 
 import copy
+import io
 import pickle
 import subprocess
 import sys
 import threading
 import time
+import types
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -303,3 +306,42 @@ def test_what_scenes_say_is_there(sledge):
     again = deltaq.parse(switched.to_toml())
     assert (again.breakpoints, again.notes) == (switched.breakpoints, switched.notes)
     assert sledge.system().breakpoints == [] and sledge.system().notes == ""
+
+
+def test_figures_obey_no_text_of_a_scene(sledge):
+    """A formula that matplotlib cannot read would end the drawing."""
+    bad = r"$\href{x}{y}$"
+    removals = {bad: {"parameters": ["u", "phi"], "rates": {"x": "u'*cos(phi)", "y": "u'*sin(phi)"}}}
+    system = sledge.system(title=bad, units={"x": bad}, removals=removals, duration=0.2)
+    drawn = [system.solve(), system.ensemble(vary={"x": [0.0, 0.1]}), system.compare(), deltaq.sweep(system, {"x": [0.0, 0.1]})]
+    for result in drawn:
+        result.plot().savefig(io.BytesIO())
+
+
+def test_any_mapping_will_do(sledge, system):
+    """Stubs say Mapping."""
+    fixed = types.MappingProxyType
+    assert deltaq.parse(system.to_toml(), fixed({"g": 1.0})).parameters["g"] == system.replace(fixed({"g": 1.0})).parameters["g"] == 1.0
+    assert sledge.system(parameters=fixed({"g": 1.0, "alpha": 0.4, "k": 0.7}), start=fixed({"x": 0, "y": 0, "phi": 0})).parameters["g"] == 1.0
+    vary = fixed({"g": [1.0, 2.0]})
+    np.testing.assert_array_equal(system.ensemble("chetaev", [0.1], vary=vary).varied["g"], [1.0, 2.0])
+    with pytest.raises(deltaq.SolveError, match="no steady motion"):
+        system.linearize_over(vary)
+    natural = [system.solve("removed-constraint", [0.1], constants=kind({"horizon": 1.0})).constants for kind in (dict, fixed)]
+    assert natural[0] == natural[1]
+    with pytest.raises(TypeError, match="list.* where a dict is expected"):
+        system.replace([("g", 1.0)])
+
+
+def test_built_in_scenes(system):
+    assert len(deltaq.SCENES) >= 40 and deltaq.SCENES[0] == "sledge"
+    for name in deltaq.SCENES:
+        assert deltaq.built_in(name).name == name
+    folder = Path(__file__).resolve().parents[2] / "catalogue/scenes"
+    for name in ("sledge", "bicycle"):
+        ours, file = deltaq.built_in(name, {"time": 0.0}), deltaq.load(folder / f"{name}.toml")
+        assert ours.to_toml() == file.to_toml() and ours.title == file.title
+    assert deltaq.built_in("sledge", {"g": 1.6}).parameters["g"] == 1.6
+    assert deltaq.built_in("n-trailer-5").dimension == 18
+    with pytest.raises(deltaq.UnknownNameError, match="unknown built-in scene `sled`; known: sledge, .*n-trailer-N"):
+        deltaq.built_in("sled")

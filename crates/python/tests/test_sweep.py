@@ -3,9 +3,11 @@
 import io
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +20,7 @@ import deltaq
 
 ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = Path(sys.prefix).parent / "release" / "deltaq"
-SCENE = ROOT / "validation/scenes/turntable.toml"
+SCENE = ROOT / "crates/catalogue/scenes/turntable.toml"
 OVER = {"Omega": [0.3, 0.6, 0.9], "psi'": [0.3, 0.45, 0.6, 0.75, 0.9]}
 
 
@@ -74,6 +76,14 @@ def test_parts_that_are_there_are_kept(table_top, undisturbed, tmp_path):
         sweep(tolerance=1e-9)
 
 
+def test_what_is_no_part_of_it_is_refused_by_name(table_top, tmp_path):
+    path = tmp_path / "part-000000.parquet"
+    path.write_text("mine")
+    with pytest.raises(ValueError, match="part-000000.parquet is of another call"):
+        deltaq.sweep(table_top, {"x": [0.6]}, out=tmp_path)
+    assert path.read_text() == "mine"
+
+
 def test_killed_three_times(table_top, undisturbed, tmp_path):
     code = f"""
 import deltaq, os, signal, sys
@@ -86,6 +96,39 @@ deltaq.sweep(system, {OVER!r}, out={str(tmp_path)!r}, part=2, progress=kill)
         assert ended.returncode == -signal.SIGKILL
         assert len(list(tmp_path.glob("part-*"))) == done
     assert deltaq.sweep(table_top, OVER, out=tmp_path, part=2).to_arrow().equals(undisturbed.to_arrow())
+
+
+def test_killed_at_any_time(table_top, undisturbed, tmp_path):
+    """KILLS=100 kills a hundred sweeps before their end, and -s shows how many."""
+    wanted, out = int(os.environ.get("KILLS", 4)), tmp_path / "out"
+    code = f"""
+import deltaq
+system = deltaq.load({str(SCENE)!r}, {{"x": 0.6}})
+print(flush=True)
+deltaq.sweep(system, {OVER!r}, out={str(out)!r}, part=1)
+"""
+    clock = time.perf_counter()
+    deltaq.sweep(table_top, OVER, out=tmp_path / "whole", part=1)
+    seconds = time.perf_counter() - clock
+    whole = {path.name: path.read_bytes() for path in (tmp_path / "whole").iterdir()}
+    killed = ended = attempts = 0
+    while killed < wanted:
+        assert attempts < 10 * wanted, f"{killed} of {attempts} were killed before their end"
+        sweep = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+        sweep.stdout.readline()
+        time.sleep(seconds * (attempts * (5**0.5 - 1) / 2 % 1))
+        sweep.kill()
+        sweep.communicate()
+        killed += sweep.returncode != 0
+        attempts += 1
+        left = {path.name: path.read_bytes() for path in out.glob("part-*")} if out.exists() else {}
+        assert all(whole[name] == read for name, read in left.items())
+        if attempts % 3 == 0:
+            assert deltaq.sweep(table_top, OVER, out=out, part=1).to_arrow().equals(undisturbed.to_arrow())
+            assert {path.name: path.read_bytes() for path in out.glob("part-*")} == whole
+            shutil.rmtree(out)
+            ended += 1
+    print(f"Python sweep: {killed} of {attempts} calls killed before their end, 0 broken; {ended} went on to it")
 
 
 def test_a_cluster_that_loses_a_worker(table_top, undisturbed, tmp_path):

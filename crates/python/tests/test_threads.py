@@ -1,8 +1,11 @@
 """Beside other work: the lock is released while integrating, and Ctrl-C ends it."""
 
 import signal
+import subprocess
+import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -92,3 +95,10 @@ def test_control_c(sledge, system, ask):
     assert 0.2 < time.perf_counter() - began < 5
     # and what comes after is not disturbed
     assert system.solve().status == "completed"
+
+
+def test_a_program_that_embeds_it(tmp_path):
+    session = Path(__file__).with_name("session.py")
+    ended = subprocess.run([sys.executable, "-W", "error", session, tmp_path], capture_output=True, text=True, timeout=120)
+    assert (ended.returncode, ended.stdout) == (0, "the session has ended\n"), ended.stderr
+    assert (tmp_path / "slid.png").stat().st_size > 10_000

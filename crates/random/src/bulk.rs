@@ -66,7 +66,7 @@ impl Batch {
             None => (Vec::new(), None),
             Some(path) => {
                 let (records, file) = self.open_log(path)?;
-                (records, Some(Mutex::new(file)))
+                (records, Some((path, Mutex::new(file))))
             }
         };
         records.retain(|record| indices.contains(&record.index));
@@ -75,10 +75,10 @@ impl Batch {
         let name = |&index: &u64| format!("random systems, {}", self.kinds[index as usize % self.kinds.len()]);
         let new = parallel::try_map(&indices, quiet, name, |&index| -> Result<Record> {
             let record = self.record(index);
-            if let Some(log) = &log {
+            if let Some((path, log)) = &log {
                 let line = serde_json::to_string(&record)? + "\n";
                 let mut file = log.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                file.write_all(line.as_bytes()).context("cannot write the log")?;
+                file.write_all(line.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
             }
             Ok(record)
         })?;

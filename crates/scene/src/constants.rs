@@ -1,6 +1,7 @@
 //! Free constants of the motions: multipliers `μ₀` and memory costates `P(t₀)`.
 
 use super::context::Context;
+use super::scene::multiplier_name;
 use super::section::Section;
 use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{ConstantsRule, MemoryVariable};
@@ -21,7 +22,7 @@ pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
         }
     }
     for (i, multiplier) in multipliers.iter_mut().enumerate() {
-        if let Some(value) = context.overrides.get(&format!("mu{}", i + 1)) {
+        if let Some(value) = context.overrides.get(&multiplier_name(i)) {
             *multiplier = value;
         }
     }

@@ -51,7 +51,7 @@ impl Scene {
 
     /// Like [`Scene::parse`], with numbers ([`Number`], `f64`) that override those of the text before
     /// anything is evaluated: a parameter (`g`), the start of a coordinate (`x`), a start velocity (`x'`) or
-    /// rate, `time`, `duration`, or a multiplier (`mu1`, `mu2`, … in the order of the constraints).
+    /// rate, `time`, `duration`, or a multiplier (`mu0_1`, `mu0_2`, … in the order of the constraints).
     /// Parameters and coordinates of these names come first; the last override of a name counts.
     ///
     /// # Errors

@@ -158,11 +158,11 @@ impl Names {
         let overriding = match role {
             Role::Parameter => overriding(name),
             // any scene may be given this parameter
-            _ if name == KAPPA => Some("the parameter of the formulation `kappa`"),
-            Role::Coordinate => overriding(name),
-            _ => None,
+            _ if name == KAPPA => Some(NameFault::Overriding("the parameter of the formulation `kappa`")),
+            Role::Coordinate | Role::RemovalParameter | Role::Memory => overriding(name),
+            Role::Time | Role::Definition => None,
         };
-        let fault = overriding.map(NameFault::Overriding).map_or_else(|| self.check_new(graph, name), Err);
+        let fault = overriding.map_or_else(|| self.check_new(graph, name), Err);
         fault.map_err(|fault| source.error(span, SceneErrorKind::InvalidName { name: name.into(), fault }))
     }
 
@@ -216,15 +216,14 @@ impl Names {
 }
 
 /// What `--set` means by this name, apart from the names of the scene.
-fn overriding(name: &str) -> Option<&'static str> {
+fn overriding(name: &str) -> Option<NameFault> {
+    let numbered = |stem| name.strip_prefix(stem).is_some_and(|i| i.parse::<usize>().is_ok());
     match name {
-        "time" => Some("the start time"),
-        "duration" => Some("the length of the run"),
-        // `mu0_1` is the name that Python has for `mu1`
-        _ if name.strip_prefix("mu").is_some_and(|n| n.strip_prefix("0_").unwrap_or(n).parse::<usize>().is_ok()) => {
-            Some("a multiplier")
-        }
-        _ => name.starts_with("P0_").then_some("a costate"),
+        "time" => Some(NameFault::Overriding("the start time")),
+        "duration" => Some(NameFault::Overriding("the length of the run")),
+        _ if numbered("mu0_") => Some(NameFault::Overriding("a multiplier at the start")),
+        _ if numbered("mu") => Some(NameFault::Reserved("printed like a multiplier")),
+        _ => name.starts_with("P0_").then_some(NameFault::Overriding("a costate")),
     }
 }
 

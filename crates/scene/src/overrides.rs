@@ -53,7 +53,7 @@ impl Overrides {
             Some(name) => {
                 let known: Vec<String> = asked.iter().cloned().collect();
                 let expected =
-                    "parameter, coordinate, start velocity, time, duration or multiplier (mu1, …) to override";
+                    "parameter, coordinate, start velocity, time, duration or multiplier (mu0_1, …) to override";
                 let suggestion = if name == "t" { Some("time".into()) } else { suggestion(name, &known) };
                 let kind = SceneErrorKind::UnknownName { name: name.clone(), expected, suggestion };
                 Err(SceneError::outside(source.file, kind))

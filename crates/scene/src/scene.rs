@@ -28,3 +28,16 @@ pub struct Scene {
     /// What is drawn; without bodies where the file does not say.
     pub view: View,
 }
+
+impl Scene {
+    /// Names of the multipliers `μ₀`, one per constraint: those of the free constants of vakonomic motions.
+    #[must_use]
+    pub fn multiplier_names(&self) -> Vec<String> {
+        (0..self.multipliers.len()).map(multiplier_name).collect()
+    }
+}
+
+/// Name of multiplier `i` at the start, with `i` from 0: `mu0_1` is the first.
+pub(crate) fn multiplier_name(i: usize) -> String {
+    format!("mu0_{}", i + 1)
+}

@@ -62,7 +62,7 @@ enum Source {
 
 impl Scene {
     /// Starts with other numbers in the places of these: parameters, coordinates, start velocities or rates,
-    /// multipliers (`mu1`, …).
+    /// multipliers (`mu0_1`, …).
     ///
     /// # Errors
     /// With line 0: [`SceneErrorKind::UnknownName`]; [`SceneErrorKind::Removal`] where a removal written by
@@ -78,14 +78,14 @@ impl Starts {
         let g = &system.graph;
         let rates = rate_names(system, removal);
         let parameters = system.parameters.iter().map(|p| g.name(p.symbol));
-        let multipliers = (1..=scene.multipliers.len()).map(|i| format!("mu{i}"));
+        let multipliers = scene.multiplier_names();
         let coordinates = system.coordinates.iter().map(|c| c.name.clone());
         let own = parameters.chain(coordinates).chain(rates.iter().map(|(name, _)| name.clone()));
         let known: Vec<String> = own.chain(multipliers).collect();
         let mut varied_multipliers = Vec::new();
         for (i, name) in names.iter().enumerate() {
             let Some(place) = known.iter().position(|known| known == name) else {
-                let expected = "parameter, coordinate, start velocity or multiplier (mu1, …) that could vary";
+                let expected = "parameter, coordinate, start velocity or multiplier (mu0_1, …) that could vary";
                 let suggestion = suggestion(name, &known);
                 return Err(SceneErrorKind::UnknownName { name: name.to_string(), expected, suggestion });
             };

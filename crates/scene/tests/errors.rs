@@ -294,7 +294,8 @@ fn overrides() {
         let list: Vec<(String, f64)> = list.iter().map(|(n, x)| (n.to_string(), *x)).collect();
         Scene::parse_with("sledge", SLEDGE, &list)
     };
-    let scene = set(&[("g", 1.0), ("x", 2.0), ("phi'", -1.0), ("duration", 3.0), ("mu1", 4.0), ("time", 1.0)]).unwrap();
+    let scene =
+        set(&[("g", 1.0), ("x", 2.0), ("phi'", -1.0), ("duration", 3.0), ("mu0_1", 4.0), ("time", 1.0)]).unwrap();
     assert_eq!(scene.system.parameters[0].value, 1.0);
     assert_eq!((scene.start.t, &scene.start.q[..2], scene.start.v[2]), (1.0, &[2.0, 4.0][..], -1.0));
     assert_eq!((scene.duration, &scene.multipliers[..]), (3.0, &[4.0][..]));

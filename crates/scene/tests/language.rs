@@ -60,7 +60,7 @@ fn every_fault_is_found_at_once() {
 
 #[test]
 fn names_of_overrides_are_reserved() {
-    for name in ["time", "duration", "mu1", "P0_x"] {
+    for name in ["time", "duration", "mu0_1", "P0_x"] {
         for (old, new) in [("k = 0.7", format!("{name} = 0.7")), ("phi = {", format!("{name} = {{"))] {
             let error = error(old, &new);
             assert!(

@@ -4,7 +4,7 @@
 //! the first body that moves, at its first contact or else at its origin.
 //!
 //! ```
-//! # let text = include_str!("../../../validation/scenes/sledge.toml");
+//! # let text = include_str!("../../catalogue/scenes/sledge.toml");
 //! let scene = scene::Scene::parse("sledge", text)?;
 //! let (start, rate) = (scene.start.q.clone(), scene.start.v[2]);
 //! // the sledge turns on the spot

@@ -13,7 +13,7 @@ use crate::checks::{Outcome, build, cargo, outside, succeed, target};
 
 /// The sources of the page, and of what answers it.
 const PAGE: &str = "crates/explore/page";
-const SOURCES: [&str; 4] = [PAGE, "crates/explore/src", "validation/scenes", "validation/equivalence"];
+const SOURCES: [&str; 4] = [PAGE, "crates/explore/src", "crates/catalogue/scenes", "crates/catalogue/classics"];
 /// Endings of sources.
 const ENDINGS: [&str; 7] = ["js", "mjs", "css", "html", "json", "rs", "toml"];
 /// The committed page.
@@ -48,6 +48,17 @@ pub(crate) fn write() -> Result<Outcome> {
     std::fs::copy(page, COMMITTED).context(COMMITTED)?;
     println!("{COMMITTED}: {size}");
     Ok(Outcome(String::new()))
+}
+
+/// Moves the sliders of a fresh page for so many seconds and tells whether it grows.
+pub(crate) fn growth(seconds: u32) -> Result<Outcome> {
+    match tools()? {
+        Err(lacking) => bail!("the page cannot be tried: {lacking}"),
+        Ok(browser) => {
+            let (page, _) = fresh(&digest()?)?;
+            Ok(Outcome(format!(", {}", tried(&browser, &page, &seconds.max(1).to_string())?)))
+        }
+    }
 }
 
 /// How the names end of what only tries a page and is no part of it.

@@ -10,6 +10,9 @@ mod sources;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// Seconds.
+const FIVE_MINUTES: u32 = 300;
+
 fn main() -> ExitCode {
     if let Some(code) = lint::in_place_of_rustc() {
         return code;
@@ -26,6 +29,15 @@ fn main() -> ExitCode {
     }
     if arguments == ["explore"] {
         return checks::chore(explore::write());
+    }
+    if let ["growth", rest @ ..] = arguments.as_slice() {
+        return match rest.first().map_or(Ok(FIVE_MINUTES), |seconds| seconds.parse()) {
+            Ok(seconds) => checks::chore(explore::growth(seconds)),
+            Err(error) => {
+                eprintln!("growth takes a number of seconds: {error}");
+                ExitCode::FAILURE
+            }
+        };
     }
     if arguments == ["wheel"] {
         return checks::chore(python::wheel());
@@ -60,8 +72,15 @@ fn list(checks: &[checks::Check]) {
     for check in checks {
         println!("  {:<10} {}", check.name, check.about);
     }
-    println!("\n  {:<10} no check: builds wheel and source distribution of the Python module", "wheel");
+    println!(
+        "\n  {:<10} no check: builds wheel (for glibc 2.28 and newer) and source distribution of the Python module, tests the wheel",
+        "wheel"
+    );
     println!("\n  {:<10} no check: builds the page to explore scenes, writes reports/explore.html", "explore");
+    println!(
+        "\n  {:<10} no check: moves sliders of a fresh page for five minutes, or SECONDS, and fails if it grows",
+        "growth"
+    );
     println!("\n  {:<10} no check: runs the physics engine, writes reports/engine.md", "engine");
     println!(
         "\n  {:<10} no check: times other tools beside ours, writes reports/peers.md; --quick for a look, --redraw for pictures",

@@ -4,11 +4,11 @@ use std::collections::hash_map::DefaultHasher;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 
 use crate::checks::{Outcome, build, outside, succeed, target};
 
@@ -18,6 +18,12 @@ const CRATE: &str = "crates/python";
 const SOURCES: &str = "crates/python/python/deltaq";
 /// What the checks take from Python's package index.
 const REQUIREMENTS: &str = "crates/xtask/requirements.txt";
+/// What builds the wheel that is given away.
+const WHEEL_REQUIREMENTS: &str = "crates/xtask/wheel.txt";
+/// The oldest glibc on which that wheel installs is 2.28, of 2018.
+const GLIBC: u32 = 28;
+/// What of stubs the module itself cannot have.
+const STUBTEST: &str = "stubtest.txt";
 /// The oldest Python for which the module is built.
 const OLDEST: (u32, u32) = (3, 11);
 /// Where a Python is looked for.
@@ -26,40 +32,112 @@ const NAMES: [&str; 3] = ["python3.11", "python3", "python"];
 pub(crate) fn check() -> Result<Outcome> {
     let python = environment()?;
     let Module { site, size } = module(&python)?;
-    let fresh = installed(&python, &site)?;
-    succeed(outside(&fresh).args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE))?;
+    // types are looked at beside the tests
+    let mut types = typed(&python, &site)?;
+    let fresh = installed(&python, &packed(&python, &site)?)?;
+    let tested = tested(&fresh);
+    for (words, types) in &mut types {
+        ensure!(types.wait()?.success(), "{words}: see above");
+    }
+    tested?;
     Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
 }
 
-/// Builds the wheel and the source distribution that are given away, in `target/wheels`.
+/// Starts mypy on what of the module is Python, and stubtest on its stubs.
+fn typed(python: &Path, site: &Path) -> Result<[(&'static str, Child); 2]> {
+    let settings = std::path::absolute(Path::new(CRATE).join("pyproject.toml"))?;
+    let start = |words, arguments: &[&str], settings_option: &str| -> Result<_> {
+        let mut command = outside(python);
+        command.args(["-B", "-m"]).args(arguments).arg(settings_option).arg(&settings).current_dir(site);
+        Ok((words, command.env("MYPY_CACHE_DIR", target()?.join("mypy")).spawn().context(words)?))
+    };
+    let allowed = std::path::absolute(Path::new(CRATE).join(STUBTEST))?;
+    let allowed = allowed.to_str().context("the path of the project is no text")?;
+    Ok([
+        start("types are wrong", &["mypy", "--no-error-summary", "--package", "deltaq"], "--config-file")?,
+        start(
+            "stubs do not say what is there",
+            &["mypy.stubtest", "deltaq", "--concise", "--allowlist", allowed],
+            "--mypy-config-file",
+        )?,
+    ])
+}
+
+/// Runs the tests with an interpreter that has the module.
+fn tested(python: &Path) -> Result<Outcome> {
+    succeed(outside(python).args(["-B", "-m", "pytest", "--quiet"]).current_dir(CRATE))
+}
+
+/// Builds the wheel and the source distribution that are given away, in `target/wheels`, and tests the wheel.
+/// On Linux zig links it against the symbols of [`GLIBC`], whatever the glibc of this machine.
 pub(crate) fn wheel() -> Result<Outcome> {
-    let python = environment()?;
-    let (clock, wheels) = (Instant::now(), target()?.join("wheels"));
+    const IS_GLIBC: bool = cfg!(all(target_os = "linux", target_env = "gnu"));
+    let (clock, target) = (Instant::now(), target()?);
+    let python = make(&target, "wheel", Path::new(WHEEL_REQUIREMENTS))?;
+    let wheels = empty(target.join("wheels"))?;
     let mut maturin = outside(&python);
     maturin.args(["-m", "maturin", "build", "--release", "--sdist", "--quiet", "--out"]).arg(&wheels);
+    if IS_GLIBC {
+        maturin.args(["--zig", "--compatibility", &format!("manylinux_2_{GLIBC}")]);
+        // maturin asks the first `python3` for zig
+        let others = std::env::var_os("PATH").unwrap_or_default();
+        let folders = python.parent().map(PathBuf::from).into_iter().chain(std::env::split_paths(&others));
+        maturin.env("PATH", std::env::join_paths(folders)?);
+    }
     succeed(maturin.arg("--interpreter").arg(&python).current_dir(CRATE))?;
     let mut made = Vec::new();
     for file in std::fs::read_dir(&wheels).with_context(|| wheels.display().to_string())? {
         let file = file?;
         made.push(format!("{} of {:.1} MB", file.path().display(), file.metadata()?.len() as f64 / 1e6));
+        if file.path().extension().is_some_and(|ending| ending == "whl") {
+            if IS_GLIBC {
+                audited(&python, &file.path())?;
+            }
+            tested(&installed(&environment()?, &file.path())?)?;
+        }
     }
     Ok(Outcome(format!(", {}, in {:.0} s", made.join(", "), clock.elapsed().as_secs_f64())))
 }
 
-/// A new environment with the module from a wheel of its own, and what the other one has.
-fn installed(python: &Path, site: &Path) -> Result<PathBuf> {
-    let target = target()?;
-    let (wheels, place) = (target.join("python-wheel"), target.join("python-fresh"));
-    for folder in [&wheels, &place] {
-        if folder.exists() {
-            std::fs::remove_dir_all(folder).with_context(|| folder.display().to_string())?;
-        }
+/// Prints what auditwheel finds in a wheel: it has to be symbols of [`GLIBC`] or of an older one.
+fn audited(python: &Path, wheel: &Path) -> Result<()> {
+    let output = outside(python).args(["-m", "auditwheel", "show"]).arg(wheel).output().context("auditwheel")?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    print!("{text}{}", String::from_utf8_lossy(&output.stderr));
+    let glibc = glibc(&text).context("auditwheel names no manylinux tag")?;
+    ensure!(glibc <= GLIBC, "the wheel needs glibc 2.{glibc}; 2.{GLIBC} has to do");
+    Ok(())
+}
+
+/// Of a platform tag `manylinux_2_N`, that auditwheel prints, N.
+fn glibc(text: &str) -> Option<u32> {
+    // its lines end anywhere between words
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let tag = text.split("platform tag: \"").nth(1)?.strip_prefix("manylinux_2_")?;
+    tag.split('_').next()?.parse().ok()
+}
+
+/// The folder, with nothing in it.
+fn empty(folder: PathBuf) -> Result<PathBuf> {
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
     }
-    std::fs::create_dir_all(&wheels).with_context(|| wheels.display().to_string())?;
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    Ok(folder)
+}
+
+/// A wheel of the module that was laid out.
+fn packed(python: &Path, site: &Path) -> Result<PathBuf> {
+    let wheels = empty(target()?.join("python-wheel"))?;
     succeed(outside(python).args(["-m", "wheel", "pack", "--dest-dir"]).arg(&wheels).arg(site).stdout(Stdio::null()))?;
+    Ok(std::fs::read_dir(&wheels)?.next().context("no wheel was packed")??.path())
+}
+
+/// A new environment with the module from a wheel, and what the other one has.
+fn installed(python: &Path, wheel: &Path) -> Result<PathBuf> {
+    let place = empty(target()?.join("python-fresh"))?;
     succeed(outside(python).args(["-m", "venv", "--without-pip"]).arg(&place))?;
     let fresh = interpreter_of(&place);
-    let wheel = std::fs::read_dir(&wheels)?.next().context("no wheel was packed")??.path();
     let mut install = outside(python);
     install.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "--python"]).arg(&fresh);
     succeed(install.args(["install", "--no-deps", "--no-index"]).arg(wheel))?;
@@ -95,10 +173,7 @@ struct Module {
 fn module(python: &Path) -> Result<Module> {
     build()?;
     let target = target()?;
-    let site = target.join("python-module");
-    if site.exists() {
-        std::fs::remove_dir_all(&site).with_context(|| site.display().to_string())?;
-    }
+    let site = empty(target.join("python-module"))?;
     let folder = site.join("deltaq");
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     let mut metadata = outside(python);
@@ -174,6 +249,13 @@ fn version(text: &str) -> Option<(u32, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_tag_of_a_wheel_is_read() {
+        let said = "is consistent with\nthe following platform\ntag: \"manylinux_2_35_x86_64\".\n\nThe wheel";
+        assert_eq!(glibc(said), Some(35));
+        assert_eq!(glibc("is consistent with\nthe following platform tag: \"linux_x86_64\"."), None);
+    }
 
     #[test]
     fn versions_are_compared_as_numbers() {

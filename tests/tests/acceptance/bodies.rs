@@ -151,7 +151,7 @@ fn bodies_touch_and_do_not_slip() {
 
 #[test]
 fn a_wrong_sign_slips() {
-    let text = validation::catalogue::source("disc").expect("a scene");
+    let text = catalogue::source("disc").expect("a scene");
     let wrong = text.replace("rotation(zy, phi, psi)", "rotation(zy, phi, -psi)");
     let scene = Scene::parse("disc", &wrong).unwrap_or_else(|e| panic!("{e}"));
     let found = moved(&scene);

@@ -1,10 +1,10 @@
 //! Chains in few coordinates, by the velocities of their bodies, are the same systems.
 
+use catalogue::trailer::{self, Coordinates};
 use deltaq::derive_at;
 use equations::Compiled;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use validation::trailer::{self, Coordinates};
 
 use super::support::{at, chetaev, choice, common_times, must, some_multipliers};
 use super::{reduced_form, reduced_vakonomic};

@@ -1,6 +1,7 @@
 //! Members of ensembles against motions derived and solved one by one, in every formulation of every scene;
 //! their starts against those of the text with other numbers in it.
 
+use catalogue::{CLASSICS, SCENES, find};
 use deltaq::{
     Choice, Ending, Ensemble, EnsembleOptions, EnsembleStart, Settings, choices, constants_of, error_estimate, forms,
     setting, solve_choice,
@@ -8,7 +9,6 @@ use deltaq::{
 use equations::Equations;
 use integrate::Method;
 use scene::Scene;
-use validation::catalogue::{CLASSICS, SCENES, find};
 
 /// Not divisible by the number of lanes.
 const MEMBERS: usize = 11;
@@ -139,7 +139,7 @@ fn variations(base: &Scene) -> Vec<(String, f64)> {
     let parameters = system.parameters.iter().map(|p| (system.graph.name(p.symbol), p.value));
     let coordinates = system.coordinates.iter().zip(&base.start.q).map(|(c, &q)| (c.name.clone(), q));
     let velocities = system.coordinates.iter().zip(&base.start.v).map(|(c, &v)| (format!("{}'", c.name), v));
-    let multipliers = base.multipliers.iter().zip(1..).map(|(&mu, i)| (format!("mu{i}"), mu));
+    let multipliers = base.multiplier_names().into_iter().zip(base.multipliers.iter().copied());
     let all: Vec<_> = parameters.chain(coordinates).chain(velocities).chain(multipliers).collect();
     let nearby = |(name, x): &(String, f64)| [0.0, 0.07, -0.5].map(|part| (name.clone(), x + part * (1.0 + x.abs())));
     all.iter().flat_map(nearby).collect()

@@ -2,11 +2,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use catalogue::trailer::{self, Coordinates};
 use deltaq::{Choice, Ending, Motion, Settings, choices, solve_choice};
 use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use validation::trailer::{self, Coordinates};
 
 use super::closed_forms::sledge;
 use super::support::{

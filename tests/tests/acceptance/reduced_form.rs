@@ -1,12 +1,12 @@
 //! Chetaev in quasi-velocities is Chetaev: against the saddle-point form and Maggi's, derived independently.
 
+use catalogue::trailer::{self, Coordinates};
 use equations::{Compiled, Equations};
 use mechanics::State;
 use proptest::{prop_assert, test_runner::TestCaseError};
 use referees::maggi::Maggi;
 use scene::Scene;
 use symbolic::{Expr, Symbol};
-use validation::trailer::{self, Coordinates};
 
 use super::support::{
     at, chetaev, common_times, constraint_residual, derived, equations, for_all_linear, known_gap, linear_scenes,

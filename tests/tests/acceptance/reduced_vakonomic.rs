@@ -2,13 +2,13 @@
 
 use std::cell::Cell;
 
+use catalogue::trailer::{self, Coordinates};
 use deltaq::Settings;
 use equations::{Compiled, Equations, Outputs, Plan};
 use integrate::Method;
 use proptest::prop_assert;
 use reduction::Frame;
 use scene::Scene;
-use validation::trailer::{self, Coordinates};
 
 use super::support::{
     TIGHT, at, constraint_residual, derived, equations, for_all_linear, known_gap, linear_scenes, motion_of, must,

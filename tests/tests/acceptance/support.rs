@@ -26,7 +26,7 @@ pub fn linear_scenes() -> Vec<Scene> {
 
 /// All built-in scenes.
 pub fn scenes() -> Vec<Scene> {
-    validation::catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
+    catalogue::SCENES.iter().map(|(name, _)| scene(name, &[])).collect()
 }
 
 /// A bicycle that is pushed over at 2 m/s.
@@ -51,7 +51,7 @@ pub fn for_all_linear(seed: u64, test: impl Fn(&Scene) -> Result<(), TestCaseErr
 /// A built-in scene with other numbers.
 pub fn scene(name: &str, overrides: &[(&str, f64)]) -> Scene {
     let overrides: Vec<_> = overrides.iter().map(|&(n, x)| (n.to_string(), x.into())).collect();
-    validation::catalogue::find(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
+    catalogue::find(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
 }
 
 pub fn tight() -> Settings {

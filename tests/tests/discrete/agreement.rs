@@ -1,12 +1,12 @@
 //! Every scene, and systems that nobody chose: discrete motions of order 8 come to the derived ones.
 
+use catalogue::{SCENES, find};
 use deltaq::{Choice, Motion, Settings, SolveError, Steps, choices, solve_by_steps, solve_choice};
 use discrete::{Composition, DiscreteError};
 use integrate::Method;
 use mechanics::ConstantsRule;
 use random::{Case, Kind, draw_recipe};
 use scene::Scene;
-use validation::catalogue::{SCENES, find};
 
 /// The horizon, s, at most, and the steps that the continuous motion may need for it: near the edge of a
 /// chart (the ball in the cone after 0.4 s) time scales are a millisecond, which no grid knows.

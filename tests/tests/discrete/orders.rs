@@ -1,10 +1,10 @@
 //! Orders of discrete principles and compositions: error against step, above the plateau of round-off.
 
+use catalogue::find;
 use deltaq::{Choice, Motion, Settings, Steps, choices, solve_by_steps, solve_choice};
 use discrete::Composition;
 use mechanics::ConstantsRule;
 use scene::Scene;
-use validation::catalogue::find;
 use validation::scaling::exponent;
 
 /// Errors under this times the size of the motion are round-off; over [`COARSE`] they tell no order yet.

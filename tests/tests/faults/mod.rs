@@ -160,7 +160,7 @@ fn faults_are_noticed() {
     let of_scene = |i: usize| match SCENES.get(i) {
         Some((name, numbers, guards)) => {
             let numbers: Vec<_> = numbers.iter().map(|&(name, x)| (name.into(), x.into())).collect();
-            faults(&validation::catalogue::find(name, &numbers).expect("a scene"), *guards, a_place)
+            faults(&catalogue::find(name, &numbers).expect("a scene"), *guards, a_place)
         }
         None => {
             let (name, text) = OWN[i - SCENES.len()];

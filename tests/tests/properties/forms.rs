@@ -110,7 +110,7 @@ fn as_derived() -> deltaq::Settings {
 #[test]
 fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
     let mut count = 0;
-    for (name, text) in validation::catalogue::SCENES {
+    for (name, text) in catalogue::SCENES {
         let scene = scene::Scene::parse(name, text).expect("a scene");
         for choice in deltaq::choices(&scene) {
             let Ok(mut motion) = deltaq::solve_choice(&scene, &choice, &as_derived()) else { continue };
@@ -126,7 +126,7 @@ fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
 #[test]
 fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
     for (name, formulation) in [("trailer", "vakonomic"), ("ball-in-cone", "removed-constraint")] {
-        let scene = validation::catalogue::find(name, &[]).expect("a scene");
+        let scene = catalogue::find(name, &[]).expect("a scene");
         let choices = deltaq::choices(&scene);
         let choice = choices.iter().find(|c| c.formulation == formulation).expect("a choice");
         let many_steps = deltaq::Settings { method: Some(integrate::Method::Dop853), ..as_derived() };

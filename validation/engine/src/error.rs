@@ -1,7 +1,7 @@
 //! What can go wrong.
 
+use catalogue::NotFound;
 use deltaq::SolveError;
-use validation::catalogue::NotFound;
 
 /// Why a scene cannot be put to the engine, or compared with it.
 #[derive(Debug, thiserror::Error)]

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use catalogue::find;
 use engine::{Ladder, Study, files};
-use validation::catalogue::find;
 use validation::report::write_all;
 
 fn main() -> Result<()> {

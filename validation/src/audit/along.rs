@@ -7,7 +7,6 @@ use deltaq::{Settings, setting, solve};
 use mechanics::ConstantsRule;
 
 use super::context::Context;
-use crate::catalogue;
 use random::equations;
 
 /// Instants.

@@ -5,7 +5,6 @@ use deltaq::{Metric, Motion, Setting, Settings, best_fit, compare_motions, setti
 use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 
-use crate::catalogue;
 use random::equations;
 use random::realization::augmented_start;
 

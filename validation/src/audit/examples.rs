@@ -14,7 +14,6 @@ use equations::Equations;
 use mechanics::{Removal, System};
 use symbolic::{Expr, Graph, Symbol, Vanishing};
 
-use crate::catalogue;
 use random::equations;
 
 use super::constants::removal;

@@ -15,8 +15,6 @@ use scene::Scene;
 use serde::Serialize;
 use symbolic::Xorshift;
 
-use crate::catalogue;
-
 /// The scene whose members they are.
 pub const ENSEMBLE_SCENE: &str = "sledge";
 

@@ -22,8 +22,6 @@ use integrate::{Method, Work};
 use mechanics::ConstantsRule;
 use scene::{Number, Scene};
 
-use crate::catalogue;
-
 /// Times at which errors are taken, equidistant, the last at the end.
 pub const SAMPLES: usize = 20;
 

@@ -6,7 +6,6 @@ use linear::{Sweep, SweepPoint, equidistant, sweep};
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
-use crate::catalogue;
 use crate::report::linear_page::{pairs, sweep_picture};
 use crate::report::{File, Table, fill};
 use deltaq::words::short;

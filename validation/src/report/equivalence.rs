@@ -11,8 +11,8 @@ use scene::{Number, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::catalogue::{self, CLASSICS};
 use crate::report::{File, Table};
+use catalogue::CLASSICS;
 use deltaq::words::short;
 
 const DATA: &str = include_str!("../../equivalence/pages/systems.toml");
@@ -77,7 +77,8 @@ impl Asked {
     pub(super) fn link(&self) -> String {
         let name = &self.scene;
         let classic = CLASSICS.iter().any(|(known, _)| known == name);
-        let page = if classic { format!("../validation/equivalence/{name}.toml") } else { format!("scenes/{name}.md") };
+        let page =
+            if classic { format!("../crates/catalogue/classics/{name}.toml") } else { format!("scenes/{name}.md") };
         let numbers = if self.set.is_empty() { String::new() } else { format!(", {}", numbers(&self.set)) };
         let control = if self.control { ", the constraint put into $L$" } else { "" };
         format!("[{name}]({page}){numbers}{control}")

@@ -38,7 +38,7 @@ pub(crate) fn family(
     };
     let mut rows: Vec<Vec<f64>> = (0..=MEMBERS).map(at).collect();
     rows.push(b.clone());
-    let names: Vec<String> = (1..=b.len()).map(|i| format!("mu{i}")).collect();
+    let names = comparison.scene.multiplier_names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let ensemble = Ensemble::new(&comparison.scene, &comparison.runs[run].choice, &names, &Settings::default())?;
     let options = EnsembleOptions { threads: 1, estimate: false };

@@ -19,30 +19,33 @@ pub struct File {
 
 /// A link in Markdown: of its path all but letters, digits and `-._/` is percent-encoded.
 pub(crate) fn link(text: &str, path: &str) -> String {
-    let text = inert(&text.replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]"));
+    // all brackets are escaped: the text has no links of its own
+    let text = tagless(text).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._/".contains(&byte);
     let encoded = |byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
     format!("[{text}]({})", path.bytes().map(encoded).collect::<String>())
 }
 
-/// Text of a scene in a page: Markdown without HTML, and with links to the web and to files beside only.
+/// Text of a scene in a page: Markdown without HTML, with links to the web and to files beside only, and with
+/// none in formulas.
 pub(crate) fn inert(text: &str) -> String {
-    let mut inert = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(at) = rest.find(['<', ']']) {
-        let (before, behind) = (&rest[..at], &rest[at + 1..]);
-        inert += before;
-        let begins_a_tag = |c: char| c.is_ascii_alphabetic() || "/!?".contains(c);
-        let address = behind.strip_prefix(['(', ':']);
-        inert += match &rest[at..=at] {
-            "<" if behind.starts_with(begins_a_tag) => "&lt;",
-            "<" => "<",
-            _ if address.is_some_and(|address| !is_harmless(address)) => "\\]\\",
-            _ => "]",
-        };
-        rest = behind;
-    }
-    inert + rest
+    let text = tagless(text).replace("\\href", "\\\\href");
+    let address = |behind: &str| behind.strip_prefix(['(', ':']).is_some_and(|address| !is_harmless(address));
+    replaced(&text, ']', |behind| if address(behind) { "\\]\\" } else { "]" })
+}
+
+/// Text in which nothing begins a tag of HTML.
+fn tagless(text: &str) -> String {
+    let begins_a_tag = |c: char| c.is_ascii_alphabetic() || "/!?".contains(c);
+    replaced(text, '<', |behind| if behind.starts_with(begins_a_tag) { "&lt;" } else { "<" })
+}
+
+/// A text with something in the place of a character, by what stands behind it.
+fn replaced(text: &str, character: char, by: impl Fn(&str) -> &'static str) -> String {
+    let ends = text.match_indices(character).map(|(at, found)| by(&text[at + found.len()..]));
+    let mut parts = text.split(character);
+    let first = parts.next().unwrap_or_default().to_owned();
+    ends.zip(parts).fold(first, |text, (by, part)| text + by + part)
 }
 
 /// Whether an address, which stands first in a text, is of the web or a plain path.
@@ -86,7 +89,11 @@ pub fn may_replace(path: &Path) -> Result<()> {
     let text = fs::read(path).with_context(|| format!("cannot read {told}"))?;
     let text = String::from_utf8_lossy(&text);
     let ours = BEGINNINGS.iter().any(|head| text.starts_with(head)) || MARKS.iter().any(|mark| text.contains(mark));
-    ensure!(ours || text.is_empty(), "{told} is not of deltaq, and not replaced: remove it, or write to another place");
+    ensure!(
+        ours || text.is_empty(),
+        "{told} is not of deltaq, as far as it and the list `{LIST}` tell, and not replaced: remove it, or write to \
+         another place"
+    );
     Ok(())
 }
 
@@ -188,6 +195,7 @@ mod tests {
         let told = "x < y and a<b, [a](https://a.org/?b=1), [b](../c.md#d): [1], *no*";
         assert_eq!(inert(told), told.replace("a<b", "a&lt;b"));
         assert_eq!(inert("<script>x</script><!-- -->"), "&lt;script>x&lt;/script>&lt;!-- -->");
+        assert_eq!(inert(r"$\href{javascript:x}{y}$, \phi"), r"$\\href{javascript:x}{y}$, \phi");
         for address in ["javascript:x", "JavaScript&#58;x", " <javascript:x>", "\njava\tscript:x", "data:x", "//\\x:y"]
         {
             assert_eq!(inert(&format!("[a]({address})")), format!("[a\\]\\({})", inert(address)));
@@ -206,7 +214,12 @@ mod tests {
         write_all(folder.path(), &files("2")).unwrap();
         std::fs::write(at("z.md"), "mine").unwrap();
         let more = [&files("3")[..], &[File { path: "z.md".into(), text: "3".into() }]].concat();
-        assert!(write_all(folder.path(), &more).unwrap_err().to_string().contains("z.md is not of deltaq"));
+        assert!(
+            write_all(folder.path(), &more)
+                .unwrap_err()
+                .to_string()
+                .contains("z.md is not of deltaq, as far as it and the list `.deltaq` tell")
+        );
         let texts = ["a/x.md", "y.svg", "z.md"].map(|name| std::fs::read_to_string(at(name)).unwrap());
         assert_eq!(texts, ["2", "2", "mine"]);
         // what the main job wrote is its own
@@ -247,5 +260,7 @@ mod tests {
         let picture = |text: &str| File { path: "scenes/own.svg".into(), text: text.into() };
         assert_eq!(image(&picture("<svg><title>gap &lt; 1 &amp; more</title></svg>")), "![gap < 1 & more](own.svg)");
         assert_eq!(image(&picture("<svg/>")), "![own.svg](own.svg)");
+        let title = "<svg><title>a [x](javascript:y) &lt;b&gt; c</title></svg>";
+        assert_eq!(image(&picture(title)), r"![a \[x\](javascript:y) &lt;b> c](own.svg)");
     }
 }

@@ -6,7 +6,6 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-use crate::catalogue;
 use crate::report::{File, Table, fill};
 use deltaq::words::short;
 use picture::{Axis, Curve, Picture, Style};

@@ -18,7 +18,7 @@ use serde::Serialize;
 
 pub use fit::{Exponent, exponent};
 
-use crate::trailer::{Coordinates, scene};
+use catalogue::trailer::{Coordinates, scene};
 
 /// Numbers of trailers.
 pub const TRAILERS: [usize; 9] = [1, 2, 5, 10, 20, 40, 80, 160, 320];

@@ -13,7 +13,6 @@ use super::cases::{choice, sledge_reference};
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::question::tolerance;
 use super::reference::Reference;
-use crate::catalogue;
 use random::parallel;
 
 /// What the long runs are called, on the command line and in reports.

@@ -15,9 +15,9 @@
 //! start up to `t`, the first tenth of the run at least; `u(t)` what the reference itself may be off by; `b`
 //! the larger of 10⁻⁷ and ten times the tolerance of the kept run, `a` the tolerance asked for; of a run that
 //! stops at `t₂`, `a s(t₁)` is `a s(t₂) (t₁ − t₀)/(t₂ − t₀)`, as its tolerance was one for the whole, but no
-//! more than `10⁻³ s(t₂)`. Lengths are in the kinetic metric, or, where a question asks for it ([`Question::each`]), of each coordinate and
-//! multiplier by itself: the worst of them is the verdict. Where 10 e(t) ≥ s(t) the motion does not claim a
-//! single digit, and nothing is asked of it.
+//! more than `10⁻³ s(t₂)`. Lengths are in the kinetic metric, or, where a question asks for it
+//! ([`Question::each`]), of each coordinate and multiplier by itself: the worst of them is the verdict. Where
+//! 10 e(t) ≥ s(t) the motion does not claim a single digit, and nothing is asked of it.
 //!
 //! [`long_runs`] are judged likewise; beyond all references, by energy and constraint, not coordinates.
 

@@ -74,7 +74,7 @@ pub struct EnsembleArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
     /// File with one member a line: commas between numbers, the first line names what they replace (a
-    /// parameter, a coordinate or a velocity at the start, mu1, …, P0_w of a memory variable w).
+    /// parameter, a coordinate or a velocity at the start, mu0_1, …, P0_w of a memory variable w).
     #[arg(long, value_name = "FILE")]
     pub members: Option<PathBuf>,
     /// Equidistant values of one of these, both ends included; several combine with each other and the file.

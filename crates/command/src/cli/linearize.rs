@@ -25,7 +25,7 @@ pub struct LinearizeArguments {
     /// ways; all if left out.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub free: Vec<String>,
-    /// Equidistant values of a parameter, a start value or mu1, …, both ends included.
+    /// Equidistant values of a parameter, a start value or mu0_1, …, both ends included.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub sweep: Option<Range>,
     /// Look for a steady motion near the start (Chetaev's), along displacements that the constraints admit,

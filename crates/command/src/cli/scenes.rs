@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use scene::{Number, Scene};
 
 use super::TextOrJson;
-use validation::catalogue::{self, NotFound};
+use catalogue::NotFound;
 
 /// A scene with changes.
 #[derive(Args, Debug)]

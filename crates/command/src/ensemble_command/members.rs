@@ -92,7 +92,7 @@ fn known(scene: &Scene, choice: &Choice) -> Vec<String> {
     let parameters = system.parameters.iter().map(|p| system.graph.name(p.symbol));
     let coordinates = system.coordinates.iter().map(|c| c.name.clone());
     let velocities = system.coordinates.iter().map(|c| format!("{}'", c.name));
-    let multipliers = (1..=system.constraints.len()).map(|i| format!("mu{i}"));
+    let multipliers = scene.multiplier_names();
     let costates = choice.removal.iter().flat_map(|removal| costate_names(scene, removal));
     parameters.chain(coordinates).chain(velocities).chain(multipliers).chain(costates).collect()
 }

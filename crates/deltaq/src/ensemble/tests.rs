@@ -8,7 +8,7 @@ use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart};
 use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, constants_of, solve_choice};
 use integrate::Method;
 
-const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
+const SLEDGE: &str = include_str!("../../../catalogue/scenes/sledge.toml");
 
 /// Two states, the first unbounded at `t = 1 / u₀`: `x' = u`, `u' = b u²` by a force of its own.
 const BLOW_UP: &str = r#"
@@ -58,7 +58,7 @@ fn sledges(count: usize) -> Vec<Scene> {
                 ("phi", 2.0 * x(2) - 1.0),
                 ("phi'", 3.0 * x(3) - 1.5),
                 ("duration", 1.0 + 4.0 * x(4)),
-                ("mu1", x(5) - 0.5),
+                ("mu0_1", x(5) - 0.5),
             ],
         )
     };
@@ -138,7 +138,7 @@ fn what_is_no_member_is_refused() {
     let chetaev = choice(&base, "chetaev");
     let refused =
         |names: &[&str]| matches!(Ensemble::new(&base, &chetaev, names, &settings()), Err(SolveError::Member { .. }));
-    assert!(refused(&["g", "g"]) && refused(&["mu1"]));
+    assert!(refused(&["g", "g"]) && refused(&["mu0_1"]));
     let unknown = Ensemble::new(&base, &chetaev, &["g", "beta"], &settings());
     assert!(matches!(unknown, Err(SolveError::Scene(fault)) if fault.kind.to_string().contains("`beta`")));
     let mut ensemble = Ensemble::new(&base, &chetaev, &["g", "y'"], &settings()).unwrap();

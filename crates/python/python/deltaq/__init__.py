@@ -1,7 +1,7 @@
 """Mechanical systems with velocity constraints: three formulations of their motion, derived, integrated, compared.
 
     import deltaq
-    system = deltaq.load("sledge.toml")           # or deltaq.System(...), parse(text), from_sympy(method)
+    system = deltaq.load("sledge.toml")           # or built_in("sledge"), System(...), parse(text), from_sympy(method)
     motion = system.solve("chetaev")              # Motion: times, coordinates, velocities, ...
     many = system.ensemble("chetaev", vary={"g": [1.6, 9.8]})   # Ensemble: as a motion, one axis more
     equations = system.equations("vakonomic")     # Equations: text, latex, rates(t, y), jacobian(t, y), ...
@@ -21,6 +21,7 @@ from . import _animate, _notebook, _plots, _proof, _tables
 from ._native import (
     FORMULATIONS,
     METHODS,
+    SCENES,
     BoundaryError,
     CallError,
     Comparison,
@@ -52,6 +53,7 @@ from ._native import (
     __version__,
     _again,
     _read_again,
+    built_in,
     load,
     parse,
 )
@@ -62,6 +64,7 @@ from ._sympy import from_sympy
 __all__ = [
     "FORMULATIONS",
     "METHODS",
+    "SCENES",
     "BoundaryError",
     "CallError",
     "Comparison",
@@ -93,6 +96,7 @@ __all__ = [
     "Trajectory",
     "UnknownNameError",
     "__version__",
+    "built_in",
     "ensemble",
     "from_sympy",
     "load",
@@ -101,12 +105,12 @@ __all__ = [
 ]
 
 for _class, _module in ((Motion, "motion"), (Ensemble, "ensemble"), (Comparison, "comparison")):
-    _class.plot = getattr(_plots, _module)
-    _class.animate = getattr(_animate, _module)
-    _class._repr_html_ = getattr(_notebook, _module)
+    setattr(_class, "plot", getattr(_plots, _module))
+    setattr(_class, "animate", getattr(_animate, _module))
+    setattr(_class, "_repr_html_", getattr(_notebook, _module))
     for _kind in ("arrow", "pandas", "xarray"):
         _function = getattr(_tables, f"{_module}_to_{_kind}", None)
         if _function is not None:
             setattr(_class, f"to_{_kind}", _function)
 
-System.prove = _proof.prove
+setattr(System, "prove", _proof.prove)

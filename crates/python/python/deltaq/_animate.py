@@ -47,15 +47,14 @@ def motion(self: Motion) -> Animation:
 
 def comparison(self: Comparison) -> Animation:
     """The bodies of the system's view along the first motion of each formulation, in one picture that plays by itself."""
-    shown = {run.formulation: run for run in reversed(self.runs) if run.motion is not None}
-    order = [name for name in COLOURS if name in shown]
-    return Animation(self.system, [_curve(shown[name].label, shown[name].motion) for name in order])
+    shown = {run.formulation: (run.label, run.motion) for run in reversed(self.runs) if run.motion is not None}
+    return Animation(self.system, [_curve(*shown[name]) for name in COLOURS if name in shown])
 
 
 def ensemble(self: Ensemble) -> Animation:
     """The bodies of the system's view along eight of the members, straight between the ensemble's times."""
     name, values = next(iter(self.varied.items()))
     members = np.unique(np.linspace(0, len(self) - 1, min(len(self), _MEMBERS)).round().astype(int))
-    reached = lambda i: slice(0, self.reached[i])  # noqa: E731
+    reached = lambda i: slice(0, int(self.reached[i]))  # noqa: E731
     curve = lambda i: (f"{name} = {values[i]:g}", "", self.times[reached(i)], self.coordinates[i, reached(i)])  # noqa: E731
     return Animation(self.system, [curve(i) for i in members])

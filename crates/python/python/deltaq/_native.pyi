@@ -12,11 +12,12 @@ _Floats: TypeAlias = npt.ArrayLike
 # text, or an expression of SymPy, which has no types
 _Formula: TypeAlias = Any
 _Expression: TypeAlias = _Formula | float
-_Constants: TypeAlias = Literal["zero"] | dict[str, float] | npt.ArrayLike
+_Constants: TypeAlias = Literal["zero"] | Mapping[str, float] | npt.ArrayLike
 _Verdict: TypeAlias = Literal["same", "different", "undecided"]
 
 FORMULATIONS: tuple[str, ...]
 METHODS: tuple[str, ...]
+SCENES: tuple[str, ...]
 __version__: str
 
 class DeltaqError(Exception):
@@ -53,6 +54,16 @@ def load(path: str | PathLike[str], overrides: Mapping[str, float] | None = None
 
     overrides: name to number: parameter, start value ("x", "x'"), "time", "duration", multiplier ("mu0_1").
     FileNotFoundError where there is no file; UnknownNameError for a name that the scene has not.
+    """
+def built_in(name: str, overrides: Mapping[str, float] | None = None) -> System:
+    """The system of a built-in scene: one of SCENES, or "n-trailer-N", a car with N trailers.
+
+    overrides: as in `load`.
+
+    >>> deltaq.built_in("sledge", {"g": 1.6}).parameters["g"]
+    1.6
+
+    UnknownNameError for another name.
     """
 def _read_again(name: str, text: str, overrides: list[tuple[str, float]]) -> System: ...
 def _again(name: str, state: dict[str, Any]) -> Any: ...
@@ -104,20 +115,20 @@ class System:
         cls,
         coordinates: Iterable[_Formula],
         lagrangian: _Formula,
-        constraints: Iterable[_Formula] = (),
+        constraints: Iterable[_Formula] | None = None,
         *,
-        start: dict[Any, _Expression],
-        parameters: dict[Any, _Expression] | None = None,
-        definitions: dict[Any, _Expression] | None = None,
-        units: dict[Any, str] | None = None,
-        forces: dict[Any, _Expression] | None = None,
-        observables: dict[str, _Expression] | None = None,
-        invariants: dict[str, _Expression] | None = None,
-        view: dict[str, dict[str, Any]] | None = None,
-        velocities: dict[Any, _Expression] | None = None,
-        guess: dict[Any, _Expression] | None = None,
+        start: Mapping[Any, _Expression],
+        parameters: Mapping[Any, _Expression] | None = None,
+        definitions: Mapping[Any, _Expression] | None = None,
+        units: Mapping[Any, str] | None = None,
+        forces: Mapping[Any, _Expression] | None = None,
+        observables: Mapping[str, _Expression] | None = None,
+        invariants: Mapping[str, _Expression] | None = None,
+        view: Mapping[str, Mapping[str, Any]] | None = None,
+        velocities: Mapping[Any, _Expression] | None = None,
+        guess: Mapping[Any, _Expression] | None = None,
         project: bool = False,
-        removals: dict[str, dict[str, Any]] | None = None,
+        removals: Mapping[str, Mapping[str, Any]] | None = None,
         multipliers: _Floats | None = None,
         time: float = 0.0,
         duration: float = 1.0,
@@ -218,7 +229,7 @@ class System:
         """
     def linearize_over(
         self,
-        over: dict[str, _Floats],
+        over: Mapping[str, _Floats],
         formulation: str = "chetaev",
         *,
         free: list[str] | None = None,
@@ -283,7 +294,7 @@ class System:
         formulation: str = "chetaev",
         times: _Floats | None = None,
         *,
-        vary: dict[str, _Floats],
+        vary: Mapping[str, _Floats],
         removal: str | None = None,
         mu0: _Floats | None = None,
         constants: _Constants | None = None,

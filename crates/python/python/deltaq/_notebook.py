@@ -29,7 +29,7 @@ def motion(self: Motion) -> str:
 def ensemble(self: Ensemble) -> str:
     counts = {word: self.status.count(word) for word in ("completed", "untrusted", "stopped", "refused")}
     over = ", ".join(f"{name}: {values.min():g} to {values.max():g}" for name, values in self.varied.items())
-    return _table([["formulation", self.formulation], ["members", len(self)], *counts.items(), ["over", over]])
+    return _table([["formulation", self.formulation], ["members", len(self)], *map(list, counts.items()), ["over", over]])
 
 
 def comparison(self: Comparison) -> str:

@@ -95,7 +95,10 @@ def _kept(folder: Path, count: int, identity: bytes) -> dict[int, Path]:
     kept = {}
     for path in sorted(folder.glob("part-*.parquet")):
         number = path.stem.removeprefix("part-")
-        found = (needed("pyarrow.parquet").read_schema(path).metadata or {}).get(_KEY)
+        try:
+            found = (needed("pyarrow.parquet").read_schema(path).metadata or {}).get(_KEY)
+        except needed("pyarrow").ArrowInvalid:  # no file of Parquet
+            found = None
         if found != identity or not number.isdigit() or int(number) >= count:
             raise ValueError(f"{path} is of another call, or of another version: remove it, or take another out")
         kept[int(number)] = path

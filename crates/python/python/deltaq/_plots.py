@@ -36,8 +36,13 @@ def _columns(count: int, ax: Any) -> Any:
     return axes[:, 0]
 
 
+def _plain(text: str) -> str:
+    """A text of a scene, in which matplotlib finds no formula."""
+    return text.replace("$", r"\$")
+
+
 def _with_unit(name: str, units: dict[str, str]) -> str:
-    return f"{name} ({units[name]})" if units.get(name) else name
+    return _plain(f"{name} ({units[name]})" if units.get(name) else name)
 
 
 def _finished(axes: Any, units: dict[str, str]) -> Any:
@@ -83,20 +88,20 @@ def comparison(self: Comparison, ax: Any = None) -> Any:
     ax: n + 1 axes to draw into.
     """
     # the costate form is a form of the vakonomic motion
-    runs = [run for run in self.runs if run.motion is not None and run.formulation in COLOURS]
-    names = runs[0].motion.coordinate_names if runs else []
+    runs = [(run, run.motion) for run in self.runs if run.motion is not None and run.formulation in COLOURS]
+    names = runs[0][1].coordinate_names if runs else []
     axes = _columns(len(names) + 1, ax)
-    for place, run in enumerate(runs):
+    for place, (run, motion) in enumerate(runs):
         # of several removals the first is the widest
-        width = 1.8 / (1 + sum(other.formulation == run.formulation for other in runs[:place]))
+        width = 1.8 / (1 + sum(other.formulation == run.formulation for other, _ in runs[:place]))
         for i, axis in enumerate(axes[:-1]):
-            axis.plot(run.motion.times, run.motion.coordinates[:, i], label=run.label, linewidth=width, **_look(run.formulation))
+            axis.plot(motion.times, motion.coordinates[:, i], label=_plain(run.label), linewidth=width, **_look(run.formulation))
     for name, axis in zip(names, axes):
         axis.set_ylabel(_with_unit(name, units(self.system)))
     below = axes[-1]
-    labels = {run.label for run in runs}
+    labels = {run.label for run, _ in runs}
     for pair in (pair for pair in self.pairs if {pair.first, pair.second} <= labels):
-        [line] = below.plot(pair.times, np.where(pair.gap > 0, pair.gap, np.nan), label=f"{pair.first}, {pair.second}")
+        [line] = below.plot(pair.times, np.where(pair.gap > 0, pair.gap, np.nan), label=_plain(f"{pair.first}, {pair.second}"))
         below.plot(pair.times, np.where(pair.limit > 0, pair.limit, np.nan), ":", color=line.get_color(), linewidth=0.8)
     below.set(yscale="log", ylabel="gap")
     for axis, columns in ((axes[0], 2), (below, 1)):
@@ -135,5 +140,5 @@ def sweep(self: Any, column: str, ax: Any) -> Any:
         axis.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1))
     figure = axis.figure
     axis.set_xlabel(_with_unit(names[-1], self.units))
-    axis.set_title(self.title, loc="right", fontsize="small")
+    axis.set_title(_plain(self.title), loc="right", fontsize="small")
     return figure

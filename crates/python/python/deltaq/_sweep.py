@@ -100,7 +100,7 @@ class Sweep:
         return f"<deltaq.Sweep {self.title!r}, {len(self)} points ({over})>"
 
     def _repr_html_(self) -> str:
-        return self.to_pandas()._repr_html_()
+        return str(self.to_pandas()._repr_html_())
 
 
 def sweep(

@@ -55,7 +55,7 @@ def text(thing: object) -> str | None:
                 raise ValueError(f"`{name}` of SymPy cannot be a name: names have letters of English, digits and _")
             if names.setdefault(name, node) != node:
                 raise ValueError(f"`{name}` stands for two symbols of SymPy, {names[name]} and {node}, of one name")
-    return printer().doprint(expression)
+    return str(printer().doprint(expression))
 
 
 def refuse_unless_known(sympy: Any, node: Any) -> None:

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ._native import Comparison, Ensemble, Motion, System
 from ._needs import needed
@@ -31,9 +32,9 @@ def arrow_with_units(table: Any, units: dict[str, str]) -> Any:
     return table.cast(pa.schema(fields))
 
 
-def _named(motion: Motion | Ensemble) -> dict[str, np.ndarray]:
+def _named(motion: Motion | Ensemble) -> dict[str, npt.NDArray[np.float64]]:
     """Columns by name, each of the shape of the times and, before it, of the members."""
-    columns = {}
+    columns: dict[str, npt.NDArray[np.float64]] = {}
     for prime, values in (("", motion.coordinates), ("'", motion.velocities)):
         columns |= {name + prime: values[..., i] for i, name in enumerate(motion.coordinate_names)}
     return columns | motion.multipliers | motion.invariants | getattr(motion, "observables", {})
@@ -90,7 +91,7 @@ def ensemble_to_pandas(self: Ensemble) -> Any:
 
 def ensemble_to_xarray(self: Ensemble) -> Any:
     """An xarray.Dataset over member, from 0, and t; what varies ("set x"), status and error_estimate over member."""
-    data = {name: (("member", "t"), values.copy()) for name, values in _named(self).items()}
+    data: dict[str, Any] = {name: (("member", "t"), values.copy()) for name, values in _named(self).items()}
     data |= {f"set {name}": ("member", values.copy()) for name, values in self.varied.items()}
     data |= {"error_estimate": ("member", self.error_estimate.copy()), "status": ("member", self.status)}
     dataset = needed("xarray").Dataset(data, {"t": self.times, "member": np.arange(len(self))})

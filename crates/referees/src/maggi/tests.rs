@@ -7,8 +7,8 @@ use scene::Scene;
 use super::{Maggi, MaggiError, Residual, dot};
 use crate::closed_forms::{Sledge, SledgeState};
 
-const SLEDGE: &str = include_str!("../../../../validation/scenes/sledge.toml");
-const APPELL_HAMEL: &str = include_str!("../../../../validation/scenes/appell-hamel.toml");
+const SLEDGE: &str = include_str!("../../../catalogue/scenes/sledge.toml");
+const APPELL_HAMEL: &str = include_str!("../../../catalogue/scenes/appell-hamel.toml");
 
 /// Everything at once: a mass matrix that depends on the configuration, a gyroscopic term, time in L and in
 /// f, a force, two affine constraints.

@@ -6,7 +6,6 @@ use referees::closed_forms::Particle;
 use scene::Scene;
 
 use super::FORMULATIONS;
-use crate::catalogue;
 use crate::stability::question::{Question, Subject};
 use crate::stability::reference::Reference;
 use random::equations;
@@ -46,7 +45,8 @@ fn massive(strength: f64) -> Result<Subject, String> {
 }
 
 pub(super) fn ratio(mass: f64) -> Vec<Question> {
-    let text = include_str!("../../../scenes/particle.toml").replace("z'^2)/2", &format!("{mass:?}*z'^2)/2"));
+    let text = include_str!("../../../../crates/catalogue/scenes/particle.toml")
+        .replace("z'^2)/2", &format!("{mass:?}*z'^2)/2"));
     super::questions(
         mass,
         move || Scene::parse("particle", &text),

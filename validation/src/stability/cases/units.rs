@@ -5,7 +5,6 @@ use mechanics::ConstantsRule;
 
 use super::sledge::Sledge;
 use super::{FORMULATIONS, choice};
-use crate::catalogue;
 use crate::stability::question::{Question, Subject};
 use crate::stability::reference::Reference;
 use random::{Scaling, equations};

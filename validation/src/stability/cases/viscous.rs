@@ -2,7 +2,6 @@
 
 use nalgebra::Complex;
 
-use crate::catalogue;
 use crate::stability::question::{Question, Subject};
 use crate::stability::reference::Reference;
 use random::equations;

@@ -78,7 +78,7 @@ pub fn text(trailers: usize, coordinates: Coordinates) -> String {
 /// None for the texts made here, which parse.
 ///
 /// ```
-/// use validation::trailer::{Coordinates, scene};
+/// use catalogue::trailer::{Coordinates, scene};
 /// let scene = scene(2, Coordinates::Maximal)?;
 /// assert_eq!((scene.system.dimension(), scene.system.constraints.len()), (9, 7));
 /// # Ok::<(), symbolic::ParseError>(())

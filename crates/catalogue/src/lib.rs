@@ -1,11 +1,11 @@
-//! The built-in scenes, and how a scene is found.
+//! The built-in scenes, and how a scene is found: for the command, the Python module, reports and tests.
+
+pub mod trailer;
 
 use std::path::Path;
 use std::sync::OnceLock;
 
 use scene::{Number, Scene, SceneError};
-
-use crate::trailer;
 
 /// Name and text of every built-in scene, in the order of reports: the paper's examples, then the classics.
 pub const SCENES: &[(&str, &str)] = &[
@@ -26,7 +26,7 @@ pub const SCENES: &[(&str, &str)] = &[
 ];
 
 macro_rules! beside {
-    ($($name:literal)*) => { &[$(($name, include_str!(concat!("../equivalence/", $name, ".toml")))),*] };
+    ($($name:literal)*) => { &[$(($name, include_str!(concat!("../classics/", $name, ".toml")))),*] };
 }
 
 /// Further systems of the literature, asked one question: which of their motions are vakonomic.
@@ -72,8 +72,9 @@ pub fn read(name_or_path: &str, text: &str, overrides: &[(String, Number)]) -> R
     }
 }
 
-/// The text of a built-in scene.
-fn text_of(name: &str) -> Option<String> {
+/// The text of the built-in scene of that name, or of a train of trailers (`n-trailer-5`), or `None`.
+#[must_use]
+pub fn text_of(name: &str) -> Option<String> {
     let known = built_in().find(|(known, _)| *known == name).map(|(_, text)| text.to_string());
     known.or_else(|| trailer::named(name).map(|(trailers, coordinates)| trailer::text(trailers, coordinates)))
 }

@@ -1,0 +1,85 @@
+// Whether a page grows while sliders are moved: its heap, what it has in the document, its workers and their memory.
+
+// What may come and go, in bytes: what is measured after a collection still depends on what is under way.
+const ROOM = 2e6;
+// Part of the time that is left out first, in which the browser compiles and buffers find their size.
+const WARM = 0.2;
+
+// Bytes of all that WebAssembly has in a worker, which no name of the page leads to.
+async function memory(session) {
+  const { result: { objectId: prototypeObjectId } } = await session.send("Runtime.evaluate", { expression: "WebAssembly.Memory.prototype" });
+  const { objects: { objectId } } = await session.send("Runtime.queryObjects", { prototypeObjectId });
+  const functionDeclaration = "function () { return this.reduce((sum, { buffer }) => sum + buffer.byteLength, 0); }";
+  const { result: { value } } = await session.send("Runtime.callFunctionOn", { objectId, functionDeclaration, returnByValue: true });
+  await session.send("Runtime.releaseObject", { objectId });
+  return value;
+}
+
+// Bytes after a collection, nodes and listeners of the document, and memory of the program in each worker.
+async function measured(page, client) {
+  const collected = async (session) => {
+    await session.send("HeapProfiler.collectGarbage");
+    return (await session.send("Runtime.getHeapUsage")).usedSize;
+  };
+  const heap = await collected(client);
+  const { Nodes: nodes, JSEventListeners: listeners } = await page.metrics();
+  const heaps = await Promise.all(page.workers().map(({ client }) => collected(client)));
+  const memories = await Promise.all(page.workers().map(({ client }) => memory(client)));
+  const sum = (list) => list.reduce((a, b) => a + b, 0);
+  return { heap, workers: sum(heaps), program: sum(memories), nodes, listeners };
+}
+
+// What is measured while nothing is under way: a question that is cancelled takes its worker with it.
+async function atRest(page, measure) {
+  for (let tries = 0; ; tries++) {
+    await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 500)));
+    await page.waitForSelector("#equations[aria-busy=false]", { timeout: 60000 });
+    try {
+      return await measure();
+    } catch (error) {
+      if (tries === 5) throw error;
+    }
+  }
+}
+
+// Moves every slider of the sledge up and down, lets go of it now and then, and compares the least of the last third of
+// the time with that of the first.
+export async function growth({ open, link, must, said }, seconds) {
+  const page = await open(link({ scene: "sledge" }));
+  const client = await page.createCDPSession();
+  await client.send("Performance.enable");
+  const turn = (milliseconds) => page.evaluate(async (milliseconds) => {
+    const sliders = [...document.querySelectorAll("[data-name] input[type=range]")];
+    const [began, from] = [performance.now(), window.explored.drawn];
+    let moves = 0;
+    for (; performance.now() - began < milliseconds; moves++) {
+      const slider = sliders[Math.floor(moves / 20) % sliders.length];
+      slider.value = 500 + 200 * Math.sin((2 * Math.PI * moves) / 20);
+      slider.dispatchEvent(new Event("input"));
+      if (moves % 20 === 19) slider.dispatchEvent(new Event("change"));
+      await new Promise(requestAnimationFrame);
+    }
+    return [moves, window.explored.drawn - from];
+  }, milliseconds);
+  const [samples, count, began] = [[], Math.max(6, Math.round(seconds / 5)), performance.now()];
+  let [moves, drawn] = [0, 0];
+  await turn(1000 * WARM * seconds);
+  for (let i = 0; i < count; i++) {
+    const turned = await turn((1000 * (1 - WARM) * seconds) / count);
+    [moves, drawn] = [moves + turned[0], drawn + turned[1]];
+    samples.push(await atRest(page, () => measured(page, client)));
+  }
+  const took = (performance.now() - began) / 1000;
+  const third = Math.floor(count / 3);
+  const least = (name, part) => Math.min(...part.map((sample) => sample[name]));
+  const told = [];
+  for (const [name, room, unit] of [["heap", ROOM, 1e6], ["workers", ROOM, 1e6], ["program", ROOM, 1e6], ["nodes", 50, 1], ["listeners", 0, 1]]) {
+    const [first, last] = [least(name, samples.slice(0, third)), least(name, samples.slice(-third))];
+    const words = `${name} ${(first / unit).toFixed(unit > 1 ? 1 : 0)} → ${(last / unit).toFixed(unit > 1 ? 1 : 0)}${unit > 1 ? " MB" : ""}`;
+    must(last <= first + room, `grows in ${took.toFixed(0)} s of slider moves: ${words}`);
+    told.push(words);
+  }
+  must(moves > 20 && drawn > moves / 20, `${drawn} motions drawn in ${moves} moves`);
+  said.push(`${moves} slider moves in ${took.toFixed(0)} s, ${drawn} motions drawn: ${told.join(", ")}`);
+  await page.close();
+}
