@@ -10,8 +10,10 @@ const DRAWS: usize = 1;
 /// Widths over this part of their place are to be found, but for so large a part of the runs.
 const WIDE: f64 = 1e-9;
 const REFUSED: f64 = 0.02;
-/// What a run may be off by beside ten times its estimate, over what the pulse does.
+/// What a run may be off by beside ten times its estimate, over what the pulse does; and by methods of low order,
+/// whose two runs may be off alike.
 const ALLOWED: f64 = 1e-7;
+const BY_LOW_ORDER: f64 = 1e-5;
 
 /// `f(u)` as scenes write it, with `U` for `u`, and in numbers.
 type Shape = (&'static str, fn(f64) -> f64);
@@ -165,6 +167,8 @@ fn pulses_and_walls_are_found_or_told_at_any_place() {
         let is_wide = width > WIDE * place;
         for method in methods.clone() {
             let tolerance = if matches!(method, Some(Method::TrBdf2 | Method::Esdirk34)) { 1e-6 } else { 1e-8 };
+            let is_low = matches!(method, Some(Method::Bdf | Method::TrBdf2 | Method::Esdirk34));
+            let allowed = if is_low { BY_LOW_ORDER } else { ALLOWED };
             let settings = Settings { method, tolerance, ..Settings::default() };
             wide += usize::from(is_wide);
             let status = solve_choice(&scene, &chetaev, &settings).map_err(|e| e.to_string()).and_then(|mut motion| {
@@ -184,7 +188,7 @@ fn pulses_and_walls_are_found_or_told_at_any_place() {
                     told += 1;
                     told_wide += usize::from(is_wide);
                 }
-                Ok((x, estimate)) if (x - truth).abs() <= 10.0 * estimate + ALLOWED * effect => right += 1,
+                Ok((x, estimate)) if (x - truth).abs() <= 10.0 * estimate + allowed * effect => right += 1,
                 Ok((x, estimate)) => {
                     wrong.push(format!("{by}: {x} for {truth}, estimate {estimate:.1e}\n{}", case.scene));
                 }
