@@ -4,6 +4,8 @@ mod acceptance;
 mod architecture;
 mod discrete;
 mod faults;
+mod narrow;
+mod own_systems;
 mod properties;
 mod pulses;
 mod reference_motions;

@@ -80,6 +80,7 @@ mod growth;
 mod integrability;
 mod last_digits;
 mod later_chart;
+mod lost_digits;
 mod membership;
 mod method;
 mod metric;

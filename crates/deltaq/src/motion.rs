@@ -11,6 +11,7 @@ use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::last_digits::terms_of_invariants;
+use crate::lost_digits::{self, Looked};
 use crate::method::Chosen;
 use crate::metric::{larger, subtract};
 use crate::trajectory::Trajectory;
@@ -143,22 +144,10 @@ impl Motion {
         Some((y, terms))
     }
 
-    /// `−∂ẏ_i/∂y_i` at `(t, y)` where it is positive and no round-off, or else 0; `sizes` are those of
-    /// states, `terms` those of what adds up to their rates.
-    pub(crate) fn decay_of_states(&mut self, t: f64, y: &[f64], sizes: &[f64], terms: &[f64]) -> Option<Vec<f64>> {
-        let direction = (self.end() - self.start()).signum();
-        let (mut here, mut there) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-        self.compiled.rates(t, y, &mut here).ok()?;
-        let mut decay = vec![0.0; y.len()];
-        for i in 0..y.len() {
-            let (step, mut moved) = (f64::EPSILON.sqrt() * sizes[i].max(y[i].abs()), y.to_vec());
-            moved[i] += step;
-            if self.compiled.rates(t, &moved, &mut there).is_ok() {
-                let change = direction * (here[i] - there[i]);
-                decay[i] = if change > 16.0 * f64::EPSILON * terms[i] { change / step } else { 0.0 };
-            }
-        }
-        Some(decay)
+    /// [`lost_digits::doubt`] of this motion.
+    pub(crate) fn lost_digits(&mut self, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> Option<Doubt> {
+        let names = lost_digits::names_of_states(&self.equations);
+        lost_digits::doubt(&mut self.compiled, &names, looked, looser, sizes)
     }
 
     /// The states of the looser run.

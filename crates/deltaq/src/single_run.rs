@@ -149,6 +149,21 @@ impl Problem for Runner<'_> {
         self.compiled.gauged(t, y, arguments);
         Ok(())
     }
+    fn terms_of_gauged(&mut self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.compiled.terms_of_gauged(t, y, terms);
+        Ok(())
+    }
+    fn divisors(&self) -> usize {
+        self.compiled.divisors()
+    }
+    fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        self.compiled.divided(t, y, values);
+        Ok(())
+    }
+    fn terms_of_rates(&mut self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), integrate::EvaluationError> {
+        terms.copy_from_slice(&self.compiled.terms_of_rates(t, y).map_err(refused)?);
+        Ok(())
+    }
     fn events(&self) -> usize {
         self.compiled.guards() + usize::from(self.largest.is_some())
     }

@@ -10,3 +10,4 @@ mod gaps;
 mod round_off;
 mod steep;
 mod switches;
+mod walls;

@@ -10,6 +10,7 @@ use crate::plan::Plan;
 use crate::planned::Planned;
 use crate::projection::Projector;
 use crate::series::Series;
+use crate::terms::Terms;
 
 /// Compiled equations of motion `ẏ = F(t, y)`.
 ///
@@ -24,9 +25,12 @@ pub struct Compiled {
     left: Vec<usize>,
     fallbacks: usize,
     guards: Evaluator<f64>,
-    angles: Evaluator<f64>,
-    steep: Evaluator<f64>,
-    gauges: Vec<fn(f64) -> f64>,
+    pub(crate) angles: Evaluator<f64>,
+    pub(crate) steep: Evaluator<f64>,
+    pub(crate) gauges: Vec<fn(f64) -> f64>,
+    pub(crate) divisors: Evaluator<f64>,
+    /// Programs in terms, once these are asked for.
+    pub(crate) terms: Option<Box<Terms>>,
     projector: Option<Projector>,
     jacobian: Option<Jacobian>,
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
@@ -100,6 +104,8 @@ impl Compiled {
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
             steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
             angles: equations.evaluator(&known, &equations.angles())?,
+            divisors: equations.evaluator(&known, &equations.divisors())?,
+            terms: None,
             projector: equations.projection.as_ref().map(|p| Projector::new(equations, p, &known)).transpose()?,
             jacobian: None,
             series: None,
@@ -265,23 +271,6 @@ impl Compiled {
         }
     }
 
-    /// Gauges of functions that may change within little of their arguments: [`symbolic::Steep`].
-    pub fn gauges(&self) -> &[fn(f64) -> f64] {
-        &self.gauges
-    }
-
-    /// The arguments of these functions.
-    pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) {
-        self.load(t, y);
-        arguments.copy_from_slice(self.steep.evaluate(&self.inputs[..self.sizes.known()]));
-    }
-
-    /// The angles of points in the equations: [`symbolic::Graph::angles`].
-    pub fn angles(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
-        self.load(t, y);
-        self.angles.evaluate(&self.inputs[..self.sizes.known()]).to_vec()
-    }
-
     /// The matrices `∂R/∂z` of the blocks at `(t, y)`, row-major; of those that are not linear at the last
     /// `z`.
     pub fn block_matrices(&mut self, t: f64, y: &[f64]) -> Vec<Vec<f64>> {
@@ -352,7 +341,7 @@ impl Compiled {
         Ok(())
     }
 
-    fn load(&mut self, t: f64, y: &[f64]) {
+    pub(crate) fn load(&mut self, t: f64, y: &[f64]) {
         self.inputs[0] = t;
         self.inputs[1..1 + y.len()].copy_from_slice(y);
     }

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Range, Scalar, Steep, Symbol, Tape};
+use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, Scalar, Symbol, Tape};
 
 use crate::definitions::{needed, symbols_behind};
 use mechanics::{Removal, System};
@@ -319,44 +319,6 @@ impl Equations {
         known.extend(self.state_symbols());
         known.extend(self.constant_symbols());
         known
-    }
-
-    /// Functions in the equations that may change within little of their arguments, where these are known
-    /// before the instant is solved.
-    pub fn steep(&self) -> Vec<Steep> {
-        let values = self.parameters.iter().map(|(&s, &value)| (s, Range::point(value))).collect();
-        let mut steep = self.graph.steep(&self.all(), &values);
-        if !steep.is_empty() {
-            let is_known = self.is_known();
-            steep.retain(|steep| is_known(steep.argument));
-        }
-        steep
-    }
-
-    /// Angles of points in the equations, likewise: [`Graph::angles`].
-    pub fn angles(&self) -> Vec<Expr> {
-        let mut angles = self.graph.angles(&self.all());
-        if !angles.is_empty() {
-            let is_known = self.is_known();
-            angles.retain(|&angle| is_known(angle));
-        }
-        angles
-    }
-
-    /// All that is evaluated for the rates.
-    fn all(&self) -> Vec<Expr> {
-        let definitions = self.definitions.iter().map(|(_, e)| *e);
-        let residuals = self.blocks.iter().flat_map(|block| block.residuals.iter().copied());
-        let rates = self.states.iter().map(|y| y.rate);
-        definitions.chain(residuals).chain(rates).chain(self.given.iter().copied()).collect()
-    }
-
-    /// Whether something is known before the instant is solved.
-    fn is_known(&self) -> impl Fn(Expr) -> bool {
-        let defined = self.definitions.iter().map(|(symbol, _)| *symbol);
-        let mut known: HashSet<Symbol> = defined.chain(self.known_symbols()).collect();
-        known.extend(self.parameters.keys());
-        move |e| self.symbols_behind([e]).is_subset(&known)
     }
 
     /// The symbols in `roots`, and in the definitions by way of which they are computed.

@@ -19,6 +19,7 @@ pub struct LaneEquations {
     rates: SeriesWorkspace<Lanes>,
     condition: Option<Evaluator<Lanes>>,
     guards: Evaluator<Lanes>,
+    divisors: Evaluator<Lanes>,
     projection: Option<Projection>,
     states: usize,
     /// `t, y, constants`.
@@ -55,6 +56,7 @@ impl LaneEquations {
             series,
             condition: condition.transpose()?,
             guards: equations.evaluator(&known, &equations.guards)?,
+            divisors: equations.evaluator(&known, &equations.divisors())?,
             projection,
             states: equations.states.len(),
             inputs: vec![Lanes::from_f64(0.0); known.len()],
@@ -125,6 +127,19 @@ impl LaneEquations {
         self.load(t, y);
         for (value, guard) in values.iter_mut().zip(self.guards.evaluate(&self.inputs)) {
             *value = guard.0;
+        }
+    }
+
+    /// Number of [`Equations::divisors`].
+    pub fn divisors(&self) -> usize {
+        self.divisors.values().len()
+    }
+
+    /// [`crate::Compiled::divided`] of every lane.
+    pub fn divided(&mut self, t: &[f64; LANES], y: &[[f64; LANES]], values: &mut [[f64; LANES]]) {
+        self.load(t, y);
+        for (value, divisor) in values.iter_mut().zip(self.divisors.evaluate(&self.inputs)) {
+            *value = divisor.0;
         }
     }
 

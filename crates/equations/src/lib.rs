@@ -74,6 +74,8 @@ mod projection;
 mod recombination;
 mod round_off;
 mod series;
+mod steep;
+mod terms;
 
 pub use blocks::EvaluationFailure;
 pub use compiled::Compiled;

@@ -4,8 +4,20 @@ use symbolic::{Bounded, Evaluator, Scalar};
 
 use crate::blocks::{CompiledBlock, EvaluationFailure};
 use crate::compiled::Compiled;
+use crate::terms::Terms;
 
 impl Compiled {
+    /// With its programs in terms, which are made once.
+    fn with_terms<T>(&mut self, evaluate: impl FnOnce(&mut Self, &mut Terms) -> T) -> T {
+        let mut terms = self.terms.take().unwrap_or_else(|| {
+            let programs = [&self.rates, &self.outputs, &self.steep];
+            Box::new(Terms::new(programs, &self.equations_of_instant))
+        });
+        let found = evaluate(self, &mut terms);
+        self.terms = Some(terms);
+        found
+    }
+
     /// How much was added up to each invariant at `(t, y)`: [`Bounded::magnitude`], of states and unknowns as
     /// they are.
     ///
@@ -13,9 +25,9 @@ impl Compiled {
     /// As [`Compiled::rates`].
     pub fn terms_of_invariants(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
         self.solve_instant(t, y)?;
-        let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
-        let values = in_terms(&self.outputs, &inputs);
-        Ok(values[values.len() - self.sizes.invariants..].iter().map(|x| x.magnitude).collect())
+        let (inputs, count) = (bounded(&self.inputs), self.sizes.invariants);
+        let of_last = |values: &[Bounded]| magnitudes(&values[values.len() - count..]);
+        Ok(self.with_terms(|_, terms| of_last(terms.outputs.evaluate(&inputs))))
     }
 
     /// How much was added up to each rate at `(t, y)`, that of the unknowns `z` of the instant included: of a
@@ -26,8 +38,10 @@ impl Compiled {
     /// # Errors
     /// As [`Compiled::rates`].
     pub fn terms_of_rates(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
-        let inputs = self.in_terms(t, y, y)?;
-        Ok(in_terms(&self.rates, &inputs).iter().map(|x| x.magnitude).collect())
+        self.with_terms(|compiled, terms| {
+            let inputs = compiled.in_terms(t, y, y, terms)?;
+            Ok(magnitudes(terms.rates.evaluate(&inputs)))
+        })
     }
 
     /// The same of multipliers, from a start at time `begin` on: what was added up to states since
@@ -53,18 +67,33 @@ impl Compiled {
     }
 
     fn terms_of_outputs(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
-        let inputs = self.in_terms(t, y, states)?;
-        Ok(in_terms(&self.outputs, &inputs).iter().map(|x| x.magnitude).collect())
+        self.with_terms(|compiled, terms| {
+            let inputs = compiled.in_terms(t, y, states, terms)?;
+            Ok(magnitudes(terms.outputs.evaluate(&inputs)))
+        })
+    }
+
+    /// How much was added up to the arguments of [`Compiled::gauges`] at `(t, y)`.
+    pub fn terms_of_gauged(&mut self, t: f64, y: &[f64], terms: &mut [f64]) {
+        self.load(t, y);
+        let inputs = bounded(&self.inputs[..self.sizes.known()]);
+        self.with_terms(|_, programs| terms.copy_from_slice(&magnitudes(programs.steep.evaluate(&inputs))));
     }
 
     /// `t, y, constants, z`, with what was added up to `y` and to `z`.
-    fn in_terms(&mut self, t: f64, y: &[f64], states: &[f64]) -> Result<Vec<Bounded>, EvaluationFailure> {
+    fn in_terms(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        states: &[f64],
+        terms: &mut Terms,
+    ) -> Result<Vec<Bounded>, EvaluationFailure> {
         self.solve_instant(t, y)?;
         let known = self.sizes.known();
-        let mut inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let mut inputs = bounded(&self.inputs);
         inputs[1..].iter_mut().zip(states).for_each(|(y, size)| y.magnitude = size.abs());
-        for block in &mut self.equations_of_instant {
-            let terms = terms_of_unknowns(block, &inputs, known);
+        for (block, program) in self.equations_of_instant.iter_mut().zip(&mut terms.blocks) {
+            let terms = terms_of_unknowns(block, program, &inputs, known);
             let first = known + block.first;
             inputs[first..].iter_mut().zip(terms).for_each(|(z, terms)| z.magnitude = z.magnitude.max(terms));
         }
@@ -72,14 +101,23 @@ impl Compiled {
     }
 }
 
-fn in_terms(program: &Evaluator<f64>, inputs: &[Bounded]) -> Vec<Bounded> {
-    Evaluator::new(program.tape().clone()).evaluate(inputs).to_vec()
+fn bounded(x: &[f64]) -> Vec<Bounded> {
+    x.iter().map(|&x| Bounded::from_f64(x)).collect()
+}
+
+fn magnitudes(x: &[Bounded]) -> Vec<f64> {
+    x.iter().map(|x| x.magnitude).collect()
 }
 
 /// `|∂R/∂z|⁻¹` times what is added up to `R`, by the factors of a block that was solved at these inputs.
-fn terms_of_unknowns(block: &mut CompiledBlock, inputs: &[Bounded], known: usize) -> Vec<f64> {
+fn terms_of_unknowns(
+    block: &mut CompiledBlock,
+    program: &mut Evaluator<Bounded>,
+    inputs: &[Bounded],
+    known: usize,
+) -> Vec<f64> {
     let n = block.size;
-    let values = in_terms(&block.program, if block.linear { &inputs[..known] } else { inputs });
+    let values = program.evaluate(if block.linear { &inputs[..known] } else { inputs });
     let (matrix, residual) = values.split_at(n * n);
     let z = &inputs[known + block.first..][..n];
     let of_row = |(row, r): (&[Bounded], &Bounded)| {

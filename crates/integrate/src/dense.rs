@@ -209,3 +209,23 @@ pub(crate) fn evaluate_segment(basis: Basis, coefficients: &[f64], theta: f64, y
         }
     }
 }
+
+/// The polynomial of one step at θ, and its slope there.
+pub(crate) fn segment_with_slope(basis: Basis, coefficients: &[f64], theta: f64, y: &mut [f64], slope: &mut [f64]) {
+    let dimension = y.len();
+    let terms = coefficients.len() / dimension;
+    slope.fill(0.0);
+    if basis == Basis::Powers {
+        for ((y, slope), row) in y.iter_mut().zip(slope).zip(coefficients.chunks_exact(terms)) {
+            (*y, *slope) = row.iter().rev().fold((0.0, 0.0), |(y, slope), c| (c + theta * y, y + theta * slope));
+        }
+        return;
+    }
+    y.copy_from_slice(&coefficients[(terms - 1) * dimension..]);
+    for (j, row) in coefficients[..(terms - 1) * dimension].chunks_exact(dimension).enumerate().rev() {
+        let (factor, sign) = if j % 2 == 0 { (theta, 1.0) } else { (1.0 - theta, -1.0) };
+        for ((y, slope), c) in y.iter_mut().zip(&mut *slope).zip(row) {
+            (*y, *slope) = (c + factor * *y, sign * *y + factor * *slope);
+        }
+    }
+}

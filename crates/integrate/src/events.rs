@@ -52,9 +52,13 @@ impl Segment<'_> {
         if theta >= 1.0 { self.end } else { self.begin + theta * self.width }
     }
 
+    pub(crate) fn state(&self, theta: f64, y: &mut [f64]) {
+        evaluate_segment(self.basis, self.coefficients, theta, y);
+    }
+
     /// The event functions at `theta`, by way of the state there.
     fn events(&self, system: &System, theta: f64, state: &mut [f64], values: &mut [f64]) -> Result<(), Failure> {
-        evaluate_segment(self.basis, self.coefficients, theta, state);
+        self.state(theta, state);
         system.event_values(self.time(theta), state, values)
     }
 }

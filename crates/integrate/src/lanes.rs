@@ -9,6 +9,7 @@
 //! many: all rare.
 
 mod inside;
+mod poles;
 mod problem;
 
 use std::array::from_fn;
@@ -22,6 +23,7 @@ use crate::stepper::shortest_step;
 use crate::taylor_step::{Ends, longest_step, once, order};
 use crate::time_loop::HALVINGS;
 use inside::finite;
+use poles::Poles;
 pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
 
 /// Takes a member and what became of it.
@@ -74,6 +76,7 @@ struct Lanes<'a, P> {
     inner: Vec<Lane>,
     inner_slope: Vec<Lane>,
     inner_rates: Vec<Lane>,
+    poles: Poles,
 }
 
 /// Integrates the motions that `next` names (with their starts) until it names none, by Taylor series to the
@@ -110,6 +113,7 @@ pub fn integrate_lanes<P: LaneProblem>(
         lanes.look_inside();
         let adopted = from_fn(|lane| lanes.judge(lane, done));
         lanes.adopt(&adopted);
+        lanes.poles.adopt(&adopted);
         for lane in 0..LANES {
             lanes.choose(lane, done);
         }
@@ -120,7 +124,7 @@ pub fn integrate_lanes<P: LaneProblem>(
 impl<'a, P: LaneProblem> Lanes<'a, P> {
     fn new(problem: &'a mut P, times: &'a [f64], options: &'a Options) -> Self {
         let (n, orders, events) = (problem.dimension(), order(options.relative_tolerance) + 1, problem.events());
-        let zeros = |count: usize| vec![[0.0; LANES]; count];
+        let (zeros, divisors) = (|count: usize| vec![[0.0; LANES]; count], problem.divisors());
         Lanes {
             problem,
             times,
@@ -152,6 +156,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             inner: zeros(n),
             inner_slope: zeros(n),
             inner_rates: zeros(n),
+            poles: Poles::new(divisors),
         }
     }
 
@@ -184,7 +189,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             #[inline(always)]
             move || {
                 let ends = once(ends);
-                let defect = ends.defect(absolute, relative);
+                let defect = ends.defect(absolute, relative, None);
                 (finite(coefficients), from_fn(|l| defect.component(l).is_none() && !defect.is_far(l)))
             },
         );
@@ -241,8 +246,9 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.step[lane] = 0.5 * self.taken[lane].abs();
             return if rider.failures > HALVINGS { self.leave(lane, Left::StepTooSmall, done) } else { false };
         }
-        if !self.eventless[lane] {
-            return self.leave(lane, Left::Event, done);
+        if !self.eventless[lane] || self.poles.suspected[lane] {
+            let why = if self.eventless[lane] { Left::Divisor } else { Left::Event };
+            return self.leave(lane, why, done);
         }
         rider.failures = 0;
         rider.run.work.steps += 1;

@@ -80,6 +80,7 @@ mod interrupt;
 mod lanes;
 mod options;
 mod pace;
+mod poles;
 mod problem;
 mod radau5;
 mod radau5_tableau;

@@ -109,6 +109,39 @@ pub trait Problem {
         Ok(())
     }
 
+    /// How much was added up to each argument, of which round-off is a part.
+    ///
+    /// # Errors
+    /// As [`gauged`](Problem::gauged).
+    fn terms_of_gauged(&mut self, _t: f64, _y: &[f64], terms: &mut [f64]) -> Result<(), EvaluationError> {
+        terms.fill(0.0);
+        Ok(())
+    }
+
+    /// The number of divisors in the equations that may vanish. A step along which one changes its sign or
+    /// comes near zero is looked at there, as what is divided may be so small that it is seen nowhere else.
+    fn divisors(&self) -> usize {
+        0
+    }
+
+    /// Writes the values of the [`divisors`](Problem::divisors).
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where they are not defined. The step is retried, shorter.
+    fn divided(&mut self, _t: f64, _y: &[f64], _values: &mut [f64]) -> Result<(), EvaluationError> {
+        Ok(())
+    }
+
+    /// How much was added up to each rate, of which round-off is a part: asked for where the rates are not as
+    /// they should be.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where it is not defined. The step is retried, shorter.
+    fn terms_of_rates(&mut self, _t: f64, _y: &[f64], terms: &mut [f64]) -> Result<(), EvaluationError> {
+        terms.fill(0.0);
+        Ok(())
+    }
+
     /// Writes the event functions' values `g_k(t, y)`; `values` has length [`events`](Problem::events).
     ///
     /// # Errors

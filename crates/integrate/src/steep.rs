@@ -4,9 +4,8 @@
 //! change between them: a force for half a second within a step of ten. So arguments of such functions, which
 //! are smooth, are read off the step's polynomial at five points, or nine where these do not do, and a step
 //! is refused along which a function's gauge ([`crate::Problem::gauges`]) grows by more than [`GAUGE_LIMIT`]:
-//! the method has to look closer.
+//! the method has to look closer. So is one along which it would if arguments were off by their round-off.
 
-use crate::dense::evaluate_segment;
 use crate::events::Segment;
 use crate::problem::Gauge;
 use crate::system::{Failure, System};
@@ -19,6 +18,8 @@ pub const GAUGE_NODES: usize = 9;
 const PARTS: usize = 16;
 /// What differences of arguments lose, in parts of the largest.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+/// Between places the polynomial is off by so many roundings of what was added up to arguments at these.
+const BLUR: f64 = 16.0 * f64::EPSILON;
 /// Larger arguments are as good as this, of which there are differences.
 const HUGE: f64 = 1e100;
 
@@ -27,6 +28,9 @@ pub(crate) struct SteepWatch {
     gauges: Vec<Gauge>,
     along: [Vec<f64>; GAUGE_NODES],
     state: Vec<f64>,
+    /// What is added up to arguments at a place, and the largest such sums along the step.
+    terms: Vec<f64>,
+    most: Vec<f64>,
 }
 
 impl SteepWatch {
@@ -36,7 +40,8 @@ impl SteepWatch {
         if !gauges.is_empty() {
             system.gauged(t, y, &mut along[0])?;
         }
-        Ok(SteepWatch { gauges, along, state: vec![0.0; y.len()] })
+        let (terms, most) = (vec![0.0; gauges.len()], vec![0.0; gauges.len()]);
+        Ok(SteepWatch { gauges, along, state: vec![0.0; y.len()], terms, most })
     }
 
     pub(crate) fn is_on(&self) -> bool {
@@ -53,8 +58,18 @@ impl SteepWatch {
             return Ok(());
         }
         self.read(system, segment, 1)?;
-        match (0..self.gauges.len()).any(|j| gauge_growth(self.gauges[j], &self.arguments(j)) > GAUGE_LIMIT) {
-            true => Err(Failure::Steep { t: segment.begin }),
+        if (0..self.gauges.len()).any(|j| gauge_growth(self.gauges[j], &self.arguments(j)) > GAUGE_LIMIT) {
+            return Err(Failure::Steep { t: segment.begin });
+        }
+        self.most.fill(0.0);
+        for theta in [0.0, 0.5, 1.0] {
+            segment.state(theta, &mut self.state);
+            system.terms_of_gauged(segment.time(theta), &self.state, &mut self.terms)?;
+            self.most.iter_mut().zip(&self.terms).for_each(|(most, terms)| *most = most.max(*terms));
+        }
+        let is_blurred = |j: usize| growth(self.gauges[j], &self.arguments(j), BLUR * self.most[j]) > GAUGE_LIMIT;
+        match (0..self.gauges.len()).any(is_blurred) {
+            true => Err(Failure::Blurred { t: segment.begin }),
             false => Ok(()),
         }
     }
@@ -63,7 +78,7 @@ impl SteepWatch {
     fn read(&mut self, system: &System, segment: &Segment, first: usize) -> Result<(), Failure> {
         for k in (first..GAUGE_NODES).step_by(2) {
             let theta = k as f64 / (GAUGE_NODES - 1) as f64;
-            evaluate_segment(segment.basis, segment.coefficients, theta, &mut self.state);
+            segment.state(theta, &mut self.state);
             system.gauged(segment.time(theta), &self.state, &mut self.along[k])?;
         }
         Ok(())
@@ -101,6 +116,11 @@ fn is_flat(gauge: Gauge, x: &[f64; GAUGE_NODES]) -> bool {
 /// assert!((gauge_growth(|x| x.max(-40.0), &bell) - 40.0).abs() < 1e-9);
 /// ```
 pub fn gauge_growth(gauge: Gauge, x: &[f64; GAUGE_NODES]) -> f64 {
+    growth(gauge, x, 0.0)
+}
+
+/// The same, of arguments that may be off by `blur`.
+fn growth(gauge: Gauge, x: &[f64; GAUGE_NODES], blur: f64) -> f64 {
     let x = x.map(bounded);
     if x.iter().any(|x| x.is_nan()) {
         return f64::INFINITY;
@@ -112,7 +132,7 @@ pub fn gauge_growth(gauge: Gauge, x: &[f64; GAUGE_NODES]) -> f64 {
     let at = |theta: f64| through(&fine, theta);
     let place = |k: usize| k as f64 / (GAUGE_NODES - 1) as f64;
     let missed = (1..GAUGE_NODES).step_by(2).map(|k| (x[k] - through(&coarse, place(k))).abs()).fold(0.0, f64::max);
-    let missed = missed + ROUND_OFF * x.iter().fold(0.0, |largest, x| x.abs().max(largest));
+    let missed = missed + blur + ROUND_OFF * x.iter().fold(0.0, |largest, x| x.abs().max(largest));
     let width = 1.0 / PARTS as f64;
     let values: Vec<f64> = (0..=PARTS).map(|i| at(i as f64 * width)).collect();
     let grown = |(low, high): (f64, f64), beyond: f64| gauge(high + beyond) - gauge(low - beyond);

@@ -13,6 +13,8 @@ pub(crate) enum Failure {
     NotSmooth { component: usize },
     OffConstraint { component: usize },
     Steep { t: f64 },
+    Blurred { t: f64 },
+    Pole { t: f64 },
 }
 
 impl From<EvaluationError> for Failure {
@@ -28,6 +30,17 @@ impl From<Failure> for StopCause {
             Failure::NotFinite { component } => StopCause::NotFinite { component },
             Failure::NotSmooth { component } => StopCause::NotSmooth { component },
             Failure::OffConstraint { component } => StopCause::OffConstraint { component },
+            Failure::Pole { t } => {
+                let reason = format!("a divisor in the equations vanishes or nearly so within a step near t = {t}");
+                StopCause::Evaluation { reason }
+            }
+            Failure::Blurred { t } => {
+                let reason = format!(
+                    "the argument of a function in the equations has more round-off near t = {t} than the function \
+                     changes within: it is too narrow for its place"
+                );
+                StopCause::Evaluation { reason }
+            }
             Failure::Steep { t } => {
                 let reason = format!("a function in the equations changes within less than a step near t = {t}");
                 StopCause::Evaluation { reason }
@@ -214,6 +227,26 @@ impl<'p> System<'p> {
             true => Err(Failure::Evaluation { reason: format!("the argument of a function is NaN at t = {t}") }),
             false => Ok(()),
         }
+    }
+
+    pub(crate) fn terms_of_gauged(&self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), Failure> {
+        Ok(self.inner.borrow_mut().problem.terms_of_gauged(t, y, terms)?)
+    }
+
+    pub(crate) fn divisors(&self) -> usize {
+        self.inner.borrow().problem.divisors()
+    }
+
+    pub(crate) fn divided(&self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.inner.borrow_mut().problem.divided(t, y, values)?;
+        match values.iter().any(|x| x.is_nan()) {
+            true => Err(Failure::Evaluation { reason: format!("a divisor is NaN at t = {t}") }),
+            false => Ok(()),
+        }
+    }
+
+    pub(crate) fn terms_of_rates(&self, t: f64, y: &[f64], terms: &mut [f64]) -> Result<(), Failure> {
+        Ok(self.inner.borrow_mut().problem.terms_of_rates(t, y, terms)?)
     }
 
     pub(crate) fn event_values(&self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {

@@ -4,6 +4,7 @@ use crate::dense::{Basis, DenseOutput, evaluate_segment};
 use crate::events::{EventWatch, Segment};
 use crate::options::{Dense, Method, Options, Projection};
 use crate::pace::Pace;
+use crate::poles::PoleWatch;
 use crate::problem::Start;
 use crate::status::{ProjectionReport, Solution, Status, StopCause};
 use crate::steep::SteepWatch;
@@ -70,6 +71,12 @@ struct Record<'a, 'p> {
     options: &'a Options,
 }
 
+/// What is looked at inside of steps.
+struct Inside {
+    steep: SteepWatch,
+    poles: PoleWatch,
+}
+
 /// Moves of projections over what errors of steps are.
 struct Moves {
     /// The largest one that counts as none.
@@ -83,7 +90,10 @@ impl Record<'_, '_> {
     fn walk(&mut self, stepper: &mut dyn Stepper, start: &Start, end: f64) -> Result<(), StopCause> {
         let system = self.system;
         let mut watch = EventWatch::new(system, start.t, &start.y)?;
-        let mut steep = SteepWatch::new(system, start.t, &start.y)?;
+        let mut inside = Inside {
+            steep: SteepWatch::new(system, start.t, &start.y)?,
+            poles: PoleWatch::new(system, start.t, &start.y, self.options)?,
+        };
         // The last failure since the last accepted step, and the number of them.
         let mut failure: Option<Failure> = None;
         let mut failures = 0;
@@ -109,7 +119,7 @@ impl Record<'_, '_> {
             let accepted = match stepper.attempt() {
                 Attempt::Candidate { t, rejected } => {
                     system.count_rejected(rejected);
-                    self.take(stepper, &mut watch, &mut steep, t)
+                    self.take(stepper, &mut watch, &mut inside, t)
                 }
                 Attempt::Rejected => {
                     system.count_rejected(1);
@@ -122,7 +132,8 @@ impl Record<'_, '_> {
                 Ok(None) => {
                     stepper.advance()?;
                     watch.advance();
-                    steep.advance();
+                    inside.steep.advance();
+                    inside.poles.advance();
                     (failure, failures) = (None, 0);
                 }
                 Ok(Some(index)) => return Err(StopCause::Event { index }),
@@ -172,7 +183,7 @@ impl Record<'_, '_> {
         &mut self,
         stepper: &mut dyn Stepper,
         watch: &mut EventWatch,
-        steep: &mut SteepWatch,
+        inside: &mut Inside,
         t: f64,
     ) -> Result<Option<usize>, Failure> {
         let begin = stepper.time();
@@ -186,15 +197,17 @@ impl Record<'_, '_> {
             self.check_move(candidate)?;
         }
         let watching = self.system.events() > 0;
-        let has_room = watching || steep.is_on() || self.options.dense == Dense::Everywhere;
+        let looks = inside.steep.is_on() || inside.poles.is_on();
+        let has_room = watching || looks || self.options.dense == Dense::Everywhere;
         let room = if has_room { Some(self.dense.room()) } else { None };
         let found = stepper.finish(moved.is_some_and(|length| length != 0.0), room).and_then(|()| {
-            if !watching && !steep.is_on() {
+            if !watching && !looks {
                 return Ok(None);
             }
             let coefficients = self.dense.last_room();
             let segment = Segment { basis: self.dense.basis(), coefficients, begin, width: t - begin, end: t };
-            steep.look(self.system, &segment)?;
+            inside.steep.look(self.system, &segment)?;
+            inside.poles.look(self.system, &segment, stepper.candidate())?;
             if !watching {
                 return Ok(None);
             }

@@ -38,6 +38,7 @@ mod bounded;
 mod calculus;
 mod cancel;
 mod code;
+mod divisors;
 mod domain;
 mod evaluate;
 mod evaluator;

@@ -8,11 +8,13 @@ use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::clock::Clock;
 use crate::error_estimate::Differences;
 use crate::last_digits::terms_of_invariants;
+use crate::lost_digits::{self, Looked, finite, is_small, largest};
 use crate::metric::subtract;
+use crate::round_off::BEFORE_THE_END;
 use crate::single_run::outputs;
 use crate::sizes::sizes;
 use crate::watch::Watch;
-use crate::{Doubt, ErrorEstimate, Metric, SolveError};
+use crate::{Doubt, Ending, ErrorEstimate, Metric, SolveError};
 
 /// What became of a member, read off.
 #[derive(Clone, Debug)]
@@ -69,6 +71,7 @@ impl Ensemble {
             Err(error) => return (members.iter().map(|_| Err(error.clone().into())).collect(), seconds),
         };
         let invariants = &self.equations().invariants;
+        let states = lost_digits::names_of_states(self.equations());
         let (compiled, metric) = (&self.varying.prepared().compiled, &self.metric);
         let names: Vec<String> = self.system.coordinates.iter().map(|c| c.name.clone()).collect();
         let multipliers: Vec<String> = self.equations().multipliers.iter().map(|m| m.name.clone()).collect();
@@ -81,6 +84,7 @@ impl Ensemble {
                 metric,
                 watch,
                 invariants,
+                states: &states,
                 instants: &instants,
             };
             let mut done = Vec::new();
@@ -187,6 +191,9 @@ fn instants(members: &[EnsembleMember], times: &[f64], options: &EnsembleOptions
     instants
 }
 
+/// So many instants are looked at for round-off first, beside the start.
+const FEW: usize = 4;
+
 struct Reader<'a> {
     names: &'a [String],
     multipliers: &'a [String],
@@ -194,6 +201,7 @@ struct Reader<'a> {
     metric: Metric,
     watch: Watch,
     invariants: &'a [Named],
+    states: &'a [String],
     instants: &'a [(f64, bool)],
 }
 
@@ -237,7 +245,10 @@ impl Reader<'_> {
             }
             read.push(now);
         }
-        let doubt = if is_clear { None } else { self.broken(member, run) };
+        let mut doubt = if is_clear { None } else { self.broken(member, run) };
+        if doubt.is_none() && options.estimate {
+            doubt = self.rounded_off(member, run, &mut sizes);
+        }
         Ok((read, options.estimate.then(|| differences.estimate(&self.metric)), doubt))
     }
 
@@ -264,7 +275,67 @@ impl Reader<'_> {
     }
 }
 
+impl Reader<'_> {
+    /// As of a single motion, at the instants there are.
+    fn rounded_off(&mut self, member: &EnsembleMember, run: &MemberRun, sizes: &mut Vec<f64>) -> Option<Doubt> {
+        let reached = match run.ending {
+            Ending::Completed => member.end,
+            Ending::Stopped { t, .. } => member.t + BEFORE_THE_END * (t - member.t),
+        };
+        let length = (reached - member.t).abs();
+        let count = self.instants.iter().take_while(|(t, _)| (t - member.t).abs() <= length).count();
+        let count = count.min(run.states.len());
+        let few: Vec<usize> = (1..=FEW).map(|k| k * count / FEW).filter(|&i| i > 0).map(|i| i - 1).collect();
+        let looked = self.looked(member, run, few);
+        if is_small(&looked, &largest(&looked, vec![0.0; member.y.len()]), length) {
+            return None;
+        }
+        let sizes = sized(&mut self.compiled, &mut self.metric, member, sizes);
+        if is_small(&looked, &largest(&looked, sizes.to_vec()), length) {
+            return None;
+        }
+        let looked = self.looked(member, run, 0..count);
+        let states = run.states.iter().zip(&run.differences).map(|(y, difference)| subtract(y, difference));
+        let looser: Vec<Vec<f64>> = std::iter::once(member.y.clone()).chain(states).collect();
+        let sizes = largest(&looked, sizes.to_vec());
+        lost_digits::doubt(&mut self.compiled, self.states, &looked, &looser, &sizes)
+    }
+
+    /// The start and these instants, as far as it can be told what is added up to rates there.
+    fn looked(
+        &mut self,
+        member: &EnsembleMember,
+        run: &MemberRun,
+        instants: impl IntoIterator<Item = usize>,
+    ) -> Vec<Looked> {
+        let instants = instants.into_iter().map(Some);
+        let all = std::iter::once(None).chain(instants);
+        all.map_while(|i| {
+            let (t, y) = i.map_or((member.t, &member.y), |i| (self.instants[i].0, &run.states[i]));
+            if let Some(unknowns) = i.and_then(|i| run.unknowns.get(i)) {
+                self.compiled.set_guess(unknowns);
+            }
+            let terms = self.compiled.terms_of_rates(t, y).ok()?;
+            Some((t, y.clone(), finite(terms)))
+        })
+        .collect()
+    }
+}
+
 /// `sizes` are those of the member's states, once they are asked for.
+fn sized<'a>(
+    compiled: &mut Compiled,
+    metric: &mut Metric,
+    member: &EnsembleMember,
+    sizes: &'a mut Vec<f64>,
+) -> &'a [f64] {
+    if sizes.is_empty() {
+        *sizes = self::sizes(compiled, metric, member.t, &member.y, member.end - member.t);
+    }
+    sizes
+}
+
+/// What is added up to invariants.
 fn terms(
     compiled: &mut Compiled,
     metric: &mut Metric,
@@ -273,8 +344,6 @@ fn terms(
     t: f64,
     y: &[f64],
 ) -> Option<Vec<f64>> {
-    if sizes.is_empty() {
-        *sizes = self::sizes(compiled, metric, member.t, &member.y, member.end - member.t);
-    }
+    let sizes = sized(compiled, metric, member, sizes);
     terms_of_invariants(compiled, t, y, sizes)
 }

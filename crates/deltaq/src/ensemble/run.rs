@@ -288,4 +288,10 @@ impl LaneProblem for Riders<'_> {
     fn event_values(&mut self, t: &Lane, y: &[Lane], values: &mut [Lane]) {
         self.lanes.guard_values(t, y, values);
     }
+    fn divisors(&self) -> usize {
+        self.lanes.divisors()
+    }
+    fn divided(&mut self, t: &Lane, y: &[Lane], values: &mut [Lane]) {
+        self.lanes.divided(t, y, values);
+    }
 }

@@ -7,7 +7,7 @@ use crate::taylor_step::{DEFECT, GOLDEN, MANY, ROUND_OFF, UNLIMITED};
 
 impl<P: LaneProblem> Lanes<'_, P> {
     /// As for a single motion: at many places where terms do not limit the step, which depend on the motion's
-    /// own attempts only.
+    /// own attempts only. And at divisors in the middle of the step.
     pub(super) fn look_inside(&mut self) {
         let under_way: [bool; LANES] = from_fn(|l| self.riders[l].as_ref().is_some_and(|rider| !rider.fresh));
         let free: [bool; LANES] = from_fn(|l| under_way[l] && UNLIMITED * self.taken[l].abs() < self.step[l]);
@@ -52,6 +52,7 @@ impl<P: LaneProblem> Lanes<'_, P> {
                 }
             }
         }
+        self.look_at_divisors();
     }
 }
 

@@ -30,6 +30,14 @@ pub trait LaneProblem {
 
     /// Values of the event functions.
     fn event_values(&mut self, t: &Lane, y: &[Lane], values: &mut [Lane]);
+
+    /// Number of divisors that may vanish, as [`crate::Problem::divisors`].
+    fn divisors(&self) -> usize {
+        0
+    }
+
+    /// Their values.
+    fn divided(&mut self, _t: &Lane, _y: &[Lane], _values: &mut [Lane]) {}
 }
 
 /// What a motion starts from and where it ends.
@@ -57,6 +65,9 @@ pub enum Left {
     /// An event function changes its sign or is nearly zero.
     #[error("an event on the way")]
     Event,
+    /// A divisor changes its sign or comes near zero within a step.
+    #[error("a divisor nearly vanishes on the way")]
+    Divisor,
     /// Steps are too short to move the time, creep or are halved too often.
     #[error("steps too short on the way")]
     StepTooSmall,

@@ -1,0 +1,97 @@
+//! What may change within less than a step: functions that are steep, angles that jump, divisors that vanish.
+
+use std::collections::{HashMap, HashSet};
+
+use symbolic::{Expr, Range, Steep, Symbol};
+
+use crate::compiled::Compiled;
+use crate::equations::Equations;
+
+impl Equations {
+    /// Functions in the equations that may change within little of their arguments, where these are known
+    /// before the instant is solved.
+    pub fn steep(&self) -> Vec<Steep> {
+        let mut steep = self.graph.steep(&self.all(), &self.values());
+        if !steep.is_empty() {
+            let is_known = self.is_known();
+            steep.retain(|steep| is_known(steep.argument));
+        }
+        steep
+    }
+
+    /// Angles of points in the equations, likewise: [`symbolic::Graph::angles`].
+    pub fn angles(&self) -> Vec<Expr> {
+        let mut angles = self.graph.angles(&self.all());
+        if !angles.is_empty() {
+            let is_known = self.is_known();
+            angles.retain(|&angle| is_known(angle));
+        }
+        angles
+    }
+
+    /// What the equations divide by that changes along a motion and may vanish, likewise:
+    /// [`symbolic::Graph::divisors`].
+    pub fn divisors(&self) -> Vec<Expr> {
+        let mut divisors = self.graph.divisors(&self.all(), &self.values());
+        if !divisors.is_empty() {
+            let (is_known, moving) = (self.is_known(), self.moving());
+            divisors.retain(|&divisor| is_known(divisor) && !self.symbols_behind([divisor]).is_disjoint(&moving));
+        }
+        divisors
+    }
+
+    fn values(&self) -> HashMap<Symbol, Range> {
+        self.parameters.iter().map(|(&s, &value)| (s, Range::point(value))).collect()
+    }
+
+    /// Symbols of time and states.
+    fn moving(&self) -> HashSet<Symbol> {
+        self.state_symbols().into_iter().chain([self.time]).collect()
+    }
+
+    /// All that is evaluated for the rates.
+    fn all(&self) -> Vec<Expr> {
+        let definitions = self.definitions.iter().map(|(_, e)| *e);
+        let residuals = self.blocks.iter().flat_map(|block| block.residuals.iter().copied());
+        let rates = self.states.iter().map(|y| y.rate);
+        definitions.chain(residuals).chain(rates).chain(self.given.iter().copied()).collect()
+    }
+
+    /// Whether something is known before the instant is solved.
+    fn is_known(&self) -> impl Fn(Expr) -> bool {
+        let defined = self.definitions.iter().map(|(symbol, _)| *symbol);
+        let mut known: HashSet<Symbol> = defined.chain(self.known_symbols()).collect();
+        known.extend(self.parameters.keys());
+        move |e| self.symbols_behind([e]).is_subset(&known)
+    }
+}
+
+impl Compiled {
+    /// Gauges of functions that may change within little of their arguments: [`symbolic::Steep`].
+    pub fn gauges(&self) -> &[fn(f64) -> f64] {
+        &self.gauges
+    }
+
+    /// The arguments of these functions.
+    pub fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) {
+        self.load(t, y);
+        arguments.copy_from_slice(self.steep.evaluate(&self.inputs[..self.sizes.known()]));
+    }
+
+    /// The angles of points in the equations: [`symbolic::Graph::angles`].
+    pub fn angles(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
+        self.load(t, y);
+        self.angles.evaluate(&self.inputs[..self.sizes.known()]).to_vec()
+    }
+
+    /// Number of [`Equations::divisors`].
+    pub fn divisors(&self) -> usize {
+        self.divisors.values().len()
+    }
+
+    /// The values of what the equations divide by.
+    pub fn divided(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
+        self.load(t, y);
+        values.copy_from_slice(self.divisors.evaluate(&self.inputs[..self.sizes.known()]));
+    }
+}
