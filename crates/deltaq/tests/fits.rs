@@ -123,7 +123,7 @@ fn failures(name: &str, at_most: f64) -> Vec<String> {
         println!("{line}");
         let is_principal = runs[fit.run].choice.formulation == "vakonomic";
         if gain > 1.0 || is_principal && gap > at_most {
-            println!("    at {at:?}");
+            println!("    at {at:?}, the fit at {:?}", fitted.constants);
             failures.push(line);
         }
     }
