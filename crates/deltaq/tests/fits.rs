@@ -91,8 +91,8 @@ fn swept(scene: &Scene, runs: &mut [deltaq::Run], fit: &Fit, fitted: &FittedMoti
 
 /// Fits whatever can be fitted in a scene and sweeps: what is less by more than 1 %.
 fn failures(name: &str, at_most: f64) -> Vec<String> {
-    let path = ["scenes", "equivalence"].map(|folder| {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation").join(folder);
+    let path = ["scenes", "classics"].map(|folder| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalogue").join(folder);
         folder.join(format!("{name}.toml"))
     });
     let path = path.iter().find(|path| path.exists()).expect("a scene");
@@ -133,8 +133,8 @@ fn failures(name: &str, at_most: f64) -> Vec<String> {
 #[test]
 fn no_sweep_finds_less() {
     let asked = std::env::var("FITS_OF").unwrap_or_default();
-    let all = ["scenes", "equivalence"].map(|folder| {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation").join(folder);
+    let all = ["scenes", "classics"].map(|folder| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalogue").join(folder);
         std::fs::read_dir(folder).expect("scenes").map(|entry| entry.expect("a file").path())
     });
     let all = all.into_iter().flatten().filter(|path| path.extension().is_some_and(|e| e == "toml"));

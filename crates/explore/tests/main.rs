@@ -256,8 +256,7 @@ fn moved(scene: &Value, part: f64) -> serde_json::Map<String, Value> {
 
 /// Names and texts of all scenes.
 fn scenes() -> Vec<(String, String)> {
-    let folders =
-        ["scenes", "equivalence"].map(|name| format!("{}/../../validation/{name}", env!("CARGO_MANIFEST_DIR")));
+    let folders = ["scenes", "classics"].map(|name| format!("{}/../catalogue/{name}", env!("CARGO_MANIFEST_DIR")));
     let files = folders.iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()).map(|file| file.unwrap().path());
     let scenes = files.filter(|file| file.extension().is_some_and(|ending| ending == "toml"));
     let text = |file: &std::path::PathBuf| std::fs::read_to_string(file).unwrap();

@@ -21,6 +21,7 @@ pub struct File {
 pub(crate) fn link(text: &str, path: &str) -> String {
     // all brackets are escaped: the text has no links of its own
     let text = tagless(text).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
+    let text = text.replace("](", "]\\(");
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._/".contains(&byte);
     let encoded = |byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
     format!("[{text}]({})", path.bytes().map(encoded).collect::<String>())
@@ -261,6 +262,6 @@ mod tests {
         assert_eq!(image(&picture("<svg><title>gap &lt; 1 &amp; more</title></svg>")), "![gap < 1 & more](own.svg)");
         assert_eq!(image(&picture("<svg/>")), "![own.svg](own.svg)");
         let title = "<svg><title>a [x](javascript:y) &lt;b&gt; c</title></svg>";
-        assert_eq!(image(&picture(title)), r"![a \[x\](javascript:y) &lt;b> c](own.svg)");
+        assert_eq!(image(&picture(title)), r"![a \[x\]\(javascript:y) &lt;b> c](own.svg)");
     }
 }
