@@ -22,7 +22,7 @@ const LAST_DIGITS: usize = 1200;
 /// Slopes of polynomials that other methods leave behind are not as good as their ends.
 const OTHERS: f64 = 1e4;
 
-/// Whether a function with these values at the begin, in the middle and at the end of a step may vanish in it.
+/// Whether a function with these values at the begin, in the middle and at the end of a step may vanish.
 pub(crate) fn may_vanish([begin, middle, end]: [f64; 3]) -> bool {
     let sign = begin.signum();
     if begin == 0.0 || middle * sign <= 0.0 || end * sign <= 0.0 {
