@@ -10,8 +10,8 @@ const DRAWS: usize = 1;
 /// Widths over this part of their place are to be found, but for so large a part of the runs.
 const WIDE: f64 = 1e-9;
 const REFUSED: f64 = 0.02;
-/// What a run may be off by beside ten times its estimate, over what the pulse does; and by methods of low order,
-/// whose two runs may be off alike.
+/// What a run may be off by beside ten times its estimate, over what the pulse does; and by methods of low
+/// order, whose two runs may be off alike.
 const ALLOWED: f64 = 1e-7;
 const BY_LOW_ORDER: f64 = 1e-5;
 

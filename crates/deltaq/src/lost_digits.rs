@@ -55,8 +55,8 @@ fn decay(compiled: &mut Compiled, direction: f64, (t, y, terms): &Looked, sizes:
 }
 
 /// The doubt that begins where round-off of the rates has come to more than the runs differ by: instants of
-/// the kept run and states of the looser one there, with names and sizes of states. What cannot be evaluated is another
-/// matter.
+/// the kept run and states of the looser one there, with names and sizes of states. What cannot be evaluated
+/// is another matter.
 pub(crate) fn doubt(
     compiled: &mut Compiled,
     names: &[String],

@@ -1,4 +1,4 @@
-//! High powers, saws and quotients in forces and constraints: never wrong in silence, by any method or in lanes.
+//! High powers, saws and quotients in forces and constraints: never wrong in silence, alone or in lanes.
 
 use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, choices, error_estimate, setting, solve_choice};
 use integrate::Method;

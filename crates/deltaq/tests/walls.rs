@@ -46,8 +46,8 @@ fn ends(scene: &Scene) -> Vec<(String, Result<(f64, f64), String>)> {
     ends
 }
 
-/// A particle that comes to a wall at rest is turned back: it is at +2, less what the wall is thick, and never
-/// at −2, where it came to in silence.
+/// A particle that comes to a wall is turned back: it is at +2, less what the wall is thick, and never at −2,
+/// where it came to in silence.
 #[test]
 fn a_wall_is_not_run_through_however_thin_it_is() {
     let (mut right, mut told) = (0, 0);

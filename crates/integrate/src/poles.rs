@@ -1,10 +1,10 @@
 //! Steps over zeros of divisors.
 //!
-//! A wall c/x² with c under the tolerance is in no term of a series that begins far from it, and a method sees
-//! its rates at a few points only. So divisors ([`crate::Problem::divisors`]) are evaluated at both ends and
-//! in the middle of each step. Where one changes its sign, or the parabola through its values comes near zero,
-//! the zero is approached along the step's polynomial, closer each time: the step is refused if the rates are
-//! no slope of it there. A divisor whose zero does nothing, as in (sin x)/x, stops nothing.
+//! A wall c/x² with c under the tolerance is in no term of a series that begins far from it, and a method
+//! sees its rates at a few points only. So divisors ([`crate::Problem::divisors`]) are evaluated at both ends
+//! and in the middle of each step. Where one changes its sign, or the parabola through its values comes near
+//! zero, that is approached along the step's polynomial, closer each time: the step is refused if the rates
+//! are no slope of it there. A divisor whose zero does nothing, as in (sin x)/x, stops nothing.
 
 use crate::dense::segment_with_slope;
 use crate::events::Segment;
@@ -22,7 +22,7 @@ const LAST_DIGITS: usize = 1200;
 /// Slopes of polynomials that other methods leave behind are not as good as their ends.
 const OTHERS: f64 = 1e4;
 
-/// Whether a function with these values at the begin, in the middle and at the end of a step may vanish within.
+/// Whether a function with these values at the begin, in the middle and at the end of a step may vanish.
 pub(crate) fn may_vanish([begin, middle, end]: [f64; 3]) -> bool {
     let sign = begin.signum();
     if begin == 0.0 || middle * sign <= 0.0 || end * sign <= 0.0 {

@@ -226,8 +226,9 @@ impl Lowering<'_> {
     }
 }
 
-/// The place `p` of `k + c x = c (x − p)`, where it is a decimal of a few digits and `c` no sign, or where `c`
-/// is large: what is far from the origin and narrow, as `(t − 1000007)/0.01`, loses nothing where `x` is near.
+/// The place `p` of `k + c x = c (x − p)`, where it is a decimal of a few digits and `c` no sign, or where
+/// `c` is large: what is far from the origin and narrow, as `(t − 1000007)/0.01`, loses nothing where `x` is
+/// near.
 fn place(k: Number, c: Number) -> Option<Number> {
     const DIGITS: i64 = 1_000_000_000_000;
     const NARROW: f64 = 1e3;
