@@ -64,7 +64,9 @@ impl Motion {
     /// An infinite slope tells nothing.
     fn terms_along(&mut self, stretches: usize) -> Vec<(f64, Vec<f64>, Vec<f64>)> {
         let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
-        let times = self.grid(stretches).into_iter().map(|t| start + part * (t - start));
+        let times = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));
+        let times: Vec<f64> = times.collect();
+        let times = times.into_iter();
         times
             .map_while(|t| {
                 let (y, mut terms) = self.terms_of_rates(t)?;
