@@ -110,9 +110,8 @@ impl Point {
             let Ok(jacobian) = self.jacobian(&y) else { continue };
             let largest = |i: usize, j: usize| jacobian.row(i).amax().max(jacobian.column(j).amax());
             let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-            let is_new = |&(i, j): &(usize, usize)| {
-                !coupled[(i, j)] && jacobian[(i, j)].abs() > INDEPENDENT * largest(i, j)
-            };
+            let is_new =
+                |&(i, j): &(usize, usize)| !coupled[(i, j)] && jacobian[(i, j)].abs() > INDEPENDENT * largest(i, j);
             let new: Vec<(usize, usize)> = entries.filter(is_new).collect();
             // noise takes Jacobians of its own, and has a say in what is new only
             if new.is_empty() {
