@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &SolveArguments, quiet: bool) -> Result<Answer> {
     };
     let steps = steps(arguments)?;
     let watched = Interrupt::default();
-    settings.interrupt = Some(watched.clone());
+    (settings.interrupt, settings.times) = (Some(watched.clone()), Some(wanted.clone()));
     let mut motion = progress(&watched, setting(&scene), quiet, || match steps {
         None => solve_choice(&scene, &choice, &settings),
         Some(steps) => solve_by_steps(&scene, &choice, steps, &settings),

@@ -8,6 +8,7 @@ mod ensemble_command;
 mod explore_command;
 mod kills;
 mod linearize_command;
+mod memory;
 mod output;
 mod prove_command;
 mod random_command;

@@ -253,12 +253,19 @@ fn a_run_without_memory_stops_with_a_cause() {
     );
     fs::write(&file, scene).expect("written");
     let call = format!(
-        "ulimit -v 700000; exec '{}' solve '{}' -f chetaev --times 0 --quiet",
+        "ulimit -v 700000; exec '{}' solve '{}' -f chetaev --quiet --times ",
         env!("CARGO_BIN_EXE_deltaq"),
         file.display()
     );
-    let output = std::process::Command::new("sh").args(["-c", &call]).output().expect("a shell");
-    let stderr = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{stderr}");
+    let solve = |times: &str| {
+        let output = std::process::Command::new("sh").args(["-c", &(call.clone() + times)]).output();
+        let output = output.expect("a shell");
+        (output.status.code(), text(&output.stderr))
+    };
+    // what few times need is little
+    let (code, stderr) = solve("0,1e5");
+    assert_eq!(code, Some(0), "{stderr}");
+    let (code, stderr) = solve("0:1e5:100001");
+    assert_eq!(code, Some(3), "{stderr}");
     assert!(stderr.contains("no memory for more"), "{stderr}");
 }

@@ -238,12 +238,12 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
 /// Where panels begin and end: equally long ones, or the steps where these are more, short where much
 /// happens.
 fn bounds(path: &Path, start: f64, way: f64) -> Vec<f64> {
-    let steps = path.dense.as_ref().map_or(Vec::new(), DenseOutput::step_times);
+    let steps = path.dense.as_ref().map_or(&[][..], DenseOutput::step_times);
     if steps.len() <= PANELS {
         return (0..=PANELS).map(|i| start + way * i as f64 / PANELS as f64).collect();
     }
     let end = start + way;
-    let before = steps.into_iter().filter(|t| (end - t) * way.signum() > 0.0);
+    let before = steps.iter().copied().filter(|t| (end - t) * way.signum() > 0.0);
     before.chain([end]).collect()
 }
 

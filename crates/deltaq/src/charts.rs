@@ -13,7 +13,7 @@
 //!
 //! Both runs of a motion change at the time of the kept one, each from its own state.
 
-use integrate::{ProjectionReport, Solution, Work};
+use integrate::{Options, ProjectionReport, Solution, Work};
 use mechanics::ConstantsRule;
 
 use crate::choice::{derive_at, watch};
@@ -21,6 +21,7 @@ use crate::later_chart::{Later, Names};
 use crate::table::as_derived;
 use crate::trajectory::{Legs, Trajectory, outputs_in};
 use crate::trial::{NotSuited, not_suited};
+use crate::wanted::wanted;
 use crate::{Choice, Ending, Prepared, Setting, Settings, SingleRun, SolveError, TIGHTER};
 
 /// That a motion went on by equations without pivots.
@@ -69,6 +70,8 @@ fn run_on(setting: Setting, prepared: &mut Prepared, settings: &Settings, patien
     let (mut later, mut own): (Option<Prepared>, Option<Box<Later>>) = (None, None);
     let (mut options, mut options_looser) = (settings.options(settings.tolerance * TIGHTER), None);
     options.patience = patience;
+    let ends = [setting.start.t, setting.end];
+    options.wanted = settings.times.as_ref().map(|times| wanted(ends, times));
     let failure = loop {
         let here = later.as_mut().unwrap_or(prepared);
         let kept = here.run_in_chart(setting.end, &options);
@@ -78,7 +81,9 @@ fn run_on(setting: Setting, prepared: &mut Prepared, settings: &Settings, patien
             return Ok(Course::Unsuited(reason));
         }
         let runs = kept.and_then(|kept| {
-            let options = options_looser.get_or_insert_with(|| settings.options(settings.tolerance));
+            let wanted = options.wanted.clone();
+            let looser = || Options { wanted, ..settings.options(settings.tolerance) };
+            let options = options_looser.get_or_insert_with(looser);
             let looser = here.second_run(&kept, setting.end, options)?;
             options.before = Some(looser.solution.done());
             Ok([kept, looser])

@@ -1,7 +1,7 @@
 //! Free constants: zero, given, or natural at a horizon.
 
 use equations::Equations;
-use integrate::{BoundaryError, Interrupt, Options, ShootOptions, shoot};
+use integrate::{BoundaryError, Dense, Interrupt, Options, ShootOptions, shoot};
 use mechanics::ConstantsRule;
 
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
@@ -144,7 +144,7 @@ fn natural_constants(
         if let Some(cause) = of_all.interrupt.as_ref().and_then(Interrupt::cause) {
             return Err(refuse(SolveError::Ended { horizon, cause }));
         }
-        let run_options = Options { max_steps: left, ..of_all.clone() };
+        let run_options = Options { max_steps: left, dense: Dense::EndOnly, ..of_all.clone() };
         let run = prepared.integrate(horizon, &run_options).map_err(&mut refuse)?;
         let steps = run.solution.work.steps + run.solution.work.rejected;
         taken += steps;

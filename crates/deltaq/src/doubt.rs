@@ -34,12 +34,7 @@ impl Doubt {
     ///
     /// Two runs with the same steps have the same error, which their difference hides; a run whose steps
     /// follow its round-off is no better than the looser one. Doubt begins where this first shows.
-    pub(crate) fn of(
-        [kept, looser]: &[Vec<f64>; 2],
-        end: f64,
-        complete: bool,
-        method: Option<Method>,
-    ) -> Option<Doubt> {
+    pub(crate) fn of([kept, looser]: [&[f64]; 2], end: f64, complete: bool, method: Option<Method>) -> Option<Doubt> {
         let start = kept[0];
         let end = if complete { end } else { start + BEFORE_THE_END * (end - start) };
         let sign = (end - start).signum();
@@ -94,8 +89,8 @@ mod tests {
     }
 
     fn doubt(kept: Vec<f64>, looser: Vec<f64>, direction: f64) -> Option<Doubt> {
-        let times = [kept, looser].map(|times| times.into_iter().map(|t| direction * t).collect());
-        Doubt::of(&times, direction * 2.0, true, Some(Method::Dop853))
+        let [kept, looser] = [kept, looser].map(|times| times.into_iter().map(|t| direction * t).collect::<Vec<f64>>());
+        Doubt::of([&kept, &looser], direction * 2.0, true, Some(Method::Dop853))
     }
 
     #[test]

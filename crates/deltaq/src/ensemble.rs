@@ -3,6 +3,7 @@
 mod costates;
 mod motions;
 mod run;
+mod singly;
 #[cfg(test)]
 mod tests;
 mod threads;
@@ -15,7 +16,7 @@ use integrate::{Interrupt, Method};
 use mechanics::{ConstantsRule, State, System};
 use scene::{Scene, Start, Starts};
 
-use crate::{Choice, Form, Metric, Prepared, Settings, SolveError, Varying, formulation, setting};
+use crate::{Choice, Metric, Prepared, Settings, SolveError, Varying, formulation, setting};
 pub(crate) use costates::Costates;
 pub use costates::{costate_names, given_costates, is_costate};
 pub use motions::MemberMotion;
@@ -27,7 +28,9 @@ pub use threads::{number_of_threads, over_threads};
 ///
 /// [`Method::Taylor`] integrates eight members at a time. One that does not go well in company is integrated
 /// alone, and says so ([`MemberRun::alone`]): where the form of the equations is not to be trusted, at
-/// singularities, always where a block is left to solve numerically ([`Ensemble::refusal`]).
+/// singularities, always where a block is left to solve numerically ([`Ensemble::refusal`]). One whose pivots
+/// vanish at its start, or on its way while its error is estimated, is a motion of its own, as of
+/// [`crate::solve_choice`], and goes on where that does.
 ///
 /// ```
 /// # let text = include_str!("../../catalogue/scenes/sledge.toml");
@@ -56,9 +59,6 @@ pub struct Ensemble {
     metric: Metric,
     /// The equations once more, in whose words a member says why it stopped: for all threads.
     words: Arc<Mutex<Equations>>,
-    /// The same in multipliers, where pivots were chosen at the scene's own values of what varies: for
-    /// members at whose values they vanish.
-    without_pivots: Option<Box<Ensemble>>,
     /// Only members that come to their end are asked for: see [`Ensemble::only_complete`].
     only_complete: bool,
 }
@@ -95,7 +95,7 @@ pub struct EnsembleMember {
     /// Free constants, then the parameters that vary.
     constants: Vec<f64>,
     guess: Vec<f64>,
-    /// What it was started from, for equations without pivots.
+    /// What it was started from, for a motion of its own.
     given: EnsembleStart,
 }
 
@@ -122,7 +122,6 @@ impl Ensemble {
         if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
             return refused(format!("`{}` is named twice", names[i]));
         }
-        let asked = (choice, names);
         let (costates, names) =
             Costates::among(names, scene, choice).map_err(|reason| SolveError::Member { reason })?;
         let choice = &costates.choice(choice);
@@ -146,14 +145,6 @@ impl Ensemble {
         let metric = Metric::varying(&system, &varied)?;
         let words = Arc::new(Mutex::new(equations.clone()));
         let (choice, end) = (choice.clone(), setting(scene).end);
-        let by_pivots = !system.constraints.is_empty() && settings.form == Form::Suited;
-        let without_pivots = match by_pivots && !varied.is_empty() {
-            true => {
-                let named = Settings { form: Form::Named, ..settings.clone() };
-                Ensemble::new(scene, asked.0, asked.1, &named).ok().map(Box::new)
-            }
-            false => None,
-        };
         Ok(Ensemble {
             varying,
             lanes,
@@ -165,7 +156,6 @@ impl Ensemble {
             settings,
             metric,
             words,
-            without_pivots,
             only_complete: false,
         })
     }

@@ -3,7 +3,7 @@
 use decision::DecisionError;
 use discrete::DiscreteError;
 use equations::{DerivationError, EvaluationFailure};
-use integrate::{BoundaryError, CallError, StopCause};
+use integrate::{BoundaryError, CallError, DenseError, StopCause};
 use mechanics::{RemovalError, StartError};
 use scene::SceneError;
 use symbolic::CompileError;
@@ -64,6 +64,9 @@ pub enum SolveError {
         /// What is wrong there.
         failure: EvaluationFailure,
     },
+    /// The motion was not kept at this time.
+    #[error(transparent)]
+    Dense(#[from] DenseError),
     /// A wrong number of free constants.
     #[error(
         "{formulation} has {expected} free constants ({names}); {found} were given (the costate of a memory variable that L does not \

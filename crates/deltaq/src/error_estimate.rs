@@ -3,6 +3,7 @@
 use equations::Outputs;
 
 use crate::metric::{larger, subtract};
+use crate::wanted::scattered;
 use crate::{Metric, Motion, Setting, SolveError};
 
 /// Instants at which it is taken.
@@ -114,9 +115,8 @@ pub fn error_estimates(
     let mut estimate = differences.estimate(&metric);
     if estimate.complaint().is_some() {
         // all of these times may be whole periods
-        let (steps, end) = (motion.step_times(), motion.end());
-        let each = steps.iter().step_by(steps.len() / SAMPLES + 1);
-        for &t in each.filter(|&&t| direction * (t - end) < 0.0) {
+        let times: Vec<f64> = scattered([motion.start(), motion.end()]).map(|t| motion.kept_before(t)).collect();
+        for t in times {
             let Ok(now) = motion.at(t) else { break };
             differences.add(&mut metric, t, &now, &now, 0.0);
         }

@@ -99,6 +99,7 @@ mod table;
 mod trajectory;
 mod trial;
 mod varying;
+mod wanted;
 mod watch;
 pub mod words;
 

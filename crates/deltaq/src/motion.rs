@@ -1,5 +1,7 @@
 //! One motion: equations and start data in, a trajectory with its error estimate out.
 
+use std::sync::Arc;
+
 use equations::{Compiled, Equations, Outputs};
 use integrate::{Method, ProjectionReport, Work};
 use mechanics::ConstantsRule;
@@ -16,6 +18,7 @@ use crate::method::Chosen;
 use crate::metric::{larger, subtract};
 use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
+use crate::wanted::kept_before;
 use crate::watch::Watch;
 use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
 
@@ -69,6 +72,8 @@ pub struct Motion {
     compiled: Compiled,
     kept: Trajectory,
     looser: Trajectory,
+    /// The times at which both runs are known, where they are not at all times; besides `end`.
+    pub(crate) wanted: Option<Arc<[f64]>>,
 }
 
 impl Motion {
@@ -94,13 +99,14 @@ impl Motion {
 
     /// End points of the steps of the kept run.
     pub fn step_times(&self) -> Vec<f64> {
-        self.kept.step_times()
+        self.kept.step_times().into_owned()
     }
 
     /// Coordinates, velocities, multipliers and invariants at `t`.
     ///
     /// # Errors
-    /// [`SolveError::Reading`] where the equations of the instant cannot be solved.
+    /// [`SolveError::Reading`] where the equations of the instant cannot be solved; [`SolveError::Dense`] of a
+    /// long motion at other times than those of [`Settings::times`].
     pub fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
         self.kept.outputs(&mut self.compiled, t)
     }
@@ -217,12 +223,6 @@ impl Motion {
         }
         None
     }
-
-    /// `samples + 1` equidistant times from start to end.
-    pub fn grid(&self, samples: usize) -> Vec<f64> {
-        let (a, b) = (self.start(), self.end());
-        (0..=samples).map(|i| a + (b - a) * i as f64 / samples as f64).collect()
-    }
 }
 
 /// Stretches of a motion at whose ends the scene's own constraints are looked at.
@@ -251,7 +251,7 @@ pub fn solve(
     motion.form.fallbacks = fallbacks;
     let steps = [motion.kept.step_times(), motion.looser.step_times()];
     let by = motion.method.as_ref().map(|chosen| chosen.method);
-    motion.doubt = Doubt::of(&steps, motion.end, motion.is_complete(), by);
+    motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
         motion.doubt = motion.broken(Watch::new(setting.system, &[])?).or_else(|| motion.rounded_off());
     }
@@ -341,8 +341,10 @@ impl Motion {
         [mut kept, mut looser]: [Trajectory; 2],
         seconds: Seconds,
     ) -> Self {
+        let wanted = kept.thinned_to().or(looser.thinned_to()).cloned();
         Motion {
-            end: readable_end(&mut prepared.compiled, &mut kept, &mut looser),
+            end: readable_end(&mut prepared.compiled, &mut kept, &mut looser, wanted.as_deref()),
+            wanted,
             ending,
             constants: prepared.constants,
             method: None,
@@ -367,11 +369,19 @@ impl Motion {
 /// How far before a singularity a motion is read off, as fractions of its length.
 const BEFORE_A_STOP: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
 
-fn readable_end(compiled: &mut Compiled, kept: &mut Trajectory, looser: &mut Trajectory) -> f64 {
+fn readable_end(
+    compiled: &mut Compiled,
+    kept: &mut Trajectory,
+    looser: &mut Trajectory,
+    wanted: Option<&[f64]>,
+) -> f64 {
     let ([start, end], [_, other]) = (kept.ends(), looser.ends());
     let length = (end - start).abs().min((other - start).abs());
     let direction = (end - start).signum();
     let mut readable = |t: f64| [&mut *kept, &mut *looser].into_iter().all(|run| run.outputs(compiled, t).is_ok());
-    let ends = BEFORE_A_STOP.map(|fraction| start + direction * length * (1.0 - fraction));
+    let ends = BEFORE_A_STOP.map(|fraction| {
+        let t = start + direction * length * (1.0 - fraction);
+        wanted.filter(|_| fraction > 0.0).map_or(t, |wanted| kept_before(wanted, direction > 0.0, t))
+    });
     ends.into_iter().find(|&t| readable(t)).unwrap_or(start)
 }

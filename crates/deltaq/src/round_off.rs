@@ -44,8 +44,9 @@ impl Motion {
     /// Time, states and what is added up to their rates at equidistant instants, as far as that can be told.
     fn terms_along(&mut self, stretches: usize) -> Vec<Looked> {
         let (start, part) = (self.start(), if self.is_complete() { 1.0 } else { BEFORE_THE_END });
-        let times = self.grid(stretches).into_iter().map(|t| start + part * (t - start));
-        times.map_while(|t| self.terms_of_rates(t).map(|(y, terms)| (t, y, finite(terms)))).collect()
+        let times = self.grid(stretches).into_iter().map(|t| self.kept_before(start + part * (t - start)));
+        let times: Vec<f64> = times.collect();
+        times.into_iter().map_while(|t| self.terms_of_rates(t).map(|(y, terms)| (t, y, finite(terms)))).collect()
     }
 
     /// The largest value of each state, or the size by which it was integrated, if that is more.

@@ -52,6 +52,9 @@ pub struct Settings {
     /// [`equations::Plan::choose`] finds cheapest. The motion is the same to round-off, and is not held
     /// against the system's own constraints: its outputs may be coordinates of another one.
     pub plain: bool,
+    /// Times at which the motion will be read off, if they are all known: a run whose steps take much memory
+    /// keeps these, those at which a motion is looked at anyway, and nothing else ([`SolveError::Dense`]).
+    pub times: Option<Vec<f64>>,
     /// The flag by which another thread ends all runs: what is under way then stops early, or is refused.
     pub interrupt: Option<Interrupt>,
 }
@@ -60,8 +63,19 @@ impl Default for Settings {
     fn default() -> Self {
         let (method, projection) = (None, Projection::EveryStep);
         let (max_steps, max_step, time_limit, interrupt) = (1_000_000, f64::INFINITY, None, None);
-        let (form, plain) = (Form::Suited, false);
-        Settings { tolerance: 1e-11, method, projection, max_steps, max_step, time_limit, form, plain, interrupt }
+        let (form, plain, times) = (Form::Suited, false, None);
+        Settings {
+            tolerance: 1e-11,
+            method,
+            projection,
+            max_steps,
+            max_step,
+            time_limit,
+            form,
+            plain,
+            times,
+            interrupt,
+        }
     }
 }
 

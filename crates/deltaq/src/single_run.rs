@@ -1,5 +1,7 @@
 //! One run of the time loop.
 
+use std::sync::Arc;
+
 use equations::{Compiled, EvaluationFailure, Outputs};
 use integrate::{Gauge, Options, Problem, Solution, Start, Status, StopCause};
 
@@ -43,7 +45,7 @@ impl SingleRun {
             options.sizes = sizes(compiled, metric, start.t, &start.y, end - start.t);
         }
         let before = compiled.fallbacks();
-        let mut runner = Runner { compiled, anchors, largest };
+        let mut runner = Runner { compiled, anchors, judged: 1, wanted: options.wanted.clone(), largest };
         let solution = integrate::integrate(&mut runner, start, end, &options)?;
         let anchors = runner.anchors;
         let at_guard = |status: &Status| match status {
@@ -62,20 +64,29 @@ impl SingleRun {
 
     /// The states at `t`, which has to be an end of the run where that kept its ends only. Where the
     /// equations of the instant have several roots, `compiled` solves them from the right one after this.
-    pub fn states_at(&self, compiled: &mut Compiled, t: f64, states: &mut [f64]) {
+    ///
+    /// # Errors
+    /// [`SolveError::Dense`] where the run was not kept there ([`Options::wanted`]).
+    pub fn states_at(&self, compiled: &mut Compiled, t: f64, states: &mut [f64]) -> Result<(), SolveError> {
         if let Some(unknowns) = self.unknowns_near(t) {
             compiled.set_guess(unknowns);
         }
-        self.solution.dense.evaluate(t, states);
+        let dense = &self.solution.dense;
+        if dense.thinned_to().is_some() {
+            return Ok(dense.try_evaluate(t, states)?);
+        }
+        dense.evaluate(t, states);
+        Ok(())
     }
 
     /// Coordinates, velocities, multipliers and invariants at `t`; as [`SingleRun::states_at`].
     ///
     /// # Errors
-    /// [`SolveError::Reading`] where the equations of the instant cannot be solved.
+    /// [`SolveError::Reading`] where the equations of the instant cannot be solved; as
+    /// [`SingleRun::states_at`].
     pub fn at(&self, compiled: &mut Compiled, t: f64) -> Result<Outputs, SolveError> {
         let mut states = vec![0.0; compiled.dimension()];
-        self.states_at(compiled, t, &mut states);
+        self.states_at(compiled, t, &mut states)?;
         outputs(compiled, t, &states)
     }
 
@@ -102,8 +113,35 @@ pub(crate) fn outputs(compiled: &mut Compiled, t: f64, states: &[f64]) -> Result
 struct Runner<'a> {
     compiled: &'a mut Compiled,
     anchors: Vec<(f64, Vec<f64>)>,
+    /// So many anchors, or one less, are kept because they are beside something that is wanted.
+    judged: usize,
+    /// [`Options::wanted`].
+    wanted: Option<Arc<[f64]>>,
     /// Size of the chart at which the run ends, where it may.
     largest: Option<f64>,
+}
+
+/// Anchors that are kept before those are dropped that nothing wanted is beside.
+const ANCHORS: usize = 10_000;
+
+impl Runner<'_> {
+    /// Drops anchors between which nothing is wanted; the first and the last one stay.
+    fn thin(&mut self) {
+        let Some(wanted) = self.wanted.as_ref().filter(|_| self.anchors.len() >= self.judged + ANCHORS) else { return };
+        let times: Vec<f64> = self.anchors[self.judged - 1..].iter().map(|anchor| anchor.0).collect();
+        let is_beside = |around: &[f64]| {
+            let [from, to] = [around[0].min(around[2]), around[0].max(around[2])];
+            wanted.get(wanted.partition_point(|&t| t < from)).is_some_and(|&t| t <= to)
+        };
+        let mut judged = times.windows(3).map(is_beside);
+        let mut place = 0;
+        let first = self.judged;
+        self.anchors.retain(|_| {
+            place += 1;
+            place <= first || judged.next().unwrap_or(true)
+        });
+        self.judged = self.anchors.len();
+    }
 }
 
 fn refused(failure: EvaluationFailure) -> integrate::EvaluationError {
@@ -139,6 +177,7 @@ impl Problem for Runner<'_> {
         if self.compiled.needs_guess() {
             let unknowns = self.compiled.settle(t, y).map_err(refused)?.to_vec();
             self.anchors.push((t, unknowns));
+            self.thin();
         }
         Ok(())
     }

@@ -1,5 +1,8 @@
 //! States over time, however they were computed.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use equations::{Compiled, Outputs};
 
 use crate::SolveError;
@@ -40,16 +43,26 @@ impl Trajectory {
         }
     }
 
-    /// End points of the steps.
-    pub(crate) fn step_times(&self) -> Vec<f64> {
+    /// The times at which it is known, where those are not all.
+    pub(crate) fn thinned_to(&self) -> Option<&Arc<[f64]>> {
         match self {
-            Trajectory::TimeLoop(run) => run.solution.dense.step_times(),
+            Trajectory::TimeLoop(run) => run.solution.dense.thinned_to(),
+            Trajectory::Charts(legs) => legs.iter().find_map(|(run, _)| run.solution.dense.thinned_to()),
+            Trajectory::Discrete(_) => None,
+        }
+    }
+
+    /// End points of the steps.
+    pub(crate) fn step_times(&self) -> Cow<'_, [f64]> {
+        match self {
+            Trajectory::TimeLoop(run) => run.solution.dense.step_times().into(),
             Trajectory::Charts(legs) => {
-                let mut times: Vec<f64> = legs.iter().flat_map(|(run, _)| run.solution.dense.step_times()).collect();
+                let mut times: Vec<f64> = Vec::new();
+                legs.iter().for_each(|(run, _)| times.extend(run.solution.dense.step_times()));
                 times.dedup();
-                times
+                times.into()
             }
-            Trajectory::Discrete(run) => run.times().to_vec(),
+            Trajectory::Discrete(run) => run.times().into(),
         }
     }
 
@@ -58,9 +71,9 @@ impl Trajectory {
     pub(crate) fn state(&mut self, compiled: &mut Compiled, t: f64) -> Result<Vec<f64>, SolveError> {
         let mut state = vec![0.0; compiled.dimension()];
         match self {
-            Trajectory::TimeLoop(run) => run.states_at(compiled, t, &mut state),
+            Trajectory::TimeLoop(run) => run.states_at(compiled, t, &mut state)?,
             Trajectory::Charts(legs) => match leg(legs, t) {
-                (run, None) => run.states_at(compiled, t, &mut state),
+                (run, None) => run.states_at(compiled, t, &mut state)?,
                 (run, Some(later)) => return later.states(run, t),
             },
             Trajectory::Discrete(run) => run.state(compiled, t, &mut state)?,

@@ -1,23 +1,34 @@
 //! Changes of charts, with invariants of the user's own.
 
-use deltaq::{Choice, Motion, Settings, solve_choice};
+use deltaq::{Choice, Ensemble, EnsembleOptions, Motion, Settings, choices, solve_choice};
 use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 
 /// A sleigh that turns past heading 90°, where its pivot vanishes, with these invariants.
 fn sleigh(invariants: &str) -> Motion {
-    let text = format!(
+    let scene = read(&text(invariants), &[]);
+    solve_choice(&scene, &removed(&scene), &Settings::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn text(invariants: &str) -> String {
+    format!(
         "title = \"sleigh\"\n[coordinates]\nx = {{ start = 0 }}\ny = {{ start = 0 }}\n\
          phi = {{ start = 0.3 }}\n[system]\n\
          lagrangian = \"((x' - 0.2*phi'*sin(phi))^2 + (y' + 0.2*phi'*cos(phi))^2 + phi'^2)/2 + 0.3*x\"\n\
          constraints = [\"y'*cos(phi) - x'*sin(phi)\"]\n{invariants}\n\
          [start]\nvelocities = {{ \"x'\" = 0.6, \"phi'\" = 1.1 }}\n[run]\nduration = 4\n"
-    );
-    let scene = Scene::parse("sleigh", &text).unwrap_or_else(|error| panic!("{error}"));
+    )
+}
+
+fn read(text: &str, overrides: &[(String, f64)]) -> Scene {
+    Scene::parse_with("sleigh", text, overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Without the constraint by a removal of coordinates.
+fn removed(scene: &Scene) -> Choice {
     let removal = Some(Removal::by_coordinates(&scene.system, &scene.start).expect("linear"));
     let constants = ConstantsRule::Given(vec![0.02]);
-    let choice = Choice { label: "removed".into(), formulation: "removed-constraint", removal, constants };
-    solve_choice(&scene, &choice, &Settings::default()).unwrap_or_else(|error| panic!("{error}"))
+    Choice { label: "removed".into(), formulation: "removed-constraint", removal, constants }
 }
 
 #[test]
@@ -38,4 +49,42 @@ fn invariants_of_the_users_own_neither_move_nor_stop_a_motion() {
         let last = here.invariants.last().expect("the user's own");
         assert!((last - expected).abs() < 1e-9, "{invariants}: {last} instead of {expected}");
     }
+}
+
+/// Members leave their charts at other times, or never; by starts and by a parameter.
+#[test]
+fn ensembles_complete_what_single_motions_complete() {
+    let text = text("").replace("[coordinates]", "[parameters]\nk = 0.3\n[coordinates]").replace("0.3*x", "k*x");
+    let scene = read(&text, &[]);
+    let all = |scene: &Scene| [choices(scene), vec![removed(scene)]].concat();
+    let (mut passed, mut refused) = (0, 0);
+    for (place, choice) in all(&scene).into_iter().enumerate() {
+        let names = ["phi'", "k"];
+        let ensemble = Ensemble::new(&scene, &choice, &names, &Settings::default()).expect("derives");
+        let rows = [[1.1, 0.3], [0.2, 0.3], [0.9, -0.5], [-1.1, 0.1]];
+        let motions = ensemble.answers(ensemble.members(&rows, 1), &[1.0, 4.0], &EnsembleOptions::default());
+        for (row, motion) in rows.iter().zip(motions) {
+            let alone = read(&text, &[("phi'".into(), row[0]), ("k".into(), row[1])]);
+            let mut single = solve_choice(&alone, &all(&alone)[place], &Settings::default()).expect("starts");
+            let member = motion.unwrap_or_else(|error| panic!("{} {row:?}: {error}", choice.label));
+            let (status, cause) = member.status();
+            if !single.is_complete() {
+                assert_eq!(status, "stopped", "{} {row:?}", choice.label);
+                refused += 1;
+                continue;
+            }
+            assert_eq!(status, "completed", "{} {row:?}: {cause:?}", choice.label);
+            let [one, two] = [single.at(4.0).unwrap(), member.outputs[1].clone()];
+            for (a, b) in one.coordinates.iter().zip(&two.coordinates) {
+                assert!((a - b).abs() < 1e-8, "{} {row:?}: {one:?} {two:?}", choice.label);
+            }
+            assert_eq!(one.multipliers.len(), two.multipliers.len());
+            for (a, b) in one.multipliers.iter().zip(&two.multipliers) {
+                assert!((a - b).abs() < 1e-7, "{} {row:?}: {one:?} {two:?}", choice.label);
+            }
+            passed += usize::from(!single.charts.is_empty());
+        }
+    }
+    println!("{passed} members go on by another chart, {refused} stop as single motions do");
+    assert!(passed >= 2 && refused == 0, "{passed} {refused}");
 }

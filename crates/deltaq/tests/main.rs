@@ -7,6 +7,7 @@ mod estimates;
 mod examples;
 mod fits;
 mod gaps;
+mod long;
 mod round_off;
 mod steep;
 mod switches;

@@ -1,5 +1,7 @@
 //! How to integrate.
 
+use std::sync::Arc;
+
 use crate::interrupt::Interrupt;
 use crate::status::Before;
 use crate::stepper::shortest_step;
@@ -120,6 +122,9 @@ pub struct Options {
     pub breakpoints: Vec<f64>,
     /// What is kept between the ends.
     pub dense: Dense,
+    /// Times at which the solution is wanted, ascending: of a run whose steps take more than 2 MB only those
+    /// are kept within which one of them lies. `None`: all are.
+    pub wanted: Option<Arc<[f64]>>,
     /// The flag that ends the run, with its cause ([`Interrupt::cause`]); looked at before each attempt.
     pub interrupt: Option<Interrupt>,
     /// What was done before, by the run that this one goes on from ([`crate::Solution::done`]).
@@ -175,6 +180,7 @@ impl Options {
             max_step: f64::INFINITY,
             breakpoints: Vec::new(),
             dense: Dense::Everywhere,
+            wanted: None,
             interrupt: None,
             before: None,
         }

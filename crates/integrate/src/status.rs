@@ -130,8 +130,8 @@ pub enum StopCause {
         moved: f64,
     },
     /// There is no memory for the polynomials of more steps.
-    #[error("the steps so far take {} MB, and there is no memory for more: end earlier, or in an ensemble of one, which \
-             keeps what its times need", bytes / 1_000_000)]
+    #[error("the steps so far take {} MB, and there is no memory for more: end earlier, or ask for fewer times",
+            bytes / 1_000_000)]
     Memory {
         /// What the polynomials take.
         bytes: usize,

@@ -42,7 +42,7 @@ pub(crate) fn run(
     let (basis, degree) = stepper.as_ref().map_or((Basis::Nested, 1), |stepper| (stepper.basis(), stepper.degree()));
     let mut record = Record {
         system,
-        dense: DenseOutput::new(start.t, &start.y, basis, degree),
+        dense: DenseOutput::new(start.t, &start.y, basis, degree, options.wanted.clone()),
         projection: options.before.as_ref().map_or(ProjectionReport::default(), |before| before.projection),
         pace: options.before.clone().map_or(Pace::new(start.t, end), |before| before.pace.on_to(end)),
         absolute: options.absolute_tolerances(start.y.len()),

@@ -340,6 +340,7 @@ impl Equations {
             max_steps,
             max_step: settings.max_step,
             dense: if times.iter().all(is_end) { Dense::EndOnly } else { Dense::Everywhere },
+            wanted: Some(times.clone().into()),
             interrupt: Some(time_limit.map_or(interrupt.clone(), |seconds| interrupt.within(seconds))),
             ..Options::with_tolerance(tolerance)
         };
@@ -352,7 +353,7 @@ impl Equations {
             let width = ready.start.len();
             let mut states = vec![f64::NAN; width * times.len()];
             for (&t, row) in reached.iter().zip(states.chunks_exact_mut(width)) {
-                run.states_at(&mut ready.compiled, t, row);
+                run.states_at(&mut ready.compiled, t, row)?;
             }
             Ok((run, reached.len(), states, clock.elapsed().as_secs_f64()))
         };

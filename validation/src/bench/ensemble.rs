@@ -217,7 +217,7 @@ fn one_by_one(
             bail!("a member stops at t = {t:.3}: {cause}");
         }
         let mut y = vec![0.0; member.start().len()];
-        run.states_at(&mut ready.compiled, end, &mut y);
+        run.states_at(&mut ready.compiled, end, &mut y)?;
         steps += run.solution.work.steps;
         states.push(y);
     }

@@ -105,39 +105,18 @@ impl Ensemble {
             Ok(MemberMotion { outputs, estimate, doubt, run })
         };
         let mut motions: Vec<_> = runs.into_iter().zip(read).map(joined).collect();
-        for (motion, member) in motions.iter_mut().zip(members) {
-            if let (Err(SolveError::AtStart(_)), Some(other)) = (&*motion, &self.without_pivots)
-                && let Some(found) = other.in_words_of(self, member, times, options)
-            {
+        let singly = |(motion, member): (&mut Result<MemberMotion, SolveError>, &EnsembleMember)| {
+            let stopped = match &*motion {
+                Err(SolveError::AtStart(_)) => Some(member.t),
+                Ok(found) if found.run.left_chart && options.estimate => found.run.stopped(),
+                _ => None,
+            };
+            if let Some(found) = stopped.and_then(|t| self.singly(member, t, times, options)) {
                 *motion = Ok(found);
             }
-        }
-        (motions, seconds)
-    }
-
-    /// A member of `ensemble`, whose pivots vanish there, in these equations; multipliers and invariants by
-    /// name.
-    fn in_words_of(
-        &self,
-        ensemble: &Ensemble,
-        member: &EnsembleMember,
-        times: &[f64],
-        options: &EnsembleOptions,
-    ) -> Option<MemberMotion> {
-        let own = self.clone().member_at(&member.given).ok()?;
-        let mut motion = self.timed_motions(&[own], times, options).0.pop()?.ok()?;
-        let (wanted, found) = (ensemble.equations(), self.equations());
-        let places = |wanted: &[Named], found: &[Named]| -> Option<Vec<usize>> {
-            wanted.iter().map(|named| found.iter().position(|other| other.name == named.name)).collect()
         };
-        let multipliers = places(&wanted.multipliers, &found.multipliers)?;
-        let invariants = places(&wanted.invariants, &found.invariants)?;
-        for outputs in &mut motion.outputs {
-            outputs.multipliers = multipliers.iter().map(|&i| outputs.multipliers[i]).collect();
-            outputs.invariants = invariants.iter().map(|&i| outputs.invariants[i]).collect();
-        }
-        motion.run.alone = Some("the pivots of the others vanish here: integrated with multipliers".into());
-        Some(motion)
+        motions.iter_mut().zip(members).for_each(singly);
+        (motions, seconds)
     }
 }
 

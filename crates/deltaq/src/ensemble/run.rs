@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use equations::{Compiled, Equations, LaneEquations};
 use integrate::{
-    Interrupt, LANES, Lane, LaneProblem, LaneStart, Left, Options, ProjectionReport, Start, StopCause, Work,
+    Interrupt, LANES, Lane, LaneProblem, LaneStart, Left, Options, ProjectionReport, Start, Status, StopCause, Work,
 };
 
 use super::threads::{Take, shared};
@@ -49,6 +49,8 @@ pub struct MemberRun {
     pub alone: Option<String>,
     /// Unknowns of the instant near these times, where its equations have several roots; otherwise empty.
     pub(super) unknowns: Vec<Vec<f64>>,
+    /// Whether it stopped where its equations may be no good, and others might be.
+    pub(super) left_chart: bool,
 }
 
 pub(super) type Outcome = Result<MemberRun, SolveError>;
@@ -107,12 +109,13 @@ fn confirmed(mut kept: MemberRun, looser: MemberRun, member: &EnsembleMember) ->
     kept.unknowns.truncate(looser.states.len());
     let pairs = kept.states.iter().zip(&looser.states);
     kept.differences = pairs.map(|(a, b)| subtract(a, b)).collect();
+    kept.left_chart |= looser.left_chart;
     kept.ending = Ending::joint(kept.ending, looser.ending, [member.t, member.end]);
     kept
 }
 
 impl MemberRun {
-    fn empty() -> Self {
+    pub(super) fn empty() -> Self {
         MemberRun {
             states: Vec::new(),
             differences: Vec::new(),
@@ -121,6 +124,15 @@ impl MemberRun {
             projection: ProjectionReport::default(),
             alone: None,
             unknowns: Vec::new(),
+            left_chart: false,
+        }
+    }
+
+    /// Where it stopped, if it did.
+    pub(super) fn stopped(&self) -> Option<f64> {
+        match self.ending {
+            Ending::Stopped { t, .. } => Some(t),
+            Ending::Completed => None,
         }
     }
 }
@@ -247,6 +259,11 @@ impl Task<'_> {
             solution.dense.evaluate(t, &mut y);
             y
         });
+        let of_limits = |cause: &StopCause| {
+            use StopCause::{Interrupted, Memory, TimeLimit, TooManySteps};
+            matches!(cause, Interrupted | Memory { .. } | TimeLimit { .. } | TooManySteps { .. })
+        };
+        let stopped = matches!(&solution.status, Status::Stopped { cause, .. } if !of_limits(cause));
         let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(MemberRun {
             states: states.collect(),
@@ -255,6 +272,7 @@ impl Task<'_> {
             work: solution.work,
             projection: solution.projection,
             alone: Some(why),
+            left_chart: stopped && compiled.has_chart(),
             ..MemberRun::empty()
         })
     }

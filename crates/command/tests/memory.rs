@@ -1,0 +1,35 @@
+//! What long runs take of memory.
+
+use std::fs::read_to_string;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::support::{command, text};
+
+/// The largest memory in MB that the program is seen to take, and what it prints.
+fn measured(arguments: &[&str]) -> (f64, String) {
+    let mut running = command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("runs");
+    let status = format!("/proc/{}/status", running.id());
+    let mut most = 0.0_f64;
+    while running.try_wait().expect("runs").is_none() {
+        let lines = read_to_string(&status).unwrap_or_default();
+        let kilobytes = lines.lines().find_map(|line| line.strip_prefix("VmHWM:")?.split_whitespace().next());
+        most = most.max(kilobytes.and_then(|text| text.parse().ok()).unwrap_or(0.0) / 1024.0);
+        sleep(Duration::from_millis(2));
+    }
+    let output = running.wait_with_output().expect("runs");
+    (most, text(&output.stdout))
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_million_seconds_with_two_times_take_under_60_megabytes() {
+    let solve = ["solve", "sledge", "-f", "chetaev", "--quiet", "--times", "0,1e6", "--set", "duration=1e6"];
+    let (most, printed) = measured(&solve);
+    println!("a million seconds: {most:.1} MB");
+    assert!(most > 1.0 && most < 60.0, "{most} MB");
+    // phi = 0.3 + t
+    let turned: f64 = printed.lines().last().and_then(|line| line.split(',').nth(3)?.parse().ok()).expect("a row");
+    assert!((turned - 1_000_000.3).abs() < 1e-5 || (turned - 1_100_000.3).abs() < 1e-5, "{turned}");
+}

@@ -1,0 +1,65 @@
+//! The times at which a motion is read off, where they are known before: of a long run nothing else is kept.
+
+use std::sync::Arc;
+
+use crate::Motion;
+
+/// Stretches of the whole run at whose ends everything that looks along a motion may look.
+const STRETCHES: [usize; 3] = [200, 32, 4];
+/// Times at no equal distances, beside whole periods.
+const SCATTERED: usize = 200;
+/// A run may end early: so many times in its second half, in the half before, and so on, so often.
+const OF_A_HALF: usize = 64;
+const HALVES: i32 = 20;
+
+/// `stretches + 1` equidistant times from `start` to `end`.
+fn equidistant([start, end]: [f64; 2], stretches: usize) -> impl Iterator<Item = f64> {
+    (0..=stretches).map(move |i| start + (end - start) * i as f64 / stretches as f64)
+}
+
+/// Times from `start` to `end` that no period fits: parts of the golden section.
+pub(crate) fn scattered([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    (1..=SCATTERED).map(move |i| start + (end - start) * (i as f64 * GOLDEN).fract())
+}
+
+/// What is wanted of a run between these ends that is read off at `times`, ascending.
+pub(crate) fn wanted(ends: [f64; 2], times: &[f64]) -> Arc<[f64]> {
+    let [start, end] = [ends[0], ends[0] + (ends[1] - ends[0])];
+    let ends = [start, end];
+    let mut all: Vec<f64> = times.iter().copied().chain(scattered(ends)).collect();
+    all.extend(STRETCHES.iter().flat_map(|&stretches| equidistant(ends, stretches)));
+    let halves = (0..HALVES).map(|k| start + (end - start) * 0.5_f64.powi(k));
+    all.extend(halves.flat_map(|end| equidistant([start + 0.5 * (end - start), end], OF_A_HALF)));
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all.into()
+}
+
+impl Motion {
+    /// `samples + 1` equidistant times from start to end; of a motion that was kept at some times only, the
+    /// last of these before each, which may be fewer.
+    pub fn grid(&self, samples: usize) -> Vec<f64> {
+        let times = equidistant([self.start(), self.end()], samples).map(|t| self.kept_before(t));
+        let mut times: Vec<f64> = times.collect();
+        if self.wanted.is_some() {
+            times.dedup();
+        }
+        times
+    }
+
+    /// `t`, or where steps were dropped the last time before that was wanted.
+    pub(crate) fn kept_before(&self, t: f64) -> f64 {
+        match &self.wanted {
+            Some(wanted) if t != self.end() => kept_before(wanted, self.end() >= self.start(), t),
+            _ => t,
+        }
+    }
+}
+
+/// The last of `wanted` that is not after `t`.
+pub(crate) fn kept_before(wanted: &[f64], forwards: bool, t: f64) -> f64 {
+    let before = wanted.partition_point(|&w| if forwards { w <= t } else { w < t });
+    let place = if forwards { before.checked_sub(1) } else { Some(before) };
+    place.and_then(|i| wanted.get(i)).copied().unwrap_or(t)
+}
