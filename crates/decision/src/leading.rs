@@ -38,8 +38,8 @@ pub struct LeadingDifference {
 
 impl Question<'_> {
     /// The leading term for the family's motion from `state` with `constants`; `None` if no coefficient up to
-    /// the twelfth stands out from its round-off, or leads at any time, or none is there. An exact start gives an exact exponent,
-    /// `constants` being decimals as written.
+    /// the twelfth stands out from its round-off, or leads at any time, or none is there. An exact start
+    /// gives an exact exponent, `constants` being decimals as written.
     pub fn leading_difference(
         &self,
         system: &System,

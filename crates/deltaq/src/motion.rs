@@ -105,8 +105,8 @@ impl Motion {
     /// Coordinates, velocities, multipliers and invariants at `t`.
     ///
     /// # Errors
-    /// [`SolveError::Reading`] where the equations of the instant cannot be solved; [`SolveError::Dense`] of a
-    /// long motion at other times than those of [`Settings::times`].
+    /// [`SolveError::Reading`] where the equations of the instant cannot be solved; [`SolveError::Dense`] of
+    /// a long motion at other times than those of [`Settings::times`].
     pub fn at(&mut self, t: f64) -> Result<Outputs, SolveError> {
         self.kept.outputs(&mut self.compiled, t)
     }

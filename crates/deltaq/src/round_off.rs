@@ -23,8 +23,8 @@ impl Motion {
         self.lost_digits(&looked, &looser, &sizes)
     }
 
-    /// How much has been added up to each coordinate since the start at a few times: no difference under round-off
-    /// of that says that motions differ. Nothing where it cannot be told.
+    /// How much has been added up to each coordinate since the start at a few times: no difference under
+    /// round-off of that says that motions differ. Nothing where it cannot be told.
     pub(crate) fn terms_of_coordinates_along(&mut self) -> Vec<(f64, Vec<f64>)> {
         let looked = self.terms_along(FEW);
         let mut sums = vec![0.0; self.equations.states.len()];

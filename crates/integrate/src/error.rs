@@ -133,7 +133,8 @@ pub enum DenseError {
         /// End of what was integrated.
         end: f64,
     },
-    /// The run was made with [`crate::Dense::EndOnly`], or [`crate::Options::wanted`] has no time of the step.
+    /// The run was made with [`crate::Dense::EndOnly`], or [`crate::Options::wanted`] has no time of the
+    /// step.
     #[error("what was between {start:?} and {end:?} at {t:?} is not stored: only the ends and times asked for are")]
     NotStored {
         /// The time asked for.

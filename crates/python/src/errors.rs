@@ -74,7 +74,9 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         Error::Scene(error) => Python::attach(|py| scene(py, &error)),
         Error::Start(_) => StartError::new_err(text),
         Error::Compile(_) => CompileError::new_err(text),
-        Error::AtStart(_) | Error::OutsideDomain { .. } | Error::Reading { .. } => EvaluationError::new_err(text),
+        Error::AtStart(_) | Error::OutsideDomain { .. } | Error::Reading { .. } | Error::Dense(_) => {
+            EvaluationError::new_err(text)
+        }
         Error::Boundary { .. } | Error::Search { .. } | Error::Ended { .. } => BoundaryError::new_err(text),
         Error::Call(_) | Error::Tolerance { .. } => CallError::new_err(text),
         Error::ConstantCount { .. }
