@@ -23,9 +23,12 @@ pub(crate) struct Part {
     pub(crate) files: Vec<File>,
 }
 
+/// A section, its weight, and what makes its parts.
+type Job = (Section, usize, fn(bool) -> Result<Vec<Part>>);
+
 /// Sections besides scenes, referee and times, in the order of the overview; with their rank, the longer
 /// their pieces the earlier.
-pub(crate) const JOBS: [(Section, usize, fn(bool) -> Result<Vec<Part>>); 6] = [
+pub(crate) const JOBS: [Job; 6] = [
     (Section::Random, 7, random_systems),
     (Section::Realization, 5, realization),
     (Section::PaperAudit, 4, paper_audit),

@@ -13,8 +13,11 @@ fn scene(lagrangian: &str, forces: &str) -> Scene {
     Scene::parse("wall", &text).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
 
+/// Where a motion ends and its estimate, or why it stops; with the road that it was made by.
+type End = (String, Result<(f64, f64), String>);
+
 /// x at the end with its estimate by each method and in an ensemble of two members, or why it is not trusted.
-fn ends(scene: &Scene) -> Vec<(String, Result<(f64, f64), String>)> {
+fn ends(scene: &Scene) -> Vec<End> {
     let chetaev = &choices(scene)[0];
     let methods = [None, Some(Method::Taylor), Some(Method::Dop853), Some(Method::Radau5)];
     let mut ends: Vec<_> = methods

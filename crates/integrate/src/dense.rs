@@ -109,8 +109,9 @@ impl DenseOutput {
             return;
         }
         let length = self.terms * self.dimension;
-        let mut kept = self.thinned.unwrap_or(0);
-        for step in kept..self.begins.len() {
+        let looked = self.thinned.unwrap_or(0);
+        let mut kept = looked;
+        for step in looked..self.begins.len() {
             let (begin, width) = (self.begins[step], self.widths[step]);
             let [from, to] = [begin.min(begin + width), begin.max(begin + width)];
             let next = wanted.partition_point(|&t| t < from);

@@ -36,7 +36,7 @@ fn vertex([begin, middle, end]: [f64; 3]) -> Option<(f64, f64)> {
     let (bend, slope) = (2.0 * (begin - 2.0 * middle + end), 4.0 * middle - 3.0 * begin - end);
     let theta = -0.5 * slope / bend;
     let turns = bend * begin > 0.0 && theta > 0.0 && theta < 1.0;
-    turns.then(|| (theta, begin + 0.5 * slope * theta))
+    turns.then_some((theta, begin + 0.5 * slope * theta))
 }
 
 /// Divisors at the time reached and along the step.
