@@ -76,6 +76,7 @@ mod fits;
 mod form;
 mod gap;
 mod gap_search;
+mod grid;
 mod growth;
 mod integrability;
 mod last_digits;

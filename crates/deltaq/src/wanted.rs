@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::Motion;
-
 /// Stretches of the whole run at whose ends everything that looks along a motion may look.
 const STRETCHES: [usize; 3] = [200, 32, 4];
 /// Times at no equal distances, beside whole periods.
@@ -13,7 +11,7 @@ const OF_A_HALF: usize = 64;
 const HALVES: i32 = 20;
 
 /// `stretches + 1` equidistant times from `start` to `end`.
-fn equidistant([start, end]: [f64; 2], stretches: usize) -> impl Iterator<Item = f64> {
+pub(crate) fn equidistant([start, end]: [f64; 2], stretches: usize) -> impl Iterator<Item = f64> {
     (0..=stretches).map(move |i| start + (end - start) * i as f64 / stretches as f64)
 }
 
@@ -34,27 +32,6 @@ pub(crate) fn wanted(ends: [f64; 2], times: &[f64]) -> Arc<[f64]> {
     all.sort_by(f64::total_cmp);
     all.dedup();
     all.into()
-}
-
-impl Motion {
-    /// `samples + 1` equidistant times from start to end; of a motion that was kept at some times only, the
-    /// last of these before each, which may be fewer.
-    pub fn grid(&self, samples: usize) -> Vec<f64> {
-        let times = equidistant([self.start(), self.end()], samples).map(|t| self.kept_before(t));
-        let mut times: Vec<f64> = times.collect();
-        if self.wanted.is_some() {
-            times.dedup();
-        }
-        times
-    }
-
-    /// `t`, or where steps were dropped the last time before that was wanted.
-    pub(crate) fn kept_before(&self, t: f64) -> f64 {
-        match &self.wanted {
-            Some(wanted) if t != self.end() => kept_before(wanted, self.end() >= self.start(), t),
-            _ => t,
-        }
-    }
 }
 
 /// The last of `wanted` that is not after `t`.
