@@ -189,7 +189,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             #[inline(always)]
             move || {
                 let ends = once(ends);
-                let defect = ends.defect(absolute, relative, None);
+                let defect = ends.defect(absolute, relative);
                 (finite(coefficients), from_fn(|l| defect.component(l).is_none() && !defect.is_far(l)))
             },
         );

@@ -16,8 +16,6 @@ const SLACK: f64 = 1e3;
 /// round-off is read as that.
 pub(crate) const DEFECT: f64 = 100.0;
 pub(crate) const ROUND_OFF: f64 = 1e-14;
-/// Round-off of rates may be so many times what one rounding makes of their terms.
-pub(crate) const ROUNDINGS: f64 = 16.0;
 /// A step that is this many times shorter than its terms allow is checked at many places inside, as these do
 /// not tell how much happens in it: at multiples of this part of it, modulo 1.
 pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -138,14 +136,9 @@ impl<const N: usize> Defect<N> {
 }
 
 impl<const N: usize> Ends<'_, N> {
-    /// How far the polynomial is from the rates, beyond round-off where that is given.
+    /// How far the polynomial is from the rates.
     #[inline(always)]
-    pub(crate) fn defect(
-        &self,
-        absolute_tolerances: &[[f64; N]],
-        relative_tolerance: f64,
-        round_off: Option<&[[f64; N]]>,
-    ) -> Defect<N> {
+    pub(crate) fn defect(&self, absolute_tolerances: &[[f64; N]], relative_tolerance: f64) -> Defect<N> {
         let orders = self.next_coefficients.len() / self.candidate.len();
         let relative = relative_tolerance.max(ROUND_OFF);
         let mut found = Defect { worst: [0.0; N], component: [0; N], moved: [0.0; N] };
@@ -154,8 +147,7 @@ impl<const N: usize> Ends<'_, N> {
             for l in 0..N {
                 let allowed = DEFECT * (absolute[l] + relative * y[l].abs().max(slope[l].abs()));
                 found.moved[l] = found.moved[l].max((y[l] - self.reached[i][l]).abs() / allowed);
-                let lost = round_off.map_or(0.0, |round_off| round_off[i][l]);
-                let defect = ((slope[l] - rates[l] * self.share[l]).abs() - lost) / allowed;
+                let defect = (slope[l] - rates[l] * self.share[l]).abs() / allowed;
                 let larger = defect > found.worst[l];
                 found.worst[l] = if larger { defect } else { found.worst[l] };
                 found.component[l] = if larger { i } else { found.component[l] };
