@@ -1,8 +1,8 @@
 //! Starts drawn at random on the constraint, for what holds at almost every start.
 
-use crate::exact::{Coefficient, Exact, FEW, Flaw, Jet, Modular};
+use crate::exact::{Coefficient, Exact, Flaw, Jet, Modular};
 use crate::series::SeriesStart;
-use crate::start::{ExactStart, NoExactStart, short};
+use crate::start::{ExactStart, NoExactStart};
 
 /// Random times, positions and velocities are integers of either sign up to 2 to one of these powers: exact
 /// numbers have to fit, of which functions are taken.
@@ -110,8 +110,8 @@ impl ExactStart {
         v: &[Jet<Modular>],
     ) -> Result<Solved, NoExactStart> {
         let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Jet<Modular, FEW>>();
-        let inputs = |v: &[Jet<Modular>]| short(&[parameters, &[time], q, v]);
+        let mut program = self.constraints.evaluator::<Jet<Modular>>();
+        let inputs = |v: &[Jet<Modular>]| [parameters, &[time], q, v].concat();
         let values = program.run(&inputs(v)).to_vec();
         let contains = |i: usize, j: usize| !values[h + i * n + j].coefficient(0).is_zero();
         let mut v = v.to_vec();

@@ -6,7 +6,7 @@ use mechanics::{Completion, Removal, State, System};
 use symbolic::{Expr, Graph, Symbol};
 
 use crate::DecisionError;
-use crate::exact::{Exact, FEW, Flaw, Jet, Modular, inverse, subtract_product};
+use crate::exact::{Exact, Flaw, Jet, Modular, inverse, subtract_product};
 use crate::program::Program;
 use crate::series::SeriesStart;
 
@@ -204,9 +204,10 @@ impl ExactStart {
         open: &[usize],
     ) -> Result<Vec<Jet<Modular>>, NoExactStart> {
         let (h, n) = (self.system.constraints.len(), v.len());
-        let mut program = self.constraints.evaluator::<Jet<Modular, FEW>>();
+        let mut program = self.constraints.evaluator::<Jet<Modular>>();
         let mut run = |v: &[Jet<Modular>]| -> Result<Vec<Modular>, NoExactStart> {
-            let values = program.run(&short(&[parameters, &[time], q, v]));
+            let inputs = [parameters, &[time], q, v].concat();
+            let values = program.run(&inputs);
             match values.iter().find_map(Jet::flaw) {
                 Some(flaw) => Err(flaw.into()),
                 None => Ok(values.iter().map(|x| x.coefficient(0)).collect()),
@@ -227,11 +228,6 @@ impl ExactStart {
         let rest = run(&v)?;
         if rest[..h].iter().all(|x| x.is_zero()) { Ok(v) } else { Err(NoExactStart::Nonlinear) }
     }
-}
-
-/// Numbers one after the other, with little room for coefficients.
-pub(crate) fn short(numbers: &[&[Jet<Modular>]]) -> Vec<Jet<Modular, FEW>> {
-    numbers.iter().flat_map(|numbers| numbers.iter().map(Jet::short)).collect()
 }
 
 /// Expressions as they are written, and the decimals among them that a graph has no room for.

@@ -1,6 +1,6 @@
 //! Truncated power series as numbers that a tape can be evaluated in.
 
-mod arithmetic;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use symbolic::{Fraction, Function, Scalar};
 
@@ -10,27 +10,24 @@ use super::{Coefficient, Flaw};
 /// Coefficients a series can have.
 pub(crate) const ORDERS: usize = 48;
 
-/// Coefficients of what is no series, or a polynomial of the fourth degree: less to carry about.
-pub(crate) const FEW: usize = 5;
-
 /// `Σ c_k s^k`, known up to `s^{known − 1}`, with no coefficient but zero from `terms` on.
 ///
 /// A constant is known to all orders; its exact value, for functions of it, while rational and moderate.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Jet<C, const N: usize = ORDERS> {
-    coefficients: [C; N],
+pub(crate) struct Jet<C> {
+    coefficients: [C; ORDERS],
     known: usize,
     terms: usize,
     exact: Option<Exact>,
     flaw: Option<Flaw>,
 }
 
-impl<C: Coefficient, const N: usize> Jet<C, N> {
+impl<C: Coefficient> Jet<C> {
     /// The constant `value`.
     pub(crate) fn constant(value: C, exact: Option<Exact>) -> Self {
-        let mut coefficients = [C::ZERO; N];
+        let mut coefficients = [C::ZERO; ORDERS];
         coefficients[0] = value;
-        Jet { coefficients, known: N, terms: 1, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
+        Jet { coefficients, known: ORDERS, terms: 1, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
     }
 
     fn number(x: Result<C, Flaw>, exact: Option<Exact>) -> Self {
@@ -57,17 +54,10 @@ impl<C: Coefficient, const N: usize> Jet<C, N> {
 
     /// The series with these coefficients, all known ones; the first is exactly `exact`, if that is known.
     pub(crate) fn series(coefficients: &[C], exact: Option<Exact>) -> Self {
-        let known = coefficients.len().min(N);
-        let mut all = [C::ZERO; N];
+        let known = coefficients.len().min(ORDERS);
+        let mut all = [C::ZERO; ORDERS];
         all[..known].copy_from_slice(&coefficients[..known]);
         Jet { coefficients: all, known, terms: known, exact: exact.filter(|_| C::FOLLOWED), flaw: None }
-    }
-
-    /// The same with room for [`FEW`] coefficients.
-    pub(crate) fn short(&self) -> Jet<C, FEW> {
-        let (known, terms) = (self.known.min(FEW), self.terms.min(FEW));
-        let coefficients = std::array::from_fn(|k| self.coefficients.get(k).copied().unwrap_or(C::ZERO));
-        Jet { coefficients, known, terms, exact: self.exact, flaw: self.flaw }
     }
 
     pub(crate) fn coefficient(&self, k: usize) -> C {
@@ -98,22 +88,26 @@ impl<C: Coefficient, const N: usize> Jet<C, N> {
         let known = self.known.min(other.known);
         let lost = (exact.is_none() && (self.has_pi() || other.has_pi())).then_some(Flaw::Pi);
         let flaw = self.flaw.or(other.flaw).or(lost);
-        Jet { coefficients: [C::ZERO; N], known, terms: terms.min(known).max(1), exact, flaw }
+        Jet { coefficients: [C::ZERO; ORDERS], known, terms: terms.min(known).max(1), exact, flaw }
     }
 
     /// `y` with `y' = u' w` or so: coefficients from 1 on, each from earlier ones; `next(k, y, y')` is
     /// `k y_k`, the rates shifted as [`Jet::slopes`] are.
-    fn integrated(&self, first: Result<(C, Option<Exact>), Flaw>, next: impl Fn(usize, &[C; N], &[C; N]) -> C) -> Self {
+    fn integrated(
+        &self,
+        first: Result<(C, Option<Exact>), Flaw>,
+        next: impl Fn(usize, &[C; ORDERS], &[C; ORDERS]) -> C,
+    ) -> Self {
         let (value, exact) = match first {
             Ok(first) => first,
             Err(flaw) => return Jet { flaw: self.flaw.or(Some(flaw)), ..self.combined(self, 1, self.exact) },
         };
-        let mut result = Jet { exact, ..self.combined(self, N, self.exact) };
+        let mut result = Jet { exact, ..self.combined(self, ORDERS, self.exact) };
         result.coefficients[0] = value;
         if self.terms == 1 {
             return Jet { terms: 1, ..result };
         }
-        let mut slopes = [C::ZERO; N];
+        let mut slopes = [C::ZERO; ORDERS];
         for k in 1..result.known {
             let Ok(over) = Exact::over(k).and_then(C::of) else {
                 return Jet { flaw: self.flaw.or(Some(Flaw::Zero)), ..result };
@@ -125,8 +119,8 @@ impl<C: Coefficient, const N: usize> Jet<C, N> {
     }
 
     /// Coefficients of `u'`, shifted: entry k is `k u_k`.
-    fn slopes(&self) -> [C; N] {
-        let mut slopes = [C::ZERO; N];
+    fn slopes(&self) -> [C; ORDERS] {
+        let mut slopes = [C::ZERO; ORDERS];
         for (k, slope) in slopes.iter_mut().enumerate().take(self.terms).skip(1) {
             if let Ok(times) = Exact::integer(k).and_then(C::of) {
                 *slope = self.coefficients[k] * times;
@@ -183,7 +177,80 @@ impl<C: Coefficient, const N: usize> Jet<C, N> {
     }
 }
 
-impl<C: Coefficient, const N: usize> Scalar for Jet<C, N> {
+impl<C: Coefficient> Add for Jet<C> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.add(b));
+        let mut sum = self.combined(&other, self.terms.max(other.terms), exact);
+        for k in 0..sum.terms {
+            sum.coefficients[k] = self.coefficients[k] + other.coefficients[k];
+        }
+        sum
+    }
+}
+
+impl<C: Coefficient> Neg for Jet<C> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        let mut negative = Jet { exact: self.exact.map(Exact::neg), ..self };
+        for c in &mut negative.coefficients[..self.terms] {
+            *c = -*c;
+        }
+        negative
+    }
+}
+
+impl<C: Coefficient> Sub for Jet<C> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<C: Coefficient> Mul for Jet<C> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b));
+        let mut product = self.combined(&other, self.terms + other.terms - 1, exact);
+        // π in a constant would be lost where it meets a coefficient that varies
+        let meets = |a: &Self, b: &Self| a.has_pi() && b.terms > 1;
+        if meets(&self, &other) || meets(&other, &self) {
+            product.flaw = product.flaw.or(Some(Flaw::Pi));
+        }
+        for k in 0..product.terms {
+            let (from, to) = ((k + 1).saturating_sub(other.terms), k.min(self.terms - 1));
+            let (a, b) = (&self.coefficients[from..=to], &other.coefficients[k - to..=k - from]);
+            product.coefficients[k] = C::convolution(a, b);
+        }
+        product
+    }
+}
+
+impl<C: Coefficient> Div for Jet<C> {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let exact = self.exact.zip(other.exact).and_then(|(a, b)| a.mul(b.recip()?));
+        let constant = other.terms == 1;
+        let mut quotient = self.combined(&other, if constant { self.terms } else { ORDERS }, exact);
+        let Some(over) = other.coefficients[0].inverse() else {
+            quotient.flaw = quotient.flaw.or(Some(Flaw::Zero));
+            return quotient;
+        };
+        if other.has_pi() || (self.has_pi() && !constant) {
+            quotient.flaw = quotient.flaw.or(Some(Flaw::Pi));
+        }
+        for k in 0..quotient.terms {
+            let mut rest = self.coefficients[k];
+            if k > 0 && !constant {
+                rest = rest - C::convolution(&other.coefficients[1..=k], &quotient.coefficients[..k]);
+            }
+            quotient.coefficients[k] = rest * over;
+        }
+        quotient
+    }
+}
+
+impl<C: Coefficient> Scalar for Jet<C> {
     fn from_f64(x: f64) -> Self {
         if x == 1.0 { Self::constant_one() } else { Self::of(x) }
     }

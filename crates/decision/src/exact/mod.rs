@@ -10,7 +10,7 @@ mod small_fraction;
 use symbolic::{Bounded, Scalar};
 
 pub(crate) use field::{FIELDS, in_field};
-pub(crate) use jet::{FEW, Jet, ORDERS};
+pub(crate) use jet::{Jet, ORDERS};
 pub(crate) use linear::{inverse, solve, subtract_product};
 pub(crate) use modular::{Modular, TRIED};
 pub(crate) use rational::{Exact, PARTS};
