@@ -228,16 +228,15 @@ impl Lowering<'_> {
 
 /// The place `p` of `k + c x = c (x − p)`, where it is a decimal of a few digits and `c` no sign, or where
 /// `c` is large: what is far from the origin and narrow, as `(t − 1000007)/0.01`, loses nothing where `x` is
-/// near.
+/// near. Exact numbers stay exact.
 fn place(k: Number, c: Number) -> Option<Number> {
     const DIGITS: i64 = 1_000_000_000_000;
     const NARROW: f64 = 1e3;
     let place = k.mul(c.recip()).neg();
+    let is_narrow = c.to_f64().abs() >= NARROW && place.to_f64().is_normal();
     match place {
         Number::Exact(r) if !r.is_zero() && !c.abs().is_one() && DIGITS % r.denominator() == 0 => Some(place),
-        _ => {
-            let near = place.to_f64();
-            (near.is_normal() && c.to_f64().abs() >= NARROW).then_some(Number::Float(near))
-        }
+        Number::Float(_) if k.is_exact() && c.is_exact() => None,
+        _ => is_narrow.then_some(place),
     }
 }
