@@ -175,17 +175,6 @@ impl Case {
         self.same_by(theorem, claim, first, second, &Sampling::default());
     }
 
-    /// Whether two motions part by more than their errors and [`Case::floor`] leave open.
-    ///
-    /// # Errors
-    /// [`SolveError`] where the first cannot be read off.
-    pub fn parts(&mut self, first: Which, second: &mut Motion, sampling: &Sampling) -> Result<bool, SolveError> {
-        let sampling = Sampling { instants: INSTANTS, ..*sampling };
-        let mut metric = self.metric.clone();
-        let gap = compare_motions_by(self.motion(first), second, &mut metric, &sampling)?;
-        Ok(finding(0, "", &gap, self.floor).word == Word::Fails)
-    }
-
     /// Notes whether two motions are the same, with clocks that differ.
     pub fn same_by(
         &mut self,
@@ -195,12 +184,29 @@ impl Case {
         second: &mut Motion,
         sampling: &Sampling,
     ) {
-        let sampling = Sampling { instants: INSTANTS, ..*sampling };
-        let (mut metric, motion) = (self.metric.clone(), self.motion(first));
-        match compare_motions_by(motion, second, &mut metric, &sampling) {
-            Ok(gap) => self.found.findings.push(finding(theorem, claim, &gap, self.floor)),
+        match self.gap_by(first, second, sampling) {
+            Ok(gap) => self.note(theorem, claim, &gap, self.floor),
             Err(error) => self.found.undecided(theorem, claim, error),
         }
+    }
+
+    /// Notes whether two motions with this gap are the same; one under `floor` is none.
+    pub fn note(&mut self, theorem: u8, claim: &'static str, gap: &Gap, floor: f64) {
+        self.found.findings.push(finding(theorem, claim, gap, floor));
+    }
+
+    /// Whether a gap denies that two motions are the same.
+    pub fn is_apart(&self, gap: &Gap) -> bool {
+        finding(0, "", gap, self.floor).word == Word::Fails
+    }
+
+    /// The gap between one of the case's own motions and another, with clocks that differ.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the first cannot be read off.
+    pub fn gap_by(&mut self, first: Which, second: &mut Motion, sampling: &Sampling) -> Result<Gap, SolveError> {
+        let (mut metric, sampling) = (self.metric.clone(), Sampling { instants: INSTANTS, ..*sampling });
+        compare_motions_by(self.motion(first), second, &mut metric, &sampling)
     }
 
     /// The gap between two of the case's own motions.
@@ -209,8 +215,7 @@ impl Case {
     /// [`SolveError`] where one cannot be read off.
     pub fn gap(&mut self, first: Which, second: Which) -> Result<Gap, SolveError> {
         let mut other = self.motion(second).clone();
-        let (mut metric, sampling) = (self.metric.clone(), Sampling { instants: INSTANTS, ..Sampling::default() });
-        compare_motions_by(self.motion(first), &mut other, &mut metric, &sampling)
+        self.gap_by(first, &mut other, &Sampling::default())
     }
 
     /// One of the case's own motions.

@@ -96,15 +96,14 @@ fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
     for which in [Which::Chetaev, Which::Vakonomic].into_iter().chain(removed).collect::<Vec<_>>() {
         let (end, less) = case.motion(which).at_in_both_runs(t1)?;
         let mut back = run_back(case, which, reversal, &other, &end)?;
-        let own = case.floor;
-        if case.parts(which, &mut back, &clock)? {
+        let (gap, mut floor) = (case.gap_by(which, &mut back, &clock)?, case.floor);
+        if case.is_apart(&gap) {
             // what the end is off by grows on the way back, too
             let mut second = run_back(case, which, reversal, &other, &less)?;
-            let gap = compare_motions(&mut back, &mut second, &mut case.metric.clone())?;
-            case.floor = own.max(CERTAINTY * gap.largest);
+            let between = compare_motions(&mut back, &mut second, &mut case.metric.clone())?;
+            floor = floor.max(CERTAINTY * between.largest);
         }
-        case.same_by(10, claim(which), which, &mut back, &clock);
-        case.floor = own;
+        case.note(10, claim(which), &gap, floor);
     }
     Ok(())
 }
