@@ -159,7 +159,8 @@ pub fn decide(
         let paths = [own, coarse.run(tolerance, steps)?];
         found = judged(&mut fine, &mut coarse, &paths);
         let short = paths.iter().any(|path| matches!(path.stop, Some(DecisionError::Steps { .. })));
-        if !short || found.as_ref().is_ok_and(|found| settings.refuted || found.verdict != Verdict::Undecided) {
+        // constants that do for the first moments need not do later
+        if !short || found.as_ref().is_ok_and(|found| settings.refuted || found.verdict == Verdict::NotContained) {
             break;
         }
     }
@@ -211,7 +212,7 @@ fn judged(fine: &mut Transport, coarse: &mut Transport, paths: &[Path; 2]) -> Re
             passed = true;
         }
         if passed {
-            let (sizes, mut columns) = sums.lengths(past, &triangle);
+            let (sizes, mut columns) = sums.lengths(end - start, &triangle);
             // what grows hides what does not
             let first = begun.get_or_insert_with(|| columns.iter().map(|k| k.size / k.scale).collect::<Vec<_>>());
             columns.iter_mut().zip(first).for_each(|(k, first)| k.size = k.size.min(*first * k.scale));

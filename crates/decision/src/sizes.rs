@@ -43,9 +43,9 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
-    /// The sizes, and for each constant the size at which its column is known as well as `y₀`: whatever its
-    /// unit, it has an effect if that stands out from its own noise. Where nothing moves but by round-off,
-    /// so do the columns, and all have the noise of what balances.
+    /// The sizes over a run of length `time`, and for each constant the size at which its column is known as
+    /// well as `y₀`: whatever its unit, it has an effect if that stands out from its own noise. Where nothing
+    /// moves but by round-off, so do the columns, and all have the noise of what balances.
     pub(crate) fn lengths(&self, time: f64, triangle: &DMatrix<f64>) -> (Sizes, Vec<Column>) {
         let [acceleration, speed] = [self.acceleration, self.speed / time.powi(2)].map(f64::sqrt);
         let last = triangle.ncols() - 1;
