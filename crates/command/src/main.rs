@@ -14,6 +14,7 @@ mod linearize_command;
 mod main_job;
 mod prove_command;
 mod random_command;
+mod reports_command;
 mod scene_commands;
 mod schema;
 mod sections;
@@ -118,7 +119,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Linearize(arguments)) => linearize_command::run(&arguments)?,
         Some(Command::Compare(arguments)) => compare_command::run(&arguments, quiet)?,
         Some(Command::Explore(arguments)) => explore_command::run(&arguments)?,
-        Some(Command::Reports(arguments)) => main_job::check(&arguments)?,
+        Some(Command::Reports(arguments)) => reports_command::check(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet)?,
         Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments, quiet)?,
         Some(Command::Completions { shell }) => {

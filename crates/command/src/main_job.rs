@@ -1,4 +1,4 @@
-//! The main job: every scene in every formulation, reports; and the check that committed reports still hold.
+//! The main job: every scene in every formulation, and reports.
 
 use std::panic::resume_unwind;
 use std::path::PathBuf;
@@ -14,14 +14,14 @@ use scene::{Number, Scene};
 use serde_json::{Value, json};
 
 use crate::answer::{Answer, pretty};
-use crate::cli::{Cli, JobArguments, ReportsArguments, Section, TextOrJson};
+use crate::cli::{Cli, JobArguments, Section, TextOrJson};
 use crate::sections::{JOBS, Part};
 use random::{parallel, substitution};
 use validation::bench::{self, Bench, Effort};
 use validation::casadi_job::{self, Outcome};
 use validation::report::{
-    File, Headline, bench_files, bench_headline, bodies, difference_of_verdicts, overview, pictures, referees_section,
-    scene_page, verdicts, write_all, write_own,
+    File, Headline, bench_files, bench_headline, bodies, overview, pictures, referees_section, scene_page, verdicts,
+    write_all, write_own,
 };
 
 /// A compared scene with its page and pictures.
@@ -65,17 +65,20 @@ fn finished<T>(job: ScopedJoinHandle<'_, T>) -> T {
 }
 
 /// What the main job computed.
-struct Results {
-    comparisons: Vec<Comparison>,
+pub(crate) struct Results {
+    pub(crate) comparisons: Vec<Comparison>,
     scene_files: Vec<File>,
     parts: Vec<Part>,
     /// Times, which no two machines share.
     measured: Option<Part>,
+    /// Why CasADi was asked and did not answer.
+    pub(crate) casadi_not_run: Option<String>,
 }
 
 impl Results {
     /// What works at the same time shares the threads: so none is idle while a section comes to its end.
-    fn of(sections: &[Section], names: &[&str], quiet: bool) -> Result<Results> {
+    /// Errors are set against run times where `timed`.
+    pub(crate) fn of(sections: &[Section], names: &[&str], timed: bool, quiet: bool) -> Result<Results> {
         let asked = |section: &Section| sections.contains(section);
         let (scenes, prepared, parts, casadi) = std::thread::scope(|scope| {
             // mostly another process
@@ -83,7 +86,7 @@ impl Results {
             let scenes = || parallel::in_turn(SCENES_FIRST, || compare_all(names, quiet));
             let scenes = asked(&Section::Scenes).then(|| scope.spawn(scenes));
             let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &[], quiet));
-            let prepared = asked(&Section::ErrorVsTime).then(|| scope.spawn(prepared));
+            let prepared = (timed && asked(&Section::ErrorVsTime)).then(|| scope.spawn(prepared));
             let jobs = JOBS.iter().filter(|(section, ..)| asked(section));
             let jobs: Vec<_> =
                 jobs.map(|(_, rank, job)| scope.spawn(|| parallel::in_turn(*rank, || job(quiet)))).collect();
@@ -97,8 +100,12 @@ impl Results {
         })?;
         // last, and one after the other: nothing else is to run beside what is timed
         let measured = prepared.map(|prepared| Results::measured(prepared, names, quiet)).transpose()?;
-        let mut results = Results { comparisons: Vec::new(), scene_files: Vec::new(), parts, measured };
-        results.add_referee(casadi.as_ref(), scenes)?;
+        let casadi_not_run = match &casadi {
+            Some(Outcome::NotRun(reason)) => Some(reason.to_string()),
+            _ => None,
+        };
+        let mut results = Results { comparisons: Vec::new(), scene_files: Vec::new(), parts, measured, casadi_not_run };
+        results.add_referee(casadi.as_ref(), scenes, asked(&Section::ErrorVsTime))?;
         Ok(results)
     }
 
@@ -112,8 +119,8 @@ impl Results {
         Ok(Part { page: "error-vs-time.md", headline, verdicts: None, files })
     }
 
-    /// The pages of scenes with what the referee says of them.
-    fn add_referee(&mut self, casadi: Option<&Outcome>, scenes: Vec<SceneReport>) -> Result<()> {
+    /// The pages of scenes with what the referee says of them, and where times are to be found.
+    fn add_referee(&mut self, casadi: Option<&Outcome>, scenes: Vec<SceneReport>, times: bool) -> Result<()> {
         if let Some(outcome) = casadi {
             let headline = casadi_job::headline(outcome);
             let headline = format!("Referees that share no derivation with this program: {headline}.");
@@ -126,7 +133,7 @@ impl Results {
                 page.text += &section;
                 let name = &report.comparison.scene.name;
                 page.text += &format!("\nWith sliders, in a browser: [this scene](../explore.html#scene={name}).\n");
-                if self.measured.is_some() {
+                if times {
                     page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
                 }
             }
@@ -136,7 +143,7 @@ impl Results {
         Ok(())
     }
 
-    fn verdicts(&self) -> Value {
+    pub(crate) fn verdicts(&self) -> Value {
         let mut verdicts = verdicts(&self.comparisons);
         for (name, words) in self.parts.iter().filter_map(|part| part.verdicts.clone()) {
             verdicts[name] = words;
@@ -145,8 +152,14 @@ impl Results {
     }
 
     /// Pages and pictures of every section that ran, but for those of times.
-    fn files(&self) -> Vec<File> {
+    pub(crate) fn files(&self) -> Vec<File> {
         self.scene_files.iter().chain(self.parts.iter().flat_map(|part| &part.files)).cloned().collect()
+    }
+
+    /// The page that every other one is reached from.
+    pub(crate) fn overview(&self) -> File {
+        let further: Vec<(&str, &str)> = self.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
+        File { path: "README.md".into(), text: overview(&self.comparisons, &further) }
     }
 }
 
@@ -186,13 +199,12 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
-    let results = Results::of(sections, &names, quiet)?;
+    let results = Results::of(sections, &names, true, quiet)?;
     results.comparisons.iter().try_for_each(Comparison::is_sound)?;
     let mut files = results.files();
     let further: Vec<(&str, &str)> = results.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
     if complete {
-        let text = overview(&results.comparisons, &further);
-        files.push(File { path: "README.md".into(), text });
+        files.push(results.overview());
         let text = pretty("verdicts", &results.verdicts());
         files.push(File { path: "verdicts.json".into(), text });
     }
@@ -227,35 +239,6 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
             pretty("job", &json!({ "answers": answers, "files": count, "folder": out, "seconds": seconds }))
         }
     })
-}
-
-/// Computes the verdicts again and compares them with the committed ones.
-pub(crate) fn check(arguments: &ReportsArguments) -> Result<String> {
-    const MEND: &str = "`cargo run --release` writes the reports anew";
-    let path = arguments.out.join("verdicts.json");
-    let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}; {MEND}", path.display()))?;
-    let mut old: Value = serde_json::from_str(&text).with_context(|| format!("{}; {MEND}", path.display()))?;
-    let names: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
-    let sections: Vec<Section> =
-        Section::value_variants().iter().copied().filter(|s| *s != Section::ErrorVsTime).collect();
-    let results = Results::of(&sections, &names, true)?;
-    for file in results.files() {
-        let path = arguments.out.join(&file.path);
-        if !path.exists() {
-            bail!("{} is missing; {MEND}", path.display());
-        }
-    }
-    let mut new: Value = serde_json::from_str(&pretty("verdicts", &results.verdicts()))?;
-    // the referee is not everywhere: its verdicts are compared where there are two to compare
-    if old.get("casadi").is_none() || new.get("casadi").is_none() {
-        for verdicts in [&mut old, &mut new] {
-            verdicts.as_object_mut().and_then(|all| all.remove("casadi"));
-        }
-    }
-    if let Some(difference) = difference_of_verdicts(&old, &new) {
-        bail!("{} is out of date at {difference}; {MEND}", path.display());
-    }
-    Ok(format!("{} agrees with a fresh run\n", path.display()))
 }
 
 /// How motions that are compared are integrated.

@@ -10,7 +10,7 @@ use crate::gap_search::{Aim, Closest, WORK, closest};
 use crate::runs::{Decided, Pair, Run};
 use crate::screening::Screening;
 use crate::{
-    Answer, Choice, Ensemble, Metric, Setting, Settings, SolveError, constant_names, costates_of, derive_at,
+    Answer, Choice, Ensemble, Metric, Motion, Setting, Settings, SolveError, constant_names, costates_of, derive_at,
     multipliers_of, setting, solve,
 };
 
@@ -99,16 +99,7 @@ pub(crate) fn fits(
             let nearest = answer((run, target)).map(|found| found.decision.set.point.clone());
             let may_vanish = may_vanish((run, target));
             let start = known.map_or(Start::Search { nearest, may_vanish }, Start::Known);
-            if let Some(mut fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
-                let before = pairs.iter().find(pair).map_or(0.0, |p| p.gap.largest);
-                if let Some(found) = &mut fitted
-                    && !by_identity
-                    && found.gap.verdict == Verdict::Different
-                    && found.gap.largest < settings.tolerance * before
-                {
-                    let because = "a search knows the constants to its tolerance, and what is left is less".into();
-                    found.gap.verdict = Verdict::Undecided { because };
-                }
+            if let Some(fitted) = fit_run(scene, runs, run, target, start, metric, settings)? {
                 fits.push(Fit { run, target, fitted, by_identity });
             }
         }
@@ -210,6 +201,7 @@ fn fit_run(
     }
     let is_principal = [run, target].map(|i| runs[i].choice.formulation) == ["vakonomic", "chetaev"];
     let choice = runs[run].choice.clone();
+    let searched = !matches!(start, Start::Known((_, 0)));
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };
     let found = match start {
         Start::Known((values, starts)) => {
@@ -227,8 +219,31 @@ fn fit_run(
         }
     };
     let Some(Closest { mut motion, starts }) = found else { return Ok(Some(None)) };
-    let gap = compare_motions(goal, &mut motion, metric)?;
+    let mut gap = compare_motions(goal, &mut motion, metric)?;
+    if searched && gap.verdict == Verdict::Different && gap.largest <= unknown(scene, &mut motion, metric, settings)? {
+        let because =
+            "a search knows the constants to ten digits, and what is left is less than they leave open".into();
+        gap.verdict = Verdict::Undecided { because };
+    }
     let names = constant_names(&motion.equations);
     let constants = names.into_iter().zip(motion.constants.clone()).collect();
     Ok(Some(Some(FittedMotion { constants, gap, starts })))
+}
+
+/// The part of the constants to which a search knows them.
+const KNOWN: f64 = 1e-10;
+
+/// The largest gap that the digits of a motion's constants make that a search does not know.
+fn unknown(scene: &Scene, motion: &mut Motion, metric: &mut Metric, settings: &Settings) -> Result<f64, SolveError> {
+    let constants = motion.constants.clone();
+    let size = constants.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
+    let mut gap = 0.0;
+    for j in 0..constants.len() {
+        let mut moved = constants.clone();
+        moved[j] += KNOWN * size;
+        let within = Setting { end: motion.end(), ..setting(scene) };
+        let mut other = solve(within, motion.equations.clone(), &ConstantsRule::Given(moved), settings)?;
+        gap += compare_motions(motion, &mut other, metric)?.largest;
+    }
+    Ok(gap)
 }

@@ -5,13 +5,14 @@
 //! minimize  max_k sqrt(Δqᵀ |M| Δq) ,   Δq = q(t_k; C) − q_target(t_k) ,   over C .
 //! ```
 //!
-//! The function has many minima with kinks, so no minimum is called the least. A sweep over several orders
-//! of magnitude is followed by steps to the linearized minimum from the best of its values; what comes out is
-//! swept again, along each constant and in a cloud around it, until that finds nothing closer.
+//! The function has many minima with kinks, so no minimum is called the least. Constants that meet the
+//! beginning are followed as more and more of the motion is asked for; a sweep over several orders of
+//! magnitude is followed by steps to the linearized minimum from the best of its values; what comes out is
+//! swept again, along each constant and in a cloud around it, until that finds nothing closer; a population
+//! goes on from there, and steps with fine differences end the search.
 
 use equations::Equations;
 use mechanics::ConstantsRule;
-use nalgebra::{DMatrix, DVector};
 
 use crate::fit::Differences;
 use crate::screening::Screening;
@@ -19,8 +20,8 @@ use crate::{Metric, Motion, Setting, Settings, SolveError, solve};
 
 /// Instants at which gaps are looked at; in sweeps every fourth, elsewhere every second.
 const INSTANTS: usize = 300;
-const COARSE: usize = 4;
-const FINE: usize = 2;
+pub(crate) const COARSE: usize = 4;
+pub(crate) const FINE: usize = 2;
 
 /// Values of the first sweep, and of each sweep around what was found: along one constant, and in the cloud.
 const SWEEP: usize = 240;
@@ -33,9 +34,11 @@ const STARTS: usize = 4;
 /// Sweeps around what was found, at most.
 const ROUNDS: usize = 8;
 
-/// Steps of a descent, at most, and the part of the gap that one has to gain.
-const STEPS: usize = 10;
-const GAIN: f64 = 1e-3;
+/// A sweep has to gain this part of the gap.
+pub(crate) const GAIN: f64 = 1e-3;
+
+/// Derivatives by a constant are differences over this part of it, as the runs are coarse or fine.
+const DIFFERENCE: [f64; 2] = [1e-4, 1e-7];
 
 /// Steps of a run, over those of the best guess: others are far from it.
 const LONGER: usize = 4;
@@ -50,7 +53,7 @@ const REACH: [f64; 2] = [1e-3, 4.0];
 const BEGINNINGS: [f64; 2] = [0.2, 0.5];
 
 /// Steps are made from values whose gap is under this many times the best one.
-const BEYOND: f64 = 1.5;
+pub(crate) const BEYOND: f64 = 1.5;
 
 /// What a search came to.
 pub(crate) struct Closest {
@@ -88,7 +91,9 @@ pub(crate) fn closest(
     let end = target.end();
     let differences = Differences::new(setting, equations, target, INSTANTS, metric, settings)?;
     let Aim { guesses, screening, limit, may_vanish } = aim;
-    let mut search = Search { differences, screening, limit, random: 0x9E37_79B9_7F4A_7C15, starts: 0 };
+    let [part, finer] = DIFFERENCE;
+    let mut search =
+        Search { differences, screening, limit, part, sizes: Vec::new(), random: 0x9E37_79B9_7F4A_7C15, starts: 0 };
     let Some(mut found) = search.best_guess(guesses, settings) else { return Ok(None) };
     let is_close = search.differences.is_close(found.1);
     if is_close && !may_vanish {
@@ -98,7 +103,13 @@ pub(crate) fn closest(
         found.1 = search.gap(&found.0, FINE);
     }
     if !(is_close && may_vanish) {
-        found = search.globally(found);
+        found = search.globally(found, may_vanish);
+        // valleys may be narrower than coarse differences see
+        search.differences.refine(settings);
+        search.part = finer;
+        search.limit = search.differences.work.saturating_add(limit / 4);
+        found.1 = search.gap(&found.0, FINE);
+        found = search.descent(found, 1.0);
         if may_vanish
             && search.differences.is_close(found.1)
             && let Some(exact) = search.differences.squares(&found.0, settings)
@@ -112,15 +123,19 @@ pub(crate) fn closest(
 }
 
 /// Constants and the largest gap that they leave.
-type Value = (Vec<f64>, f64);
+pub(crate) type Value = (Vec<f64>, f64);
 
-struct Search {
-    differences: Differences,
+pub(crate) struct Search {
+    pub(crate) differences: Differences,
     screening: Option<Screening>,
     /// Work up to which new values are tried.
-    limit: usize,
+    pub(crate) limit: usize,
+    /// Derivatives are differences over this part of a constant.
+    pub(crate) part: f64,
+    /// For each constant the change by which the first tenth of the motion changes as much as it is long.
+    pub(crate) sizes: Vec<f64>,
     random: u64,
-    starts: usize,
+    pub(crate) starts: usize,
 }
 
 impl Search {
@@ -136,23 +151,30 @@ impl Search {
         Some(by_squares.filter(|value| value.1 < first.1).unwrap_or(first))
     }
 
-    fn globally(&mut self, first: Value) -> Value {
-        let sizes = self.sizes(&first.0);
-        let zero = vec![0.0; sizes.len()];
-        let mut values: Vec<Vec<f64>> = if sizes.len() == 1 { self.along(&zero, &sizes, 0, SWEEP) } else { Vec::new() };
-        while values.len() < SWEEP {
-            let center = if values.len().is_multiple_of(2) { &zero } else { &first.0 };
-            values.push(self.around(center, &sizes));
-        }
-        let whole = self.limit;
+    /// The best of what grows with the motion, of a sweep, of sweeps around the best of it, and of a population.
+    /// Where constants are found that may leave no gap at all, no others are tried.
+    fn globally(&mut self, mut best: Value, may_vanish: bool) -> Value {
+        self.sizes = self.sizes_at(&best.0);
+        let (n, whole, zero) = (self.sizes.len(), self.limit, vec![0.0; self.sizes.len()]);
         self.limit = whole / 2;
-        let mut best = self.descended(first, values, true);
+        for from in [best.0.clone(), zero.clone()] {
+            let grown = self.grown(from);
+            best = if grown.1 < best.1 { grown } else { best };
+        }
+        if may_vanish && self.differences.is_close(best.1) {
+            return best;
+        }
+        let mut values: Vec<Vec<f64>> = if n == 1 { self.along(&zero, 0, SWEEP) } else { Vec::new() };
+        while values.len() < SWEEP {
+            let center = if values.len().is_multiple_of(2) { &zero } else { &best.0 };
+            values.push(self.around(center));
+        }
+        best = self.descended(best, values, true);
         self.limit = whole;
         for _ in 0..ROUNDS {
-            let mut values: Vec<Vec<f64>> =
-                (0..sizes.len()).flat_map(|j| self.along(&best.0, &sizes, j, ALONG)).collect();
-            if sizes.len() > 1 {
-                values.extend((0..CLOUD).map(|_| self.around(&best.0, &sizes)));
+            let mut values: Vec<Vec<f64>> = (0..n).flat_map(|j| self.along(&best.0, j, ALONG)).collect();
+            if n > 1 {
+                values.extend((0..CLOUD).map(|_| self.around(&best.0)));
             }
             let before = best.1;
             best = self.descended(best, values, false);
@@ -160,7 +182,8 @@ impl Search {
                 break;
             }
         }
-        best
+        self.limit = self.differences.work.saturating_add(whole / 3);
+        self.evolved(best)
     }
 
     /// The best of `best` and of where the descents from the best of these values lead.
@@ -178,16 +201,16 @@ impl Search {
             bound = if all.len() == STARTS { bound.min(all[STARTS - 1].1) } else { bound };
         }
         let from = std::iter::once(best.clone()).filter(|_| first).chain(all);
-        let ends: Vec<Value> = from.map(|value| self.descent(value)).collect();
+        let ends: Vec<Value> = from.map(|value| self.descent(value, 1.0)).collect();
         ends.into_iter().fold(best, |best, end| if end.1 < best.1 { end } else { best })
     }
 
     /// Which of the first of these values leave a gap under `bound`, that gap, and how many were looked at.
-    fn under(&mut self, values: &[Vec<f64>], bound: f64) -> (Vec<Value>, usize) {
+    pub(crate) fn under(&mut self, values: &[Vec<f64>], bound: f64) -> (Vec<Value>, usize) {
         if let Some(screening) = &self.screening {
             return screening.under(&mut self.differences, values, bound, COARSE);
         }
-        let gap = self.gap_under(&values[0], bound, COARSE);
+        let gap = self.gap_under(&values[0], bound, 1.0, COARSE);
         let found = if gap < bound { vec![(values[0].clone(), gap)] } else { Vec::new() };
         (found, 1)
     }
@@ -197,14 +220,15 @@ impl Search {
         self.differences.largest(constants, 1.0, stride)
     }
 
-    /// The same, and infinite where it is not under `bound`.
-    fn gap_under(&mut self, constants: &[f64], bound: f64, stride: usize) -> f64 {
-        let is_over = |part: f64| self.differences.largest(constants, part, COARSE) >= bound;
-        if BEGINNINGS.into_iter().any(is_over) { f64::INFINITY } else { self.gap(constants, stride) }
+    /// The same up to this part of the motion, and infinite where it is not under `bound`.
+    pub(crate) fn gap_under(&mut self, constants: &[f64], bound: f64, part: f64, stride: usize) -> f64 {
+        let is_over = |beginning: f64| self.differences.largest(constants, beginning * part, COARSE) >= bound;
+        let is_far = BEGINNINGS.into_iter().any(is_over);
+        if is_far { f64::INFINITY } else { self.differences.largest(constants, part, stride) }
     }
 
     /// For each constant the change by which the first tenth of the motion changes as much as it is long.
-    fn sizes(&mut self, from: &[f64]) -> Vec<f64> {
+    fn sizes_at(&mut self, from: &[f64]) -> Vec<f64> {
         const PART: f64 = 0.1;
         let way = self.differences.way(PART, COARSE);
         let Some(at) = self.differences.at(from, PART, COARSE) else { return vec![1.0; from.len()] };
@@ -228,10 +252,10 @@ impl Search {
     }
 
     /// Values of the `j`-th constant on both sides of a center, dense near it.
-    fn along(&self, center: &[f64], sizes: &[f64], j: usize, count: usize) -> Vec<Vec<f64>> {
+    fn along(&self, center: &[f64], j: usize, count: usize) -> Vec<Vec<f64>> {
         let [from, to] = REACH;
         let half = count / 2;
-        let offset = |i: usize| sizes[j] * from * (to / from).powf(i as f64 / (half - 1) as f64);
+        let offset = |i: usize| self.sizes[j] * from * (to / from).powf(i as f64 / (half - 1) as f64);
         let moved = |by: f64| {
             let mut value = center.to_vec();
             value[j] += by;
@@ -241,77 +265,18 @@ impl Search {
     }
 
     /// A random value around a center, dense near it.
-    fn around(&mut self, center: &[f64], sizes: &[f64]) -> Vec<f64> {
+    fn around(&mut self, center: &[f64]) -> Vec<f64> {
         let [from, to] = REACH;
         let radius = from * (to / from).powf(self.number());
-        center.iter().zip(sizes).map(|(c, size)| c + radius * size * (2.0 * self.number() - 1.0)).collect()
+        let offset = |search: &mut Self, j: usize| radius * search.sizes[j] * (2.0 * search.number() - 1.0);
+        center.iter().enumerate().map(|(j, c)| c + offset(self, j)).collect()
     }
 
     /// A random number in 0 … 1, the same in every search.
-    fn number(&mut self) -> f64 {
+    pub(crate) fn number(&mut self) -> f64 {
         self.random ^= self.random << 13;
         self.random ^= self.random >> 7;
         self.random ^= self.random << 17;
         (self.random >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Steps to the least largest gap of the linearized motion, as long as they gain something.
-    fn descent(&mut self, start: Value) -> Value {
-        let fine = self.gap(&start.0, FINE);
-        let mut best = (start.0, fine);
-        for _ in 0..STEPS {
-            if self.differences.work > self.limit {
-                break;
-            }
-            let Some(step) = self.linearized_step(&best.0) else { break };
-            let before = best.1;
-            for part in [1.0, 0.5, 0.25, 0.1, 0.03, 0.01] {
-                let value: Vec<f64> = best.0.iter().zip(&step).map(|(c, s)| c + part * s).collect();
-                let gap = self.gap_under(&value, best.1, FINE);
-                if gap < best.1 {
-                    best = (value, gap);
-                    break;
-                }
-            }
-            if best.1 > (1.0 - GAIN) * before {
-                break;
-            }
-        }
-        best
-    }
-
-    /// `δ` with the least `max_k |r_k + J_k δ|`, by Lawson's weights.
-    fn linearized_step(&mut self, at: &[f64]) -> Option<DVector<f64>> {
-        const STEP: f64 = 1e-4;
-        const WEIGHTINGS: usize = 40;
-        let rest = self.differences.at(at, 1.0, COARSE)?;
-        let largest = at.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
-        let mut jacobian = DMatrix::zeros(rest.len(), at.len());
-        for j in 0..at.len() {
-            let h = STEP * at[j].abs().max(1e-2 * largest).max(f64::MIN_POSITIVE.sqrt());
-            let mut moved = at.to_vec();
-            moved[j] += h;
-            jacobian.set_column(j, &((self.differences.at(&moved, 1.0, COARSE)? - &rest) / h));
-        }
-        let n = self.differences.dimension();
-        let instants = rest.len() / n;
-        let mut weights = vec![1.0 / instants as f64; instants];
-        let mut step = DVector::zeros(at.len());
-        for _ in 0..WEIGHTINGS {
-            let root = DVector::from_fn(rest.len(), |i, _| weights[i / n].sqrt());
-            let weighted = DMatrix::from_fn(rest.len(), at.len(), |i, j| root[i] * jacobian[(i, j)]);
-            let goal = rest.component_mul(&root);
-            let inverse = (weighted.transpose() * &weighted).cholesky()?;
-            step = -inverse.solve(&(weighted.transpose() * goal));
-            let left = &rest + &jacobian * &step;
-            let lengths = left.as_slice().chunks_exact(n).map(|d| d.iter().map(|x| x * x).sum::<f64>().sqrt());
-            weights.iter_mut().zip(lengths).for_each(|(w, length)| *w *= length);
-            let sum: f64 = weights.iter().sum();
-            if !(sum > 0.0 && sum.is_finite()) {
-                break;
-            }
-            weights.iter_mut().for_each(|w| *w /= sum);
-        }
-        step.iter().all(|x| x.is_finite()).then_some(step)
     }
 }

@@ -99,6 +99,7 @@ mod sweep;
 mod table;
 mod trajectory;
 mod trial;
+mod valleys;
 mod varying;
 mod wanted;
 mod watch;

@@ -21,8 +21,13 @@ pub(crate) struct Check {
     run: fn() -> Result<Outcome>,
 }
 
-/// A check that did not fail: what was looked at, if that needs saying.
-pub(crate) struct Outcome(pub(crate) String);
+/// A check that did not fail.
+pub(crate) enum Outcome {
+    /// It holds: what was looked at, if that needs saying.
+    Passed(String),
+    /// Some of it was not looked at, as something is lacking.
+    NotRun(String),
+}
 
 /// All checks, cheap ones first: name, what it is about, what mends it.
 pub(crate) fn all() -> Vec<Check> {
@@ -105,16 +110,20 @@ pub(crate) fn run(checks: &[Check]) -> ExitCode {
         // beside the checks before these; who asks for it waits, and hears of it if it failed
         std::thread::spawn(python::environment);
     }
-    let mut passed = 0;
+    let (mut passed, mut not_run) = (0, Vec::new());
     for check in checks {
         println!("── {}: {}", check.name, check.about);
         let start = Instant::now();
         let outcome = (check.run)();
         let seconds = start.elapsed().as_secs_f64();
         match outcome {
-            Ok(Outcome(note)) => {
+            Ok(Outcome::Passed(note)) => {
                 passed += 1;
                 println!("   {} passed in {seconds:.1} s{note}\n", check.name);
+            }
+            Ok(Outcome::NotRun(lacking)) => {
+                println!("   {} NOT RUN: {lacking}\n", check.name);
+                not_run.push(format!("{}: {lacking}", check.name));
             }
             Err(error) => {
                 println!("   {} FAILED after {seconds:.1} s: {error:#}\n   to mend: {}\n", check.name, check.mend);
@@ -124,16 +133,28 @@ pub(crate) fn run(checks: &[Check]) -> ExitCode {
         }
     }
     println!("all in {:.1} s", start.elapsed().as_secs_f64());
-    println!("{passed} passed, 0 failed");
+    println!("{}", counted(passed, &not_run));
     ExitCode::SUCCESS
+}
+
+/// The last line: what was not run is no pass.
+fn counted(passed: usize, not_run: &[String]) -> String {
+    match not_run {
+        [] => format!("{passed} passed, 0 failed"),
+        lacking => format!("{passed} passed, 0 failed, {} not run ({})", lacking.len(), lacking.join("; ")),
+    }
 }
 
 /// Runs a chore that is no check.
 pub(crate) fn chore(outcome: Result<Outcome>) -> ExitCode {
     match outcome {
-        Ok(Outcome(told)) => {
+        Ok(Outcome::Passed(told)) => {
             println!("done{told}");
             ExitCode::SUCCESS
+        }
+        Ok(Outcome::NotRun(lacking)) => {
+            println!("not done: {lacking}");
+            ExitCode::FAILURE
         }
         Err(error) => {
             println!("{error:#}");
@@ -173,7 +194,7 @@ pub(crate) fn succeed(command: &mut Command) -> Result<Outcome> {
     if !status.success() {
         bail!("`{line}` ended with {status}");
     }
-    Ok(Outcome(String::new()))
+    Ok(Outcome::Passed(String::new()))
 }
 
 fn fmt() -> Result<Outcome> {
@@ -203,4 +224,16 @@ fn reports() -> Result<Outcome> {
 pub(crate) fn target() -> Result<PathBuf> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     std::path::absolute(target).context("the folder of build results")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_run_is_no_pass() {
+        assert_eq!(counted(12, &[]), "12 passed, 0 failed");
+        let lacking = ["page: there is no browser".to_owned()];
+        assert_eq!(counted(11, &lacking), "11 passed, 0 failed, 1 not run (page: there is no browser)");
+    }
 }

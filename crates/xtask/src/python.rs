@@ -40,7 +40,7 @@ pub(crate) fn check() -> Result<Outcome> {
         ensure!(types.wait()?.success(), "{words}: see above");
     }
     tested?;
-    Ok(Outcome(format!(", a module of {:.1} MB", size as f64 / 1e6)))
+    Ok(Outcome::Passed(format!(", a module of {:.1} MB", size as f64 / 1e6)))
 }
 
 /// Starts mypy on what of the module is Python, and stubtest on its stubs.
@@ -96,7 +96,7 @@ pub(crate) fn wheel() -> Result<Outcome> {
             tested(&installed(&environment()?, &file.path())?)?;
         }
     }
-    Ok(Outcome(format!(", {}, in {:.0} s", made.join(", "), clock.elapsed().as_secs_f64())))
+    Ok(Outcome::Passed(format!(", {}, in {:.0} s", made.join(", "), clock.elapsed().as_secs_f64())))
 }
 
 /// Prints what auditwheel finds in a wheel: it has to be symbols of [`GLIBC`] or of an older one.

@@ -33,7 +33,7 @@ pub(crate) fn lengths() -> Result<Outcome> {
     if !long.is_empty() {
         bail!("{}", long.join("; "));
     }
-    Ok(Outcome(format!(", {count} files")))
+    Ok(Outcome::Passed(format!(", {count} files")))
 }
 
 /// Is it a comment over [`COLUMNS`] that can be broken: no row of a table, and with a blank after column 40?
@@ -57,7 +57,7 @@ pub(crate) fn paths() -> Result<Outcome> {
     if !found.is_empty() {
         bail!("{}", found.join("; "));
     }
-    Ok(Outcome(format!(", {} files", files.len())))
+    Ok(Outcome::Passed(format!(", {} files", files.len())))
 }
 
 /// Name of every file that is tracked, or would be.

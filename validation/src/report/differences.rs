@@ -1,0 +1,197 @@
+//! What two writings of a page say differently: words to the letter, numbers to the digits that are sure.
+
+use std::iter::Peekable;
+use std::str::CharIndices;
+
+/// Numbers under this in size are round-off wherever they are written with a decimal point or an exponent:
+/// two of them are the same up to [`POWER`], for the last digits of sines differ among machines.
+const ROUND_OFF: f64 = 1e-9;
+const POWER: f64 = 10.0;
+
+/// What was compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Compared {
+    /// Pages.
+    pub pages: usize,
+    /// Numbers that are the same to the last digit.
+    pub same: usize,
+    /// Numbers with a decimal point whose last digit differs by one.
+    pub last_digit: usize,
+    /// Numbers that are round-off in both, and the same up to a factor of ten.
+    pub round_off: usize,
+}
+
+impl Compared {
+    /// The first difference of two writings of a page, with its line in the first of them; what is the same is
+    /// counted. Of a picture (SVG), words and numbers are what is written in it; where lines run is not asked.
+    ///
+    /// # Errors
+    /// Line and both writings.
+    pub fn page(&mut self, old: &str, new: &str) -> Result<(), String> {
+        self.pages += 1;
+        let [old, new] =
+            [old, new].map(|text| if text.trim_start().starts_with("<svg") { written(text) } else { text.into() });
+        let (mut olds, mut news) = (old.lines(), new.lines());
+        let mut line = 0;
+        loop {
+            line += 1;
+            match (olds.next(), news.next()) {
+                (None, None) => return Ok(()),
+                (Some(a), Some(b)) => self.line(a, b).map_err(|what| format!("line {line}: {what}"))?,
+                (a, b) => return Err(format!("line {line}: {}, now {}", quoted(a), quoted(b))),
+            }
+        }
+    }
+
+    fn line(&mut self, old: &str, new: &str) -> Result<(), String> {
+        if old == new {
+            self.same += Tokens::of(old).filter(|token| token.number).count();
+            return Ok(());
+        }
+        let (mut olds, mut news) = (Tokens::of(old), Tokens::of(new));
+        loop {
+            match (olds.next(), news.next()) {
+                (None, None) => return Ok(()),
+                (Some(a), Some(b)) if a.number && b.number && self.number(a.text, b.text) => {}
+                (Some(a), Some(b)) if a == b => {}
+                (a, b) => {
+                    let [a, b] = [a, b].map(|token| quoted(token.map(|token| token.text)));
+                    return Err(format!("{a}, now {b}, in {}", quoted(Some(old))));
+                }
+            }
+        }
+    }
+
+    /// Whether two numbers are the same to the digits that are sure.
+    fn number(&mut self, old: &str, new: &str) -> bool {
+        let is_counted = |text: &str| !text.contains(['.', 'e']);
+        let [Ok(a), Ok(b)] = [old, new].map(str::parse::<f64>) else { return false };
+        let count = if old == new {
+            &mut self.same
+        } else if is_counted(old) || is_counted(new) {
+            return false;
+        } else if ulp(old) == ulp(new) && (a - b).abs() < 1.5 * ulp(old) {
+            &mut self.last_digit
+        } else if a.max(b) < ROUND_OFF && a.max(b) <= POWER * a.min(b) {
+            &mut self.round_off
+        } else {
+            return false;
+        };
+        *count += 1;
+        true
+    }
+}
+
+/// What the last digit of a number is worth.
+fn ulp(text: &str) -> f64 {
+    let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let behind = digits.split_once('.').map_or(0, |(_, behind)| behind.len() as i32);
+    10_f64.powi(exponent.parse::<i32>().unwrap_or(0) - behind)
+}
+
+fn quoted(text: Option<&str>) -> String {
+    text.map_or("nothing".into(), |text| format!("`{text}`"))
+}
+
+/// The texts of a picture, one per line.
+fn written(picture: &str) -> String {
+    let texts = picture.split("<text").skip(1).filter_map(|rest| rest.split_once('>')?.1.split_once("</text>"));
+    texts.map(|(text, _)| format!("{text}\n")).collect()
+}
+
+/// A number without its sign, or what is between two numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Token<'a> {
+    text: &'a str,
+    number: bool,
+}
+
+struct Tokens<'a> {
+    text: &'a str,
+    chars: Peekable<CharIndices<'a>>,
+}
+
+impl<'a> Tokens<'a> {
+    fn of(text: &'a str) -> Self {
+        Tokens { text, chars: text.char_indices().peekable() }
+    }
+
+    fn digits(&mut self) {
+        while self.chars.next_if(|(_, c)| c.is_ascii_digit()).is_some() {}
+    }
+
+    /// Whether these characters follow, of which the last is a digit.
+    fn follows(&self, ahead: &[fn(char) -> bool]) -> bool {
+        let mut chars = self.chars.clone();
+        ahead.iter().all(|is| chars.next().is_some_and(|(_, c)| is(c)))
+    }
+}
+
+impl<'a> Iterator for Tokens<'a> {
+    type Item = Token<'a>;
+
+    fn next(&mut self) -> Option<Token<'a>> {
+        let digit: fn(char) -> bool = |c| c.is_ascii_digit();
+        let &(start, first) = self.chars.peek()?;
+        let number = first.is_ascii_digit();
+        if number {
+            self.digits();
+            if self.follows(&[|c| c == '.', digit]) {
+                self.chars.next();
+                self.digits();
+            }
+            if self.follows(&[|c| c == 'e', |c| c == '-', digit]) {
+                self.chars.next();
+                self.chars.next();
+                self.digits();
+            } else if self.follows(&[|c| c == 'e', digit]) {
+                self.chars.next();
+                self.digits();
+            }
+        } else {
+            while self.chars.next_if(|(_, c)| !c.is_ascii_digit()).is_some() {}
+        }
+        let end = self.chars.peek().map_or(self.text.len(), |&(end, _)| end);
+        Some(Token { text: &self.text[start..end], number })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn differs(old: &str, new: &str) -> bool {
+        Compared::default().page(old, new).is_err()
+    }
+
+    #[test]
+    fn counts_are_exact_and_digits_as_sure_as_they_are() {
+        for (old, new) in [
+            ("419 of 419 hold", "519 of 519 hold"),
+            ("0 wrong", "41 wrong"),
+            ("no claim fails", "5 claims fail"),
+            ("the gap is 1.25", "the gap is 1.52"),
+            ("1.3e-12", "1.3e-10"),
+            ("after 0.327 s", "after 0.427 s"),
+            ("one line", "one line\nanother"),
+            ("2.0e-3", "2.0e-4"),
+            ("3 of 4", "3 of 5"),
+        ] {
+            assert!(differs(old, new), "{old} / {new}");
+            assert!(differs(new, old), "{new} / {old}");
+        }
+        for (old, new) in [("1.3e-12", "1.4e-12"), ("4e-13 apart", "2e-13 apart"), ("0.327 s", "0.328 s")] {
+            assert!(!differs(old, new), "{old} / {new}");
+        }
+        let mut compared = Compared::default();
+        compared.page("x1 = 0.5, 3 of 3, 1e-16", "x1 = 0.5, 3 of 3, 2e-16").expect("the same");
+        assert_eq!(compared, Compared { pages: 1, same: 4, last_digit: 1, round_off: 0 });
+    }
+
+    #[test]
+    fn of_a_picture_what_is_written_in_it_counts() {
+        let picture = |x: f64, word: &str| format!("<svg><path d=\"M0 {x}\"/><text x=\"{x}\">{word}</text></svg>");
+        assert!(!differs(&picture(1.25, "gap 3"), &picture(1.5, "gap 3")));
+        assert!(differs(&picture(1.25, "gap 3"), &picture(1.25, "gap 4")));
+    }
+}
