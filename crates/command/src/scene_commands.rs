@@ -67,7 +67,11 @@ fn described(scene: &Scene) -> String {
     for ((c, q), v) in system.coordinates.iter().zip(&scene.start.q).zip(&scene.start.v) {
         let supplied = scene.completion.supplied.contains(&format!("{}'", c.name));
         let v = if supplied && v.abs() <= noise { 0.0 } else { *v };
-        let by = if supplied { "  by the constraints" } else { "" };
+        let by = match supplied {
+            true if scene.completion.equations.is_empty() => "  by the constraints",
+            true => "  by constraints and start equations",
+            false => "",
+        };
         let _ = writeln!(text, "  {:<12} {q:<22} {:<13} {v}{by}", c.name, format!("{}'", c.name));
     }
     text

@@ -340,3 +340,23 @@ fn show_says_in_which_form_equations_are_evaluated() {
     let evaluations = value["work"]["evaluations"].as_u64().expect("a count");
     assert!(value["form"]["fallbacks"].as_u64().is_some_and(|n| n < evaluations / 20), "{}", value["form"]);
 }
+
+#[test]
+fn a_start_may_be_an_equation() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tests/scenes/ball-by-spin.toml");
+    let told = answer(&["check", file], 0).0;
+    assert_eq!(told.matches("by constraints and start equations").count(), 3, "{told}");
+    // a ball without torques keeps its spin; x' varies, and psi', which is given, leaves the equation behind
+    let spin = |line: &str| -> f64 {
+        let row: Vec<f64> = line.split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect();
+        let [theta, by_psi, by_phi] = [7, 11, 13].map(|i| row[i]);
+        by_psi + by_phi * f64::cos(theta)
+    };
+    let vary = ["--vary", "x'=0..1:3", "--vary", "psi=0..1:2"];
+    let told = answer(&[&["ensemble", file, "-f", "chetaev"], &vary[..]].concat(), 0).0;
+    let spins: Vec<f64> = told.lines().skip(1).map(spin).collect();
+    assert!(spins.len() == 6 && spins.iter().all(|w| (w - 5.0).abs() < 1e-10), "{told}");
+    refused(&["check", file, "--set", "psi'=1"], &["start equation 1 contradicts", "limit 1e-10", "leave it out"]);
+    let complaint = answer(&["prove", file, "--out", "-"], 3).1;
+    assert!(complaint.contains("start equations supply velocities"), "{complaint}");
+}

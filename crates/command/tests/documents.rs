@@ -43,11 +43,16 @@ fn the_page_of_the_scene_format_is_true() {
         let written = [format!("`{name}`"), format!("`[{name}]`"), format!("`[{name}.NAME]`"), format!(" {name} = ")];
         assert!(written.iter().any(|written| page.contains(written)), "{name} is not on the page");
     }
-    let whole = ["tests/tests/scenes/rattleback-by-vectors.toml", "crates/catalogue/scenes/sledge.toml"].map(read);
+    let whole = [
+        "tests/tests/scenes/rattleback-by-vectors.toml",
+        "tests/tests/scenes/ball-by-spin.toml",
+        "crates/catalogue/scenes/sledge.toml",
+    ]
+    .map(read);
     let flat = |line: &str| line.split(" #").next().unwrap_or(line).split_whitespace().collect::<String>();
     let known: Vec<String> = whole.iter().flat_map(|text| text.lines()).map(flat).collect();
     let blocks: Vec<&str> = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(blocks.len(), 3);
+    assert_eq!(blocks.len(), 4);
     for line in blocks.iter().flat_map(|block| block.lines()).filter(|line| !line.is_empty()) {
         assert!(known.contains(&flat(line)), "{line}");
     }

@@ -98,6 +98,27 @@ fn what_has_no_text_is_said() {
 }
 
 #[test]
+fn forces_are_refused_in_the_words_of_a_comparison() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("pushed.toml").display().to_string();
+    let particle = include_str!("../../catalogue/scenes/particle.toml");
+    let pushed = particle.replace("\n[start", "\nforces = { x = \"-x'*z\" }\n[start");
+    let friction = include_str!("../../catalogue/classics/sledge-with-friction.toml");
+    for text in [pushed.as_str(), friction] {
+        assert!(text.contains("forces ="), "{text}");
+        std::fs::write(&file, text).expect("written");
+        let compared = answer(&["compare", &file], 0).0;
+        let words = "a generalized force acts on `x`, and a variational principle has no place for it; only \
+                     Chetaev's formulation and the family between (kappa) take forces";
+        assert!(compared.contains(words), "{compared}");
+        for arguments in [&["--out", "-"][..], &["--out", "-", "--almost-every"], &["--out", "-", "--format", "json"]] {
+            refused(&[&["prove", &file], arguments].concat(), &["vakonomic", words]);
+        }
+        refused(&["solve", &file, "--formulation", "vakonomic"], &["vakonomic", words]);
+    }
+}
+
+#[test]
 fn orders_are_written_as_far_as_they_are_proved() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("flat.toml").display().to_string();

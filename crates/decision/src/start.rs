@@ -19,6 +19,9 @@ pub enum NoExactStart {
     /// The velocities that the constraints supply are not rational functions of the given ones.
     #[error("the velocities that the constraints supply are no rational functions of the given ones")]
     Nonlinear,
+    /// Start equations supply velocities at the start.
+    #[error("start equations supply velocities at the start; write these as formulas under [start.velocities]")]
+    Equations,
     /// The velocities at the start are projected ones.
     #[error("the velocities at the start are not those of the scene, but projected ones")]
     Projected,
@@ -87,6 +90,9 @@ impl ExactStart {
         let mut written = given.clone();
         let given = Written::new(g, &symbols, &given)?;
         let mut problem = completion.projected.map(|_| NoExactStart::Projected);
+        if !completion.equations.is_empty() {
+            problem = Some(NoExactStart::Equations);
+        }
         let mut supplied = Vec::new();
         let velocities: Vec<Expr> = if rates.iter().any(|(s, _)| !v.contains(s)) {
             by_removal(system, removal, &rates).unwrap_or_else(|fault| {

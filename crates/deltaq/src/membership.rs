@@ -4,7 +4,7 @@ use decision::{
     Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Proof, Question, Section,
     Verdict, decide_flow,
 };
-use equations::{Derivation, Equations};
+use equations::{Derivation, Equations, refuse_forces};
 use mechanics::{ConstantsRule, Removal, System};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
@@ -15,7 +15,7 @@ use crate::{Choice, LeadingTerm, Metric, SolveError, choices};
 
 /// All constants that give a formulation a given motion: what was computed and what was proved of them.
 ///
-/// Forces act on both by `∫ (δL + Q·δq) dt = 0`.
+/// Where forces act, a variational principle has no motion, here as in a comparison, and nothing is asked.
 #[derive(Clone, Debug)]
 pub struct Membership {
     /// The set in floating point, with the least mismatch of accelerations ρ and its noise.
@@ -111,7 +111,7 @@ impl<'a> Pairing<'a> {
     /// # Errors
     /// [`SolveError::Derivation`] if one is refused; [`SolveError::Decision`] if not affine in costates.
     pub fn new(scene: &'a Scene, curve: &Choice, family: &Choice) -> Result<Self, SolveError> {
-        let (equations, _) = as_derived(&scene.system, curve)?;
+        let equations = as_derived(&scene.system, curve)?;
         let reason = "its constants are found by a search, and have no exact values".to_owned();
         let constants = match &curve.constants {
             ConstantsRule::Zero => vec![0.0; equations.free_constants.len()],
@@ -133,8 +133,8 @@ impl<'a> Pairing<'a> {
         constants: Vec<f64>,
         family: &Choice,
     ) -> Result<Self, SolveError> {
-        let (equations, carries_forces) = as_derived(&scene.system, family)?;
-        let family = Family::new(&scene.system, &equations, carries_forces)?;
+        let equations = as_derived(&scene.system, family)?;
+        let family = Family::new(&scene.system, &equations, true)?;
         Ok(Pairing { scene, curve, constants, family })
     }
 
@@ -213,18 +213,16 @@ impl<'a> Pairing<'a> {
     }
 }
 
-/// A choice's equations, nothing left out, forces apart if its principle has none; whether they are in.
-fn as_derived(system: &System, choice: &Choice) -> Result<(Equations, bool), SolveError> {
-    let entry = known(choice.formulation)?;
-    let forces = if entry.takes_forces { system.forces.clone() } else { vec![system.graph.zero(); system.dimension()] };
+/// A choice's equations, nothing left out.
+fn as_derived(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
     let derivation = Derivation { removal: choice.removal.as_ref(), start: None, all_costates: true };
-    Ok(((entry.derive)(&System { forces, ..system.clone() }, &derivation)?, entry.takes_forces))
+    Ok((known(choice.formulation)?.derive)(system, &derivation)?)
 }
 
 /// Decides whether Chetaev's motion of a scene up to `end` is vakonomic; `None` where there is no constraint.
 ///
 /// # Errors
-/// As [`Pairing::new`] and [`Pairing::decide`].
+/// [`SolveError::Derivation`] where forces act; as [`Pairing::new`] and [`Pairing::decide`].
 pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveError> {
     principal(scene)?.map(|pairing| pairing.decide(end)).transpose()
 }
@@ -233,14 +231,15 @@ pub fn membership(scene: &Scene, end: f64) -> Result<Option<Membership>, SolveEr
 /// every one; or the reason in words.
 ///
 /// # Errors
-/// As [`Pairing::new`] and [`Pairing::certificate`].
+/// [`SolveError::Derivation`] where forces act; as [`Pairing::new`] and [`Pairing::certificate`].
 pub fn certificate(scene: &Scene, almost_every_start: bool) -> Result<Result<Certificate, String>, SolveError> {
     let nothing = Ok(Err("nothing is constrained".into()));
     principal(scene)?.map_or(nothing, |pairing| pairing.certificate(almost_every_start))
 }
 
-/// Chetaev's motion and the vakonomic family.
+/// Chetaev's motion and the vakonomic family; refused where forces act, constrained or not.
 fn principal(scene: &Scene) -> Result<Option<Pairing<'_>>, SolveError> {
+    refuse_forces(&scene.system, vakonomic::FORMULATION.name)?;
     let choices = choices(scene);
     let named = |name: &str| choices.iter().find(|choice| choice.formulation == name);
     match (named(chetaev::FORMULATION.name), named(vakonomic::FORMULATION.name)) {

@@ -7,7 +7,7 @@ use symbolic::Symbol;
 use crate::last_digits::{UNITS, move_digits};
 use crate::method::{Chosen, suited};
 use crate::single_run::{SingleRun, chart_size};
-use crate::sizes::sizes;
+use crate::sizes::unbounded_sizes;
 use crate::start_values::StartValues;
 use crate::{Metric, Setting, Settings, SolveError};
 
@@ -166,10 +166,10 @@ impl Prepared {
         self.run_from(self.start.clone(), end, options, self.largest)
     }
 
-    /// [`Options::sizes`] of a run from the start to `end`.
+    /// How large states are in a run from the start to `end`.
     pub(crate) fn sizes(&mut self, end: f64) -> Vec<f64> {
         self.set_compiled();
-        sizes(&mut self.compiled, &mut self.metric, self.t, &self.start, end - self.t)
+        unbounded_sizes(&mut self.compiled, &mut self.metric, self.t, &self.start, end - self.t)
     }
 
     fn run_from(

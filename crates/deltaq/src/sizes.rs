@@ -31,17 +31,35 @@ const SEEN: f64 = 1.0 / (1 << 30) as f64;
 /// size that the others give it within `T`; or else the one that changes theirs by as much; 1 where nothing
 /// does.
 pub(crate) fn sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], length: f64) -> Vec<f64> {
+    let size = |(whole, of_energy): (f64, f64)| or_one(whole.min((LARGE * of_energy).max(1.0)));
+    whole_sizes(compiled, metric, t, y, length).into_iter().map(size).collect()
+}
+
+/// The same of states that may be large, too.
+pub(crate) fn unbounded_sizes(
+    compiled: &mut Compiled,
+    metric: &mut Metric,
+    t: f64,
+    y: &[f64],
+    length: f64,
+) -> Vec<f64> {
+    whole_sizes(compiled, metric, t, y, length).into_iter().map(|(whole, _)| or_one(whole)).collect()
+}
+
+fn or_one(size: f64) -> f64 {
+    if size > 0.0 && size.is_finite() { size } else { 1.0 }
+}
+
+/// The size of each state, 0 where nothing tells one, and what the energy says of it.
+fn whole_sizes(compiled: &mut Compiled, metric: &mut Metric, t: f64, y: &[f64], length: f64) -> Vec<(f64, f64)> {
     let mut rates = vec![0.0; y.len()];
     let found = compiled.rates(t, y, &mut rates).and_then(|()| compiled.outputs(t, y));
-    let Ok(here) = found else { return vec![1.0; y.len()] };
+    let Ok(here) = found else { return vec![(1.0, 1.0); y.len()] };
     let noise = Noise::of(compiled, t, y, &rates, &here);
     rates.iter_mut().zip(&noise.rates).filter(|(rate, noise)| rate.abs() <= **noise).for_each(|(rate, _)| *rate = 0.0);
     let mut probe = Probe { compiled, metric, t, y, rates, here, noise };
-    let size = |(reach, of_energy): (f64, f64)| {
-        let size = if reach > NO_SIZE * of_energy { reach } else { of_energy };
-        let size = size.min((LARGE * of_energy).max(1.0));
-        if size > 0.0 && size.is_finite() { size } else { 1.0 }
-    };
+    let size =
+        |(reach, of_energy): (f64, f64)| (if reach > NO_SIZE * of_energy { reach } else { of_energy }, of_energy);
     let of_energy = probe.of_energy(length);
     (0..y.len()).map(|i| probe.reach(i, length)).zip(of_energy).map(size).collect()
 }

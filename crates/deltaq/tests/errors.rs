@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use deltaq::{
-    Choice, Motion, Settings, SolveError, choices, compare, derive, formulation, removals, setting, solve_choice,
+    Choice, Motion, Pairing, Settings, SolveError, certificate, choices, compare, derive, formulation, membership,
+    removals, setting, solve_choice,
 };
 use equations::{DerivationError, EvaluationFailure};
 use integrate::{BoundaryError, CallError};
@@ -150,8 +151,16 @@ fn forces_are_for_chetaev_only() {
         let error = refused(solve(&scene, name, ConstantsRule::Zero));
         let formulation = formulation(name).expect("in the table").name;
         let derivation = DerivationError::ForceInVariationalPrinciple { formulation, coordinate: "phi".into() };
-        assert_eq!(error, SolveError::Derivation(derivation));
+        let error_of_a_motion = SolveError::Derivation(derivation);
+        assert_eq!(error, error_of_a_motion);
+        let [chetaev, family] = ["chetaev", name].map(|name| {
+            let removal = choices(&scene).into_iter().find(|c| c.formulation == name).and_then(|c| c.removal);
+            choice(name, removal.as_ref(), ConstantsRule::Zero)
+        });
+        let Err(error) = Pairing::new(&scene, &chetaev, &family) else { panic!("{name} has a family") };
+        assert_eq!(error, error_of_a_motion);
     }
+    assert!(membership(&scene, 1.0).is_err() && certificate(&scene, true).is_err());
     // φ'' = 0.2/0.5
     let mut motion = solve(&scene, "chetaev", ConstantsRule::Zero).expect("Chetaev takes forces");
     let phi = motion.at(1.0).expect("readable").coordinates[2];

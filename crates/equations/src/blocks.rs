@@ -87,6 +87,14 @@ impl CompiledBlock {
         &self.program.values()[self.size * self.size..]
     }
 
+    /// The columns of `(∂R/∂z)⁻¹`, by factors at hand.
+    pub(crate) fn inverse(&mut self) -> Vec<Vec<f64>> {
+        let unit = |k: usize| (0..self.size).map(|i| f64::from(u8::from(i == k))).collect();
+        let mut columns: Vec<Vec<f64>> = (0..self.size).map(unit).collect();
+        columns.iter_mut().for_each(|column| self.factors.solve(column));
+        columns
+    }
+
     /// Newton's method from the current `z`; ends when the step no longer shrinks at round-off.
     ///
     /// The equations may have several roots. The one that belongs to the motion is near; so a start from

@@ -32,7 +32,7 @@ pub struct Compiled {
     /// Programs in terms, once these are asked for.
     pub(crate) terms: Option<Box<Terms>>,
     projector: Option<Projector>,
-    jacobian: Option<Jacobian>,
+    pub(crate) jacobian: Option<Jacobian>,
     /// Taylor coefficients in the chosen plan, and in the plain one where that may be needed.
     series: Option<Series>,
     plain_series: Option<Series>,

@@ -1,6 +1,6 @@
 //! `∂F/∂y` of compiled equations.
 
-use symbolic::{CompileError, Evaluator, Expr};
+use symbolic::{Bounded, CompileError, Evaluator, Expr};
 
 use crate::blocks::CompiledBlock;
 use crate::definitions::jacobian;
@@ -60,5 +60,42 @@ impl Jacobian {
             }
             by_state = &by_state[size * n..];
         }
+    }
+
+    /// How much was added up to each entry of `∂F/∂y = ∂F/∂y|z − ∂F/∂z (∂R/∂z)⁻¹ ∂R/∂y`, row-major: `x`, the
+    /// last two factors, is off by `|∂R/∂z|⁻¹` times what is added up in `∂R/∂z x + ∂R/∂y`. `matrices`: the
+    /// `∂R/∂z` of the blocks, whose factors are at hand.
+    pub(crate) fn terms(&self, inputs: &[Bounded], blocks: &mut [CompiledBlock], matrices: &[Vec<f64>]) -> Vec<f64> {
+        let n = self.states;
+        let mut program = Evaluator::<Bounded>::new(self.program.tape().clone());
+        let values = program.evaluate(inputs);
+        let (direct, rest) = values.split_at(n * n);
+        let (by_unknown, mut by_state) = rest.split_at(n * self.unknowns);
+        let mut terms: Vec<f64> = direct.iter().map(|x| x.magnitude).collect();
+        for (block, matrix) in blocks.iter_mut().zip(matrices) {
+            let size = block.size;
+            let inverse = block.inverse();
+            for column in 0..n {
+                let slope = |i: usize| by_state[i * n + column];
+                if (0..size).all(|i| slope(i).magnitude == 0.0) {
+                    continue;
+                }
+                let product = |by: &dyn Fn(usize) -> f64, i: usize| (0..size).map(|k| inverse[k][i] * by(k)).sum();
+                let x: Vec<f64> = (0..size).map(|i| product(&|k| slope(k).value, i)).collect();
+                let of_row = |k: usize| -> f64 {
+                    let row = matrix[k * size..][..size].iter().zip(&x);
+                    slope(k).magnitude + row.map(|(m, x)| m * x.abs()).sum::<f64>()
+                };
+                let sums: Vec<f64> = (0..size).map(of_row).collect();
+                for row in 0..n {
+                    for (i, s) in by_unknown[row * self.unknowns + block.first..][..size].iter().enumerate() {
+                        let own: f64 = (0..size).map(|k| inverse[k][i].abs() * sums[k]).sum();
+                        terms[row * n + column] += s.magnitude * x[i].abs() + s.value.abs() * own;
+                    }
+                }
+            }
+            by_state = &by_state[size * n..];
+        }
+        terms
     }
 }

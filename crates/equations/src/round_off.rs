@@ -1,4 +1,4 @@
-//! What is added up to rates and invariants, of which round-off is a part.
+//! What is added up to rates, their derivatives and invariants, of which round-off is a part.
 
 use symbolic::{Bounded, Evaluator, Scalar};
 
@@ -41,6 +41,27 @@ impl Compiled {
         self.with_terms(|compiled, terms| {
             let inputs = compiled.in_terms(t, y, y, terms)?;
             Ok(magnitudes(terms.rates.evaluate(&inputs)))
+        })
+    }
+
+    /// How much was added up to each entry of the Jacobian at `(t, y)`, row-major, as of rates: entries under
+    /// some ε of that are round-off, in whatever units states come.
+    ///
+    /// # Errors
+    /// As [`Compiled::rates`].
+    ///
+    /// # Panics
+    /// If [`Compiled::with_jacobian`] was not called.
+    pub fn terms_of_jacobian(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, EvaluationFailure> {
+        self.with_terms(|compiled, terms| {
+            let inputs = compiled.in_terms(t, y, y, terms)?;
+            let matrix = |(block, program): (&CompiledBlock, &mut Evaluator<Bounded>)| {
+                let values = program.evaluate(if block.linear { &inputs[..compiled.sizes.known()] } else { &inputs });
+                magnitudes(&values[..block.size * block.size])
+            };
+            let matrices: Vec<_> = compiled.equations_of_instant.iter().zip(&mut terms.blocks).map(matrix).collect();
+            let derivatives = compiled.jacobian.as_ref().expect("compiled with_jacobian");
+            Ok(derivatives.terms(&inputs, &mut compiled.equations_of_instant, &matrices))
         })
     }
 
@@ -127,10 +148,7 @@ fn terms_of_unknowns(
     };
     let terms: Vec<f64> = matrix.chunks_exact(n).zip(residual).map(of_row).collect();
     let mut found = vec![0.0; n];
-    for (k, term) in terms.iter().enumerate() {
-        let mut column = vec![0.0; n];
-        column[k] = 1.0;
-        block.factors.solve(&mut column);
+    for (column, term) in block.inverse().iter().zip(terms) {
         found.iter_mut().zip(column).for_each(|(sum, x)| *sum += x.abs() * term);
     }
     found

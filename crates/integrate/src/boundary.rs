@@ -20,6 +20,8 @@ use crate::status::{Solution, Status, StopCause};
 
 /// Stands for the residuals where they cannot be evaluated: the minimiser then tries a shorter step.
 const OUT_OF_REACH: f64 = 1e100;
+/// A guess this much better than the tolerance is not improved; for others differences are taken.
+const AT_ONCE: f64 = 1e-3;
 /// Above this condition number a Jacobian from differences does not determine the unknowns.
 const SINGULAR: f64 = 1e12;
 
@@ -154,9 +156,9 @@ pub type Residual<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), BoundaryErro
 
 /// Single shooting: finds `c` near `guess` with `|r(c)| ≤ tolerance`, as many residuals as unknowns.
 ///
-/// Where `residual` returns an error the step is shortened. The solution found is the one that the guess
-/// leads to; there may be others. Single shooting is for moderate growth: where the end state depends on `c`
-/// like `e^K`, residuals stay above about `e^K` times the integration error.
+/// One step more is taken by the last Jacobian, for the sake of the last digits. Where `residual` returns an
+/// error the step is shortened. The solution is the one that the guess leads to. Single shooting is for
+/// moderate growth: under `e^K` in `c`, residuals stay above about `e^K` times the integration error.
 ///
 /// # Errors
 /// See [`BoundaryError`].
@@ -236,12 +238,15 @@ fn minimise(
         iterations: 0,
         evaluations: 0,
         first: None,
+        last: None,
         condition: f64::INFINITY,
     };
     search.first = Some(search.values(guess)?);
     let minimiser = LevenbergMarquardt::new().with_patience(10 * options.max_iterations).with_ftol(options.least_gain);
     let (problem, _report) = minimiser.minimize(Target(RefCell::new(search)));
-    let Search { best, smallest, iterations, evaluations, condition, .. } = problem.0.into_inner();
+    let mut search = problem.0.into_inner();
+    search.finish();
+    let Search { best, smallest, iterations, evaluations, condition, .. } = search;
     let exhausted = iterations >= options.max_iterations;
     Ok(Shot { unknowns: best, residual: smallest, iterations, evaluations, exhausted, condition })
 }
@@ -290,7 +295,8 @@ struct Search<'a, 'r> {
     evaluations: usize,
     /// r at the guess, until the minimiser asks for it.
     first: Option<Vec<f64>>,
-    /// Of the last Jacobian.
+    /// The last Jacobian, and its condition.
+    last: Option<DMatrix<f64>>,
     condition: f64,
 }
 
@@ -334,7 +340,21 @@ impl Search<'_, '_> {
             column *= if column.norm() > self.noise { width.recip() } else { 0.0 };
         }
         self.condition = condition(&jacobian);
+        self.last = Some(jacobian.clone());
         Ok(jacobian)
+    }
+
+    /// One step more, kept where it is one nearer; none where what was found is not good enough.
+    fn finish(&mut self) {
+        if self.smallest == 0.0 || self.smallest > self.enough {
+            return;
+        }
+        let (best, last) = (self.best.clone(), self.last.take().filter(|_| self.condition <= SINGULAR));
+        let (Some(jacobian), Ok(values)) = (last, self.values(&best)) else { return };
+        if let Some(step) = jacobian.lu().solve(&DVector::from_vec(values)) {
+            // what cannot be evaluated is not nearer
+            let _ = self.values(&best.iter().zip(step.iter()).map(|(c, s)| c - s).collect::<Vec<_>>());
+        }
     }
 }
 
@@ -369,7 +389,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Target<'_, '_> {
     /// `None` ends the minimisation: good enough, out of iterations, or no differences to be had.
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let search = &mut *self.0.borrow_mut();
-        if search.smallest <= search.enough || search.iterations >= search.options.max_iterations {
+        let enough = if search.iterations == 0 { AT_ONCE * search.enough } else { search.enough };
+        if search.smallest <= enough || search.iterations >= search.options.max_iterations {
             return None;
         }
         search.iterations += 1;

@@ -25,8 +25,10 @@ const SAMPLES: usize = 3;
 const APART: [f64; 9] = [1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15, 0.0];
 /// An entry has to be so many times what the last digits of the states change it by.
 const DIGITS: f64 = 100.0;
-/// Entries up to this part of the largest in their row or column are no dependence.
-const INDEPENDENT: f64 = 1e-10;
+/// To entries so many times their size may be added up before the last digits of that are looked at.
+const CANCELLED: f64 = 1e4;
+/// Entries up to this part of what is added up to them are round-off.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 impl Point {
     /// The start.
@@ -63,7 +65,8 @@ impl Point {
         if values.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(LinearError::NotFinite { t }) }
     }
 
-    /// How far entries of the Jacobian at `y` are off, by what they change where the last digits of `y` do.
+    /// How far entries of the Jacobian at `y` are off, by what they change where the last digits of `y` do,
+    /// and by the last digits of what is added up to them.
     pub(crate) fn noise(&mut self, y: &[f64], jacobian: &DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
         let mut random = Weyl::default();
         let mut noise = DMatrix::zeros(y.len(), y.len());
@@ -71,7 +74,20 @@ impl Point {
             let y: Vec<f64> = y.iter().map(|x| x * (1.0 + 4.0 * f64::EPSILON * random.number())).collect();
             noise = noise.sup(&(self.jacobian(&y)? - jacobian).abs());
         }
-        Ok(noise)
+        let terms = self.terms_of_jacobian(y)?;
+        Ok(noise.zip_zip_map(jacobian, &terms, |noise, entry, terms| {
+            let is_cancelled = entry != 0.0 && terms > CANCELLED * entry.abs();
+            let digits = if is_cancelled { f64::EPSILON * terms } else { 0.0 };
+            let all = if entry.abs() <= ROUND_OFF * terms { entry.abs() } else { 0.0 };
+            noise.max(digits).max(all)
+        }))
+    }
+
+    /// How much is added up to the entries of the Jacobian at `y`.
+    fn terms_of_jacobian(&mut self, y: &[f64]) -> Result<DMatrix<f64>, LinearError> {
+        let (n, t) = (y.len(), self.t);
+        let terms = self.compiled.terms_of_jacobian(t, y).map_err(|failure| LinearError::Evaluation { t, failure })?;
+        Ok(DMatrix::from_row_slice(n, n, &terms))
     }
 
     /// Places of the states in these roles.
@@ -108,10 +124,8 @@ impl Point {
         for apart in APART.iter().flat_map(|apart| [apart; SAMPLES]) {
             let y: Vec<f64> = self.y.iter().map(|x| x + apart * x.abs().max(1.0) * random.number()).collect();
             let Ok(jacobian) = self.jacobian(&y) else { continue };
-            let largest = |i: usize, j: usize| jacobian.row(i).amax().max(jacobian.column(j).amax());
             let entries = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-            let is_new =
-                |&(i, j): &(usize, usize)| !coupled[(i, j)] && jacobian[(i, j)].abs() > INDEPENDENT * largest(i, j);
+            let is_new = |&at: &(usize, usize)| !coupled[at] && jacobian[at] != 0.0;
             let new: Vec<(usize, usize)> = entries.filter(is_new).collect();
             // noise takes Jacobians of its own, and has a say in what is new only
             if new.is_empty() {

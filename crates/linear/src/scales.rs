@@ -6,15 +6,16 @@ use crate::LinearError;
 use crate::point::{COORDINATES, Point};
 use crate::weyl::Weyl;
 
-/// Powers of ten, of the unit of a coordinate, by which states are moved: from here up to 1.
-const LEAST: i32 = -18;
+/// Powers of ten, of the unit of a coordinate, by which states are moved: from one up to the other.
+const LEAST: i32 = -30;
+const MOST: i32 = 30;
 /// The Jacobian is another one where it changes by this part of its length.
 const ANOTHER: f64 = 0.1;
 
 impl Point {
     /// A distance for each of the states `kept`: about as far as they can be moved together before the
-    /// Jacobian `matrix` of their rates is another one. At most 1 for a coordinate; units of the others are
-    /// those in which rows of the matrix are as large as its columns.
+    /// Jacobian `matrix` of their rates is another one; units are those in which rows of the matrix are as
+    /// large as its columns. Where it never is another one, the states as they are.
     pub(crate) fn scales(&mut self, kept: &[usize], matrix: &DMatrix<f64>) -> Vec<f64> {
         let mut here = matrix.clone();
         let mut units = balance_parlett_reinsch(&mut here);
@@ -33,8 +34,11 @@ impl Point {
             Ok((DMatrix::from_fn(kept.len(), kept.len(), entry) - &here).norm() > limit)
         };
         // what cannot be evaluated is far enough, too
-        let reaches = (LEAST..0).map(|k| 10_f64.powi(k));
-        let reach = reaches.into_iter().find(|&reach| is_another(reach).unwrap_or(true)).unwrap_or(1.0);
-        units.iter().map(|unit| reach * unit).collect()
+        let mut reaches = (LEAST..=MOST).map(|k| 10_f64.powi(k));
+        let reach = reaches.find(|&reach| is_another(reach).unwrap_or(true));
+        match reach {
+            Some(reach) => units.iter().map(|unit| reach * unit).collect(),
+            None => kept.iter().map(|&i| self.y[i].abs()).collect(),
+        }
     }
 }

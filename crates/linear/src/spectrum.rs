@@ -76,8 +76,6 @@ pub struct Spectrum {
     pub chains: Vec<Chain>,
 }
 
-/// Entries up to this part of the largest in their row or column are round-off.
-const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 /// Discs of more than this part of the matrix, half of the digits, decide nothing on the axis.
 const WIDE: f64 = 1e-8;
 /// Eigenvalues closer than so many errors are one cluster.
@@ -100,9 +98,7 @@ impl Spectrum {
     /// ```
     pub fn of(matrix: &DMatrix<f64>, noise: &DMatrix<f64>) -> Option<Spectrum> {
         let n = matrix.nrows();
-        let largest = |i: usize, j: usize| matrix.row(i).amax().max(matrix.column(j).amax());
-        let coupled =
-            DMatrix::from_fn(n, n, |i, j| matrix[(i, j)].abs() > (8.0 * noise[(i, j)]).max(ROUND_OFF * largest(i, j)));
+        let coupled = matrix.zip_map(noise, |entry, noise| entry.abs() > 8.0 * noise);
         let clean = DMatrix::from_fn(n, n, |i, j| if coupled[(i, j)] { matrix[(i, j)] } else { 0.0 });
         let mut error = noise + (matrix - &clean).abs();
         let part = |m: &DMatrix<f64>, places: &[usize]| {

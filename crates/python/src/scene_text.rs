@@ -65,6 +65,7 @@ pub(crate) struct Arguments<'py> {
     pub(crate) tables: Vec<(&'static str, Option<Table<'py>>)>,
     pub(crate) lagrangian: String,
     pub(crate) constraints: Vec<String>,
+    pub(crate) start_equations: Vec<String>,
     pub(crate) time: f64,
     pub(crate) project: bool,
     pub(crate) multipliers: Option<Bound<'py, PyAny>>,
@@ -102,6 +103,10 @@ pub(crate) fn write(arguments: &Arguments<'_>) -> PyResult<String> {
         let _ = writeln!(text, "  {},", quoted(constraint));
     }
     let _ = writeln!(text, "]\n[start]\ntime = {:?}\nproject = {}", arguments.time, arguments.project);
+    if !arguments.start_equations.is_empty() {
+        let equations: Vec<String> = arguments.start_equations.iter().map(|e| format!("  {},\n", quoted(e))).collect();
+        let _ = writeln!(text, "equations = [\n{}]", equations.concat());
+    }
     for (section, table) in &arguments.tables {
         let Some(table) = table else { continue };
         let _ = writeln!(text, "[{section}]");

@@ -45,8 +45,9 @@ impl State {
 /// coordinate to text. forces: coordinate to expression, generalized forces Q. observables: name to
 /// expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
 /// body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
-/// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others. guess:
-/// velocities near which the others are sought. project: move given velocities onto the constraints.
+/// coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
+/// start_equations, as in ["dot(W, n) = 5"] or what is zero. guess: velocities near which these are sought.
+/// project: move given velocities onto the constraints.
 /// removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
 /// multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
 /// at which a step ends, where something is switched. notes: remarks.
@@ -102,7 +103,7 @@ impl System {
     #[expect(clippy::too_many_arguments, reason = "named in Python, and most of them left out")]
     #[pyo3(signature = (
         coordinates, lagrangian, constraints=None, *, start, parameters=None, definitions=None, units=None,
-        forces=None, observables=None, invariants=None, view=None, velocities=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
+        forces=None, observables=None, invariants=None, view=None, velocities=None, start_equations=None, guess=None, project=false, removals=None, multipliers=None, time=0.0, duration=1.0,
         breakpoints=None, name="system", title=None, notes=""
     ))]
     fn new(
@@ -119,6 +120,7 @@ impl System {
         invariants: Option<Table<'_>>,
         view: Option<Table<'_>>,
         velocities: Option<Table<'_>>,
+        start_equations: Option<Formulas>,
         guess: Option<Table<'_>>,
         project: bool,
         removals: Option<Table<'_>>,
@@ -148,6 +150,7 @@ impl System {
             ],
             lagrangian: lagrangian.0,
             constraints: constraints.map_or(Vec::new(), |constraints| constraints.0),
+            start_equations: start_equations.map_or(Vec::new(), |equations| equations.0),
             time,
             project,
             multipliers,

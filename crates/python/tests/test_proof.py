@@ -216,17 +216,25 @@ def test_a_start_that_is_set_is_said(tmp_path):
 
 def test_another_scene_is_not_proved(tmp_path):
     # each with a proof of its own that is right
-    file = lambda start, y, g, L, f, force: scene_file(
-        tmp_path, PARTICLE % (L, f) + f'\nforces = {{ x = "{force}" }}', coordinates=f"x = {{ start = {start} }}\ny = {{ start = {y} }}\nz = {{ start = 0 }}", parameters=f"g = {g}"
+    file = lambda start, y, g, L, f, forces="": scene_file(
+        tmp_path, PARTICLE % (L, f) + forces, coordinates=f"x = {{ start = {start} }}\ny = {{ start = {y} }}\nz = {{ start = 0 }}", parameters=f"g = {g}"
     )
-    own = ("0.2", "-1", "9.81", "g*x*z", "z' - y*x'", "-x'*z")
+    own = ("0.2", "-1", "9.81", "g*x*z", "z' - y*x'")
     true = written(tmp_path, file(*own))
-    for i, other in enumerate(("0.21", '"-1 + x/1000"', "9.8100001", "g*x*z - 1e-9*z^3", "z' - y*x' - 1e-9*x*x'", "-1.001*x'*z")):
+    for i, other in enumerate(("0.21", '"-1 + x/1000"', "9.8100001", "g*x*z - 1e-9*z^3", "z' - y*x' - 1e-9*x*x'")):
         scene = file(*own[:i], other, *own[i + 1 :])
         assert verdict(tmp_path, true, scene)[0] == FORGED
         certificate = written(tmp_path, scene)
         assert verdict(tmp_path, certificate, scene)[0] == VERIFIED
         assert verdict(tmp_path, certificate, file(*own))[0] == FORGED
+    # a variational principle has no place for forces
+    pushed = file(*own, '\nforces = { x = "-1.001*x\'*z" }')
+    assert "a generalized force acts on `x`" in written(tmp_path, pushed, code=2)
+    with pytest.raises(deltaq.DeltaqError, match="a generalized force acts on `x`"):
+        deltaq.load(pushed).prove()
+    assert verdict(tmp_path, true, pushed) == (FORGED, "forged: the force on x is not that of the file\n")
+    forged = signed(true | {"scene": true["scene"] | {"forces": {"x": "-x'*z"}}})
+    assert verdict(tmp_path, forged)[0] == UNREADABLE
 
 
 def test_no_certificate_is_verified_where_there_are_multipliers(tmp_path):

@@ -78,6 +78,7 @@ def test_faults_have_places(sledge):
         ({"constraints": ["y - x - 1"], "removals": None}, "one on positions, and the start is not on it"),
         ({"velocities": {"phi'": 1.1}}, "too few start velocities"),
         ({"velocities": {"phi'": 1.1, "x'": 1, "y'": 5}}, "contradict constraint 1"),
+        ({"velocities": {"phi'": 1.1}, "start_equations": ["x' = 0.5", "2*x' = 3"]}, "start equation 2 contradicts .* -2.0000e0 there"),
         ({"parameters": {"g": np.nan, "alpha": 1, "k": 1}}, "finite"),
         ({"parameters": {"g": 1, "alpha": 1, "k": 1, 'a"b\n': 1}}, "cannot be a name"),
         ({"removals": {"wrong": {"parameters": ["x", "phi"], "rates": {"y": "x'"}}}}, "does not satisfy constraint 1"),
@@ -88,6 +89,14 @@ def test_faults_have_places(sledge):
 def test_faults_of_arguments(sledge, changes, words):
     with pytest.raises(deltaq.SceneError, match=words):
         sledge.system(**changes)
+
+
+def test_a_start_may_be_an_equation(sledge):
+    system = sledge.system(velocities={}, start_equations=["x'*cos(phi) + y'*sin(phi) = 0.5", "phi' - 1.1"])
+    phi = system.start.q[2]
+    assert np.allclose(system.start.v, [0.5 * np.cos(phi), 0.5 * np.sin(phi), 1.1], atol=1e-15)
+    rows = system.ensemble(vary={"phi": [0.1, 0.7]}, times=[0, 1])
+    assert np.allclose(rows.velocities["x'"][:, 0], 0.5 * np.cos([0.1, 0.7]))
 
 
 def test_wrong_arguments(sledge, system):

@@ -52,6 +52,7 @@ impl Scaling {
         let work = |(&q, &a): (&Expr, &f64)| by(g.mul(g.number(self.action), g.number(a)), q);
         let forces = system.forces.iter().zip(&self.lengths).map(work).collect();
         (scaled.lagrangian, scaled.constraints, scaled.forces) = (lagrangian, constraints, forces);
+        scaled.domains = g.substitute_all(&system.domains, &map);
         scaled.breakpoints.iter_mut().for_each(|t| *t /= self.time);
         for watched in &mut scaled.watched {
             watched.expression = g.substitute(watched.expression, &map);
@@ -74,6 +75,7 @@ impl Scaling {
         let mut scaled = scene.clone();
         scaled.completion.written = scene.completion.written.iter().map(written).collect();
         scaled.completion.guessed = scene.completion.guessed.iter().map(written).collect();
+        scaled.completion.equations = g.substitute_all(&scene.completion.equations, &map);
         scaled.removals = scene.removals.iter().map(|removal| self.removal(&system, removal)).collect();
         scaled.start = self.state(&scene.start);
         scaled.multipliers = self.multipliers(&scene.multipliers);

@@ -204,6 +204,20 @@ pub enum SceneErrorKind {
         /// Number of the constraint, from 1.
         number: usize,
     },
+    /// The sides of a start equation do not go together.
+    #[error("the left side has {left} components, the right side {right}")]
+    UnequalSides {
+        /// Components of the left side.
+        left: usize,
+        /// Components of the right side.
+        right: usize,
+    },
+    /// A start equation that no velocity can fulfil.
+    #[error("start equation {number} contains no velocity; starts of coordinates stand in [coordinates]")]
+    StartAtRest {
+        /// Its number, from 1.
+        number: usize,
+    },
     /// A constraint on positions that the start does not satisfy.
     #[error(
         "constraint {number} is one on positions, and the start is not on it: residual {residual:.3e}, limit {limit:.0e}"

@@ -99,7 +99,12 @@ pub const BODY: &[Key] = &[
 pub const START: &[Key] = &[
     may("time", Number, "t at the start, 0 if left out"),
     may("project", Truth, "whether velocities that miss the constraint are moved onto it"),
-    may("velocities", Named(&Expression), "velocities at the start; the constraints supply the others"),
+    may("velocities", Named(&Expression), "velocities at the start; constraints and equations supply the others"),
+    may(
+        "equations",
+        List(&Quantity),
+        "what else velocities at the start satisfy, as in dot(W, n) = 5; a vector is one a component",
+    ),
     may("guess", Named(&Expression), "velocities near those of the start, where there is a choice"),
 ];
 

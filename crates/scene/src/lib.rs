@@ -58,6 +58,7 @@ mod removal;
 mod scene;
 mod section;
 mod start;
+mod start_equations;
 mod starts;
 mod system;
 mod view;

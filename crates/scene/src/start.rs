@@ -7,6 +7,7 @@ use symbolic::{Expr, Symbol};
 
 use super::context::Context;
 use super::section::Section;
+use super::start_equations;
 use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{Completion, Quantity, Removal, StartData, StartError, State, System, complete_start};
 
@@ -17,6 +18,7 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
     let mut given = Vec::new();
     let mut written = context.written.clone();
     let (mut guess, mut guessed) = (Vec::new(), Vec::new());
+    let mut equations = Vec::new();
     let mut place = context.root.get("system").map_or(0..0, |e| e.key_span);
     if let Some(start) = &start {
         place = start.span.clone();
@@ -31,7 +33,11 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
             guess = rates(context, &section, removals.first())?;
             guessed = expressions(context, &section, &guess)?;
         }
+        if let Some(entry) = start.get("equations") {
+            equations = start_equations::read(context, &entry)?;
+        }
     }
+    let (equations, places): (Vec<Expr>, Vec<_>) = equations.into_iter().unzip();
     for (name, symbol) in rate_names(&context.system, removals.first()) {
         if let Some(value) = context.overrides.written(&name) {
             given.retain(|(s, _)| *s != symbol);
@@ -45,11 +51,17 @@ pub(super) fn complete(context: &Context, removals: &[Removal]) -> Result<(State
         positions: context.positions.clone(),
         given: given.into_iter().collect::<HashMap<_, _>>(),
         guess: guess.into_iter().collect::<HashMap<_, _>>(),
+        equations,
         project,
         removal: removals.first(),
     };
     let completed = complete_start(&context.system, &data).map_err(|error| {
-        let place = blamed(context, &error).unwrap_or(place);
+        let place = match &error {
+            StartError::ContradictoryEquation { equation, .. } => Some(places[equation - 1].clone()),
+            StartError::ProjectedEquations => start.as_ref().and_then(|s| s.get("project")).map(|e| e.key_span),
+            error => blamed(context, error),
+        }
+        .unwrap_or(place);
         context.source.error(&place, SceneErrorKind::Start(error))
     });
     completed.map(|(state, completion)| (state, Completion { written, guessed, ..completion }))

@@ -99,7 +99,7 @@ impl Starts {
         let general = System { parameters: fixed, ..system.clone() };
         scene.removals.iter().try_for_each(|r| r.verify(&general).map(|_| ())).map_err(SceneErrorKind::Removal)?;
 
-        let Completion { written, guessed, projected, .. } = &scene.completion;
+        let Completion { written, guessed, equations, projected, .. } = &scene.completion;
         let inputs = [&varied[..], &[system.time], &system.positions()].concat();
         let compiled = |(s, e): (Symbol, Expr)| -> Result<Quantity, StartError> {
             let source = match place(s) {
@@ -128,6 +128,7 @@ impl Starts {
         let shape = StartShape {
             given: &symbols(&given),
             guessed: &symbols(&guess),
+            equations,
             project: projected.is_some(),
             removal,
             varied: &varied,

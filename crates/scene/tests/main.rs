@@ -6,3 +6,4 @@ mod errors;
 mod language;
 mod snapshots;
 mod start;
+mod start_equations;

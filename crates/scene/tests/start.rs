@@ -26,11 +26,11 @@ fn load(start: [f64; 3], lagrangian: &str, constraints: &str, velocities: &str) 
 #[test]
 fn velocities_that_are_left_open_are_named() {
     let error = load([0.0; 3], KINETIC, "\"z' - y*x'\"", "velocities = { \"y'\" = 1 }").unwrap_err();
-    assert_eq!(error, StartError::Undetermined { velocities: vec!["x'".into()] });
+    assert_eq!(error, StartError::Undetermined { velocities: vec!["x'".into()], idle: vec![] });
     let error = load([0.0, 1.0, 0.0], KINETIC, "\"z' - y*x'\"", "velocities = { \"y'\" = 1 }").unwrap_err();
-    assert_eq!(error, StartError::Undetermined { velocities: vec!["x'".into(), "z'".into()] });
+    assert_eq!(error, StartError::Undetermined { velocities: vec!["x'".into(), "z'".into()], idle: vec![] });
     let error = load([0.0; 3], KINETIC, "", "").unwrap_err();
-    assert!(matches!(error, StartError::Undetermined { velocities } if velocities.len() == 3));
+    assert!(matches!(error, StartError::Undetermined { velocities, .. } if velocities.len() == 3));
 }
 
 #[test]

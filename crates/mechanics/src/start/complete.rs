@@ -6,14 +6,15 @@ use symbolic::{Expr, Symbol};
 
 use super::data::{Completion, StartData, StartNumbers, StartShape};
 use super::error::StartError;
-use super::numeric::Residuals;
+use super::numeric::{Residual, Residuals};
 use super::project::Projection;
 use super::regularity::Regularity;
-use super::velocities::VelocityProgram;
+use super::velocities::{Attempt, VelocityProgram};
 use crate::newton::NewtonOptions;
 use crate::{Removal, State, System};
 
-/// Finds the velocities that were not given from `f(q₀, v, t₀) = 0`, checks the start ([`check_regularity`]).
+/// Finds the velocities that were not given from `f(q₀, v, t₀) = 0` and the start equations, checks the start
+/// ([`check_regularity`]).
 ///
 /// With rates of removal parameters given, the unknowns are `(ü, u̇, u, w)` with `q(u̇, u, w) = q₀`, the
 /// given velocities and the removal's start expressions; then `v = q̇(ü, u̇, u, w)`.
@@ -30,7 +31,8 @@ pub fn complete_start(system: &System, data: &StartData) -> Result<(State, Compl
     };
     let ((given, rates), (guessed, guess)) = (sorted(&data.given), sorted(&data.guess));
     let removal = data.removal;
-    let shape = StartShape { given: &given, guessed: &guessed, project: data.project, removal, varied: &[] };
+    let (equations, project) = (&data.equations, data.project);
+    let shape = StartShape { given: &given, guessed: &guessed, equations, project, removal, varied: &[] };
     let positions = data.positions.clone();
     let numbers = StartNumbers { time: data.time, positions, given: rates, guess, varied: Vec::new() };
     StartProgram::new(system, &shape).complete(&numbers)
@@ -40,9 +42,13 @@ pub fn complete_start(system: &System, data: &StartData) -> Result<(State, Compl
 #[derive(Clone)]
 pub struct StartProgram {
     velocities: VelocityProgram,
+    /// With the first 0, 1, … start equations only, up to all but one.
+    without: Vec<VelocityProgram>,
     regularity: Regularity,
     projection: Option<Projection>,
-    constraints: Residuals,
+    /// Of constraints and start equations.
+    residuals: Residuals,
+    constraints: usize,
     /// Without figures.
     completion: Completion,
 }
@@ -52,13 +58,19 @@ impl StartProgram {
     pub fn new(system: &System, shape: &StartShape) -> Self {
         let (g, velocities) = (&system.graph, system.velocities());
         let by_rates = shape.removal.filter(|_| shape.given.iter().any(|s| !velocities.contains(s)));
-        let (equations, outputs) = match by_rates {
+        let (mut equations, outputs) = match by_rates {
             Some(removal) => parametrized(system, removal, shape),
             None => (system.constraints.clone(), g.variables(&velocities)),
         };
+        let first = equations.len();
+        let in_unknowns: HashMap<Symbol, Expr> = velocities.iter().copied().zip(outputs.iter().copied()).collect();
+        let own = shape.equations.iter();
+        equations.extend(own.map(|&e| if by_rates.is_some() { g.substitute(e, &in_unknowns) } else { e }));
+        let with = |end: usize| VelocityProgram::new(system, shape, &equations[..end], first, &outputs);
         let mut completion = Completion {
             given: names(system, |s| shape.given.contains(&s)),
             supplied: names(system, |s| !shape.given.contains(&s)),
+            equations: shape.equations.to_vec(),
             ..Completion::default()
         };
         if let Some(removal) = by_rates {
@@ -66,10 +78,12 @@ impl StartProgram {
             completion.given.extend(own.map(|u| g.name(u.rate)));
         }
         StartProgram {
-            velocities: VelocityProgram::new(system, shape, &equations, &outputs),
+            velocities: with(equations.len()),
+            without: (first..equations.len()).map(with).collect(),
             regularity: Regularity::new(system, shape.varied),
             projection: shape.project.then(|| Projection::new(system, shape.varied)),
-            constraints: Residuals::new(system, shape.varied),
+            residuals: Residuals::new(system, shape.equations, shape.varied),
+            constraints: system.constraints.len(),
             completion,
         }
     }
@@ -80,11 +94,12 @@ impl StartProgram {
     /// As [`complete_start`].
     pub fn complete(&mut self, numbers: &StartNumbers) -> Result<(State, Completion), StartError> {
         let varied = &numbers.varied;
+        if self.projection.is_some() && !self.completion.equations.is_empty() {
+            return Err(StartError::ProjectedEquations);
+        }
         let (mut state, looked_for) = self.velocities.solve(numbers, &mut self.regularity)?;
         if let Some(velocities) = looked_for {
-            let (residual, constraint) = self.largest_residual(&state, varied)?;
-            let limit = NewtonOptions::default().limit;
-            return Err(StartError::NoRealSolution { velocities, constraint, residual, limit });
+            return Err(self.contradiction(numbers, state, Some(velocities))?);
         }
         let mut completion = self.completion.clone();
         self.regularity.check(&state, varied)?;
@@ -94,20 +109,51 @@ impl StartProgram {
             self.regularity.check(&state, varied)?;
             completion.projected = Some(length);
         }
-        let (residual, constraint) = self.largest_residual(&state, varied)?;
-        let limit = NewtonOptions::default().limit;
-        if residual > limit {
-            return Err(StartError::Contradictory { constraint, residual, limit });
+        let (residual, _) = largest(&self.residuals.at(&state, varied)?);
+        if residual > NewtonOptions::default().limit {
+            return Err(self.contradiction(numbers, state, None)?);
         }
         completion.residual = residual;
         Ok((state, completion))
     }
 
-    /// The largest relative residual of a constraint, and its number from 1.
-    fn largest_residual(&mut self, state: &State, varied: &[f64]) -> Result<(f64, usize), StartError> {
-        let residuals = self.constraints.relative(state, varied)?.into_iter().zip(1..);
-        Ok(residuals.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0)))
+    /// The constraint that is missed most, where they cannot be fulfilled by themselves; else the first start
+    /// equation that does not go with what is before it. At `state` conditions are missed that are not linear
+    /// in the velocities `looked_for`, or are together.
+    fn contradiction(
+        &mut self,
+        numbers: &StartNumbers,
+        mut state: State,
+        looked_for: Option<Vec<String>>,
+    ) -> Result<StartError, StartError> {
+        let limit = NewtonOptions::default().limit;
+        let mut equation = self.without.len();
+        for (fewer, program) in self.without.iter_mut().enumerate() {
+            let Attempt { state: found, unsolved, .. } = program.attempt(numbers)?;
+            let wanted = if self.velocities.is_linear() { !unsolved || fewer == 0 } else { unsolved };
+            state = if wanted { found } else { state };
+            if unsolved {
+                equation = fewer;
+                break;
+            }
+        }
+        let residuals = self.residuals.at(&state, &numbers.varied)?;
+        if let Some(place) = equation.checked_sub(1) {
+            let Residual { value, relative } = residuals[self.constraints + place];
+            return Ok(StartError::ContradictoryEquation { equation, value, residual: relative, limit });
+        }
+        let (residual, constraint) = largest(&residuals[..self.constraints]);
+        Ok(match looked_for {
+            Some(velocities) => StartError::NoRealSolution { velocities, constraint, residual, limit },
+            None => StartError::Contradictory { constraint, residual, limit },
+        })
     }
+}
+
+/// The largest relative residual, and its number from 1.
+fn largest(residuals: &[Residual]) -> (f64, usize) {
+    let residuals = residuals.iter().map(|r| r.relative).zip(1..);
+    residuals.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
 }
 
 fn names(system: &System, select: impl Fn(Symbol) -> bool) -> Vec<String> {

@@ -17,6 +17,8 @@ pub struct StartData<'a> {
     pub given: HashMap<Symbol, f64>,
     /// Where Newton's method starts for the others; chooses among several solutions.
     pub guess: HashMap<Symbol, f64>,
+    /// Further `e(q₀, v, t₀) = 0` that the velocities solve, as expressions `e`.
+    pub equations: Vec<Expr>,
     /// Project given velocities onto the constraints, as [`project_velocity`](crate::project_velocity) does.
     pub project: bool,
     /// The parametrization whose rates are given.
@@ -30,6 +32,8 @@ pub struct StartShape<'a> {
     pub given: &'a [Symbol],
     /// Symbols of [`StartData::guess`].
     pub guessed: &'a [Symbol],
+    /// [`StartData::equations`].
+    pub equations: &'a [Expr],
     /// [`StartData::project`].
     pub project: bool,
     /// [`StartData::removal`].
@@ -58,9 +62,11 @@ pub struct StartNumbers {
 pub struct Completion {
     /// Names of the velocities (and rates of parameters) that were given.
     pub given: Vec<String>,
-    /// Names of the velocities that the constraints supplied.
+    /// Names of the velocities that constraints and start equations supplied.
     pub supplied: Vec<String>,
-    /// Largest residual of a constraint, relative to the size of its terms.
+    /// [`StartData::equations`].
+    pub equations: Vec<Expr>,
+    /// Largest residual of a constraint or start equation, relative to the size of its terms.
     pub residual: f64,
     /// Length `√(δvᵀ M δv)` of the projection onto the constraint, where one was asked for.
     pub projected: Option<f64>,

@@ -35,11 +35,27 @@ impl std::fmt::Display for Quantity {
 /// Why there is no start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StartError {
-    /// The given velocities and the constraints leave some velocities open.
-    #[error("too few start velocities: {} not determined by the given ones and the constraints; give more under [start.velocities], as in {}", listed(.velocities), lines(.velocities))]
+    /// The given velocities, constraints and start equations leave some velocities open.
+    #[error("too few start velocities: {} not determined by the given ones and the constraints{}; give more under [start.velocities], as in {}", listed(.velocities), idle_equations(.idle), lines(.velocities))]
     Undetermined {
         /// Velocities of which more have to be given.
         velocities: Vec<String>,
+        /// Numbers of start equations, from 1, that hold whenever all other conditions do.
+        idle: Vec<usize>,
+    },
+    /// A start equation cannot hold beside constraints, given velocities and the equations before it.
+    #[error(
+        "start equation {equation} contradicts the given velocities, the constraints and the equations before it: its left side less its right side is {value:.4e} there, relative residual {residual:.3e}, limit {limit:.0e}; leave it out, or give fewer [start.velocities]"
+    )]
+    ContradictoryEquation {
+        /// Its number, from 1.
+        equation: usize,
+        /// Its left side less its right side where all before it holds; at best, where it is not linear.
+        value: f64,
+        /// The same relative to the size of its terms.
+        residual: f64,
+        /// Largest residual that is accepted.
+        limit: f64,
     },
     /// No velocities satisfy the constraints together with the given ones.
     #[error(
@@ -65,7 +81,10 @@ pub enum StartError {
         /// Largest residual that is accepted.
         limit: f64,
     },
-    /// Constraints nonlinear in the velocities have several solutions.
+    /// Start equations for velocities that are to be projected.
+    #[error("start equations would not hold any more where project = true moves velocities: leave out one of both")]
+    ProjectedEquations,
+    /// Constraints or start equations nonlinear in the velocities have several solutions.
     #[error("the constraints leave a choice of {}: {} or {}; choose by a [start.guess]", listed(.velocities), values(.first), values(.second))]
     Ambiguous {
         /// Velocities in question.
@@ -163,9 +182,20 @@ pub(super) fn check_lengths(system: &System, state: &State) -> Result<(), StartE
     }
 }
 
+/// What start equations add to too few conditions, and what they could.
+fn idle_equations(idle: &[usize]) -> String {
+    if idle.is_empty() {
+        return String::new();
+    }
+    let numbers: Vec<String> = idle.iter().map(usize::to_string).collect();
+    let (word, follows) = if idle.len() == 1 { ("equation", "follows") } else { ("equations", "follow") };
+    format!(" (start {word} {} {follows} from the others and tells nothing)", numbers.join(", "))
+}
+
 /// Lines that give velocities.
 fn lines(velocities: &[String]) -> String {
-    velocities.first().map_or_else(String::new, |name| format!("`\"{name}\" = 0`"))
+    let line = |name: &String| format!("`\"{name}\" = 0`, or in [start], as in `equations = [\"{name} = 0\"]`");
+    velocities.first().map_or_else(String::new, line)
 }
 
 /// A combination in words, and what to do about it.

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
 
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, Root, solve};
-use crate::{State, System};
+use crate::{SingularValues, State, System};
 
 /// Outputs compiled, or why they cannot be: told where they are asked for.
 #[derive(Clone)]
@@ -123,6 +123,24 @@ impl Problem {
         })
     }
 
+    /// Which equations from `first` on hold to first order at `root` wherever all others do.
+    pub(super) fn idle(&mut self, known: &[f64], root: &Root, first: usize) -> Result<Vec<usize>, CompileError> {
+        let (m, n) = (self.equations, self.unknowns.len());
+        let point = bounded(&[root.x.as_slice(), known].concat());
+        let derivatives = &self.measured.evaluator()?.evaluate(&point)[m..m + m * n];
+        let mut rows = DMatrix::from_row_iterator(m, n, derivatives.iter().map(|d| d.value));
+        rows.row_iter_mut().for_each(|mut row| {
+            let size = row.amax();
+            row /= if size > 0.0 { size } else { 1.0 };
+        });
+        let rank = |rows: &DMatrix<f64>| {
+            let values = SingularValues::of(rows).values;
+            let limit = NewtonOptions::default().rank_limit * values.iter().fold(0.0, |a: f64, x| a.max(*x));
+            values.iter().filter(|x| **x > limit).count()
+        };
+        Ok((first..m).filter(|&i| rank(&rows.clone().remove_row(i)) == rank(&rows)).collect())
+    }
+
     /// Values of the outputs at `root`, and which of them the equations leave open.
     pub(super) fn outputs(&mut self, known: &[f64], root: &Root) -> Result<(Vec<f64>, Vec<bool>), CompileError> {
         let n = self.unknowns.len();
@@ -137,26 +155,34 @@ impl Problem {
     }
 }
 
-/// The constraints and their derivatives at a state.
+/// The constraints, start equations and their derivatives at a state.
 #[derive(Clone)]
 pub(super) struct Residuals {
     program: Program<Bounded>,
-    constraints: usize,
+    count: usize,
+}
+
+/// What is left of a condition at a state.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Residual {
+    pub(super) value: f64,
+    /// `|f| / (|f| + size of its terms)`.
+    pub(super) relative: f64,
 }
 
 impl Residuals {
-    pub(super) fn new(system: &System, varied: &[Symbol]) -> Self {
-        let (symbols, constraints) = (state_symbols(system, &[]), &system.constraints);
-        let outputs = [&constraints[..], system.graph.jacobian(constraints, &symbols).entries()].concat();
+    pub(super) fn new(system: &System, equations: &[Expr], varied: &[Symbol]) -> Self {
+        let (symbols, conditions) = (state_symbols(system, &[]), [&system.constraints, equations].concat());
+        let outputs = [&conditions[..], system.graph.jacobian(&conditions, &symbols).entries()].concat();
         let program = Program::new(system, &[&symbols[..], varied].concat(), &outputs);
-        Residuals { program, constraints: constraints.len() }
+        Residuals { program, count: conditions.len() }
     }
 
-    /// `|f| / (|f| + size of its terms)` of each constraint.
-    pub(super) fn relative(&mut self, state: &State, varied: &[f64]) -> Result<Vec<f64>, CompileError> {
+    /// Of each constraint, then of each start equation.
+    pub(super) fn at(&mut self, state: &State, varied: &[f64]) -> Result<Vec<Residual>, CompileError> {
         let point = [&state.q[..], &state.v, &[state.t], varied].concat();
         let n = point.len() - varied.len();
-        let (residuals, derivatives) = self.program.evaluator()?.evaluate(&bounded(&point)).split_at(self.constraints);
+        let (residuals, derivatives) = self.program.evaluator()?.evaluate(&bounded(&point)).split_at(self.count);
         let x = DVector::from_column_slice(&point[..n]);
         let single = |(i, r): (usize, &Bounded)| {
             let gradient = derivatives[i * n..(i + 1) * n].iter().map(|d| d.value);
@@ -166,7 +192,7 @@ impl Residuals {
                 jacobian: DMatrix::from_iterator(1, n, finite),
                 magnitude: DVector::from_element(1, if r.magnitude.is_finite() { r.magnitude } else { 0.0 }),
             };
-            evaluation.relative_residual(&x)
+            Residual { value: r.value, relative: evaluation.relative_residual(&x) }
         };
         Ok(residuals.iter().enumerate().map(single).collect())
     }

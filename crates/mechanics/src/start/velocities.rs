@@ -24,20 +24,47 @@ pub(super) struct VelocityProgram {
     guessed: Vec<Option<usize>>,
     /// Whether more than one start of the search is needed.
     several: bool,
+    /// Start equations are those from here on.
+    first_own: usize,
+}
+
+/// What was found with some conditions.
+pub(super) struct Attempt {
+    /// The first solution, or the nearest to one.
+    pub(super) state: State,
+    /// Whether it is no solution.
+    pub(super) unsolved: bool,
+    root: Root,
+    /// Velocities that are left open.
+    open: Vec<usize>,
+    /// Another solution.
+    second: Option<Vec<f64>>,
 }
 
 impl VelocityProgram {
-    /// `outputs` are the velocities.
-    pub(super) fn new(system: &System, shape: &StartShape, equations: &[Expr], outputs: &[Expr]) -> Self {
+    /// `outputs` are the velocities; the `equations` from `first_own` on are start equations.
+    pub(super) fn new(
+        system: &System,
+        shape: &StartShape,
+        equations: &[Expr],
+        first_own: usize,
+        outputs: &[Expr],
+    ) -> Self {
         let known = [&system.positions()[..], &[system.time], shape.given, shape.varied].concat();
         let problem = Problem::new(system, equations, outputs, &known, &[]);
         let place = |unknown: &Symbol| shape.guessed.iter().position(|s| s == unknown);
+        let guessed: Vec<_> = problem.unknowns.iter().map(place).collect();
         VelocityProgram {
             names: system.velocities().into_iter().map(|s| system.graph.name(s)).collect(),
-            guessed: problem.unknowns.iter().map(place).collect(),
-            several: !problem.is_linear && shape.guessed.is_empty(),
+            several: !problem.is_linear && guessed.iter().all(Option::is_none),
+            guessed,
             problem,
+            first_own,
         }
+    }
+
+    pub(super) fn is_linear(&self) -> bool {
+        self.problem.is_linear
     }
 
     /// The state with these velocities; of contradictory equations by least squares. None may be open:
@@ -48,13 +75,44 @@ impl VelocityProgram {
         numbers: &StartNumbers,
         regularity: &mut Regularity,
     ) -> Result<(State, Option<Vec<String>>), StartError> {
-        let StartNumbers { time, positions, given, guess, varied } = numbers;
+        let Attempt { state, unsolved, root, open, second } = self.attempt(numbers)?;
+        let names = |places: &[usize]| places.iter().map(|&i| self.names[i].clone()).collect();
+        if unsolved && !self.problem.is_linear {
+            let looked_for = if open.is_empty() { None } else { Some(names(&open)) };
+            return Ok((state, looked_for));
+        }
+        if !open.is_empty() {
+            let velocities = names(&open);
+            regularity.check_constraints(&state, &numbers.varied)?;
+            let idle = self.problem.idle(&self.known(numbers), &root, self.first_own)?;
+            let idle = idle.into_iter().map(|i| i - self.first_own + 1).collect();
+            return Err(StartError::Undetermined { velocities, idle });
+        }
+        if let Some(second) = second {
+            let differ = differing(&state.v, &second);
+            return Err(StartError::Ambiguous {
+                velocities: names(&differ),
+                first: differ.iter().map(|&i| state.v[i]).collect(),
+                second: differ.iter().map(|&i| second[i]).collect(),
+            });
+        }
+        Ok((state, None))
+    }
+
+    fn known(&self, numbers: &StartNumbers) -> Vec<f64> {
+        let StartNumbers { time, positions, given, varied, .. } = numbers;
+        [&positions[..], &[*time], given, varied].concat()
+    }
+
+    /// The state with these velocities, whatever is open or contradictory.
+    pub(super) fn attempt(&mut self, numbers: &StartNumbers) -> Result<Attempt, StartError> {
+        let StartNumbers { time, positions, given, guess, .. } = numbers;
         let expected = self.names.len();
         if positions.len() != expected {
             return Err(StartError::WrongLength { found: positions.len(), expected });
         }
-        let known = [&positions[..], &[*time], given, varied].concat();
-        let mut roots: Vec<(Vec<f64>, Vec<bool>)> = Vec::new();
+        let known = self.known(numbers);
+        let mut roots: Vec<(Root, Vec<f64>, Vec<bool>)> = Vec::new();
         let mut nearest: Option<Root> = None;
         let guesses = self.guesses(given);
         for &default in &guesses {
@@ -62,8 +120,8 @@ impl VelocityProgram {
             match self.problem.solve(&known, &[], &start)? {
                 Solved::Root(root) => {
                     let (v, open) = self.problem.outputs(&known, &root)?;
-                    if !roots.iter().any(|(other, _)| differing(&v, other).is_empty()) {
-                        roots.push((v, open));
+                    if !roots.iter().any(|(_, other, _)| differing(&v, other).is_empty()) {
+                        roots.push((root, v, open));
                     }
                 }
                 Solved::LeastSquares(root) => {
@@ -75,31 +133,15 @@ impl VelocityProgram {
             }
         }
         let unsolved = roots.is_empty();
-        if let (true, Some(root)) = (unsolved, &nearest) {
-            roots.push(self.problem.outputs(&known, root)?);
+        if let (true, Some(root)) = (unsolved, nearest) {
+            let (v, open) = self.problem.outputs(&known, &root)?;
+            roots.push((root, v, open));
         }
-        let Some((v, open)) = roots.first() else { return Err(StartError::NotSolved { points: guesses.len() }) };
-        let state = State { t: *time, q: positions.clone(), v: v.clone() };
-        let names = |places: &[usize]| places.iter().map(|&i| self.names[i].clone()).collect();
-        if unsolved && !self.problem.is_linear {
-            let open: Vec<usize> = (0..open.len()).filter(|&i| open[i]).collect();
-            let looked_for = if open.is_empty() { None } else { Some(names(&open)) };
-            return Ok((state, looked_for));
-        }
-        if open.contains(&true) {
-            regularity.check_constraints(&state, varied)?;
-            let open: Vec<usize> = (0..open.len()).filter(|&i| open[i]).collect();
-            return Err(StartError::Undetermined { velocities: names(&open) });
-        }
-        if let Some((second, _)) = roots.get(1) {
-            let differ = differing(v, second);
-            return Err(StartError::Ambiguous {
-                velocities: names(&differ),
-                first: differ.iter().map(|&i| v[i]).collect(),
-                second: differ.iter().map(|&i| second[i]).collect(),
-            });
-        }
-        Ok((state, None))
+        let mut roots = roots.into_iter();
+        let Some((root, v, open)) = roots.next() else { return Err(StartError::NotSolved { points: guesses.len() }) };
+        let open = (0..open.len()).filter(|&i| open[i]).collect();
+        let state = State { t: *time, q: positions.clone(), v };
+        Ok(Attempt { state, unsolved, root, open, second: roots.next().map(|(_, v, _)| v) })
     }
 
     /// Starts of unknowns without a guess: several, to see whether nonlinear equations have more solutions.

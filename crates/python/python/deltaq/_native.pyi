@@ -92,8 +92,9 @@ class System:
     coordinate to text. forces: coordinate to expression, generalized forces Q. observables: name to
     expression, what motions list besides; invariants: likewise, what should stay constant. view: name of a
     body to {"shape": ..., "size": [...], "at": ..., "rotation": ...}, as in [view.NAME]. start: every
-    coordinate to its start. velocities: some ("x'") to their start; constraints supply the others. guess:
-    velocities near which the others are sought. project: move given velocities onto the constraints.
+    coordinate to its start. velocities: some ("x'") to their start; constraints supply the others, and
+    start_equations, as in ["dot(W, n) = 5"] or what is zero. guess: velocities near which these are sought.
+    project: move given velocities onto the constraints.
     removals: name to {"parameters": [...], "rates": {...}, ...}, as in [removal.NAME] of scene files.
     multipliers: mu0, shape (h,), zero by default. time: t0. duration: length of the run. breakpoints: times
     at which a step ends, where something is switched. notes: remarks.
@@ -126,6 +127,7 @@ class System:
         invariants: Mapping[str, _Expression] | None = None,
         view: Mapping[str, Mapping[str, Any]] | None = None,
         velocities: Mapping[Any, _Expression] | None = None,
+        start_equations: Iterable[_Formula] | None = None,
         guess: Mapping[Any, _Expression] | None = None,
         project: bool = False,
         removals: Mapping[str, Mapping[str, Any]] | None = None,
