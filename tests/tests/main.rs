@@ -5,6 +5,7 @@ mod architecture;
 mod discrete;
 mod faults;
 mod narrow;
+mod own_systems;
 mod properties;
 mod pulses;
 mod reference_motions;

@@ -2,6 +2,7 @@
 
 mod costates;
 mod motions;
+mod reading;
 mod run;
 mod singly;
 #[cfg(test)]

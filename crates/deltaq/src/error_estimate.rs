@@ -2,12 +2,15 @@
 
 use equations::Outputs;
 
+use crate::lost_digits::{NUMBERS, ROUNDED};
 use crate::metric::{larger, subtract};
 use crate::wanted::scattered;
 use crate::{Metric, Motion, Setting, SolveError};
 
 /// Instants at which it is taken.
 const SAMPLES: usize = 200;
+/// At so many of all instants it is asked what is added up to multipliers.
+const LOOKED: usize = 16;
 
 /// Relative error estimate over which a motion is not trusted, nor a single coordinate.
 pub const TRUSTED: f64 = 1e-3;
@@ -15,7 +18,8 @@ pub const TRUSTED: f64 = 1e-3;
 /// Differences of a coordinate under this part of [`Metric::round_off_sizes`] are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Largest differences of the two runs of a motion, over the time up to some instant.
+/// Largest differences of the two runs of a motion, over the time up to some instant. Where round-off of the
+/// rates, which both runs share, is more than they differ by, the looser run has as much of it in its rates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
     /// In the kinetic metric.
@@ -24,7 +28,8 @@ pub struct ErrorEstimate {
     pub relative: f64,
     /// Of each coordinate, in its unit; length n. The kinetic metric hides those of little inertia.
     pub coordinates: Vec<f64>,
-    /// Of each multiplier, in its unit.
+    /// Of each multiplier, in its unit; with the round-off of what is added up to it, where that is more than
+    /// its last digits.
     pub multipliers: Vec<f64>,
     /// The coordinate with the largest difference over its own size, which is the largest value that it has
     /// or has moved by, and that quotient; `None` where all differences are round-off.
@@ -92,9 +97,10 @@ pub fn error_estimates(
     let mut instants: Vec<(f64, Option<usize>)> = motion.grid(SAMPLES).into_iter().map(|t| (t, None)).collect();
     instants.extend(asked);
     instants.sort_by(|a, b| (direction * a.0).total_cmp(&(direction * b.0)));
+    let every = (instants.len() / LOOKED).max(1);
     let mut so_far = vec![ErrorEstimate::default(); times.len()];
     let mut read = None;
-    for (t, asked) in instants {
+    for (place, (t, asked)) in instants.into_iter().enumerate() {
         let (kept, looser) = match (motion.at_in_both_runs(t), read) {
             (Ok(outputs), _) => outputs,
             (Err(error), None) => return Err(error),
@@ -106,7 +112,10 @@ pub fn error_estimates(
         read = Some(t);
         differences.add(&mut metric, t, &kept, &looser, 0.0);
         if differences.has_doubtful_multipliers() {
-            differences.add_terms(motion.terms_of_multipliers(t));
+            differences.add_terms(motion.terms_of_multipliers(motion.start(), t));
+        }
+        if place % every == 0 && !multipliers.is_empty() && motion.charts.is_empty() {
+            differences.add_round_off(motion.terms_of_multipliers(t, t));
         }
         if let Some(i) = asked {
             so_far[i] = differences.estimate(&metric);
@@ -138,6 +147,8 @@ pub(crate) struct Differences<'a> {
     sizes_of_multipliers: Vec<f64>,
     /// What was added up to each multiplier, as far as it was asked for.
     terms: Vec<f64>,
+    /// Round-off of each multiplier as it was computed from states.
+    round_off: Vec<f64>,
     /// Largest kinetic length of the coordinates themselves, and of the unit of each at the first instant.
     length: f64,
     inertia: Vec<f64>,
@@ -157,7 +168,8 @@ impl<'a> Differences<'a> {
             names_of_multipliers,
             multipliers: none.clone(),
             sizes_of_multipliers: none.clone(),
-            terms: none,
+            terms: none.clone(),
+            round_off: none,
             length: 0.0,
             inertia: Vec::new(),
         }
@@ -200,6 +212,12 @@ impl<'a> Differences<'a> {
         self.terms.iter_mut().zip(terms.into_iter().flatten()).for_each(|(most, term)| *most = most.max(term));
     }
 
+    /// The same, of what is added up at the instant itself: round-off that both runs have.
+    pub(crate) fn add_round_off(&mut self, terms: Option<Vec<f64>>) {
+        let round_off = terms.into_iter().flatten().map(|term| ROUNDED * term);
+        self.round_off.iter_mut().zip(round_off).for_each(|(most, now)| *most = larger(*most, now));
+    }
+
     /// The estimate so far.
     pub(crate) fn estimate(&self, metric: &Metric) -> ErrorEstimate {
         let round_off = metric.round_off_sizes(&self.inertia, &self.sizes, self.length.max(self.scale));
@@ -207,7 +225,7 @@ impl<'a> Differences<'a> {
             absolute: self.absolute,
             relative: relative_to(self.scale, self.absolute),
             coordinates: self.coordinates.clone(),
-            multipliers: self.multipliers.clone(),
+            multipliers: self.with_round_off(),
             worst: worst(self.names, &self.coordinates, &self.sizes, &round_off),
             worst_multiplier: worst(
                 self.names_of_multipliers,
@@ -216,6 +234,14 @@ impl<'a> Differences<'a> {
                 &self.terms.iter().zip(&self.sizes_of_multipliers).map(|(a, b)| a.max(*b)).collect::<Vec<f64>>(),
             ),
         }
+    }
+}
+
+impl Differences<'_> {
+    /// Differences of multipliers, with their round-off.
+    fn with_round_off(&self) -> Vec<f64> {
+        let all = self.multipliers.iter().zip(&self.round_off).zip(&self.sizes_of_multipliers);
+        all.map(|((d, round_off), size)| if *round_off > NUMBERS * size { d + round_off } else { *d }).collect()
     }
 }
 

@@ -65,6 +65,7 @@ mod comparison;
 mod constants;
 mod contradiction;
 mod discrete_run;
+mod disturbed;
 mod doubt;
 mod ending;
 mod ensemble;

@@ -2,21 +2,36 @@
 //!
 //! A rate to which `s` is added up is known to `ε s`, with `ε` the distance of numbers beside 1. What this
 //! makes of a state within a time, `r' = ε s − λ r` with `λ = max(0, −∂ẏ/∂y)` of the state itself, is no
-//! bound of its error, which may grow or average out; but where it is no small part of the state, and more
-//! than the two runs differ by, no estimate is to be trusted.
+//! bound of its error, which may grow or average out. Where it is more than the two runs differ by, a run has
+//! to tell what becomes of it ([`RoundOff::Counts`]); where it is no small part of the state, either, no
+//! estimate is to be trusted.
 
 use equations::{Compiled, Equations};
 
 use crate::doubt::Doubt;
 use crate::settings::CERTAINTY;
 
-/// After a first look, what is added up between its instants may be so many times as much.
-const BETWEEN: f64 = 1e3;
 /// Part of a state over which its round-off is told.
 const TOLD: f64 = 1e-6;
+/// Part of a state up to which its round-off is that of the numbers; and so many times what the runs differ
+/// by is nearly that: there is less round-off than there may be.
+pub(crate) const NUMBERS: f64 = 256.0 * f64::EPSILON;
+const NEARLY: f64 = 4.0;
+/// The error of a sum over what is added up to it: numbers are rounded to the nearest.
+pub(crate) const ROUNDED: f64 = 0.5 * f64::EPSILON;
 
 /// Time, states, and what is added up to their rates.
 pub(crate) type Looked = (f64, Vec<f64>, Vec<f64>);
+
+/// What round-off of the rates comes to.
+pub(crate) enum RoundOff {
+    /// No more than the runs differ by, or numbers are rounded by.
+    Small,
+    /// To be put into the rates: `d` and `η` of [`crate::disturbed::disturbed`].
+    Counts(Vec<f64>),
+    /// So much that no estimate says what becomes of it.
+    Doubted(Doubt),
+}
 
 /// How large states were, and at least what `sizes` say.
 pub(crate) fn largest(looked: &[Looked], mut sizes: Vec<f64>) -> Vec<f64> {
@@ -24,12 +39,6 @@ pub(crate) fn largest(looked: &[Looked], mut sizes: Vec<f64>) -> Vec<f64> {
         sizes.iter_mut().zip(y).for_each(|(size, y)| *size = size.max(y.abs()));
     }
     sizes
-}
-
-/// Whether round-off within this length of time is a small part of states of these sizes.
-pub(crate) fn is_small(looked: &[Looked], sizes: &[f64], length: f64) -> bool {
-    let mut parts = looked.iter().flat_map(|(_, _, terms)| terms.iter().zip(sizes));
-    parts.all(|(terms, size)| BETWEEN * f64::EPSILON * terms * length <= TOLD * size)
 }
 
 /// Numbers of terms as they count: an infinite slope tells nothing.
@@ -54,39 +63,130 @@ fn decay(compiled: &mut Compiled, direction: f64, (t, y, terms): &Looked, sizes:
     Some(decay)
 }
 
-/// The doubt that begins where round-off of the rates has come to more than the runs differ by: instants of
-/// the kept run and states of the looser one there, with names and sizes of states. What cannot be evaluated
-/// is another matter.
-pub(crate) fn doubt(
+/// Sums over time of what is added up to rates.
+struct Sums {
+    sums: Vec<f64>,
+    differences: Vec<f64>,
+}
+
+impl Sums {
+    fn new(count: usize) -> Sums {
+        Sums { sums: vec![0.0; count], differences: vec![0.0; count] }
+    }
+
+    /// From an instant to the next one, where the looser run is there; `decay` is 0 where it is not given.
+    fn add(&mut self, [first, second]: [&Looked; 2], looser: &[f64], decay: &[f64]) {
+        let time = (second.0 - first.0).abs();
+        for (i, other) in looser.iter().enumerate() {
+            let decay = decay.get(i).copied().unwrap_or(0.0);
+            let held = if decay > 0.0 { -(-decay * time).exp_m1() / decay } else { time };
+            let mean = 0.5 * (first.2[i] + second.2[i]);
+            self.sums[i] = self.sums[i] * (-decay * time).exp() + f64::EPSILON * mean * held;
+            self.differences[i] = self.differences[i].max((second.1[i] - other).abs());
+        }
+    }
+
+    /// The states whose round-off is more than that of their numbers and than the runs nearly differ by.
+    fn over<'a>(&'a self, sizes: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
+        let is_over = |i: &usize| self.sums[*i] > (NEARLY * self.differences[*i]).max(NUMBERS * sizes[*i]);
+        (0..self.sums.len()).filter(is_over)
+    }
+}
+
+/// An instant and the next one, and the states of the looser run there.
+fn stretches<'a>(
+    looked: &'a [Looked],
+    looser: &'a [Vec<f64>],
+) -> impl Iterator<Item = ([&'a Looked; 2], &'a Vec<f64>)> {
+    looked.windows(2).zip(looser.iter().skip(1)).map(|(pair, looser)| ([&pair[0], &pair[1]], looser))
+}
+
+/// Whether round-off is small if nothing decays, even were it so many times as much between instants.
+pub(crate) fn is_small(looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64], between: f64) -> bool {
+    let mut sums = Sums::new(sizes.len());
+    let sizes: Vec<f64> = sizes.iter().map(|size| size / between).collect();
+    stretches(looked, looser).all(|(pair, looser)| {
+        sums.add(pair, looser, &[]);
+        sums.over(&sizes).next().is_none()
+    })
+}
+
+/// The doubt of a motion that no run follows beyond a time with round-off in its rates.
+pub(crate) fn not_followed(t: f64) -> Doubt {
+    let because = format!(
+        "the error estimate is not to be trusted from t = {t:.6} on: with round-off of the rates, which are \
+         differences of larger terms, a run ends there"
+    );
+    Doubt { from: t, because }
+}
+
+/// What round-off comes to between instants of the kept run, by the states of the looser one there and by
+/// the names and sizes of states. A doubt begins where it is no small part of a state. What cannot be
+/// evaluated is another matter.
+pub(crate) fn round_off(
     compiled: &mut Compiled,
-    names: &[String],
+    names: &dyn Fn() -> Vec<String>,
     looked: &[Looked],
     looser: &[Vec<f64>],
     sizes: &[f64],
-) -> Option<Doubt> {
-    let mut sums = vec![0.0; sizes.len()];
-    let mut differences = vec![0.0_f64; sizes.len()];
-    for (pair, looser) in looked.windows(2).zip(looser.iter().skip(1)) {
-        let [(before, _, first), second] = pair else { continue };
-        let (t, kept, terms) = second;
-        let decay = decay(compiled, (t - before).signum(), second, sizes)?;
-        let time = (t - before).abs();
-        for i in 0..sizes.len() {
-            let held = if decay[i] > 0.0 { -(-decay[i] * time).exp_m1() / decay[i] } else { time };
-            sums[i] = sums[i] * (-decay[i] * time).exp() + 0.5 * f64::EPSILON * (first[i] + terms[i]) * held;
-            differences[i] = differences[i].max((kept[i] - looser[i]).abs());
-            if sums[i] > TOLD * sizes[i] && sums[i] > CERTAINTY * differences[i] {
-                let (state, sum, difference) = (&names[i], sums[i], differences[i]);
+) -> RoundOff {
+    if is_small(looked, looser, sizes, 1.0) {
+        return RoundOff::Small;
+    }
+    let (mut sums, mut over) = (Sums::new(sizes.len()), vec![false; sizes.len()]);
+    for (pair, looser) in stretches(looked, looser) {
+        let [(before, ..), second] = pair;
+        let Some(decay) = decay(compiled, (second.0 - before).signum(), second, sizes) else { break };
+        sums.add(pair, looser, &decay);
+        for i in sums.over(sizes) {
+            over[i] = true;
+            let (sum, difference) = (sums.sums[i], sums.differences[i]);
+            if sum > TOLD * sizes[i] && sum > CERTAINTY * difference {
+                let (state, t) = (&names()[i], second.0);
                 let because = format!(
                     "the error estimate is not to be trusted from t = {before:.6} on: the rate of {state} is a \
                      difference of larger terms, whose round-off may have come to {sum:.1e} at t = {t:.6}, \
                      where the runs differ by {difference:.1e}"
                 );
-                return Some(Doubt { from: *before, because });
+                return RoundOff::Doubted(Doubt { from: *before, because });
             }
         }
     }
-    None
+    if over.contains(&true) { RoundOff::Counts(disturbance(compiled, looked, looser, &over)) } else { RoundOff::Small }
+}
+
+/// `d`, then `η`: the mean round-off of rates up to some instant, where that is largest, in the direction of
+/// the way that a state goes by its rate, and as a part of the largest rate; of states whose round-off
+/// counts. All of one sign: that in which the looser run is apart from the kept one.
+fn disturbance(compiled: &mut Compiled, looked: &[Looked], looser: &[Vec<f64>], counts: &[bool]) -> Vec<f64> {
+    let zeros = vec![0.0_f64; counts.len()];
+    let [mut sums, mut means, mut way, mut farthest] = [(); 4].map(|()| zeros.clone());
+    let [mut largest, mut apart, mut rates] = [(); 3].map(|()| zeros.clone());
+    for (pair, looser) in stretches(looked, looser) {
+        let [(before, here, first), (t, y, terms)] = pair;
+        if compiled.rates(*t, y, &mut rates).is_err() {
+            rates.fill(0.0);
+        }
+        for i in 0..counts.len() {
+            sums[i] += 0.5 * (first[i] + terms[i]) * (t - before).abs();
+            means[i] = means[i].max(sums[i] / (t - looked[0].0).abs());
+            way[i] += rates[i] * (t - before);
+            // a pulse may be between the instants
+            let mean = (y[i] - here[i]) / (t - before);
+            largest[i] = largest[i].max(rates[i].abs()).max(mean.abs());
+            farthest[i] = if way[i].abs() > farthest[i].abs() { way[i] } else { farthest[i] };
+            let difference = looser[i] - y[i];
+            apart[i] = if difference.abs() > apart[i].abs() { difference } else { apart[i] };
+        }
+    }
+    let time = looked.last().map_or(0.0, |last| last.0 - looked[0].0);
+    let offset = |i: usize| if counts[i] { (ROUNDED * means[i]).copysign(time * farthest[i]) } else { 0.0 };
+    let offsets: Vec<f64> = (0..counts.len()).map(offset).collect();
+    // how much of what is apart the offsets would make alone
+    let likeness = |i: usize| if offsets[i] == 0.0 { 0.0 } else { apart[i] / (offsets[i] * time) };
+    let sign = 1.0_f64.copysign((0..counts.len()).map(likeness).sum());
+    let part = |i: usize| if offsets[i] == 0.0 { 0.0 } else { (offsets[i] / largest[i]).abs().min(TOLD) };
+    offsets.iter().map(|d| sign * d).chain((0..counts.len()).map(|i| sign * part(i))).collect()
 }
 
 /// The names of the states.

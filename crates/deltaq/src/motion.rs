@@ -13,7 +13,7 @@ use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::form::derive_in_form;
 use crate::last_digits::terms_of_invariants;
-use crate::lost_digits::{self, Looked};
+use crate::lost_digits::{self, Looked, RoundOff};
 use crate::method::Chosen;
 use crate::metric::{larger, subtract};
 use crate::trajectory::Trajectory;
@@ -70,8 +70,8 @@ pub struct Motion {
     pub charts: Vec<ChartChange>,
     end: f64,
     compiled: Compiled,
-    kept: Trajectory,
-    looser: Trajectory,
+    pub(crate) kept: Trajectory,
+    pub(crate) looser: Trajectory,
     /// The times at which both runs are known, where they are not at all times; besides `end`.
     pub(crate) wanted: Option<Arc<[f64]>>,
 }
@@ -150,10 +150,10 @@ impl Motion {
         Some((y, terms))
     }
 
-    /// [`lost_digits::doubt`] of this motion.
-    pub(crate) fn lost_digits(&mut self, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> Option<Doubt> {
-        let names = lost_digits::names_of_states(&self.equations);
-        lost_digits::doubt(&mut self.compiled, &names, looked, looser, sizes)
+    /// [`lost_digits::round_off`] of this motion.
+    pub(crate) fn round_off(&mut self, looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64]) -> RoundOff {
+        let names = || lost_digits::names_of_states(&self.equations);
+        lost_digits::round_off(&mut self.compiled, &names, looked, looser, sizes)
     }
 
     /// The states of the looser run.
@@ -166,10 +166,10 @@ impl Motion {
         self.kept.sizes().to_vec()
     }
 
-    /// How much is added up to each multiplier at `t`, where that can be told.
-    pub(crate) fn terms_of_multipliers(&mut self, t: f64) -> Option<Vec<f64>> {
+    /// How much is added up to each multiplier at `t` since the time `begin`, where that can be told.
+    pub(crate) fn terms_of_multipliers(&mut self, begin: f64, t: f64) -> Option<Vec<f64>> {
         let y = self.states_at(t).ok()?;
-        self.compiled.terms_of_multipliers(self.start(), t, &y).ok()
+        self.compiled.terms_of_multipliers(begin, t, &y).ok()
     }
 
     /// How much is added up to each coordinate at `t`, where that came to `states` of the states.
@@ -253,8 +253,12 @@ pub fn solve(
     let by = motion.method.as_ref().map(|chosen| chosen.method);
     motion.doubt = Doubt::of([&steps[0], &steps[1]], motion.end, motion.is_complete(), by);
     if motion.doubt.is_none() && !settings.plain {
-        motion.doubt = motion.broken(Watch::new(setting.system, &[])?).or_else(|| motion.rounded_off());
+        motion.doubt = motion.broken(Watch::new(setting.system, &[])?);
+        if motion.doubt.is_none() {
+            motion.count_round_off(setting, &Settings { method: by, ..settings.clone() })?;
+        }
     }
+    motion.seconds.integrate = clock.seconds();
     Ok(motion)
 }
 
@@ -327,6 +331,15 @@ impl Motion {
     /// It ends here: it cannot be read off behind.
     pub(crate) fn end_at(&mut self, t: f64, error: &SolveError) {
         self.stop_at(t, format!("it cannot be read off behind: {error}"));
+    }
+
+    /// It ends where both runs can be read off, at most where it did.
+    pub(crate) fn read_to_the_end(&mut self) {
+        let Motion { compiled, kept, looser, wanted, .. } = self;
+        let end = readable_end(compiled, kept, looser, wanted.as_deref());
+        if (self.end - end) * (self.end - self.start()) > 0.0 {
+            self.end = end;
+        }
     }
 
     /// It ends here, for this cause.

@@ -1,26 +1,92 @@
 //! Round-off of the equations themselves, which both runs of a motion share.
 
-use crate::lost_digits::{Looked, finite, is_small, largest};
-use crate::{Doubt, Motion};
+use integrate::Options;
 
-/// Stretches of a motion at whose ends rates are looked at; and of the first look, which most motions pass.
+use crate::charts::{self, Course};
+use crate::disturbed::disturbed;
+use crate::lost_digits::{Looked, RoundOff, finite, is_small, largest, not_followed};
+use crate::trajectory::Trajectory;
+use crate::{Motion, Prepared, Setting, Settings, SolveError};
+
+/// Stretches of a motion at whose ends rates are looked at; and of a first look, which most motions pass:
+/// what is added up may be so many times as much between.
 const STRETCHES: usize = 32;
 const FEW: usize = 4;
+const BETWEEN: f64 = 8.0;
 /// Part of a stopped motion that is looked at: just before a singularity all terms are large.
 pub(crate) const BEFORE_THE_END: f64 = 0.9;
 
 impl Motion {
-    /// Where round-off of the rates has come to more than the runs differ by.
-    pub(crate) fn rounded_off(&mut self) -> Option<Doubt> {
-        let looked = self.terms_along(FEW);
-        let length = (self.end() - self.start()).abs();
-        if is_small(&looked, &self.sizes_of(&looked), length) {
-            return None;
+    /// Round-off of the rates, which both runs share, as a part of their difference: where it is more than
+    /// that, the looser run is made again with as much of it in its rates as there may be. A doubt where that
+    /// run does not come as far, or where it is no small part of a state.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the equations cannot be compiled again.
+    pub(crate) fn count_round_off(&mut self, setting: Setting, settings: &Settings) -> Result<(), SolveError> {
+        let (looked, looser, sizes) = self.looked_at(FEW);
+        if is_small(&looked, &looser, &sizes, BETWEEN) {
+            return Ok(());
         }
-        let looked = self.terms_along(STRETCHES);
+        let (looked, looser, sizes) = self.looked_at(STRETCHES);
+        match self.round_off(&looked, &looser, &sizes) {
+            RoundOff::Small => {}
+            RoundOff::Doubted(doubt) => self.doubt = Some(doubt),
+            RoundOff::Counts(disturbance) => {
+                let equations = disturbed(&self.equations, &disturbance);
+                let prepared = Prepared::around(setting, equations, self.constants.clone(), 0, settings)?;
+                match self.looser_again(setting, prepared, settings) {
+                    Ok(looser) => self.replace_looser(looser),
+                    Err(_) => self.doubt = Some(not_followed(self.start())),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Instants of the kept run in its first chart, the states of the looser one there, and sizes of states.
+    fn looked_at(&mut self, stretches: usize) -> (Vec<Looked>, Vec<Vec<f64>>, Vec<f64>) {
+        let mut looked = self.terms_along(stretches);
+        if let Some(change) = self.charts.first() {
+            // behind it, the pivots of the first chart are small
+            let time = (change.t - self.start()).abs();
+            looked.retain(|(t, ..)| (t - self.start()).abs() < time);
+        }
         let sizes = self.sizes_of(&looked);
-        let looser: Vec<Vec<f64>> = looked.iter().map_while(|(t, ..)| self.looser_state(*t)).collect();
-        self.lost_digits(&looked, &looser, &sizes)
+        let looser = looked.iter().map_while(|(t, ..)| self.looser_state(*t)).collect();
+        (looked, looser, sizes)
+    }
+
+    fn looser_again(
+        &self,
+        setting: Setting,
+        mut prepared: Prepared,
+        settings: &Settings,
+    ) -> Result<Trajectory, SolveError> {
+        if let Trajectory::TimeLoop(kept) = &self.kept {
+            let options = Options { wanted: self.wanted.clone(), ..settings.options(settings.tolerance) };
+            return Ok(Trajectory::TimeLoop(Box::new(prepared.second_run(kept, setting.end, &options)?)));
+        }
+        match charts::run(setting, &mut prepared, settings, f64::INFINITY)? {
+            Course::Run(runs) => {
+                let [_, looser] = runs.trajectories;
+                Ok(looser)
+            }
+            // only a run that has patience to lose
+            Course::Unsuited(_) => Ok(self.looser.clone()),
+        }
+    }
+
+    /// Where the motion stops before its end, another run may do so a little earlier.
+    fn replace_looser(&mut self, looser: Trajectory) {
+        let (start, reached) = (self.start(), looser.ends()[1]);
+        let [length, other] = [self.end(), reached].map(|t| (t - start).abs());
+        if other >= length || !self.is_complete() && other > BEFORE_THE_END * length {
+            self.looser = looser;
+            self.read_to_the_end();
+        } else {
+            self.doubt = Some(not_followed(reached));
+        }
     }
 
     /// How much has been added up to each coordinate since the start at a few times: no difference under

@@ -49,8 +49,9 @@ fn a_run_that_stops_early_is_known_well_enough() {
     assert!(!whole.is_complete() && !asked.is_complete());
     assert!((asked.end() - whole.end()).abs() <= 200.0, "{} {}", asked.end(), whole.end());
     let [one, two] = [&mut whole, &mut asked].map(|m| error_estimates(m, setting(&scene), &TIMES[..3]).unwrap());
+    // round-off that is put into the looser run is looked for at other instants
     for t in &TIMES[..3] {
-        assert_eq!(whole.at_in_both_runs(*t).unwrap(), asked.at_in_both_runs(*t).unwrap());
+        assert_eq!(whole.at(*t).unwrap(), asked.at(*t).unwrap());
     }
     let (one, two) = (one.1.absolute, two.1.absolute);
     assert!(0.3 * one <= two && two <= 3.0 * one, "{two} beside {one}");

@@ -2,18 +2,19 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use equations::{Compiled, Equations, LaneEquations};
+use equations::{Compiled, Equations, LaneEquations, Plan};
 use integrate::{
     Interrupt, LANES, Lane, LaneProblem, LaneStart, Left, Options, ProjectionReport, Start, Status, StopCause, Work,
 };
 
 use super::threads::{Take, shared};
 use super::{Ensemble, EnsembleMember};
+use crate::disturbed::disturbed_by_constants;
 use crate::last_digits::{UNITS, move_digits};
 use crate::metric::subtract;
 use crate::single_run::SingleRun;
 use crate::sizes::sizes;
-use crate::{Ending, Metric, SolveError, TIGHTER};
+use crate::{Ending, Metric, Prepared, SolveError, TIGHTER};
 
 /// How an ensemble is run.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +38,8 @@ pub struct MemberRun {
     /// The states at the times asked for, as far as the motion came.
     pub states: Vec<Vec<f64>>,
     /// States of the kept run minus those of the looser one at these times: what the looser run was wrong by,
-    /// and a bound in practice for the kept one. Empty without [`EnsembleOptions::estimate`].
+    /// and a bound in practice for the kept one. Empty without [`EnsembleOptions::estimate`]. Of
+    /// [`Ensemble::motions`] the looser run has round-off in its rates, where that is more.
     pub differences: Vec<Vec<f64>>,
     /// How it ended.
     pub ending: Ending,
@@ -71,8 +73,55 @@ impl Ensemble {
         runs.map(|((kept, looser), member)| Ok(confirmed(kept?, looser?, member))).collect()
     }
 
+    /// The looser runs of `members` once more, alone, with this round-off in their rates.
+    pub(super) fn run_disturbed(
+        &self,
+        members: Vec<(&EnsembleMember, Vec<f64>)>,
+        times: &[f64],
+        threads: usize,
+    ) -> Result<Vec<Outcome>, SolveError> {
+        let Prepared { t, start, constants, .. } = self.varying.prepared();
+        let parameters = constants.len() - self.varying.constants().len();
+        let equations = disturbed_by_constants(self.equations(), parameters);
+        let with = |constants: &[f64], disturbance: &[f64]| {
+            let (own, varied) = constants.split_at(constants.len() - parameters);
+            [own, disturbance, varied].concat()
+        };
+        let point = [&[*t], &start[..], &with(constants, &vec![0.0; 2 * start.len()])].concat();
+        let plan = Plan::choose(&equations, Some(&point))?;
+        let compiled = Compiled::with_plan(&equations, &plan)?.with_series(&equations, &plan)?;
+        let disturbed = |(member, disturbance): (&EnsembleMember, Vec<f64>)| EnsembleMember {
+            constants: with(&member.constants, &disturbance),
+            ..member.clone()
+        };
+        let members: Vec<EnsembleMember> = members.into_iter().map(disturbed).collect();
+        let why = String::from("round-off of its rates is put into them");
+        let by = (&compiled, Err(&why));
+        Ok(self.run_by(by, &members, times, self.settings.tolerance, Origin::LastDigit, threads))
+    }
+
     fn run_once(
         &self,
+        members: &[EnsembleMember],
+        times: &[f64],
+        tolerance: f64,
+        origin: Origin,
+        threads: usize,
+    ) -> Vec<Outcome> {
+        self.run_by(
+            (&self.varying.prepared().compiled, self.lanes.as_ref()),
+            members,
+            times,
+            tolerance,
+            origin,
+            threads,
+        )
+    }
+
+    /// By these equations, in company if they come in lanes, or else why not.
+    fn run_by(
+        &self,
+        (compiled, lanes): (&Compiled, Result<&LaneEquations, &String>),
         members: &[EnsembleMember],
         times: &[f64],
         tolerance: f64,
@@ -86,9 +135,9 @@ impl Ensemble {
             times,
             origin,
             options: &options,
-            compiled: &self.varying.prepared().compiled,
+            compiled,
             metric: &self.metric,
-            lanes: self.lanes.as_ref(),
+            lanes,
             words: &self.words,
             left: Mutex::default(),
             only_complete: self.only_complete,
