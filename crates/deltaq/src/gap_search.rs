@@ -108,8 +108,14 @@ pub(crate) fn closest(
         search.differences.refine(settings);
         search.part = finer;
         search.limit = search.differences.work.saturating_add(limit / 4);
-        found.1 = search.gap(&found.0, FINE);
-        found = search.descent(found, 1.0);
+        found.1 = f64::INFINITY;
+        loop {
+            let before = found.1;
+            found = search.descent(found, 1.0);
+            if found.1 > (1.0 - GAIN) * before {
+                break;
+            }
+        }
         if may_vanish
             && search.differences.is_close(found.1)
             && let Some(exact) = search.differences.squares(&found.0, settings)
@@ -170,20 +176,23 @@ impl Search {
             values.push(self.around(center));
         }
         best = self.descended(best, values, true);
-        self.limit = whole;
         for _ in 0..ROUNDS {
             let mut values: Vec<Vec<f64>> = (0..n).flat_map(|j| self.along(&best.0, j, ALONG)).collect();
             if n > 1 {
                 values.extend((0..CLOUD).map(|_| self.around(&best.0)));
             }
             let before = best.1;
+            self.limit = whole;
             best = self.descended(best, values, false);
+            if best.1 > (1.0 - GAIN) * before {
+                self.limit = whole + whole / 3;
+                best = self.evolved(best);
+            }
             if best.1 > (1.0 - GAIN) * before {
                 break;
             }
         }
-        self.limit = self.differences.work.saturating_add(whole / 3);
-        self.evolved(best)
+        best
     }
 
     /// The best of `best` and of where the descents from the best of these values lead.
