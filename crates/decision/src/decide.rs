@@ -298,7 +298,8 @@ fn judge(
     // where nothing moves, what balances is the scale
     let scale = if sizes.moves { motion } else { sizes.terms * reach };
     let verdict = if least > CERTAIN * noise {
-        Verdict::NotContained
+        // what is so much more than the motion is round-off of it that has grown
+        if ROUND_OFF * least > scale { Verdict::Undecided } else { Verdict::NotContained }
     } else if CERTAIN * noise <= TOO_LOUD * scale && !loud {
         Verdict::Contained
     } else {

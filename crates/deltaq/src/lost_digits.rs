@@ -111,15 +111,6 @@ pub(crate) fn is_small(looked: &[Looked], looser: &[Vec<f64>], sizes: &[f64], be
     })
 }
 
-/// The doubt of a motion that no run follows beyond a time with round-off in its rates.
-pub(crate) fn not_followed(t: f64) -> Doubt {
-    let because = format!(
-        "the error estimate is not to be trusted from t = {t:.6} on: with round-off of the rates, which are \
-         differences of larger terms, a run ends there"
-    );
-    Doubt { from: t, because }
-}
-
 /// What round-off comes to between instants of the kept run, by the states of the looser one there and by
 /// the names and sizes of states. A doubt begins where it is no small part of a state. What cannot be
 /// evaluated is another matter.

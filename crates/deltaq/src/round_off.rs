@@ -4,7 +4,7 @@ use integrate::Options;
 
 use crate::charts::{self, Course};
 use crate::disturbed::disturbed;
-use crate::lost_digits::{Looked, RoundOff, finite, is_small, largest, not_followed};
+use crate::lost_digits::{Looked, RoundOff, finite, is_small, largest};
 use crate::trajectory::Trajectory;
 use crate::{Motion, Prepared, Setting, Settings, SolveError};
 
@@ -18,8 +18,9 @@ pub(crate) const BEFORE_THE_END: f64 = 0.9;
 
 impl Motion {
     /// Round-off of the rates, which both runs share, as a part of their difference: where it is more than
-    /// that, the looser run is made again with as much of it in its rates as there may be. A doubt where that
-    /// run does not come as far, or where it is no small part of a state.
+    /// that, the looser run is made again with as much of it in its rates as there may be; where that run does
+    /// not come as far, as it may not keep the constraint, the looser run stays. A doubt where round-off is no
+    /// small part of a state.
     ///
     /// # Errors
     /// [`SolveError`] where the equations cannot be compiled again.
@@ -35,9 +36,8 @@ impl Motion {
             RoundOff::Counts(disturbance) => {
                 let equations = disturbed(&self.equations, &disturbance);
                 let prepared = Prepared::around(setting, equations, self.constants.clone(), 0, settings)?;
-                match self.looser_again(setting, prepared, settings) {
-                    Ok(looser) => self.replace_looser(looser),
-                    Err(_) => self.doubt = Some(not_followed(self.start())),
+                if let Ok(looser) = self.looser_again(setting, prepared, settings) {
+                    self.replace_looser(looser);
                 }
             }
         }
@@ -84,8 +84,6 @@ impl Motion {
         if other >= length || !self.is_complete() && other > BEFORE_THE_END * length {
             self.looser = looser;
             self.read_to_the_end();
-        } else {
-            self.doubt = Some(not_followed(reached));
         }
     }
 

@@ -5,7 +5,6 @@ use super::run::Outcome;
 use super::threads::shared;
 use super::{Ensemble, EnsembleMember, EnsembleOptions, MemberRun};
 use crate::clock::Clock;
-use crate::lost_digits::not_followed;
 use crate::metric::subtract;
 use crate::{Doubt, ErrorEstimate, SolveError};
 use equations::Outputs;
@@ -130,11 +129,8 @@ impl Ensemble {
                     kept.differences = kept.states.iter().zip(&looser.states).map(|(a, b)| subtract(a, b)).collect();
                     counted.push(i);
                 }
-                Ok(looser) => {
-                    if let Some(Ok(reading)) = &mut read[i] {
-                        reading.doubt = Some(not_followed(looser.stopped().unwrap_or(members[i].t)));
-                    }
-                }
+                // no run follows the motion with round-off in its rates
+                Ok(_) => {}
                 Err(error) => read[i] = Some(Err(error)),
             }
         }
