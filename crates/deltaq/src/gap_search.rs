@@ -157,8 +157,8 @@ impl Search {
         Some(by_squares.filter(|value| value.1 < first.1).unwrap_or(first))
     }
 
-    /// The best of what grows with the motion, of a sweep, of sweeps around the best of it, and of a population.
-    /// Where constants are found that may leave no gap at all, no others are tried.
+    /// The best of what grows with the motion, of a sweep, of sweeps around the best of it, and of a
+    /// population. Where constants are found that may leave no gap at all, no others are tried.
     fn globally(&mut self, mut best: Value, may_vanish: bool) -> Value {
         self.sizes = self.sizes_at(&best.0);
         let (n, whole, zero) = (self.sizes.len(), self.limit, vec![0.0; self.sizes.len()]);

@@ -17,10 +17,10 @@ const BETWEEN: f64 = 8.0;
 pub(crate) const BEFORE_THE_END: f64 = 0.9;
 
 impl Motion {
-    /// Round-off of the rates, which both runs share, as a part of their difference: where it is more than
-    /// that, the looser run is made again with as much of it in its rates as there may be; where that run does
-    /// not come as far, as it may not keep the constraint, the looser run stays. A doubt where round-off is no
-    /// small part of a state.
+    /// Round-off of the rates, which both runs share, as a part of their difference: where it is more
+    /// than that, the looser run is made again with as much of it in its rates as there may be; where
+    /// that run does not come as far, as it may not keep the constraint, the looser run stays. A doubt
+    /// where round-off is no small part of a state.
     ///
     /// # Errors
     /// [`SolveError`] where the equations cannot be compiled again.

@@ -1,5 +1,5 @@
-//! How a search for the least largest gap goes down: steps to the linearized minimum, from the beginning of the
-//! motion to the whole, and a population that finds its way in valleys too narrow for steps.
+//! How a search for the least largest gap goes down: steps to the linearized minimum, from the beginning
+//! of the motion to the whole, and a population that finds its way in valleys too narrow for steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -84,10 +84,10 @@ impl Search {
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
 
-    /// What a population comes to that is drawn around `best` with a covariance that adapts itself to the
-    /// valleys in which gaps are small (CMSA-ES, Beyer and Sendhoff 2008): offspring `c + σ_l s_l`, with
-    /// `σ_l = σ exp(N(0, 1)/√(2n))` and `s_l` of covariance `C`; the best quarter of them has the next `c`, `σ`
-    /// and a part of the next `C`.
+    /// What a population comes to that is drawn around `best` with a covariance that adapts itself to
+    /// the valleys in which gaps are small (CMSA-ES, Beyer and Sendhoff 2008): offspring `c + σ_l s_l`,
+    /// with `σ_l = σ exp(N(0, 1)/√(2n))` and `s_l` of covariance `C`; the best quarter of them has the
+    /// next `c`, `σ` and a part of the next `C`.
     pub(crate) fn evolved(&mut self, mut best: Value) -> Value {
         const OFFSPRING: usize = 32;
         const PARENTS: usize = 8;

@@ -22,8 +22,9 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// The first difference of two writings of a page, with its line in the first of them; what is the same is
-    /// counted. Of a picture (SVG), words and numbers are what is written in it; where lines run is not asked.
+    /// The first difference of two writings of a page, with its line in the first of them; what is the
+    /// same is counted. Of a picture (SVG), words and numbers are what is written in it; where lines run
+    /// is not asked.
     ///
     /// # Errors
     /// Line and both writings.
