@@ -96,7 +96,7 @@ def test_a_start_may_be_an_equation(sledge):
     phi = system.start.q[2]
     assert np.allclose(system.start.v, [0.5 * np.cos(phi), 0.5 * np.sin(phi), 1.1], atol=1e-15)
     rows = system.ensemble(vary={"phi": [0.1, 0.7]}, times=[0, 1])
-    assert np.allclose(rows.velocities["x'"][:, 0], 0.5 * np.cos([0.1, 0.7]))
+    assert np.allclose(rows.velocities[:, 0, 0], 0.5 * np.cos([0.1, 0.7]))
 
 
 def test_wrong_arguments(sledge, system):
