@@ -156,10 +156,14 @@ impl Results {
         self.scene_files.iter().chain(self.parts.iter().flat_map(|part| &part.files)).cloned().collect()
     }
 
+    /// What sections besides the scenes say, and on which page.
+    fn further(&self) -> Vec<(&str, &str)> {
+        self.parts.iter().map(|part| (&part.headline[..], part.page)).collect()
+    }
+
     /// The page that every other one is reached from.
     pub(crate) fn overview(&self) -> File {
-        let further: Vec<(&str, &str)> = self.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
-        File { path: "README.md".into(), text: overview(&self.comparisons, &further) }
+        File { path: "README.md".into(), text: overview(&self.comparisons, &self.further()) }
     }
 }
 
@@ -199,10 +203,9 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
     let names: Vec<&str> =
         known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
-    let results = Results::of(sections, &names, true, quiet)?;
+    let mut results = Results::of(sections, &names, true, quiet)?;
     results.comparisons.iter().try_for_each(Comparison::is_sound)?;
     let mut files = results.files();
-    let further: Vec<(&str, &str)> = results.parts.iter().map(|part| (&part.headline[..], part.page)).collect();
     if complete {
         files.push(results.overview());
         let text = pretty("verdicts", &results.verdicts());
@@ -216,7 +219,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
         None if in_the_sources() => "target/measured".into(),
         None => out.join("measured"),
     };
-    let mut measured = results.measured;
+    let mut measured = results.measured.take();
     if let Some(part) = &mut measured {
         let pages = part.files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
         pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
@@ -224,7 +227,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     }
     let untold = if quiet { &results.comparisons[..] } else { &[] };
     let scenes = untold.iter().map(first_sentence);
-    let pages = further.into_iter().map(|(line, page)| (page.to_owned(), line.to_owned()));
+    let pages = results.further().into_iter().map(|(line, page)| (page.to_owned(), line.to_owned()));
     let measured = measured.map(|part| (folder.join(part.page).display().to_string(), part.headline));
     let answers: Vec<(String, String)> = scenes.chain(pages).chain(measured).collect();
     let (count, seconds) = (files.len(), clock.elapsed().as_secs_f64());
