@@ -81,3 +81,22 @@ fn a_force_that_keeps_its_digits_is_trusted() {
         assert!(status == "completed", "{force}, in an ensemble: {status}, {cause:?}");
     }
 }
+
+/// A pendulum 1e-12 rad from its top: the last digits of its angle are a part 1e-4 of its rate.
+#[test]
+fn a_pendulum_leaves_its_top() {
+    let text = "title = \"Pendulum\"\n[coordinates]\ntheta = { start = 3.141592653588793 }\n[system]\n\
+        lagrangian = \"theta'^2/2 + 9.81*cos(theta)\"\n[start]\nvelocities = { \"theta'\" = 0 }\n\
+        [run]\nduration = 6\n";
+    let scene = Scene::parse("pendulum", text).unwrap_or_else(|e| panic!("{e}"));
+    let mut motion = solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion");
+    let estimate = error_estimate(&mut motion, setting(&scene)).expect("in range");
+    assert_eq!(motion.end(), 6.0, "{:?}", estimate.status(&motion));
+    // the start is a double; what is left of pi behind it is 1.2e-16
+    let away = (std::f64::consts::PI - 3.141592653588793) + 1.2246467991473532e-16;
+    let end = motion.at(6.0).expect("in range").coordinates[0];
+    let truth = -away * (6.0 * 9.81_f64.sqrt()).cosh();
+    let error = ((end - std::f64::consts::PI) - truth).abs();
+    let estimated = estimate.coordinates[0];
+    assert!(error < 1e-2 * truth.abs() && error < estimated && estimated < 0.1 * truth.abs(), "{error}, {estimated}");
+}

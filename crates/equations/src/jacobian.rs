@@ -63,8 +63,8 @@ impl Jacobian {
     }
 
     /// How much was added up to each entry of `∂F/∂y = ∂F/∂y|z − ∂F/∂z (∂R/∂z)⁻¹ ∂R/∂y`, row-major: `x`, the
-    /// last two factors, is off by `|∂R/∂z|⁻¹` times what is added up in `∂R/∂z x + ∂R/∂y`. `matrices`: the
-    /// `∂R/∂z` of the blocks, whose factors are at hand.
+    /// last two factors, is off by `|∂R/∂z|⁻¹` times what is added up in `∂R/∂z x + ∂R/∂y` and on the way to `x`.
+    /// `matrices`: the `∂R/∂z` of the blocks, whose factors are at hand.
     pub(crate) fn terms(&self, inputs: &[Bounded], blocks: &mut [CompiledBlock], matrices: &[Vec<f64>]) -> Vec<f64> {
         let n = self.states;
         let mut program = Evaluator::<Bounded>::new(self.program.tape().clone());
@@ -82,9 +82,10 @@ impl Jacobian {
                 }
                 let product = |by: &dyn Fn(usize) -> f64, i: usize| (0..size).map(|k| inverse[k][i] * by(k)).sum();
                 let x: Vec<f64> = (0..size).map(|i| product(&|k| slope(k).value, i)).collect();
+                let eliminated = block.factors.eliminated(&x);
                 let of_row = |k: usize| -> f64 {
                     let row = matrix[k * size..][..size].iter().zip(&x);
-                    slope(k).magnitude + row.map(|(m, x)| m * x.abs()).sum::<f64>()
+                    slope(k).magnitude + eliminated[k] + row.map(|(m, x)| m * x.abs()).sum::<f64>()
                 };
                 let sums: Vec<f64> = (0..size).map(of_row).collect();
                 for row in 0..n {

@@ -39,6 +39,8 @@ use crate::taylor_step::{DEFECT, Ends, GOLDEN, MANY, ROUND_OFF, UNLIMITED, first
 /// Where coefficients overflow, the unit of time is shortened by this factor, so many times.
 const SHORTER_UNIT: f64 = 1e-8;
 const UNITS: usize = 30;
+/// Rates may differ by so many times what the last digits of the state make of them.
+const DIGITS: f64 = 4.0;
 
 pub(crate) struct Taylor<'s, 'p> {
     system: &'s System<'p>,
@@ -203,8 +205,9 @@ impl<'s, 'p> Taylor<'s, 'p> {
         Ok(())
     }
 
-    /// Compares the slope of the polynomial at the end with the rates there.
-    fn check_slope(&self) -> Result<(), Failure> {
+    /// Compares the slope of the polynomial at the end with the rates there. Where they differ, they may by as
+    /// much as the last digits of the start say of the rates, too: a pendulum 1e-12 rad from its top.
+    fn check_slope(&mut self) -> Result<(), Failure> {
         let ends = Ends {
             reached: self.reached.as_chunks::<1>().0,
             candidate: self.candidate.as_chunks().0,
@@ -213,7 +216,26 @@ impl<'s, 'p> Taylor<'s, 'p> {
             share: [self.taken / self.next_unit],
         };
         let defect = ends.defect(self.absolute_tolerances.as_chunks().0, self.relative_tolerance);
-        defect.component(0).map_or(Ok(()), |component| Err(Failure::NotSmooth { component }))
+        let Some(component) = defect.component(0) else { return Ok(()) };
+        let allowed = DIGITS * self.last_digits(component)? * self.taken.abs();
+        let rate = self.next_coefficients[component * (self.order + 1) + 1] * self.taken / self.next_unit;
+        if (self.slope[component] - rate).abs() <= allowed { Ok(()) } else { Err(Failure::NotSmooth { component }) }
+    }
+
+    /// How much the last digits of the state at the start of the step change a rate, added up.
+    fn last_digits(&mut self, component: usize) -> Result<f64, Failure> {
+        let starts = self.coefficients.iter().step_by(self.order + 1);
+        self.inside.iter_mut().zip(starts).for_each(|(y, c)| *y = *c);
+        self.system.rates(self.t, &self.inside, &mut self.rates)?;
+        let (rate, mut sum) = (self.rates[component], 0.0);
+        for j in 0..self.inside.len() {
+            let y = self.inside[j];
+            self.inside[j] = y * (1.0 + f64::EPSILON.sqrt());
+            self.system.rates(self.t, &self.inside, &mut self.rates)?;
+            sum += (self.rates[component] - rate).abs() * f64::EPSILON.sqrt();
+            self.inside[j] = y;
+        }
+        Ok(sum)
     }
 
     /// The longest step > 0 whose last terms are below the tolerance; infinite for a constant.

@@ -49,7 +49,7 @@ const STEADY: f64 = 1e-9;
 /// The equations of `choice` to first order about the start of `setting`, which has to be a steady motion.
 ///
 /// A rate counts as none up to 1e-9 of `Σ |J_ij| s_j` and what is added up to it, with `s` as far as states
-/// can be moved before `J` is another one, at most 1 for a coordinate.
+/// that are coupled both ways can be moved before their part of `J` is another one, and `s_j = |y_j|` of others.
 ///
 /// # Errors
 /// [`LinearError::NotSteady`], [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation
@@ -200,7 +200,7 @@ pub(crate) fn moving(
     matrix: &DMatrix<f64>,
 ) -> Result<(Vec<f64>, Option<Moving>), LinearError> {
     let y = point.y.clone();
-    let (rates, terms, scales) = (point.rates(&y)?, point.terms()?, point.scales(kept, matrix));
+    let (rates, terms, scales) = (point.rates(&y)?, point.terms()?, point.scales(kept, matrix)?);
     let over = kept.iter().zip(matrix.row_iter()).enumerate().filter_map(|(place, (&i, row))| {
         let size: f64 = row.iter().zip(&scales).map(|(a, s)| a.abs() * s).sum();
         let (rate, limit) = (rates[i], STEADY * (size + terms[i]));

@@ -98,7 +98,7 @@ impl Spectrum {
     /// ```
     pub fn of(matrix: &DMatrix<f64>, noise: &DMatrix<f64>) -> Option<Spectrum> {
         let n = matrix.nrows();
-        let coupled = matrix.zip_map(noise, |entry, noise| entry.abs() > 8.0 * noise);
+        let coupled = coupled(matrix, noise);
         let clean = DMatrix::from_fn(n, n, |i, j| if coupled[(i, j)] { matrix[(i, j)] } else { 0.0 });
         let mut error = noise + (matrix - &clean).abs();
         let part = |m: &DMatrix<f64>, places: &[usize]| {
@@ -207,8 +207,13 @@ impl Block {
     }
 }
 
+/// Which places a place depends on, beyond errors.
+pub(crate) fn coupled(matrix: &DMatrix<f64>, noise: &DMatrix<f64>) -> DMatrix<bool> {
+    matrix.zip_map(noise, |entry, noise| entry.abs() > 8.0 * noise)
+}
+
 /// Which places a place depends on, by way of others, too.
-fn reached(coupled: &DMatrix<bool>) -> DMatrix<bool> {
+pub(crate) fn reached(coupled: &DMatrix<bool>) -> DMatrix<bool> {
     let n = coupled.nrows();
     let mut reached = coupled.clone();
     for k in 0..n {
@@ -222,7 +227,7 @@ fn reached(coupled: &DMatrix<bool>) -> DMatrix<bool> {
 }
 
 /// Sets of places that reach each other, by their first ones.
-fn components(reached: &DMatrix<bool>) -> Vec<Vec<usize>> {
+pub(crate) fn components(reached: &DMatrix<bool>) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
     for i in 0..reached.nrows() {
         match found.iter_mut().find(|set| reached[(i, set[0])] && reached[(set[0], i)]) {

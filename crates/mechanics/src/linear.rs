@@ -168,6 +168,20 @@ impl<T: Entry> Factors<T> {
         Ok(())
     }
 
+    /// `|L| |U| |x|`, in the rows and units of the matrix: what elimination adds up on the way to a solution `x`.
+    pub fn eliminated(&self, x: &[T]) -> Vec<f64> {
+        let n = self.n;
+        let sizes: Vec<f64> = x.iter().zip(&self.column_scale).map(|(x, scale)| x.size() / scale.size()).collect();
+        let upper = |i: usize| (i..n).map(|j| self.lu[i * n + j].size() * sizes[j]).sum::<f64>();
+        let upper: Vec<f64> = (0..n).map(upper).collect();
+        let mut sums = vec![0.0; n];
+        for (i, &row) in self.rows.iter().enumerate() {
+            let lower: f64 = (0..i).map(|j| self.lu[i * n + j].size() * upper[j]).sum();
+            sums[row] = (lower + upper[i]) / self.row_scale[row].size();
+        }
+        sums
+    }
+
     /// Overwrites `b` by the solution.
     pub fn solve(&mut self, b: &mut [T]) {
         let n = self.n;
@@ -219,6 +233,16 @@ mod tests {
             f.solve(&mut b);
             assert!((b[0] - 1.0).abs() < 1e-14 && (b[1] - 2.0).abs() < 1e-14 && b[2].abs() < 1e-14 * m, "{b:?}");
         }
+    }
+
+    #[test]
+    fn what_elimination_adds_up_bounds_what_it_loses() {
+        // [ 27 a; a 0 ] z = (1, 0): z = (0, 1/a), where 1/27 is added and taken away
+        let a = 0.3;
+        let mut f = Factors::new(2);
+        f.factorize(&[27.0, a, a, 0.0]).unwrap();
+        let sums = f.eliminated(&[0.0, 1.0 / a]);
+        assert!((sums[0] - 1.0).abs() < 1e-14 && (sums[1] - 2.0 * a / 27.0).abs() < 1e-14, "{sums:?}");
     }
 
     #[test]

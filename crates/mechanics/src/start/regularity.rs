@@ -1,25 +1,28 @@
 //! Whether a system has well-posed equations of motion at a point, whatever its units.
 
 use nalgebra::{DMatrix, DVector};
-use symbolic::{Symbol, Xorshift};
+use symbolic::{Bounded, Symbol};
 
 use super::error::{Quantity, StartError, check_lengths};
-use super::numeric::AtState;
+use super::numeric::{AtState, Program, bounded, state_symbols};
 use crate::newton::decompose;
 use crate::{State, System};
 
 /// Ratios of singular values under this are taken for zero.
 pub(super) const SINGULAR_LIMIT: f64 = 1e-10;
 
-/// Nearby points at which the usual size of an entry is taken, and their distance relative to `1 + |x|`.
-const POINTS: u64 = 6;
-const DISTANCE: f64 = 1e-2;
+/// An entry under this part of what was added up to it is round-off.
+const ROUND_OFF: f64 = 1e-13;
+
+/// Steps of a balance of `M`, and the part of its rows that is balance enough.
+const BALANCE_STEPS: usize = 60;
+const BALANCED: f64 = 0.5;
 
 /// Checks at `state` that `L`, `f` and `Q` are finite, that `A = ∂f/∂v` has full row rank and that `NᵀMN` is
 /// regular: `M = ∂²L/∂v²`, the columns of `N` a basis of ker `A`. `M` itself may be singular, or indefinite.
 ///
-/// Entries are compared with their size at nearby points, row by row and column by column, so that neither
-/// units nor round-off (`sin(pi)`) can feign a rank.
+/// Entries are compared within their row and column, and those that may be round-off (`sin(pi)`) are zero, so
+/// that neither units nor round-off can feign a rank.
 ///
 /// # Errors
 /// [`StartError::NotFinite`], [`StartError::DependentConstraints`], [`StartError::SingularMassMatrix`].
@@ -44,7 +47,7 @@ pub(super) struct Regularity {
     /// `L`, `f` and `Q`, one by one: faults have a name.
     finite: Vec<(Quantity, AtState)>,
     /// `A`, then `M`.
-    entries: AtState,
+    entries: Program<Bounded>,
     /// h and n.
     shape: (usize, usize),
 }
@@ -59,7 +62,7 @@ impl Regularity {
         let entries = [system.constraint_jacobian().entries(), system.velocity_hessian().entries()].concat();
         Regularity {
             finite: quantities.map(|(quantity, e)| (quantity, AtState::new(system, varied, &[e]))).collect(),
-            entries: AtState::new(system, varied, &entries),
+            entries: Program::new(system, &state_symbols(system, varied), &entries),
             shape: (system.constraints.len(), system.dimension()),
         }
     }
@@ -86,11 +89,12 @@ impl Regularity {
     }
 
     fn scaled(&mut self, state: &State, varied: &[f64]) -> Result<ScaledMatrices, StartError> {
-        ScaledMatrices::new(&mut self.entries, self.shape, state, varied)
+        let point = [&state.q[..], &state.v, &[state.t], varied].concat();
+        ScaledMatrices::new(self.entries.evaluator()?.evaluate(&bounded(&point)), self.shape)
     }
 }
 
-/// `A` and `M` in units in which their entries are of order 1 near the start.
+/// `A` and `M` in units in which their entries are of order 1.
 struct ScaledMatrices {
     constraint_jacobian: DMatrix<f64>,
     mass: DMatrix<f64>,
@@ -99,27 +103,17 @@ struct ScaledMatrices {
 }
 
 impl ScaledMatrices {
-    fn new(entries: &mut AtState, (h, n): (usize, usize), state: &State, varied: &[f64]) -> Result<Self, StartError> {
-        let here = entries.at(state, varied)?.to_vec();
-        if let Some(place) = here.iter().position(|x| !x.is_finite()) {
+    fn new(entries: &[Bounded], (h, n): (usize, usize)) -> Result<Self, StartError> {
+        if let Some(place) = entries.iter().position(|x| !x.value.is_finite()) {
             let quantity = if place < h * n { Quantity::ConstraintJacobian } else { Quantity::MassMatrix };
-            return Err(StartError::NotFinite { quantity, value: here[place] });
+            return Err(StartError::NotFinite { quantity, value: entries[place].value });
         }
-        let mut usual: Vec<f64> = here.iter().map(|x| x.abs()).collect();
-        for point in 0..POINTS {
-            for (u, x) in usual.iter_mut().zip(entries.at(&nearby(state, point), varied)?) {
-                if x.is_finite() {
-                    *u = u.max(x.abs());
-                }
-            }
-        }
-        let usual_a = DMatrix::from_row_slice(h, n, &usual[..h * n]);
-        let usual_m = DMatrix::from_row_slice(n, n, &usual[h * n..]);
-        let columns = column_scale(&usual_a, &usual_m);
-        let scaled_a = DMatrix::from_fn(h, n, |i, j| usual_a[(i, j)] * columns[j]);
+        let known = |x: &Bounded| if x.value.abs() <= ROUND_OFF * x.magnitude { 0.0 } else { x.value };
+        let a = DMatrix::from_row_iterator(h, n, entries[..h * n].iter().map(known));
+        let m = DMatrix::from_row_iterator(n, n, entries[h * n..].iter().map(known));
+        let columns = column_scale(&a, &m);
+        let scaled_a = DMatrix::from_fn(h, n, |i, j| a[(i, j)].abs() * columns[j]);
         let rows = DVector::from_fn(h, |i, _| inverse_or_one(scaled_a.row(i).amax()));
-        let a = DMatrix::from_row_slice(h, n, &here[..h * n]);
-        let m = DMatrix::from_row_slice(n, n, &here[h * n..]);
         Ok(ScaledMatrices {
             constraint_jacobian: DMatrix::from_fn(h, n, |i, j| rows[i] * a[(i, j)] * columns[j]),
             mass: DMatrix::from_fn(n, n, |i, j| columns[i] * m[(i, j)] * columns[j]),
@@ -198,27 +192,23 @@ fn inverse_or_one(x: f64) -> f64 {
     if x > 0.0 && (1.0 / x).is_finite() { 1.0 / x } else { 1.0 }
 }
 
-/// A unit for each velocity: where `M` knows the coordinate, the one that makes its mass 1; else the one that
-/// makes its part in a constraint as large as that of the others.
-fn column_scale(usual_a: &DMatrix<f64>, usual_m: &DMatrix<f64>) -> DVector<f64> {
-    let n = usual_m.nrows();
-    let mut scale = DVector::from_fn(n, |j, _| {
-        let mass = usual_m[(j, j)];
-        if mass > 0.0 { inverse_or_one(mass.sqrt()) } else { 0.0 }
-    });
-    let rows: Vec<f64> = usual_a.row_iter().map(|row| row.transpose().component_mul(&scale).amax()).collect();
-    for j in (0..n).filter(|&j| usual_m[(j, j)] == 0.0) {
-        let part = |(i, &row): (usize, &f64)| if row > 0.0 { usual_a[(i, j)] / row } else { 0.0 };
+/// A unit for each velocity: where `M` knows the coordinate, the one that makes the largest entry of its row 1;
+/// else the one that makes its part in a constraint as large as that of the others.
+fn column_scale(a: &DMatrix<f64>, m: &DMatrix<f64>) -> DVector<f64> {
+    let has_mass: Vec<bool> = m.row_iter().map(|row| row.amax() > 0.0).collect();
+    let mut scale = DVector::from_fn(m.nrows(), |j, _| if has_mass[j] { 1.0 } else { 0.0 });
+    for _ in 0..BALANCE_STEPS {
+        let largest = |i: usize| m.row(i).transpose().component_mul(&scale).amax() * scale[i];
+        let largest: Vec<f64> = (0..m.nrows()).map(largest).collect();
+        scale.iter_mut().zip(&largest).for_each(|(s, size)| *s *= inverse_or_one(size.sqrt()));
+        if (0..m.nrows()).all(|i| !has_mass[i] || (largest[i] - 1.0).abs() < BALANCED) {
+            break;
+        }
+    }
+    let rows: Vec<f64> = a.row_iter().map(|row| row.transpose().component_mul(&scale).amax()).collect();
+    for j in (0..m.nrows()).filter(|&j| !has_mass[j]) {
+        let part = |(i, &row): (usize, &f64)| if row > 0.0 { a[(i, j)].abs() / row } else { 0.0 };
         scale[j] = inverse_or_one(rows.iter().enumerate().map(part).fold(0.0, f64::max));
     }
     scale
-}
-
-/// A state a little way off, a pure function of `point`.
-fn nearby(state: &State, point: u64) -> State {
-    let mut random = Xorshift::new(point);
-    let mut shift = |x: f64| x + DISTANCE * (1.0 + x.abs()) * (2.0 * random.unit() - 1.0);
-    let q = state.q.iter().map(|&x| shift(x)).collect();
-    let v = state.v.iter().map(|&x| shift(x)).collect();
-    State { t: state.t, q, v }
 }
