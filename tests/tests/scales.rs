@@ -26,7 +26,7 @@ const ONE_IN: f64 = 4.0;
 const FACTOR: f64 = 100.0;
 const ROUND_OFF: f64 = 1e-11;
 /// Other words to first order, as a part of all: scales of states not coupled both ways are not known.
-const KNOWN: f64 = 0.04;
+const KNOWN: f64 = 0.01;
 
 /// Units in those of the scene.
 #[derive(Clone, Copy)]

@@ -184,6 +184,9 @@ impl Problem for Runner<'_> {
     fn gauges(&self) -> &[Gauge] {
         self.compiled.gauges()
     }
+    fn highest_power(&self) -> f64 {
+        self.compiled.highest_power()
+    }
     fn gauged(&mut self, t: f64, y: &[f64], arguments: &mut [f64]) -> Result<(), integrate::EvaluationError> {
         self.compiled.gauged(t, y, arguments);
         Ok(())

@@ -129,3 +129,40 @@ fn powers_saws_and_quotients_are_never_wrong_in_silence() {
     assert!(wrong.is_empty(), "{right} right, {told} told, {} wrong: {}", wrong.len(), wrong.join("\n"));
     assert!(told * 4 < right, "{right} right, {told} told");
 }
+
+/// Hills of a high power are nothing at both ends of a step that another coordinate limits; energy is not
+/// watched here.
+#[test]
+fn hills_of_high_powers_are_not_passed() {
+    let pushed = |hill: &str, x: f64, speed: f64, method: Option<Method>| {
+        let text = format!(
+            "title = \"Hill\"\n[coordinates]\nx = {{ start = {x:?} }}\ny = {{ start = 1 }}\n[system]\n\
+             lagrangian = \"(x'^2 + y'^2)/2 - {speed:?}^2*y^2/2\"\nforces = {{ x = \"{hill}\" }}\n[start]\n\
+             velocities = {{ \"x'\" = 1, \"y'\" = 0 }}\n[run]\nduration = 8\n"
+        );
+        let scene = Scene::parse("hill", &text).unwrap_or_else(|e| panic!("{e}"));
+        let settings = Settings { method, ..Settings::default() };
+        let mut motion = solve_choice(&scene, &choices(&scene)[0], &settings).expect("a motion");
+        let estimate = error_estimate(&mut motion, setting(&scene)).expect("in range");
+        let is_told = estimate.status(&motion).0 != "completed";
+        (motion.at(motion.end()).expect("in range").coordinates[0], estimate.coordinates[0], is_told)
+    };
+    // forces of the hills (4x(1 - x))^100, 0.6 high, and 0.6/(1 + x^2)^60
+    let bell = "-240*(4*x*(1 - x))^99*(1 - 2*x)";
+    for (hill, x) in [(bell, 0.0), ("72*x*(1 + x^2)^(-61)", -3.0)] {
+        let (mut ends, mut told) = (Vec::new(), 0);
+        for speed in [0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 7.0, 14.0] {
+            for method in [None, Some(Method::Dop853), Some(Method::Radau5)] {
+                let (end, error, is_told) = pushed(hill, x, speed, method);
+                told += usize::from(is_told);
+                ends.extend((!is_told).then_some((end, error, speed, method)));
+            }
+        }
+        let (truth, least, ..) = *ends.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("one that is right");
+        assert!(truth < x + 0.6, "{hill}: passed, {ends:?}");
+        for (end, error, speed, method) in &ends {
+            assert!((end - truth).abs() <= 10.0 * (error + least), "{hill}, {speed}, {method:?}: {end}, {truth}");
+        }
+        assert!(told <= 4, "{hill}: {told} told, {ends:?}");
+    }
+}

@@ -28,6 +28,7 @@ pub struct Compiled {
     pub(crate) angles: Evaluator<f64>,
     pub(crate) steep: Evaluator<f64>,
     pub(crate) gauges: Vec<fn(f64) -> f64>,
+    pub(crate) highest_power: f64,
     pub(crate) divisors: Evaluator<f64>,
     /// Programs in terms, once these are asked for.
     pub(crate) terms: Option<Box<Terms>>,
@@ -101,6 +102,7 @@ impl Compiled {
             rates: equations.evaluator(&all, &rates)?,
             outputs: equations.evaluator(&all, &outputs)?,
             guards: equations.evaluator(&known, &guards)?,
+            highest_power: equations.highest_power(),
             gauges: steep.iter().map(|steep| steep.gauge).collect(),
             steep: equations.evaluator(&known, &steep.iter().map(|steep| steep.argument).collect::<Vec<_>>())?,
             angles: equations.evaluator(&known, &equations.angles())?,

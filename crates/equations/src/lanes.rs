@@ -36,7 +36,7 @@ impl LaneEquations {
             let words: Vec<&str> = plan.left.iter().filter_map(|&k| plan.why.get(k)).map(String::as_str).collect();
             return Ok(Err(format!("not in lanes: {}", words.join("; "))));
         }
-        if !equations.steep().is_empty() {
+        if !equations.steep().is_empty() || equations.highest_power() > 0.0 {
             return Ok(Err(
                 "not in lanes: functions in the equations may change within a step, which looks closer".into()
             ));

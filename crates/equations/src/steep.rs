@@ -19,6 +19,11 @@ impl Equations {
         steep
     }
 
+    /// The highest power in the equations of what has no bounds: [`symbolic::Graph::highest_power`].
+    pub fn highest_power(&self) -> f64 {
+        self.graph.highest_power(&self.all(), &self.values())
+    }
+
     /// Angles of points in the equations, likewise: [`symbolic::Graph::angles`].
     pub fn angles(&self) -> Vec<Expr> {
         let mut angles = self.graph.angles(&self.all());
@@ -70,6 +75,11 @@ impl Compiled {
     /// Gauges of functions that may change within little of their arguments: [`symbolic::Steep`].
     pub fn gauges(&self) -> &[fn(f64) -> f64] {
         &self.gauges
+    }
+
+    /// [`Equations::highest_power`].
+    pub fn highest_power(&self) -> f64 {
+        self.highest_power
     }
 
     /// The arguments of these functions.

@@ -217,6 +217,10 @@ impl<'p> System<'p> {
         Ok(self.inner.borrow_mut().problem.accepted(t, y)?)
     }
 
+    pub(crate) fn highest_power(&self) -> f64 {
+        self.inner.borrow().problem.highest_power()
+    }
+
     pub(crate) fn gauges(&self) -> Vec<Gauge> {
         self.inner.borrow().problem.gauges().to_vec()
     }

@@ -125,6 +125,25 @@ impl Graph {
             .collect()
     }
 
+    /// The highest power in `es` of what has no bounds, from 20 on; 0 where there is none. `(4x(1 − x))⁴⁰` is
+    /// nothing but for a part `1/√40` of where `x` passes it, and to order 39 nothing at both ends.
+    pub fn highest_power(&self, es: &[Expr], known: &HashMap<Symbol, Range>) -> f64 {
+        let arena = self.arena.borrow();
+        let products = arena.reachable(es, |_| true).into_iter();
+        let factors = products.flat_map(|e| match arena.node(e) {
+            Node::Product(factors) => factors.to_vec(),
+            _ => Vec::new(),
+        });
+        let high: Vec<(Expr, f64)> = factors.map(|(base, n)| (base, n.to_f64())).filter(|(_, n)| *n >= HIGH).collect();
+        drop(arena);
+        let mut ranges = FxHashMap::default();
+        let mut is_unbounded = |base: Expr| {
+            let Range { low, high } = self.range_among(base, known, &mut ranges);
+            !(low.is_finite() && high.is_finite())
+        };
+        high.into_iter().filter(|(base, _)| is_unbounded(*base)).fold(0.0, |most, (_, n)| most.max(n))
+    }
+
     /// The angles of points in `es`: each jumps by 2π where its point passes behind the origin.
     pub fn angles(&self, es: &[Expr]) -> Vec<Expr> {
         let arena = self.arena.borrow();
@@ -181,6 +200,11 @@ impl Graph {
             }
         } else if power < 0.0 && low > 0.0 && high > MODERATE * low {
             found.insert((base, Kind::Quotient));
+            if power <= -HIGH {
+                // (b/B)^−n falls within 1/n of b: b is at least B
+                let logarithm = self.call(Function::Log, self.mul(self.number(1.0 / low), base));
+                found.insert((self.mul(self.number(power), logarithm), Kind::Exp));
+            }
             // where these are large they hide what is between
             for e in self.arena.borrow().reachable(&[base], |_| true) {
                 if let Node::Call(Function::Cosh | Function::Sinh, x) = self.arena.borrow().node(e) {
