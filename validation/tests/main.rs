@@ -1,8 +1,11 @@
 //! What the reports rest on: one program, one module a subject.
 
 mod audit;
+mod batches;
 mod bench;
 mod casadi;
+mod changed_pages;
 mod headlines;
+mod pages;
 mod pictures;
 mod scaling;

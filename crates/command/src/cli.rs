@@ -347,9 +347,13 @@ pub struct ScalingArguments {
 /// `deltaq reports`.
 #[derive(Args, Debug)]
 pub struct ReportsArguments {
-    /// Compare only; nothing is written.
-    #[arg(long, required = true)]
+    /// Compare only; nothing is written. Says, too, which pages of times are older than their code.
+    #[arg(long, required_unless_present = "stamp", conflicts_with = "stamp")]
     pub check: bool,
+    /// Pages that the main job does not write, and that were measured now: their last line says when, and
+    /// with which code.
+    #[arg(long, value_name = "PAGE,…", value_delimiter = ',')]
+    pub stamp: Vec<String>,
     /// Folder of the reports.
     #[arg(long, default_value = "reports")]
     pub out: PathBuf,

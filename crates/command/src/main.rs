@@ -119,7 +119,7 @@ fn run(cli: Cli) -> Result<Answer> {
         Some(Command::Linearize(arguments)) => linearize_command::run(&arguments)?,
         Some(Command::Compare(arguments)) => compare_command::run(&arguments, quiet)?,
         Some(Command::Explore(arguments)) => explore_command::run(&arguments)?,
-        Some(Command::Reports(arguments)) => reports_command::check(&arguments)?,
+        Some(Command::Reports(arguments)) => reports_command::run(&arguments)?,
         Some(Command::Bench(arguments)) => bench_command::run(&arguments, quiet)?,
         Some(Command::Scaling(arguments)) => bench_command::scaling(&arguments, quiet)?,
         Some(Command::Completions { shell }) => {

@@ -1,7 +1,7 @@
 //! The main job: every scene in every formulation, and reports.
 
 use std::panic::resume_unwind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::thread::ScopedJoinHandle;
@@ -57,6 +57,9 @@ const ENSEMBLE_REPEATS: usize = 2;
 /// The rank of the scenes among [`JOBS`]: they are first to answer.
 const SCENES_FIRST: usize = 0;
 
+/// The place in the reports that the overview's line about CasADi leads to.
+pub(crate) const CASADI: &str = "scenes/sledge.md#referees";
+
 /// The rank of the references that errors are taken against.
 const REFERENCES_THEN: usize = 1;
 
@@ -68,6 +71,8 @@ fn finished<T>(job: ScopedJoinHandle<'_, T>) -> T {
 pub(crate) struct Results {
     pub(crate) comparisons: Vec<Comparison>,
     scene_files: Vec<File>,
+    /// What referees say of scenes, by the paths of their pages, on which it stands last.
+    referees: Vec<(PathBuf, String)>,
     parts: Vec<Part>,
     /// Times, which no two machines share.
     measured: Option<Part>,
@@ -104,7 +109,8 @@ impl Results {
             Some(Outcome::NotRun(reason)) => Some(reason.to_string()),
             _ => None,
         };
-        let mut results = Results { comparisons: Vec::new(), scene_files: Vec::new(), parts, measured, casadi_not_run };
+        let (comparisons, scene_files, referees) = Default::default();
+        let mut results = Results { comparisons, scene_files, referees, parts, measured, casadi_not_run };
         results.add_referee(casadi.as_ref(), scenes, asked(&Section::ErrorVsTime))?;
         Ok(results)
     }
@@ -125,17 +131,17 @@ impl Results {
             let headline = casadi_job::headline(outcome);
             let headline = format!("Referees that share no derivation with this program: {headline}.");
             let verdicts = casadi_job::verdict_words(outcome).map(|words| ("casadi", words));
-            self.parts.insert(0, Part { page: "scenes/sledge.md#referees", headline, verdicts, files: Vec::new() });
+            self.parts.insert(0, Part { page: CASADI, headline, verdicts, files: Vec::new() });
         }
         for mut report in scenes {
             let section = referees_section(&mut report.comparison, casadi)?;
             if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
-                page.text += &section;
                 let name = &report.comparison.scene.name;
                 page.text += &format!("\nWith sliders, in a browser: [this scene](../explore.html#scene={name}).\n");
                 if times {
                     page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
                 }
+                self.referees.push((page.path.clone(), section));
             }
             self.scene_files.extend(report.files);
             self.comparisons.push(report.comparison);
@@ -153,7 +159,17 @@ impl Results {
 
     /// Pages and pictures of every section that ran, but for those of times.
     pub(crate) fn files(&self) -> Vec<File> {
-        self.scene_files.iter().chain(self.parts.iter().flat_map(|part| &part.files)).cloned().collect()
+        let mut files = self.scene_files.clone();
+        for (path, section) in &self.referees {
+            files.iter_mut().filter(|file| file.path == *path).for_each(|page| page.text += section);
+        }
+        files.into_iter().chain(self.parts.iter().flat_map(|part| part.files.clone())).collect()
+    }
+
+    /// Nothing of what referees say is on any page.
+    pub(crate) fn leave_out_referees(&mut self) {
+        self.referees.clear();
+        self.parts.retain(|part| part.page != CASADI);
     }
 
     /// What sections besides the scenes say, and on which page.
@@ -171,11 +187,12 @@ impl Results {
 const ELSEWHERE: &str = "say what to do: without a command the main job runs, which writes every report of the project, \
     and this folder does not belong to its sources; --out DIR runs it here";
 
-/// Whether the current folder belongs to the sources of this program.
-fn in_the_sources() -> bool {
+/// The root of the sources of this program, if the current folder belongs to them.
+pub(crate) fn sources() -> Option<PathBuf> {
     let here = std::env::current_dir().unwrap_or_default();
-    here.ancestors()
-        .any(|folder| folder.join("crates/catalogue/scenes").is_dir() && folder.join("crates/command").is_dir())
+    let is_root =
+        |folder: &&Path| folder.join("crates/catalogue/scenes").is_dir() && folder.join("crates/command").is_dir();
+    here.ancestors().find(is_root).map(Path::to_owned)
 }
 
 /// Runs the main job and returns what to tell the user. Where it fails, nothing is written.
@@ -185,7 +202,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     let quiet = quiet || arguments.format == TextOrJson::Json;
     let out = match &arguments.out {
         Some(folder) => folder.clone(),
-        None if in_the_sources() => "reports".into(),
+        None if sources().is_some() => "reports".into(),
         None => bail!("{ELSEWHERE}\n\n{}", Cli::command().render_help()),
     };
     let known: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
@@ -216,7 +233,7 @@ pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
     write(&arguments.out)(&out, &files)?;
     let folder = match &arguments.measured {
         Some(folder) => folder.clone(),
-        None if in_the_sources() => "target/measured".into(),
+        None if sources().is_some() => "target/measured".into(),
         None => out.join("measured"),
     };
     let mut measured = results.measured.take();
@@ -315,7 +332,8 @@ pub(crate) fn bench_all(prepared: Vec<bench::Prepared>, effort: &Effort, quiet: 
 /// Version and commit of the program, the machine, and how long the job took until then.
 fn provenance(seconds: f64) -> String {
     let describe = || Command::new("git").args(["describe", "--always", "--dirty"]).output().ok();
-    let commit = in_the_sources()
+    let commit = sources()
+        .is_some()
         .then(describe)
         .flatten()
         .filter(|output| output.status.success())

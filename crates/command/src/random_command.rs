@@ -131,3 +131,15 @@ fn counterexamples(batch: &Batch, records: &[Record]) -> Vec<File> {
     let shrunk = failures.take(COUNTEREXAMPLES).filter_map(|(index, theorem)| batch.counterexample(index, theorem));
     shrunk.map(|scene| file(&scene)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_claim_that_fails_is_a_complaint_and_one_that_is_undecided_is_none() {
+        let count = |holds, fails, undecided| complaint(Count { holds, fails, undecided });
+        assert_eq!(count(3, 0, 2), None);
+        assert_eq!(count(3, 1, 2), Some("1 of 6 verdicts on theorems: a claim fails".into()));
+    }
+}

@@ -22,5 +22,20 @@ pub(crate) fn run(arguments: &StabilityArguments, quiet: bool) -> Result<Answer>
     let (answers, wrong, seconds) = (report.answers(), report.count("wrong"), clock.elapsed().as_secs_f64());
     let text = || report.text() + &format!("\n{answers} cells, {seconds:.1} s\n");
     let text = arguments.output.answer("stability", || report.files(), text, || json!({ "cells": report.json() }))?;
-    Ok(Answer { text, complaint: (wrong > 0).then(|| format!("{wrong} of {answers} cells are wrong")) })
+    Ok(Answer { text, complaint: complaint(wrong, answers) })
+}
+
+fn complaint(wrong: usize, answers: usize) -> Option<String> {
+    (wrong > 0).then(|| format!("{wrong} of {answers} cells are wrong"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::complaint;
+
+    #[test]
+    fn a_wrong_cell_is_a_complaint() {
+        assert_eq!(complaint(0, 7), None);
+        assert_eq!(complaint(2, 7), Some("2 of 7 cells are wrong".into()));
+    }
 }

@@ -1,6 +1,7 @@
 //! The program as a person meets it, run as a process: one program, one module a subject.
 
 mod bad_scenes;
+mod columns;
 mod commands;
 mod compare_command;
 mod documents;

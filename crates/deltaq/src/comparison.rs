@@ -234,3 +234,28 @@ fn worth_comparing(first: &Run, second: &Run) -> bool {
     only_with(vakonomic::COSTATE_FORM.name, vakonomic::FORMULATION.name)
         && outside.is_none_or(|name| only_with(name, chetaev::FORMULATION.name))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::choices;
+    use crate::fits::FittedMotion;
+
+    #[test]
+    fn constants_that_a_search_has_found_stay_only_where_they_come_closer() {
+        let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
+        let all = choices(&scene);
+        let mut comparison = compare_unfitted(scene, all, Vec::new(), &Settings::default()).expect("a comparison");
+        let (target, run) = (0, comparison.run("vakonomic").expect("a run"));
+        let own = comparison.pair(target, run).expect("a pair").gap.clone();
+        let fit = |largest: f64| {
+            let gap = crate::Gap { largest, ..own.clone() };
+            let fitted = FittedMotion { constants: vec![("mu0_1".into(), 0.625)], gap, starts: 3 };
+            Fit { run, target, fitted: Some(fitted), by_identity: false }
+        };
+        comparison.fits = vec![fit(0.5 * own.largest), fit(2.0 * own.largest)];
+        comparison.keep_closer();
+        let found = |i: usize| comparison.fits[i].fitted.as_ref().map(|f| (f.constants[0].1, f.gap.largest));
+        assert_eq!((found(0), found(1)), (Some((0.625, 0.5 * own.largest)), Some((0.0, own.largest))));
+    }
+}

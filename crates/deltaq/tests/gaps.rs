@@ -289,3 +289,19 @@ impl std::fmt::Debug for Gapped<'_> {
         )
     }
 }
+
+#[test]
+fn a_difference_is_proved_only_by_what_is_proved() {
+    let start = [("x", 0.4), ("y", 0.3), ("z", 0.0)];
+    // exact numbers do not reach powers that are no fractions with a root
+    for (factor, proved, word) in
+        [("x", true, "different"), ("x^1.3", false, "different"), ("1e-7*x^1.3", false, "same")]
+    {
+        let system = format!("lagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"z' - {factor}*y'\"]");
+        let comparison = compared(&text(&start, &system, &[("x", 0.7), ("y", 0.5)], 2.0));
+        let pair = comparison.pair(0, 1).expect("Chetaev and vakonomic");
+        let gap = &pair.gap;
+        assert_eq!((gap.proved, gap.verdict.word()), (proved, word), "{factor}: {:?}", Gapped(gap));
+        assert!(pair.predicted.as_ref().is_none_or(|term| term.proved == proved), "{factor}: {:?}", pair.predicted);
+    }
+}

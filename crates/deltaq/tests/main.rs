@@ -1,5 +1,7 @@
 //! The library as its user meets it: one program, one module a subject.
 
+mod answers;
+mod beginnings;
 mod charts;
 mod contradictions;
 mod errors;
@@ -7,8 +9,11 @@ mod estimates;
 mod examples;
 mod fits;
 mod gaps;
+mod known_members;
+mod known_values;
 mod long;
 mod round_off;
+mod sentences;
 mod steep;
 mod switches;
 mod walls;

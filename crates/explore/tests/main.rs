@@ -262,3 +262,35 @@ fn scenes() -> Vec<(String, String)> {
     let text = |file: &std::path::PathBuf| std::fs::read_to_string(file).unwrap();
     scenes.map(|file| (file.file_stem().unwrap().to_string_lossy().into_owned(), text(&file))).collect()
 }
+
+/// An explorer that was asked about other texts and other parameters answers as one that is new.
+#[test]
+fn what_is_kept_belongs_to_its_text_and_its_parameters() {
+    let other = SLEDGE.replace("(x'^2 + y'^2)/2", "(x'^2 + 3*y'^2)/2");
+    assert_ne!(other, SLEDGE);
+    let question = |text: &str, set: Value| {
+        json!({ "ask": "motions", "name": "sledge", "text": text, "set": set, "motions": ["Chetaev", "vakonomic"],
+                "steps": 20, "glance": true })
+    };
+    let mut explorer = Explorer::default();
+    let turns = [
+        question(SLEDGE, json!({ "duration": 3, "g": 9.0 })),
+        question(&other, json!({ "duration": 3, "g": 9.0 })),
+        question(&other, json!({ "duration": 3, "g": 9.0, "k": 0.4 })),
+        question(&other, json!({ "duration": 3, "k": 0.4 })),
+        question(&other, json!({ "duration": 3, "alpha": 0.9 })),
+        question(SLEDGE, json!({ "duration": 3, "alpha": 0.9 })),
+        question(SLEDGE, json!({ "duration": 3, "alpha": 0.9, "phi": 1.0 })),
+    ];
+    let mut ends: Vec<Vec<f64>> = Vec::new();
+    for turn in turns {
+        let (kept, numbers) = ask_again(&mut explorer, turn.clone());
+        let (new, anew) = ask(turn.clone());
+        let [end, expected] =
+            [(kept, numbers), (new, anew)].map(|(all, n)| coordinates(&all["motions"][1], &n, 20, 3).to_vec());
+        assert!(end.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-3), "{end:?}, {expected:?}: {turn}");
+        // and each is another motion
+        assert!(ends.iter().all(|before| before.iter().zip(&end).any(|(a, b)| (a - b).abs() > 1e-2)), "{turn}");
+        ends.push(end);
+    }
+}

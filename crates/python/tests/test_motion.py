@@ -27,6 +27,23 @@ def test_reaction_of_the_blade(sledge, system):
     np.testing.assert_allclose(motion.multipliers[name], expected, atol=1e-9)
 
 
+def off_the_constraint(coordinates, velocities):
+    """The largest |y' cos(phi) - x' sin(phi)|; one row a time."""
+    (_, _, phi), (x, y, _) = np.moveaxis(coordinates, -1, 0), np.moveaxis(velocities, -1, 0)
+    return np.abs(y * np.cos(phi) - x * np.sin(phi)).max()
+
+
+def test_projection_is_done_where_it_is_asked_for(system):
+    loose = dict(form="multipliers", method="dop853", tolerance=1e-3)
+    for formulation in ("chetaev", "vakonomic"):
+        # where a step ends
+        kept, free = (system.solve(formulation, [0.0, 10.0], project=project, **loose) for project in (True, False))
+        assert kept.projection["count"] > 5 and free.projection["count"] == 0
+        assert kept.projection["largest"] > 1e-9 and free.projection["largest"] == 0
+        assert off_the_constraint(kept.coordinates, kept.velocities) < 1e-12
+        assert off_the_constraint(free.coordinates, free.velocities) > 1e-7
+
+
 def test_natural_constants(sledge, system):
     # P_x = g sin(alpha) (T - t)
     motion = system.solve("removed-constraint", [0.0, 5.0, 10.0])

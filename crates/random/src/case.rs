@@ -65,6 +65,10 @@ pub struct Case {
     membership: Option<Membership>,
 }
 
+/// What is observed of two motions that are the same: how near the gap comes to what it must not pass, at
+/// most, as a part of that.
+pub const NEAREST: &str = "gap over its limit, of motions that agree";
+
 impl Case {
     /// Derives and integrates all formulations. If a motion stops early, the run is shortened until all last.
     ///
@@ -192,7 +196,12 @@ impl Case {
 
     /// Notes whether two motions with this gap are the same; one under `floor` is none.
     pub fn note(&mut self, theorem: u8, claim: &'static str, gap: &Gap, floor: f64) {
-        self.found.findings.push(finding(theorem, claim, gap, floor));
+        let found = finding(theorem, claim, gap, floor);
+        if found.word == Word::Holds {
+            let parts = gap.points.iter().filter(|p| p.limit.is_finite()).map(|p| p.gap / p.limit.max(floor));
+            self.found.observe(theorem, NEAREST, parts.fold(0.0, f64::max));
+        }
+        self.found.findings.push(found);
     }
 
     /// Whether a gap denies that two motions are the same.

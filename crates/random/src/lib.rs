@@ -22,7 +22,7 @@ mod turns;
 
 pub use build::{DURATION, REMOVAL};
 pub use bulk::{Batch, shrink};
-pub use case::{Case, Removed, Which, equations, free_constants};
+pub use case::{Case, NEAREST, Removed, Which, equations, free_constants};
 pub use claims::{CHECKS, Check, DIVERGES, Divergence, NullTest, make, null_test, theorem_title};
 pub use feature::{Edge, Far, Features, Part, Root, Switch};
 pub use finding::{Finding, Findings, Observation, Word};

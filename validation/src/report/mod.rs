@@ -20,6 +20,7 @@ mod referees_section;
 mod scaling_page;
 mod scene_page;
 mod stability_page;
+pub mod stamp;
 mod summary;
 mod sweep_page;
 mod table;

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::report::{File, Table, fill};
 use deltaq::words::{enumerate, or_dash, short};
 use picture::{Axis, Curve, Panel, Picture, Style};
-use random::{Batch, Count, DIVERGES, DURATION, Record, Summary, theorem_title};
+use random::{Batch, Count, DIVERGES, DURATION, NEAREST, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.
 const UNDECIDED: f64 = 0.02;
@@ -153,7 +153,7 @@ fn page(batch: &Batch, summary: &Summary, records: &[Record], counterexamples: &
 
 /// Observations that are counted: 0 or 1. What the table of pairs shows already is left out.
 fn counts(summary: &Summary) -> Vec<(u8, &str, &[f64])> {
-    let shown = |what: &str| DIVERGES.iter().any(|names| names.differs == what);
+    let shown = |what: &str| what == NEAREST || DIVERGES.iter().any(|names| names.differs == what);
     let all =
         summary.observed.iter().flat_map(|(t, by)| by.iter().map(|(what, values)| (*t, what.as_str(), &values[..])));
     all.filter(|(_, what, values)| !shown(what) && values.iter().all(|x| *x == 0.0 || *x == 1.0)).collect()
@@ -171,8 +171,10 @@ fn counted(summary: &Summary, what: &str) -> (usize, usize) {
 /// Figures that are neither counts nor shown in a picture.
 fn measured(summary: &Summary) -> String {
     let mut table = Table::new(["", "what", ">least", ">median", ">largest", ">of"]);
-    for (theorem, by) in summary.observed.iter().filter(|(theorem, _)| **theorem == 8 || **theorem == 9) {
-        for (what, values) in by.iter().filter(|(_, values)| values.iter().any(|x| *x != 0.0 && *x != 1.0)) {
+    for (theorem, by) in &summary.observed {
+        let is_shown = |what: &str| *theorem == 8 || *theorem == 9 || what == NEAREST;
+        let is_count = |values: &[f64]| values.iter().all(|x| *x == 0.0 || *x == 1.0);
+        for (what, values) in by.iter().filter(|(what, values)| is_shown(what) && !is_count(values)) {
             let [least, median, most] = [0, values.len() / 2, values.len() - 1].map(|i| short(values[i]));
             table.row(&[&label(*theorem), what, &least, &median, &most, &values.len()]);
         }

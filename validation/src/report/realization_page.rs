@@ -253,3 +253,37 @@ fn picture(name: &str, approaches: &[Approach]) -> Result<String> {
     let curves = approaches.iter().map(curve).collect();
     Ok(Picture::new(format!("{name}: realizations"), x, y, curves).to_svg()?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_counted_where_they_can_be_told_and_by_how_near_they_are_to_1() {
+        // distances at N = 10³ and 10⁴
+        let approach = |name, [first, second]: [f64; 2]| Approach {
+            name,
+            style: Style::Chetaev,
+            distances: vec![10.0 * first, first, second, 0.1 * second],
+        };
+        let scenes = vec![("sledge".to_string(), vec![approach(FRICTION, [1e-3, 1e-4]), approach(BOTH, [1e-3, 1e-5])])];
+        let random = vec![
+            vec![approach(FRICTION, [1e-3, 1.1e-4]), approach(ADDED_MASS, [1e-7, 1e-8])],
+            vec![approach(FRICTION, [1e-3, 2e-4])],
+        ];
+        let report = RealizationReport { scenes, random };
+        let headline = report.headline();
+        assert!(
+            headline.ends_with(": 2 of 4 measured rates are 1 within 0.05 in 1/N (from 0.699 to 2)."),
+            "{headline}"
+        );
+        assert_eq!(report.random_rates(ADDED_MASS), (Vec::new(), 1));
+        let verdicts = report.verdicts();
+        let of = &verdicts["scenes"]["sledge"];
+        assert_eq!((of[FRICTION].as_str(), of[BOTH].as_str()), (Some("rate 1"), Some("other rate")));
+        assert_eq!(verdicts["random systems off rate 1"], 1);
+        let page = report.page();
+        assert!(page.contains("| friction, to Chetaev | 0.01 | 0.001 | 1.0e-4 | 1.0e-5 | 1 |"), "{page}");
+        assert!(page.contains("| friction, to Chetaev | 0.699 | 0.959 | 0.959 | 2 | 0 |"), "{page}");
+    }
+}

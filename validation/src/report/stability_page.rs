@@ -258,3 +258,41 @@ fn kind_of(cause: &str) -> String {
     let words: Vec<&str> = kind.split(' ').map(|word| if figure(word) { "…" } else { word }).collect();
     words.join(" ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_answer_is_counted_once_by_its_word() {
+        let verdicts = [
+            Verdict::Accurate { error: 1e-9, estimate: 2e-9 },
+            Verdict::Accurate { error: 3e-9, estimate: 4e-9 },
+            Verdict::Accurate { error: 3e-9, estimate: 4e-9 },
+            Verdict::Admitted { error: 0.5, estimate: 0.25 },
+            Verdict::Admitted { error: 0.5, estimate: 0.25 },
+            Verdict::Refused { t: Some(0.75), cause: "a pole".into() },
+            Verdict::Wrong { error: 0.125, estimate: 1e-9, t: 0.5 },
+        ];
+        let cell = |verdict: Verdict| Cell {
+            case: CASES[0].name,
+            point: 1.0,
+            formulation: "Newton".into(),
+            method: Answering::Method(None),
+            verdict,
+            steps: 1,
+        };
+        let report = StabilityReport { cells: verdicts.map(cell).into(), runs: Vec::new() };
+        let headline = report.headline();
+        let counts = ": 3 accurate, 2 inaccurate and said so, 1 refused with time and cause, 1 wrong.";
+        assert!(headline.contains(", 7 answers of ") && headline.ends_with(counts), "{headline}");
+        assert_eq!(report.verdicts()["wrong"], 1);
+        let text = report.text();
+        for (word, count) in [("accurate", 3), ("admitted", 2), ("refused", 1), ("wrong", 1)] {
+            let lines = text.lines().filter(|line| line.split_whitespace().any(|w| w == word)).count();
+            assert_eq!((report.count(word), lines), (count, count), "{word}: {text}");
+        }
+        let last = text.lines().last().expect("lines");
+        assert!(last.ends_with("at t = 5.000e-1: error 1.2e-1, estimate 1.0e-9"), "{last}");
+    }
+}

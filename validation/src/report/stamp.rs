@@ -1,0 +1,221 @@
+//! When pages were measured that the main job does not write, and with which code: their last line.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use anyhow::{Context, Result, bail};
+
+/// How a last line begins.
+const BEGINS: &str = "Measured on ";
+
+/// Pages in the folder of reports, and the folders of sources that they speak of.
+const PAGES: [(&str, &[&str]); 7] = [
+    ("engine.md", &["validation/engine/src", "crates/chetaev/src", "crates/integrate/src", "crates/deltaq/src"]),
+    (
+        "peers.md",
+        &[
+            "validation/peers",
+            "crates/symbolic/src",
+            "crates/equations/src",
+            "crates/integrate/src",
+            "crates/python/src",
+        ],
+    ),
+    (
+        "measured/error-vs-time.md",
+        &[
+            "validation/src/bench",
+            "crates/symbolic/src",
+            "crates/equations/src",
+            "crates/integrate/src",
+            "crates/deltaq/src",
+        ],
+    ),
+    (
+        "measured/scaling.md",
+        &[
+            "validation/src/scaling",
+            "crates/symbolic/src",
+            "crates/equations/src",
+            "crates/reduction/src",
+            "crates/integrate/src",
+        ],
+    ),
+    ("measured/machine-code.md", &["crates/symbolic/src"]),
+    ("sweeps/sledge-sweep.md", &["crates/decision/src", "crates/integrate/src", "crates/deltaq/src"]),
+    ("sweeps/turntable-sweep.md", &["crates/decision/src", "crates/integrate/src", "crates/deltaq/src"]),
+];
+
+/// Puts the line under a page of the folder of reports, in the place of an older one.
+///
+/// # Errors
+/// A page that is not among these; files that cannot be read or written.
+pub fn write(root: &Path, reports: &Path, page: &str) -> Result<()> {
+    let path = reports.join(page);
+    let Some((_, folders)) = PAGES.iter().find(|(name, _)| *name == page) else {
+        let known: Vec<&str> = PAGES.iter().map(|(name, _)| *name).collect();
+        bail!("{page} is no page that says when it was measured; those are {}", known.join(", "));
+    };
+    let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let (body, _) = split(&text);
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |past| past.as_secs());
+    let line = line(&date(seconds), folders, digest(root, folders)?);
+    fs::write(&path, format!("{}\n\n{line}\n", body.trim_end()))
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// A line about every page that is older than its code, or does not say how old it is, and one about the
+/// others.
+///
+/// # Errors
+/// Where sources cannot be read.
+pub fn ages(root: &Path, reports: &Path) -> Result<Vec<String>> {
+    let (mut lines, mut current) = (Vec::new(), 0);
+    for (page, folders) in PAGES {
+        let Ok(text) = fs::read_to_string(reports.join(page)) else {
+            lines.push(format!("{page} is not there"));
+            continue;
+        };
+        let now = digest(root, folders)?;
+        match split(&text).1 {
+            Some((_, digest)) if digest == now => current += 1,
+            Some((date, _)) => lines.push(format!("{page}, of {date}, is older than the code that it speaks of")),
+            None => lines.push(format!("{page} does not say when it was measured, and with which code")),
+        }
+    }
+    lines.push(format!("{current} of {} pages that were measured are as new as the code they speak of", PAGES.len()));
+    Ok(lines)
+}
+
+fn line(date: &str, folders: &[&str], digest: u64) -> String {
+    format!("{BEGINS}{date} with the code of {}: digest {digest:016x}.", folders.join(", "))
+}
+
+/// A page without its last line, and what that says: date and digest.
+fn split(page: &str) -> (&str, Option<(&str, u64)>) {
+    let last = page.trim_end().rfind('\n').map_or(0, |end| end + 1);
+    let told = page[last..].trim_end().strip_prefix(BEGINS).and_then(|line| {
+        let (date, rest) = line.split_once(" with the code of ")?;
+        let digest = rest.rsplit_once(": digest ")?.1.trim_end_matches('.');
+        Some((date, u64::from_str_radix(digest, 16).ok()?))
+    });
+    (if told.is_some() { &page[..last] } else { page }, told)
+}
+
+/// FNV-1a over the paths and the bytes of all sources in Rust and Python in these folders, which differs
+/// where any of them does; line ends count as one character.
+fn digest(root: &Path, folders: &[&str]) -> Result<u64> {
+    let mut files: Vec<PathBuf> = Vec::new();
+    for folder in folders {
+        collect(&root.join(folder), &mut files)?;
+    }
+    files.sort();
+    let mut digest = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |bytes: &[u8]| {
+        for byte in bytes.iter().filter(|byte| **byte != b'\r').chain(&[0]) {
+            digest = (digest ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    };
+    for file in files {
+        let path = file.strip_prefix(root).unwrap_or(&file);
+        let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+        add(parts.join("/").as_bytes());
+        add(&fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?);
+    }
+    Ok(digest)
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
+        let path = entry.with_context(|| format!("cannot read {}", folder.display()))?.path();
+        if path.is_dir() {
+            collect(&path, files)?;
+        } else if path.extension().is_some_and(|ending| ending == "rs" || ending == "py") {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// The day of a time in seconds since 1970, by the calendar of Gregory: `2026-11-24`.
+fn date(seconds: u64) -> String {
+    let mut days = seconds / 86_400;
+    let is_leap = |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let (mut year, mut month) = (1970, 1);
+    while days >= 365 + u64::from(is_leap(year)) {
+        days -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    for length in [31, 28 + u64::from(is_leap(year)), 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    format!("{year}-{month:02}-{:02}", days + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_are_those_of_the_calendar() {
+        let known =
+            [(0, "1970-01-01"), (951_782_399, "2000-02-28"), (951_782_400, "2000-02-29"), (951_868_800, "2000-03-01")];
+        for (seconds, day) in known.into_iter().chain([(1_767_225_599, "2025-12-31"), (1_795_478_400, "2026-11-24")]) {
+            assert_eq!(date(seconds), day);
+        }
+    }
+
+    #[test]
+    fn a_page_is_older_as_soon_as_its_code_changes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (root, reports) = (folder.path(), folder.path().join("reports"));
+        for (page, folders) in PAGES {
+            for source in folders {
+                fs::create_dir_all(root.join(source).join("deeper")).expect("a folder");
+                fs::write(root.join(source).join("deeper/a.rs"), source).expect("a file");
+            }
+            let page = reports.join(page);
+            fs::create_dir_all(page.parent().expect("a folder")).expect("a folder");
+            fs::write(page, "# A page\n\n1 of 3\n").expect("a page");
+        }
+        let said = |words: &str| -> Vec<String> {
+            let lines = ages(root, &reports).expect("read");
+            lines
+                .iter()
+                .filter(|line| line.contains(words))
+                .map(|line| line.split([' ', ',']).next().unwrap_or("").into())
+                .collect()
+        };
+        assert_eq!(said("does not say when").len(), PAGES.len());
+        for (page, _) in PAGES {
+            write(root, &reports, page).expect("written");
+        }
+        assert_eq!((said("older").len(), said("does not say").len()), (0, 0));
+        assert!(ages(root, &reports).expect("read")[0].starts_with("7 of 7 pages"));
+        // once more: the line is one
+        let page = reports.join("engine.md");
+        let before = fs::read_to_string(&page).expect("a page");
+        write(root, &reports, "engine.md").expect("written");
+        assert_eq!(fs::read_to_string(&page).expect("a page"), before);
+        assert!(before.starts_with("# A page\n\n1 of 3\n\nMeasured on 20"), "{before}");
+        // another text, a file more, a file of another name; what is no source does not count
+        let source = root.join("crates/symbolic/src");
+        let speaking = ["peers.md", "measured/error-vs-time.md", "measured/scaling.md", "measured/machine-code.md"];
+        fs::write(source.join("notes.txt"), "").expect("a file");
+        assert_eq!(said("is older"), Vec::<String>::new());
+        fs::write(source.join("deeper/a.rs"), "crates/symbolic/srd").expect("a file");
+        assert_eq!(said("is older"), speaking);
+        fs::write(source.join("deeper/a.rs"), "crates/symbolic/src").expect("a file");
+        assert_eq!(said("is older"), Vec::<String>::new());
+        fs::rename(source.join("deeper/a.rs"), source.join("a.rs")).expect("moved");
+        assert_eq!(said("is older"), speaking);
+        fs::write(root.join("crates/decision/src/b.rs"), "").expect("a file");
+        assert_eq!(said("is older").len(), 6);
+        assert!(write(root, &reports, "random.md").is_err_and(|error| error.to_string().contains("engine.md")));
+    }
+}

@@ -1,0 +1,89 @@
+//! One number changed on a committed page is found.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use validation::report::Compared;
+
+/// The pages and pictures of the reports, those of the main job and of times alike.
+fn pages() -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reports");
+    let folders = [root.clone(), root.join("scenes")];
+    let files = folders
+        .iter()
+        .flat_map(|folder| fs::read_dir(folder).expect("reports"))
+        .map(|file| file.expect("a file").path());
+    let mut files: Vec<PathBuf> =
+        files.filter(|file| file.extension().is_some_and(|e| e == "md" || e == "svg")).collect();
+    files.sort();
+    files.into_iter().map(|file| (file.clone(), fs::read_to_string(file).expect("a page"))).collect()
+}
+
+/// Where numbers stand on a page, and their lengths; of a picture in its texts. Behind a letter or within a
+/// number or a name is none.
+fn numbers(page: &str) -> Vec<(usize, usize)> {
+    let bytes = page.as_bytes();
+    let is_picture = page.trim_start().starts_with("<svg");
+    let (mut found, mut i, mut text, mut tag) = (Vec::new(), 0, !is_picture, false);
+    while i < bytes.len() {
+        if is_picture {
+            text = (text || bytes[i..].starts_with(b"<text")) && !bytes[i..].starts_with(b"</text>");
+            tag = (tag || bytes[i] == b'<') && bytes[i] != b'>';
+        }
+        let begins = i == 0 || !(bytes[i - 1].is_ascii_alphanumeric() || b".-_/#".contains(&bytes[i - 1]));
+        if text && !tag && begins && bytes[i].is_ascii_digit() {
+            let length = bytes[i..].iter().take_while(|b| b.is_ascii_digit() || **b == b'.').count();
+            found.push((i, length));
+            i += length;
+        } else {
+            i += 1;
+        }
+    }
+    found
+}
+
+/// The number with another first digit that is not zero: one more, or 8 for 9. Round-off may be another power
+/// of ten, so it becomes one that is much larger.
+fn changed(page: &str, (at, length): (usize, usize)) -> String {
+    let number = &page[at..at + length];
+    let rest = &page[at + length..];
+    let exponent = rest.strip_prefix("e-").and_then(|rest| rest.split(|c: char| !c.is_ascii_digit()).next());
+    if exponent.and_then(|digits| digits.parse::<u32>().ok()).is_some_and(|power| power > 8) {
+        return format!("{}{number}e-3{}", &page[..at], &rest[2 + exponent.map_or(0, str::len)..]);
+    }
+    let Some(place) = number.find(|c: char| c.is_ascii_digit() && c != '0') else {
+        return format!("{}1{}", &page[..at], &page[at + 1..]);
+    };
+    let digit = match number.as_bytes()[place] {
+        b'9' => '8',
+        digit => char::from(digit + 1),
+    };
+    format!("{}{digit}{}", &page[..at + place], &page[at + place + 1..])
+}
+
+#[test]
+fn of_twenty_pages_with_one_number_changed_each_twenty_are_found() {
+    let pages = pages();
+    let (mut found, mut tried) = (0, 0);
+    for (path, page) in &pages {
+        let same = Compared::default().page(page, page);
+        assert_eq!(same, Ok(()), "{}", path.display());
+        let numbers = numbers(page);
+        // five numbers of each page, one at a time: so every page is among the twenty that are drawn
+        for part in [0.0, 0.23, 0.51, 0.77, 0.999] {
+            let Some(&number) = numbers.get((part * numbers.len() as f64) as usize) else { continue };
+            let other = changed(page, number);
+            assert_ne!(other, *page);
+            tried += 1;
+            let line = page[..number.0].matches('\n').count() + 1;
+            match Compared::default().page(page, &other) {
+                Err(told) if page.trim_start().starts_with("<svg") || told.starts_with(&format!("line {line}: ")) => {
+                    found += 1
+                }
+                told => panic!("{}, line {line}, {}: {told:?}", path.display(), &page[number.0..number.0 + number.1]),
+            }
+        }
+    }
+    println!("{found} of {tried} changed numbers found on {} pages and pictures", pages.len());
+    assert!(found == tried && pages.len() > 20 && tried > 5 * 20);
+}

@@ -1,0 +1,314 @@
+//! Numbers on pages against what they were taken from, cell by cell, and sentences against their tables.
+
+use std::collections::BTreeMap;
+
+use deltaq::{
+    Comparison, Ending, Finding, Fit, Fits, FittedMotion, Form, Membership, Metric, Settings, Verdict, choices,
+    compare_unfitted, solve_choice,
+};
+use integrate::{Method, Projection};
+use random::substitution;
+use serde_json::{Value, json};
+use validation::report::{
+    AuditReport, BicycleReport, membership_value, overview, referees_section, scene_page, summary, verdicts,
+};
+
+/// A scene in all formulations, the control among them.
+fn compared(name: &str, duration: f64, settings: &Settings) -> Comparison {
+    let scene = catalogue::find(name, &[("duration".into(), duration.into())]).expect("built in");
+    let choices = choices(&scene);
+    let control = substitution::run(&scene, &choices, settings).into_iter().collect();
+    compare_unfitted(scene, choices, control, settings).expect("compared")
+}
+
+/// The rows of the first table behind these words: cells by the name of their column.
+pub(crate) fn table(page: &str, behind: &str) -> Vec<BTreeMap<String, String>> {
+    let rest = page.split_once(behind).unwrap_or_else(|| panic!("{behind}")).1;
+    let lines: Vec<&str> = rest.lines().skip_while(|line| !line.starts_with('|')).collect();
+    let cells =
+        |line: &str| -> Vec<String> { line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect() };
+    let names = cells(lines[0]);
+    let rows = lines[2..].iter().take_while(|line| line.starts_with('|'));
+    rows.map(|row| names.iter().cloned().zip(cells(row)).collect()).collect()
+}
+
+/// Whether a cell says this number, or a dash for none.
+#[track_caller]
+fn says(cell: &str, value: Option<f64>) {
+    let told = cell.parse::<f64>().ok();
+    let near = |(told, value): (f64, f64)| (told - value).abs() <= 0.06 * value.abs();
+    assert!(if cell == "–" { value.is_none() } else { told.zip(value).is_some_and(near) }, "`{cell}` for {value:?}");
+}
+
+#[test]
+fn the_tables_of_a_scene_say_what_its_rows_are() {
+    // errors, residuals and drifts that are no round-off
+    let settings = Settings {
+        tolerance: 1e-6,
+        method: Some(Method::Dop853),
+        projection: Projection::Off,
+        form: Form::Named,
+        ..Settings::default()
+    };
+    let mut sledge = compared("sledge", 1.5, &settings);
+    let gap = sledge.pairs[0].gap.clone();
+    let fitted =
+        FittedMotion { constants: vec![("mu0_1".into(), 0.25)], gap: deltaq::Gap { largest: 0.125, ..gap }, starts: 7 };
+    let vakonomic = sledge.run("vakonomic").expect("a run");
+    sledge.fits.push(Fit { run: vakonomic, target: 0, fitted: Some(fitted), by_identity: false });
+    let page = scene_page(&mut sledge, &[]).expect("a page");
+    let label = |i: usize| sledge.runs[i].choice.label.clone();
+
+    let rows = table(&page, "## Where the motions part");
+    assert_eq!(rows.len(), sledge.pairs.len());
+    for (row, pair) in rows.iter().zip(&sledge.pairs) {
+        assert_eq!(row["pair"], format!("{} – {}", label(pair.first), label(pair.second)));
+        assert_eq!(row["verdict"].trim_matches('*').split(':').next(), Some(pair.gap.verdict.word()));
+        for (name, passes) in ["τ(1e-6)", "τ(1e-3)", "τ(0.1)"].into_iter().zip(pair.gap.passes) {
+            says(&row[name], passes);
+        }
+        says(&row["largest gap"], Some(pair.gap.largest));
+        says(&row["errors, both"], Some(pair.gap.estimates.iter().sum()));
+        let told = row["largest difference by coordinate"].split(", ");
+        for (told, (c, d)) in told.zip(sledge.scene.system.coordinates.iter().zip(&pair.gap.largest_by_coordinate)) {
+            says(told.strip_prefix(&format!("{} ", c.name)).expect("a name"), Some(*d));
+        }
+    }
+    let rows = table(&page, "### How the gaps start");
+    let grown: Vec<_> = sledge.pairs.iter().filter(|p| p.growth.is_some()).collect();
+    assert!(rows.len() == grown.len() && grown.iter().any(|p| p.predicted.is_some()));
+    for (row, pair) in rows.iter().zip(grown) {
+        let growth = pair.growth.as_ref().expect("a growth");
+        says(&row["exponent"], Some(growth.exponent));
+        says(&row["leading coefficient"], Some(growth.length));
+        let Some(predicted) = &pair.predicted else { continue };
+        says(&row["predicted coefficient"], Some(predicted.length));
+        let length = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>().sqrt();
+        let both = growth.coefficient.iter().zip(&predicted.coefficient);
+        let off = length(&mut both.map(|(a, b)| a - b)) / length(&mut predicted.coefficient.iter().copied());
+        says(row["off by"].strip_suffix(" %").expect("a part"), Some(100.0 * off));
+        assert_eq!(row["proved"] == "yes", predicted.proved);
+    }
+    let rows = table(&page, "### With other free constants");
+    says(&rows[0]["largest gap before"], Some(sledge.pairs[0].gap.largest));
+    says(&rows[0]["largest gap reached"], Some(0.125));
+    assert_eq!((&rows[0]["by"][..], rows.len()), ("search from 7 starts", 1));
+
+    let mut metric = Metric::new(&sledge.scene.system).expect("a metric");
+    let rows = table(&page, "## What stays constant");
+    let mut judged = 0;
+    for run in &mut sledge.runs {
+        let Ok(motion) = &mut run.outcome else { continue };
+        let Some(row) = rows.iter().find(|row| row["motion"] == run.choice.label) else { continue };
+        let times = motion.grid(400);
+        let mut residuals = Vec::new();
+        let mut values: Vec<Vec<f64>> = Vec::new();
+        for &t in &times {
+            let now = motion.at(t).expect("in range");
+            residuals.push(metric.constraint_residual(t, &now.coordinates, &now.velocities));
+            values.push(now.invariants);
+        }
+        let largest = residuals.iter().fold(0.0_f64, |a, r| a.max(*r));
+        says(&row["largest constraint residual"], Some(largest));
+        for (i, named) in motion.equations.invariants.iter().enumerate() {
+            let drift = values.iter().map(|now| (now[i] - values[0][i]).abs()).fold(0.0, f64::max);
+            let told = row["constant by theory: largest deviation"].split_once(&format!("{} ", named.name));
+            let told = told.expect("an invariant").1.split_once("± ").expect("a drift").1;
+            let told: String = told.chars().take_while(|c| !", a".contains(*c)).collect();
+            says(&told, Some(drift));
+            judged += usize::from(drift > 0.0);
+        }
+        // what is told is not that of the end
+        judged += usize::from(residuals.last().is_some_and(|last| *last < 0.5 * largest));
+    }
+    assert!(judged >= 2, "{judged}");
+}
+
+#[test]
+fn the_summary_and_the_verdicts_say_what_the_rows_are() {
+    let mut sledge = compared("sledge", 1.5, &Settings::default());
+    let told = verdicts(std::slice::from_ref(&sledge));
+    let told = &told["scenes"]["sledge"];
+    let number = |x: &Value| x.as_f64();
+    for (told, pair) in told["pairs"].as_array().expect("pairs").iter().zip(&sledge.pairs) {
+        assert_eq!(
+            (told["verdict"].as_str(), &told["proved"]),
+            (Some(pair.gap.verdict.word()), &pair.gap.proved.into())
+        );
+        for (told, passes) in told["passes"].as_array().expect("times").iter().zip(pair.gap.passes) {
+            let near = number(told).zip(passes).is_some_and(|(a, b)| (a - b).abs() < 1e-3 * b);
+            assert!(near || number(told).is_none() && passes.is_none(), "{told}, {passes:?}");
+        }
+    }
+    assert!(sledge.pairs.iter().any(|p| !p.gap.proved) && sledge.pairs.iter().any(|p| p.gap.proved));
+    for run in &sledge.runs {
+        let end = run.outcome.as_ref().map(|motion| (motion.end(), motion.ending == Ending::Completed));
+        assert_eq!(
+            end.ok().filter(|(_, whole)| *whole).map(|(end, _)| end),
+            number(&told["runs"][&run.choice.label]["end"])
+        );
+    }
+    let text = summary(&mut sledge, 80).expect("a summary");
+    let line = text.lines().find(|line| line.starts_with("a  Chetaev – vakonomic ")).expect("a row");
+    let cells: Vec<&str> = line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
+    let gap = &sledge.pairs[0].gap;
+    assert_eq!(cells[2], "different");
+    says(cells[3], gap.passes[0]);
+    says(cells[4], gap.passes[1]);
+    says(cells[5], Some(gap.largest));
+    // pairs that are not shown are counted by their verdicts
+    let principal = |i: usize| ["chetaev", "vakonomic"].contains(&sledge.runs[i].choice.formulation);
+    let others = deltaq::words::rows(&sledge).filter(|p| !principal(p.first));
+    let mut counts = BTreeMap::new();
+    others.for_each(|p| *counts.entry(p.gap.verdict.word()).or_insert(0) += 1);
+    let counted = text.lines().find_map(|line| line.trim().strip_prefix("of the others: ")).expect("others");
+    let counted: BTreeMap<&str, i32> = counted
+        .split(", ")
+        .map(|part| part.split_once(' ').expect("a count"))
+        .map(|(n, word)| (word, n.parse().expect("a count")))
+        .collect();
+    assert_eq!(counted, counts);
+}
+
+#[test]
+fn the_overview_counts_its_own_table() {
+    let settings = Settings::default();
+    let scenes: Vec<Comparison> = [("sledge", 1.0), ("bowl", 1.0), ("disc", 0.5), ("heisenberg", 1.0)]
+        .into_iter()
+        .map(|(name, duration)| {
+            let mut comparison = compared(name, duration, &settings);
+            comparison.fit(Fits::None, &settings).expect("no fits");
+            comparison
+        })
+        .collect();
+    let page = overview(&scenes, &[("A line.", "page.md")]);
+    let rows = table(&page, "# ");
+    assert_eq!(rows.len(), scenes.len());
+    let cell = |row: &BTreeMap<String, String>, name: &str| row[name].trim_matches('*').to_owned();
+    let pairs = ["Chetaev – vakonomic", "Chetaev – removed", "vakonomic – removed"];
+    let same = rows.iter().filter(|row| pairs.iter().all(|pair| cell(row, pair) == "same")).count();
+    let part: Vec<_> = rows.iter().filter(|row| row[pairs[0]].starts_with("**different**")).collect();
+    let answer = |row: &&&BTreeMap<String, String>, word: &str| row["any $\\mu_0$?"].starts_with(&format!("**{word}"));
+    let proved = part.iter().filter(|row| answer(row, "none") && row["any $\\mu_0$?"].contains(": proved")).count();
+    let some = part.iter().filter(|row| ["one", "every one", "dimension"].iter().any(|w| answer(row, w))).count();
+    assert!(same > 0 && part.len() > 1 && proved > 0 && proved < part.len(), "{rows:?}");
+    let headline = format!(
+        "On {same} of {} scenes no difference between the three formulations is above the error estimates. Chetaev's and the vakonomic motion part on {}; \
+         on {proved} of these it is proved that no choice of the free multipliers brings them together, on {some} a choice that does is known.",
+        rows.len(),
+        part.len()
+    );
+    assert!(page.contains(&headline), "{headline}\n{page}");
+    let named = |word: &str| -> Vec<String> {
+        let name =
+            |row: &BTreeMap<String, String>| format!("`{}`", row["scene"][1..].split_once(']').expect("a link").0);
+        rows.iter().filter(|row| row["control"] == word).map(name).collect()
+    };
+    let control = format!(
+        "is flagged on {}, and called right on {}.",
+        deltaq::words::enumerate(&named("flagged")),
+        deltaq::words::enumerate(&named("right here"))
+    );
+    assert!(page.contains(&control), "{control}\n{page}");
+    for (row, scene) in rows.iter().zip(&scenes) {
+        let judged =
+            scene.pairs.iter().find(|p| scene.runs[p.second].choice.formulation == substitution::NAME && p.first == 0);
+        let word = judged.map_or("–", |p| match p.gap.verdict {
+            Verdict::Same => "right here",
+            Verdict::Different => "flagged",
+            Verdict::Undecided { .. } => "undecided",
+        });
+        assert_eq!(row["control"], word);
+        // from when on, where that is told
+        let gap = &scene.pairs[0].gap;
+        if let Some(told) = row[pairs[0]].strip_prefix("**different**, 1e-6 at ") {
+            says(told.trim_end_matches(" s"), gap.passes[0]);
+        }
+    }
+    let growths = scenes.iter().flat_map(|c| &c.pairs).filter_map(|p| p.growth.as_ref().zip(p.predicted.as_ref()));
+    let off: Vec<f64> = growths.map(|(measured, predicted)| measured.deviation_from(predicted)).collect();
+    let told = page.split_once("For ").expect("a count").1;
+    assert!(told.starts_with(&format!("{} pairs of motions", off.len())) && off.len() > 2, "{told}");
+    let told = told.split_once("off by at most ").expect("a part").1.split_once(" %").expect("a part").0;
+    says(told, Some(100.0 * off.iter().fold(0.0_f64, |a, x| a.max(*x))));
+}
+
+#[test]
+fn what_is_not_proved_is_not_called_so_in_json() {
+    let found = |name: &str| -> Membership {
+        let comparison = compared(name, 0.5, &Settings::default());
+        comparison.membership().and_then(|found| found.as_ref().ok()).expect("decided").clone()
+    };
+    let value = |found: &Membership| membership_value(Some(&Ok(found.clone())));
+    let mut sledge = found("sledge");
+    let Finding::None(none) = &mut sledge.proof.this_start else { panic!("{:?}", sledge.proof) };
+    let order = none.order;
+    none.full_rank = false;
+    let because = format!("no minor of full size shows it: ranks modulo two primes do (order {order})");
+    assert_eq!(value(&sledge), json!({ "answer": "none", "proved": false, "because": because }));
+    assert_eq!(value(&found("sledge")), json!({ "answer": "none", "proved": true, "order": order }));
+    let mut disc = found("disc");
+    assert_eq!(value(&disc), json!({ "answer": "some", "proved": true, "dimension": 0 }));
+    (disc.section, disc.proof.this_start) = (None, Finding::ThroughOrder { rank: 1, order: 7 });
+    assert_eq!(value(&disc), json!({ "answer": "some", "proved": false, "order": 7, "dimension": 0 }));
+    assert_eq!(membership_value(None), Value::Null);
+}
+
+#[test]
+fn maggis_equations_agree_with_a_motion_that_is_right_and_with_no_other() {
+    let duration = 2.0;
+    let mut sledge = compared("sledge", duration, &Settings::default());
+    let section = referees_section(&mut sledge, None).expect("a section");
+    let row = |section: &str| section.lines().find(|line| line.contains("Maggi")).expect("a row").to_owned();
+    assert!(row(&section).contains("agrees"), "{section}");
+    // gravity off by a millionth
+    let set = [("duration".into(), duration.into()), ("g".into(), (9.81 * (1.0 + 1e-6)).into())];
+    let other = catalogue::find("sledge", &set).expect("built in");
+    let chetaev = sledge.run("chetaev").expect("a run");
+    sledge.runs[chetaev].outcome = solve_choice(&other, &sledge.runs[chetaev].choice, &Settings::default());
+    let section = referees_section(&mut sledge, None).expect("a section");
+    assert!(row(&section).to_lowercase().contains("disagrees"), "{section}");
+}
+
+#[test]
+fn the_audit_counts_its_equations() {
+    let report = AuditReport::new().expect("the paper");
+    let verdicts = report.verdicts();
+    let words: Vec<&str> =
+        verdicts["equations"].as_object().into_iter().flatten().filter_map(|(_, word)| word.as_str()).collect();
+    let count = |word: &str| words.iter().filter(|said| said.contains(word)).count();
+    let [holds, misprint, incomplete] = ["holds", "misprint", "incomplete"].map(count);
+    let headline = report.headline();
+    let all = holds + misprint + incomplete + count("open");
+    let expected = format!(
+        "Of {all} equations of the paper {holds} hold as printed, {misprint} after a misprint is corrected, {incomplete} are incomplete."
+    );
+    assert!(
+        headline == expected && holds > 10 && misprint > 0 && words.len() >= all,
+        "{headline}\n{expected}\n{words:?}"
+    );
+}
+
+#[test]
+fn the_page_of_the_bicycle_says_what_its_table_has() {
+    let report = BicycleReport::new().expect("the bicycle");
+    let page = report.files().expect("files").remove(0).text;
+    let rows = table(&page, "# ");
+    // a pair is one cell
+    let eigenvalues = |cell: &String| if cell.contains('±') { 2 } else { usize::from(!cell.is_empty()) };
+    let count: usize = rows.iter().flat_map(|row| (1..=4).map(|i| eigenvalues(&row[&format!("s{i}")]))).sum();
+    assert_eq!((rows.len(), count), (11, 44));
+    let differences = rows.iter().map(|row| row["difference"].parse::<f64>().expect("a number"));
+    let largest = differences.fold(0.0, f64::max);
+    let told = report.headline();
+    let told: f64 = told
+        .split_once("speeds to ")
+        .expect("a bound")
+        .1
+        .split_once(',')
+        .expect("a bound")
+        .0
+        .parse()
+        .expect("a number");
+    assert!((0.6..1.7).contains(&(told / largest)) && largest < 1e-9, "{told:e}, {largest:e}");
+}
