@@ -5,6 +5,7 @@ mod batches;
 mod bench;
 mod casadi;
 mod changed_pages;
+mod control;
 mod headlines;
 mod pages;
 mod pictures;

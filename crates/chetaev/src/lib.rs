@@ -42,7 +42,7 @@
 
 use equations::{Block, ConstraintProjection, Derivation, DerivationError, Equations, Formulation, Named, Statement};
 use mechanics::{System, fresh_symbol};
-use symbolic::{Expr, Symbol, Vanishing};
+use symbolic::{Expr, Symbol};
 
 /// Entry of the table of formulations.
 pub const FORMULATION: Formulation = Formulation {
@@ -124,7 +124,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         metric: g.jacobian(&momenta, &v),
     });
 
-    if energy_is_constant(&system, &jacobian) {
+    if system.is_autonomous() && !system.has_forces() && system.is_workless() {
         equations.invariants.push(Named { name: "energy".into(), expression: system.energy() });
     }
     for i in 0..q.len() {
@@ -137,20 +137,4 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
     }
     equations.graph = system.graph;
     Ok(equations)
-}
-
-/// Whether `v·L_v − L` is constant: nothing depends on time, no force acts, and `A v = 0` wherever `f = 0`.
-///
-/// `A v = 0` on `f = 0` is recognized where `A v` is a multiple of `f` with a constant factor: `f`
-/// homogeneous of degree `d` in `v` gives `A v = d f` (Euler).
-fn energy_is_constant(system: &System, jacobian: &symbolic::Matrix) -> bool {
-    let g = &system.graph;
-    let work = g.mat_vec(jacobian, &g.variables(&system.velocities()));
-    let homogeneous = system.constraints.iter().zip(work).all(|(&f, av)| {
-        (1..=4).any(|degree| {
-            let rest = g.sub(av, g.mul(g.integer(degree), f));
-            g.vanishes(rest, &system.parameter_values()) == Vanishing::Exactly
-        })
-    });
-    homogeneous && system.is_autonomous() && !system.has_forces()
 }

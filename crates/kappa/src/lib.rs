@@ -24,8 +24,9 @@
 //!
 //! **What the motion depends on.** `(q₀, v₀)`, `μ₀ ∈ Rʰ` and `κ`. Large `κ` makes the equations stiff.
 //!
-//! **What stays constant.** Nothing in general: the energy `v·𝓛_v − 𝓛` changes at the rate `v·(Q − κ Aᵀ μ)`,
-//! which is zero where `Q = 0` and `A v = f`, for constraints linear in `v` and without a free term.
+//! **What stays constant.** The energy `v·𝓛_v − 𝓛` changes at the rate `v·(Q − κ Aᵀ μ)`, which is zero where
+//! `Q = 0` and `f` is homogeneous in `v`, as `A v = d f` then. The momentum `∂𝓛/∂v_i` is constant where
+//! neither `L` nor `f` contains `q_i`, no force acts on it and `f` does not contain `v_i`.
 //!
 //! Sources: C. Carathéodory 1933; A. V. Karapetyan 1981; V. V. Kozlov 1992.
 
@@ -120,11 +121,15 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         jacobian: jacobian.clone(),
         metric: system.velocity_hessian(),
     });
-    let work = g.mat_vec(&jacobian, &g.variables(&v));
-    let workless = system.constraints.iter().zip(work).all(|(&f, work)| g.is_zero(g.sub(work, f)));
-    if workless && system.is_autonomous() && !system.has_forces() {
+    if system.is_autonomous() && !system.has_forces() && system.is_workless() {
         let energy = g.sub(g.dot(&g.variables(&v), &momenta), augmented);
         equations.invariants.push(Named { name: "energy".into(), expression: energy });
+    }
+    for (i, c) in system.coordinates.iter().enumerate() {
+        let applied = [gradient[i], system.forces[i]];
+        if applied.iter().all(|&e| g.is_zero(e)) && jacobian.column(i).iter().all(|&e| g.is_zero(e)) {
+            equations.invariants.push(Named { name: format!("momentum {}", c.name), expression: momenta[i] });
+        }
     }
     equations.graph = system.graph;
     Ok(equations)

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, ParseError, Scalar, Symbol};
+use symbolic::{CompileError, Evaluator, Expr, Graph, Matrix, ParseError, Scalar, Symbol, Vanishing};
 
 use crate::RemovalError;
 use crate::elimination::LinearForms;
@@ -202,6 +202,21 @@ impl System {
     /// Whether every constraint is linear (or affine) in `v`, that is whether `A` is free of `v`.
     pub fn constraints_linear_in_velocity(&self) -> bool {
         self.linear_constraints().is_ok()
+    }
+
+    /// Whether reactions do no work: `A v = 0` wherever `f = 0`, `A = ∂f/∂v`.
+    ///
+    /// That is recognized where `A v` is a multiple of `f` with a constant factor: `f` homogeneous of degree
+    /// `d` in `v` gives `A v = d f` (Euler).
+    pub fn is_workless(&self) -> bool {
+        let g = &self.graph;
+        let work = g.mat_vec(&self.constraint_jacobian(), &g.variables(&self.velocities()));
+        self.constraints.iter().zip(work).all(|(&f, av)| {
+            (1..=4).any(|degree| {
+                let rest = g.sub(av, g.mul(g.integer(degree), f));
+                g.vanishes(rest, &self.parameter_values()) == Vanishing::Exactly
+            })
+        })
     }
 
     /// Whether neither `L` nor `f` nor `Q` contains time.

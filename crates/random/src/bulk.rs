@@ -12,10 +12,10 @@ use proptest::strategy::ValueTree;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use super::claims::{CHECKS, make};
-use super::recipe::{draw, draw_null_test};
+use super::claims::{CHECKS, broken_null_test, make};
+use super::recipe::draw;
 use super::record::{Record, THOROUGH};
-use super::{Case, Kind, Lines, Recipe};
+use super::{Case, Fault, Finding, Kind, Lines, NullTest, Recipe};
 use crate::parallel;
 
 /// Steps after which shrinking is content with what it has.
@@ -36,11 +36,21 @@ impl Batch {
         (index / self.kinds.len().max(1) as u64).is_multiple_of(THOROUGH)
     }
 
+    /// The index of the `i`-th system of the first kind that is put to the thorough checks.
+    pub fn thorough(&self, i: u64) -> u64 {
+        i * THOROUGH * self.kinds.len().max(1) as u64
+    }
+
     /// Puts one system to the test.
     pub fn record(&self, index: u64) -> Record {
+        self.faulty_record(index, &Fault::NONE)
+    }
+
+    /// [`Batch::record`] with something wrong on purpose.
+    pub fn faulty_record(&self, index: u64, fault: &Fault) -> Record {
         let thorough = self.is_thorough(index);
-        let null = thorough.then(|| draw_null_test(self.seed, index));
-        Record::of(draw(self.seed, index, &self.kinds).current(), index, thorough, null.as_ref())
+        let null = thorough.then(|| NullTest::draw(self.seed, index).current());
+        Record::of(draw(self.seed, index, &self.kinds).current(), index, thorough, null.as_ref(), fault)
     }
 
     /// Name of a system.
@@ -137,33 +147,47 @@ impl Batch {
 
     /// The smallest system on which a claim of `theorem` still fails; `None` where the system itself passes.
     pub fn counterexample(&self, index: u64, theorem: u8) -> Option<Scene> {
-        let mut tree = draw(self.seed, index, &self.kinds);
-        let scene = |recipe: &Recipe| failing(recipe, theorem);
-        shrink(&mut tree, &scene).map(|scene| Scene {
-            name: format!("{}-T{theorem}", self.name(index)),
-            notes: format!("{} Shrunk from {}.", scene.notes, self.name(index)),
-            ..scene
-        })
+        self.faulty_counterexample(index, theorem, &Fault::NONE, SHRINKING)
+    }
+
+    /// [`Batch::counterexample`] with something wrong on purpose, after so many `steps` of shrinking at most.
+    pub fn faulty_counterexample(&self, index: u64, theorem: u8, fault: &Fault, steps: usize) -> Option<Scene> {
+        let null = |numbers: &NullTest| broken_null_test(numbers, fault);
+        let drawn = |recipe: &Recipe| failing(recipe, theorem, fault);
+        let found = match theorem {
+            13 => shrink_within(steps, &mut NullTest::draw(self.seed, index), &null),
+            _ => shrink_within(steps, &mut draw(self.seed, index, &self.kinds), &drawn),
+        };
+        let (scene, Finding { claim, figure, limit, note, .. }) = found?;
+        let figures =
+            if limit.is_nan() { String::new() } else { format!(" measured {figure:.3e}, limit {limit:.3e}.") };
+        let note = if note.is_empty() { note } else { format!(" {note}.") };
+        let from = self.name(index);
+        let notes = format!("T{theorem} fails: {claim}.{figures}{note} Shrunk from {from}.");
+        Some(Scene { name: format!("{from}-T{theorem}"), notes, ..scene })
     }
 }
 
-/// The scene of a recipe on which a claim of `theorem` fails, with the failure in its notes.
-fn failing(recipe: &Recipe, theorem: u8) -> Option<Scene> {
+/// The scene of a recipe on which a claim of `theorem` fails, and the failure.
+fn failing(recipe: &Recipe, theorem: u8, fault: &Fault) -> Option<(Scene, Finding)> {
     let mut case = Case::new(recipe.clone(), "counterexample").ok()?;
+    (fault.case)(&mut case).ok()?;
     for check in CHECKS.iter().filter(|check| check.theorem == theorem) {
         make(check, &mut case);
     }
-    let failure = case.found.failures().next()?;
-    let (claim, figure, limit) = (failure.claim, failure.figure, failure.limit);
-    let notes = format!("T{theorem} fails: {claim}; measured {figure:.3e}, limit {limit:.3e}. {}", failure.note);
-    Some(Scene { notes: notes.trim().into(), ..case.scene })
+    let failure = case.found.failures().find(|failure| failure.theorem == theorem)?.clone();
+    Some((case.scene, failure))
 }
 
 /// Shrinks what a tree holds as long as `test` finds something in it; the last thing found.
-pub fn shrink<T>(tree: &mut impl ValueTree<Value = Recipe>, test: &dyn Fn(&Recipe) -> Option<T>) -> Option<T> {
+pub fn shrink<V: ValueTree, T>(tree: &mut V, test: &dyn Fn(&V::Value) -> Option<T>) -> Option<T> {
+    shrink_within(SHRINKING, tree, test)
+}
+
+fn shrink_within<V: ValueTree, T>(steps: usize, tree: &mut V, test: &dyn Fn(&V::Value) -> Option<T>) -> Option<T> {
     let mut best = test(&tree.current())?;
     let mut simpler = tree.simplify();
-    for _ in 0..SHRINKING {
+    for _ in 0..steps {
         if !simpler {
             break;
         }

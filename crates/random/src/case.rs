@@ -1,16 +1,19 @@
 //! One random system with its motions, on which claims are tested.
 
 use deltaq::{
-    Choice, Ending, Gap, Membership, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict,
-    compare_motions_by, derive, formulation, membership, setting,
+    Ending, Gap, Membership, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict,
+    compare_motions_by, membership, setting,
 };
 use equations::Equations;
 use mechanics::{ConstantsRule, Removal, SingularValues, State, System};
 use nalgebra::DMatrix;
+use referees::maggi::{self, MaggiError};
 use scene::Scene;
 use symbolic::Expr;
 
+use super::derived::{equations, free_constants};
 use super::finding::{Finding, Findings, Word};
+use super::found_out::referee;
 use super::recipe::Recipe;
 use crate::realization::{constraint_jacobian, numbers};
 use crate::substitution;
@@ -62,7 +65,12 @@ pub struct Case {
     pub floor: f64,
     /// What was found so far.
     pub found: Findings,
-    membership: Option<Membership>,
+    /// The formulation of the motion that is planted in the vakonomic family.
+    pub planted: &'static str,
+    /// What [`Case::membership`] has said, if it was asked.
+    pub membership: Option<Membership>,
+    /// What [`Case::referee`] has said, if it was asked.
+    referee: Option<[maggi::Motion; 2]>,
 }
 
 /// What is observed of two motions that are the same: how near the gap comes to what it must not pass, at
@@ -115,7 +123,9 @@ impl Case {
             shortened: None,
             floor,
             found: Findings::default(),
+            planted: "vakonomic",
             membership: None,
+            referee: None,
         })
     }
 
@@ -128,6 +138,18 @@ impl Case {
             self.membership = membership(&self.scene, self.end())?;
         }
         Ok(self.membership.clone())
+    }
+
+    /// Chetaev's motion by Maggi's equations, at two tolerances, the sharper one last.
+    ///
+    /// # Errors
+    /// [`MaggiError`] where it cannot be started.
+    pub fn referee(&mut self) -> Result<&mut [maggi::Motion; 2], MaggiError> {
+        let found = match self.referee.take() {
+            Some(found) => found,
+            None => referee(Setting { end: self.end(), ..setting(&self.scene) })?,
+        };
+        Ok(self.referee.insert(found))
     }
 
     fn earliest_stop(&self) -> Option<(f64, String)> {
@@ -255,26 +277,6 @@ pub enum Which {
     Removed(usize),
     /// The control.
     Control,
-}
-
-/// The equations of a formulation of the table.
-///
-/// # Errors
-/// [`SolveError`] where it has none for this system.
-pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Result<Equations, SolveError> {
-    let entry = formulation(name).unwrap_or(&deltaq::FORMULATIONS[0]);
-    let choice = Choice {
-        label: entry.title.into(),
-        formulation: entry.name,
-        removal: removal.cloned(),
-        constants: ConstantsRule::Zero,
-    };
-    derive(system, &choice)
-}
-
-/// The free constants of `equations` out of costates that are given one a memory variable.
-pub fn free_constants(equations: &Equations, costates: &[f64]) -> Vec<f64> {
-    equations.free_constants.iter().map(|c| c.memory.and_then(|i| costates.get(i)).copied().unwrap_or(0.0)).collect()
 }
 
 /// Costates of the recipe, zero where the variable has none.

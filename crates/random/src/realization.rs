@@ -19,7 +19,8 @@ use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_remov
 use nalgebra::{DMatrix, DVector};
 use symbolic::{CompileError, Expr, Graph, Symbol};
 
-use crate::{augmented, equations};
+use crate::derived::equations;
+use crate::transform::augmented;
 
 /// Tolerances of the looser run: the second where strong added mass leaves more round-off than the first.
 const TOLERANCES: [f64; 2] = [1e-9, 1e-7];

@@ -9,7 +9,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use super::feature::{Features, features};
-use super::{Kind, NullTest, Truth};
+use super::{Kind, Truth};
 
 /// Most coordinates of a random system.
 pub const MOST: usize = 6;
@@ -274,12 +274,8 @@ pub fn draw_recipe(seed: u64, index: u64, kinds: &[Kind]) -> Recipe {
     draw(seed, index, kinds).current()
 }
 
-/// The numbers of the null test that belongs to `(seed, index)`.
-pub fn draw_null_test(seed: u64, index: u64) -> NullTest {
-    tree(&NullTest::strategy(), seed, index).current()
-}
-
-fn tree<S: Strategy>(strategy: &S, seed: u64, index: u64) -> S::Tree {
+/// What `strategy` gives for `(seed, index)`: a pure function of the two.
+pub(crate) fn tree<S: Strategy>(strategy: &S, seed: u64, index: u64) -> S::Tree {
     let mut bytes = [0_u8; 32];
     bytes[..8].copy_from_slice(&seed.to_le_bytes());
     bytes[8..16].copy_from_slice(&index.to_le_bytes());

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::claims::{CHECKS, make};
 use super::finding::Word;
-use super::{Case, Findings, Kind, NullTest, Recipe, null_test};
+use super::{Case, Fault, Findings, Kind, NullTest, Recipe, null_test};
 
 /// Of each kind, one system in this many also gets the thorough checks, and a null test after it.
 pub const THOROUGH: u64 = 10;
@@ -54,8 +54,8 @@ pub struct Record {
 }
 
 impl Record {
-    /// Puts one recipe to the test.
-    pub fn of(recipe: Recipe, index: u64, thorough: bool, null: Option<&NullTest>) -> Record {
+    /// Puts one recipe to the test, and the numbers of a null test.
+    pub(crate) fn of(recipe: Recipe, index: u64, thorough: bool, null: Option<&NullTest>, fault: &Fault) -> Record {
         let mut record = Record {
             index,
             kind: recipe.kind,
@@ -69,7 +69,8 @@ impl Record {
             seconds: (0.0, Vec::new()),
         };
         let clock = Instant::now();
-        let mut found = match Case::new(recipe, "random") {
+        let case = Case::new(recipe, "random").and_then(|mut case| (fault.case)(&mut case).map(|()| case));
+        let mut found = match case {
             Ok(mut case) => {
                 record.seconds.0 = clock.elapsed().as_secs_f64();
                 for check in CHECKS.iter().filter(|check| thorough || !check.thorough) {
@@ -86,7 +87,7 @@ impl Record {
                 found
             }
         };
-        match null.map(null_test) {
+        match null.map(|numbers| null_test(numbers, fault)) {
             None => {}
             Some(Ok(null)) => found.join(null),
             Some(Err(error)) => found.undecided(13, "null tests", error),

@@ -56,11 +56,28 @@ fn length(a: &[f64]) -> f64 {
 }
 
 /// Which principle the equations are to follow.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Principle {
     Chetaev,
-    Vakonomic,
+    /// `d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ`: for `κ = 0` vakonomic.
+    Vakonomic {
+        kappa: f64,
+    },
 }
+
+impl Principle {
+    /// That of a formulation or form, from its name.
+    pub fn of(formulation: &str) -> Principle {
+        match formulation.trim_end_matches("-reduced") {
+            "chetaev" => Principle::Chetaev,
+            "kappa" => Principle::Vakonomic { kappa: KAPPA },
+            _ => Principle::Vakonomic { kappa: 0.0 },
+        }
+    }
+}
+
+/// The number of every parameter that a formulation needs.
+pub const KAPPA: f64 = 0.7;
 
 /// Equations with states that lead to every `(q, v)` on the constraint.
 pub fn judge(truth: &Truth, principle: Principle, samples: &[Sample], reading: &Reading) -> Findings {
@@ -70,7 +87,7 @@ pub fn judge(truth: &Truth, principle: Principle, samples: &[Sample], reading: &
         let at = common(&mut findings, sample, instant);
         let (mut at, a) = (at, &instant.along.velocities);
         let mut rate = vec![0.0; truth.h];
-        if principle == Principle::Vakonomic {
+        if let Principle::Vakonomic { .. } = principle {
             findings.same("multipliers at the start", &instant.now.multipliers, &sample.point.mu);
             rate.clone_from(&instant.along.multipliers);
         } else {
@@ -84,13 +101,18 @@ pub fn judge(truth: &Truth, principle: Principle, samples: &[Sample], reading: &
         let turned = slope(|s| truth.momenta(&curve(s)));
         let mut applied = truth.gradient(&at);
         applied.iter_mut().zip(truth.forces(&at)).for_each(|(x, force)| *x += force);
+        let (reactions, forces) = (truth.reactions(&at), truth.forces(&at));
+        if let Principle::Vakonomic { kappa } = principle {
+            let drag = &reactions * DVector::from_row_slice(&at.mu) * kappa;
+            applied.iter_mut().zip(drag.iter()).for_each(|(x, drag)| *x -= drag);
+        }
         let mut rest: Vec<f64> = turned.iter().zip(&applied).map(|(turned, applied)| turned - applied).collect();
         let size = length(&turned) + length(&applied);
         if principle == Principle::Chetaev {
             rest = match &instant.now.multipliers[..] {
                 [] => truth.without_reactions(&at, &rest),
                 given if given.len() == truth.h => {
-                    let reaction = truth.reactions(&at) * DVector::from_row_slice(given);
+                    let reaction = &reactions * DVector::from_row_slice(given);
                     rest.iter().zip(reaction.iter()).map(|(rest, reaction)| rest - reaction).collect()
                 }
                 _ => vec![f64::INFINITY],
@@ -99,15 +121,14 @@ pub fn judge(truth: &Truth, principle: Principle, samples: &[Sample], reading: &
         findings.zero("the principle", &rest, size);
         findings.zero("the constraint along the motion", &slope(|s| truth.constraints(&curve(s))), length(a));
         // what nothing can change in any of these states, and only that, is to be handed over
-        let chetaev = principle == Principle::Chetaev;
-        let (reactions, forces) = (truth.reactions(&at), truth.forces(&at));
+        let pulls = principle != Principle::Vakonomic { kappa: 0.0 };
         let small = |x: f64| x.abs() < LIMIT * (1.0 + size);
         for (i, constant) in constant[..truth.n].iter_mut().enumerate() {
-            *constant &= small(applied[i]) && !(chetaev && reactions.row(i).iter().any(|x| !small(*x)));
+            *constant &= small(applied[i]) && !(pulls && reactions.row(i).iter().any(|x| !small(*x)));
         }
         let power = reactions.transpose() * DVector::from_row_slice(&at.v);
         let driven = forces.iter().chain(power.iter()).any(|x| !small(*x));
-        constant[truth.n] &= small(truth.by_time(&at)) && !(chetaev && driven);
+        constant[truth.n] &= small(truth.by_time(&at)) && !(pulls && driven);
         let values = truth.momenta(&at).into_iter().chain([truth.energy(&at)]);
         for (i, (name, value)) in reading.invariants.iter().zip(&instant.now.invariants).enumerate() {
             let wanted = values.clone().zip(0..).find(|(_, place)| truth.conserved(*place) == *name);

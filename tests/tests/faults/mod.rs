@@ -20,7 +20,7 @@ use std::time::Instant;
 
 use deltaq::{FORMS, FORMULATIONS, over_threads};
 use equations::Formulation;
-use mechanics::Removal;
+use mechanics::{Parameter, Removal};
 use scene::Scene;
 
 use road::{Outcome, Stage, Trial};
@@ -122,16 +122,27 @@ fn words((at, what): &Place) -> String {
 /// A fault, on which road it was put, and what became of it.
 struct Fault {
     road: String,
+    formulation: &'static str,
     stage: Stage,
     place: Place,
     outcome: Outcome,
+}
+
+/// The scene with all parameters that formulations need besides its own.
+fn with_parameters(scene: Scene) -> Scene {
+    let mut system = scene.system.clone();
+    for name in FORMULATIONS.iter().chain(FORMS).filter_map(|formulation| formulation.parameter) {
+        let symbol = system.graph.symbol(name);
+        system.parameters.push(Parameter { symbol, value: judge::KAPPA });
+    }
+    Scene { system, ..scene }
 }
 
 /// Tries so many faults of each place on every road of a scene, evenly spread.
 fn faults(scene: &Scene, guards: Guards, a_place: usize) -> Vec<Fault> {
     let mut faults = Vec::new();
     for trial in ways(scene, guards).iter().filter_map(Trial::new) {
-        let Trial { name, stage, chances, .. } = &trial;
+        let Trial { name, formulation, stage, chances, .. } = &trial;
         trial.sound.verdict().unwrap_or_else(|words| panic!("{name}, {stage:?}, sound: {words}"));
         let mut of: BTreeMap<Place, Vec<usize>> = BTreeMap::new();
         for (which, chance) in chances.iter().enumerate() {
@@ -140,7 +151,8 @@ fn faults(scene: &Scene, guards: Guards, a_place: usize) -> Vec<Fault> {
         for (place, all) in of {
             let count = all.len().min(a_place);
             let outcomes = (0..count).map(|i| trial.spoiled(all[i * all.len() / count]));
-            faults.extend(outcomes.map(|outcome| Fault { road: name.clone(), stage: *stage, place, outcome }));
+            let road = |outcome| Fault { road: name.clone(), formulation, stage: *stage, place, outcome };
+            faults.extend(outcomes.map(road));
         }
     }
     faults
@@ -160,26 +172,35 @@ fn faults_are_noticed() {
     let of_scene = |i: usize| match SCENES.get(i) {
         Some((name, numbers, guards)) => {
             let numbers: Vec<_> = numbers.iter().map(|&(name, x)| (name.into(), x.into())).collect();
-            faults(&catalogue::find(name, &numbers).expect("a scene"), *guards, a_place)
+            faults(&with_parameters(catalogue::find(name, &numbers).expect("a scene")), *guards, a_place)
         }
         None => {
             let (name, text) = OWN[i - SCENES.len()];
-            faults(&Scene::parse(name, text).expect("a scene"), Guards::Some, a_place)
+            faults(&with_parameters(Scene::parse(name, text).expect("a scene")), Guards::Some, a_place)
         }
     };
     let faults: Vec<Fault> = over_threads(0, SCENES.len() + OWN.len(), of_scene).into_iter().flatten().collect();
 
-    println!("{:<10} {:>6} {:>8} {:>8} {:>12} {:>9}", "stage", "roads", "faults", "noticed", "same motion", "survived");
-    for stage in Stage::ALL {
-        let here = || faults.iter().filter(|fault| fault.stage == stage);
-        let count = |wanted: fn(&Outcome) -> bool| here().filter(|fault| wanted(&fault.outcome)).count();
-        let roads: BTreeSet<&str> = here().map(|fault| &fault.road[..]).collect();
+    println!("{:<28} {:>6} {:>8} {:>8} {:>12} {:>9}", "", "roads", "faults", "noticed", "same motion", "survived");
+    let counted = |name: String, of: &dyn Fn(&&Fault) -> bool| {
+        let here: Vec<&Fault> = faults.iter().filter(of).collect();
+        let count = |wanted: fn(&Outcome) -> bool| here.iter().filter(|fault| wanted(&fault.outcome)).count();
+        let roads: BTreeSet<&str> = here.iter().map(|fault| &fault.road[..]).collect();
         let noticed = count(|outcome| matches!(outcome, Outcome::Noticed));
         let unchanged = count(|outcome| matches!(outcome, Outcome::Unchanged));
-        let all = here().count();
-        let survived = all - noticed - unchanged;
-        let stage = format!("{stage:?}");
-        println!("{stage:<10} {:>6} {all:>8} {noticed:>8} {unchanged:>12} {survived:>9}", roads.len());
+        let survived = here.len() - noticed - unchanged;
+        println!("{name:<28} {:>6} {:>8} {noticed:>8} {unchanged:>12} {survived:>9}", roads.len(), here.len());
+        noticed
+    };
+    for stage in Stage::ALL {
+        counted(format!("{stage:?}"), &|fault| fault.stage == stage);
+    }
+    let mut untried = Vec::new();
+    for Formulation { name, .. } in FORMULATIONS.iter().chain(FORMS) {
+        for stage in &Stage::ALL[1..] {
+            let noticed = counted(format!("{name}, {stage:?}"), &|f| (f.formulation, f.stage) == (*name, *stage));
+            untried.extend((noticed == 0).then_some((name, stage)));
+        }
     }
     let places: BTreeSet<Place> = faults.iter().map(|fault| fault.place).collect();
     let noticed = faults.iter().filter(|fault| matches!(fault.outcome, Outcome::Noticed)).map(|fault| fault.place);
@@ -187,7 +208,7 @@ fn faults_are_noticed() {
     println!("\n{} places, {} of them without a fault that is noticed:", places.len(), places.len() - noticed.len());
     places.difference(&noticed).for_each(|place| println!("   {}", words(place)));
     let (mut used, mut wrong) = ([false; EXPLAINED.len()], String::new());
-    for Fault { road, stage, place: place @ (at, what), outcome } in &faults {
+    for Fault { road, stage, place: place @ (at, what), outcome, .. } in &faults {
         let Outcome::Survived { change, found } = outcome else { continue };
         let explains = |[file, text, of, _]: &[&str; 4]| at.file().ends_with(file) && line(at) == *text && what == of;
         match EXPLAINED.iter().position(explains) {
@@ -203,5 +224,6 @@ fn faults_are_noticed() {
     let stale = EXPLAINED.iter().zip(used).filter(|(_, used)| !used);
     wrong.extend(stale.map(|(reason, _)| format!("stale: {reason:?}\n")));
     println!("\n{:.1} s", begun.elapsed().as_secs_f64());
+    assert!(untried.is_empty(), "no fault was noticed: {untried:?}");
     assert!(wrong.is_empty(), "{wrong}");
 }

@@ -11,7 +11,7 @@ use super::road::{STATES, Stage, Trial};
 use super::truth::{Point, Truth, slope, slopes};
 
 /// Finds a removal anew, with faults.
-pub fn trial(scene: &Scene, removal: &Removal) -> Option<Trial<'static>> {
+pub fn trial(scene: &Scene, removal: &Removal, formulation: &'static str) -> Option<Trial<'static>> {
     let find = match removal.name.as_str() {
         "coordinates" => Removal::by_coordinates,
         "quasi-velocities" => Removal::by_quasi_velocities,
@@ -30,7 +30,7 @@ pub fn trial(scene: &Scene, removal: &Removal) -> Option<Trial<'static>> {
         let change = if found.len() == numbers.len() { distance(&found, &numbers) } else { f64::INFINITY };
         Ok((findings, change))
     };
-    Some(Trial { name, stage: Stage::Remove, chances, sound, with_fault: Box::new(with_fault) })
+    Some(Trial { name, formulation, stage: Stage::Remove, chances, sound, with_fault: Box::new(with_fault) })
 }
 
 /// What is found, and `q, q̇, B` in states that have nothing to do with the start.

@@ -40,6 +40,7 @@ type WithFault<'a> = Box<dyn Fn(usize) -> Result<(Findings, f64), String> + 'a>;
 /// Work into which faults are put: one formulation of one scene, at one stage.
 pub struct Trial<'a> {
     pub name: String,
+    pub formulation: &'static str,
     pub stage: Stage,
     pub chances: Vec<Chance>,
     /// What judges find without a fault.
@@ -63,7 +64,7 @@ impl<'a> Trial<'a> {
         let Way { scene, guards, formulation, ref removal, stage } = *way;
         let removal = removal.clone();
         if stage == Stage::Remove {
-            return removal::trial(scene, &removal?);
+            return removal::trial(scene, &removal?, formulation.name);
         }
         let truth = Truth::new(&scene.system);
         let title = removal.as_ref().map_or(String::new(), |r| format!(", {}", r.name));
@@ -100,8 +101,7 @@ impl<'a> Trial<'a> {
         }
         let earlier = before.map(|before| read(&before, None, &samples, near.as_deref()).unwrap_or_else(refused));
         let guardless = guards == Guards::None && formulation.name.ends_with("reduced");
-        let chetaev = formulation.name.starts_with("chetaev");
-        let principle = if chetaev { Principle::Chetaev } else { Principle::Vakonomic };
+        let principle = Principle::of(formulation.name);
         let states = samples.clone();
         let judged = move |reading: &Reading| match (&earlier, &parametrized) {
             (Some(earlier), _) => judge::same_motion(earlier, reading),
@@ -119,7 +119,8 @@ impl<'a> Trial<'a> {
             let reading = read(&equations, plan.as_ref(), &samples, near.as_deref())?;
             Ok((judged(&reading), reading.change(&sound)))
         };
-        Some(Trial { name, stage, chances, sound: findings, with_fault: Box::new(with_fault) })
+        let (formulation, with_fault) = (formulation.name, Box::new(with_fault));
+        Some(Trial { name, formulation, stage, chances, sound: findings, with_fault })
     }
 
     /// What becomes of a fault.

@@ -1,7 +1,7 @@
 //! One suite a theorem. What each claim says and assumes is at the check, in the crate `random`.
 
 use proptest::test_runner::TestCaseError;
-use random::{Kind, NullTest, null_test};
+use random::{Fault, Kind, NullTest, null_test};
 
 use super::support::{for_all, holds, part};
 
@@ -102,7 +102,7 @@ fn t12_wrong_formulation_is_flagged_where_it_is_wrong() {
 #[test]
 fn t13_null_tests_with_random_numbers() {
     for_all(48, &NullTest::strategy(), |numbers| {
-        let found = null_test(&numbers).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let found = null_test(&numbers, &Fault::NONE).map_err(|e| TestCaseError::fail(e.to_string()))?;
         match found.failures().next() {
             Some(f) => Err(TestCaseError::fail(format!("{}: {:.3e} {} for {numbers:?}", f.claim, f.figure, f.note))),
             None => Ok(()),

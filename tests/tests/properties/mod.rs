@@ -6,6 +6,7 @@
 mod claims;
 mod contradictions;
 mod estimates;
+mod falsified;
 mod forms;
 mod generator;
 mod invariants;

@@ -4,6 +4,7 @@ mod audit_page;
 mod bench_page;
 mod bicycle_page;
 mod bodies;
+mod control;
 mod differences;
 mod equivalence;
 mod family;

@@ -2,19 +2,23 @@
 
 use deltaq::{Answer, Comparison, Fit, Membership, Verdict};
 
+use crate::report::control::{self, Control};
 use crate::report::tables::verdict_words;
 use crate::report::{Table, fill, membership};
 use deltaq::words::{enumerate, precise, short};
-use random::substitution;
 
 /// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.
 pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {
-    let findings = findings(comparisons).into_iter().zip(1..).map(|(finding, i)| format!("{i}. {finding}\n"));
+    let controls: Vec<Option<Control>> = comparisons.iter().map(Control::on).collect();
+    let matrix = matrix(comparisons, &controls);
+    let controls: Vec<Control> = controls.into_iter().flatten().collect();
+    let findings =
+        findings(comparisons, &controls).into_iter().zip(1..).map(|(finding, i)| format!("{i}. {finding}\n"));
     fill(
         include_str!("pages/overview.md"),
         &[
             ("headline", &headline(comparisons)),
-            ("matrix", &matrix(comparisons)),
+            ("matrix", &matrix),
             ("findings", &findings.collect::<String>()),
             ("further", &further.iter().map(|(line, path)| format!("- {line} [More]({path}).\n")).collect::<String>()),
         ],
@@ -41,22 +45,17 @@ fn fit_of<'a>(comparison: &'a Comparison, run: &str, target: &str) -> Option<&'a
     comparison.fits.iter().find(|f| f.run == run && f.target == target)
 }
 
-fn matrix(comparisons: &[Comparison]) -> Table {
+fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
     let columns = ["scene", "constraint", "Chetaev – vakonomic", "any $\\mu_0$?", "gap reached", "Chetaev – removed"];
     let mut table = Table::new(columns.into_iter().chain(["vakonomic – removed", "control"]));
-    for c in comparisons {
+    for (c, control) in comparisons.iter().zip(controls) {
         let after = match fit_of(c, "vakonomic", "chetaev").map(|f| &f.fitted) {
             None => "–".into(),
             Some(None) => "no fit".into(),
             Some(Some(fitted)) if fitted.gap.verdict == Verdict::Same => "same".to_string(),
             Some(Some(fitted)) => format!("gap {}", short(fitted.gap.largest)),
         };
-        let control = match verdict_of(c, "chetaev", substitution::NAME) {
-            Some(Verdict::Same) => "right here",
-            Some(Verdict::Different) => "flagged",
-            Some(Verdict::Undecided { .. }) => "undecided",
-            None => "–",
-        };
+        let control = control.as_ref().map_or("–", Control::word);
         let constraint = c.integrability.to_string();
         let constraint = constraint.split([':', '(']).next().unwrap_or("").trim();
         let pairs = [("chetaev", "vakonomic"), ("chetaev", "removed-constraint"), ("vakonomic", "removed-constraint")];
@@ -98,7 +97,7 @@ fn headline(comparisons: &[Comparison]) -> String {
     )
 }
 
-fn findings(comparisons: &[Comparison]) -> Vec<String> {
+fn findings(comparisons: &[Comparison], controls: &[Control]) -> Vec<String> {
     let mut findings = Vec::new();
     let integrable: Vec<&Comparison> = comparisons.iter().filter(|c| c.integrability.is_integrable()).collect();
     let agreeing = names(integrable.iter().copied().filter(|c| all_same(c)));
@@ -119,7 +118,7 @@ fn findings(comparisons: &[Comparison]) -> Vec<String> {
         decided(|answer| matches!(answer, Answer::NoneProved { .. })),
     ));
     findings.push(parametrizations(comparisons));
-    findings.push(control(comparisons));
+    findings.push(control::sentence(controls));
     findings.extend(predictions(comparisons));
     findings
 }
@@ -177,17 +176,6 @@ fn parametrizations(comparisons: &[Comparison]) -> String {
         enumerate(&has),
         enumerate(&lacks),
         enumerate(&apart)
-    )
-}
-
-fn control(comparisons: &[Comparison]) -> String {
-    let with = |verdict: &Verdict| {
-        names(comparisons.iter().filter(|c| verdict_of(c, "chetaev", substitution::NAME) == Some(verdict)))
-    };
-    format!(
-        "**The wrong formulation is found out.** Putting the constraint into $L$ is flagged on {}, and called right on {}.",
-        enumerate(&with(&Verdict::Different)),
-        enumerate(&with(&Verdict::Same))
     )
 }
 

@@ -8,7 +8,8 @@ use nalgebra::{DMatrix, DVector};
 use symbolic::Symbol;
 
 use super::CheckError;
-use crate::case::{Which, equations, free_constants};
+use crate::case::Which;
+use crate::derived::{equations, free_constants};
 use crate::realization::{augmented_start, momenta, numbers};
 use crate::{Case, Kind, Truth};
 

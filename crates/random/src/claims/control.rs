@@ -1,22 +1,11 @@
 //! T12: the deliberately wrong formulation.
 
-use deltaq::{Verdict, multipliers_of};
+use deltaq::{Setting, Verdict, multipliers_of, setting};
 
 use super::CheckError;
-use crate::case::{Which, equations};
-use crate::{Case, Kind};
-use referees::maggi::Maggi;
-
-/// Fractions of the run at which the control's equations are put to the test.
-const PLACES: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 0.95];
-
-/// Distances of the differences, in parts of the run: the lesser error counts, round-off of near ones or, in
-/// a switch, that of far ones.
-const DISTANCES: [f64; 2] = [1e-3, 1e-4];
-
-/// Over `WRONG` of Maggi's residual the control motion is wrong, under `RIGHT` right, between undecided.
-const WRONG: f64 = 1e-6;
-const RIGHT: f64 = 1e-12;
+use crate::case::Which;
+use crate::derived::equations;
+use crate::{Case, Kind, Word, found_out};
 
 /// Flagged wherever Maggi's equations say wrong; called right where right, above all in Chaplygin's form.
 pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
@@ -24,24 +13,27 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         return Ok(());
     }
     criterion(case)?;
-    let residual = residual(case)?;
     let gap = case.gap(Which::Chetaev, Which::Control)?;
-    let flagged = gap.certain_from.is_some();
-    if case.recipe.kind == Kind::ChaplyginIntegrable {
-        let note = format!("residual {residual:.1e}, gap {:.1e}", gap.largest);
-        case.found.require(12, "right in Chaplygin's integrable form", gap.verdict == Verdict::Same, note);
-    } else if residual > WRONG {
-        case.found.count(12, "the wrong formulation is wrong, and flagged", flagged);
-        match flagged {
-            true => case.found.require(12, "flagged where it is wrong", true, ""),
-            false => case.found.undecided(
-                12,
-                "flagged where it is wrong",
-                format!("residual {residual:.1e}, gap {:.1e}", gap.largest),
-            ),
+    let mut referee = case.referee()?.clone();
+    let (mut control, mut metric) = (case.motion(Which::Control).clone(), case.metric.clone());
+    let setting = Setting { end: case.end(), ..setting(&case.scene) };
+    let found = found_out(setting, &mut control, &gap, &mut referee, &mut metric, case.floor)?;
+    if found.is_wrong() {
+        case.found.count(12, "the wrong formulation is wrong, and flagged", found.flagged);
+    }
+    let claim = match (case.recipe.kind, found.is_right()) {
+        (Kind::ChaplyginIntegrable, _) => {
+            let claim = "right in Chaplygin's integrable form";
+            case.found.require(12, claim, gap.verdict == Verdict::Same, &found.note);
+            return Ok(());
         }
-    } else if residual < RIGHT {
-        case.found.require(12, "not flagged where it is right", !flagged, format!("residual {residual:.1e}"));
+        (_, true) => "not flagged where it is right",
+        (_, false) => "flagged where it is wrong, and only there",
+    };
+    match found.word {
+        None => {}
+        Some(Word::Undecided) => case.found.undecided(12, claim, found.note),
+        Some(word) => case.found.require(12, claim, word == Word::Holds, found.note),
     }
     Ok(())
 }
@@ -67,26 +59,4 @@ fn criterion(case: &mut Case) -> Result<(), CheckError> {
         (false, false) => case.found.undecided(12, claim, note),
     }
     Ok(())
-}
-
-/// Largest relative residual of Maggi's equations on the control motion, accelerations by differences.
-fn residual(case: &mut Case) -> Result<f64, CheckError> {
-    let mut maggi = Maggi::new(&case.scene.system)?;
-    let (start, duration) = (case.scene.start.t, case.scene.duration);
-    let motion = case.motion(Which::Control);
-    let mut worst = 0.0_f64;
-    for place in PLACES {
-        let mut least = f64::INFINITY;
-        for h in DISTANCES.map(|h| h * duration) {
-            let t = start + place * duration;
-            let mut velocity = |t: f64| motion.at(t).map(|o| o.velocities);
-            let (a, b, c, d) = (velocity(t - 2.0 * h)?, velocity(t - h)?, velocity(t + h)?, velocity(t + 2.0 * h)?);
-            let derivative = |i: usize| (a[i] - 8.0 * b[i] + 8.0 * c[i] - d[i]) / (12.0 * h);
-            let acceleration: Vec<f64> = (0..a.len()).map(derivative).collect();
-            let now = motion.at(t)?;
-            least = least.min(maggi.residual(t, &now.coordinates, &now.velocities, &acceleration)?.largest());
-        }
-        worst = worst.max(least);
-    }
-    Ok(worst)
 }

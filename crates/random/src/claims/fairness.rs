@@ -1,11 +1,11 @@
 //! T9: whether a motion is vakonomic for some multipliers: decided, proved, and fitted.
 
 use decision::{Finding, Verdict};
-use deltaq::{Answer, Choice, Membership, Pairing, Settings, best_fit, choices, setting};
-use mechanics::ConstantsRule;
+use deltaq::{Answer, Membership, Pairing, Settings, best_fit, choices, setting};
 
 use super::CheckError;
-use crate::case::{Which, equations};
+use crate::case::Which;
+use crate::derived::equations;
 use crate::{Case, Kind};
 
 /// Decides whether the Chetaev motion is vakonomic; finds a vakonomic motion's multipliers from itself.
@@ -83,10 +83,13 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
 
 /// The vakonomic motion of the scene is vakonomic, with the multipliers of the scene.
 fn planted(case: &mut Case) -> Result<(), CheckError> {
-    let multipliers = &case.scene.multipliers;
-    let family = &choices(&case.scene)[1];
-    let curve = Choice { constants: ConstantsRule::Given(multipliers.clone()), ..family.clone() };
-    let Membership { decision, proof, .. } = Pairing::new(&case.scene, &curve, family)?.decide(case.end())?;
+    let (choices, multipliers) = (choices(&case.scene), &case.scene.multipliers);
+    let [Some(family), Some(curve)] =
+        ["vakonomic", case.planted].map(|name| choices.iter().find(|choice| choice.formulation == name))
+    else {
+        return Ok(());
+    };
+    let Membership { decision, proof, .. } = Pairing::new(&case.scene, curve, family)?.decide(case.end())?;
     let proof = proof.this_start;
     let left = decision.mismatch_at(multipliers);
     let note =

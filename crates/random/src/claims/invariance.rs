@@ -8,7 +8,8 @@ use symbolic::{Expr, Function, Matrix, Symbol};
 
 use super::CheckError;
 use crate::Case;
-use crate::case::{Which, equations, free_constants};
+use crate::case::Which;
+use crate::derived::{equations, free_constants};
 use crate::realization::numbers;
 use crate::transform::{Rewritten, Scaling, recombined};
 

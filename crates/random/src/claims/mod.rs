@@ -13,11 +13,11 @@ mod within;
 use deltaq::SolveError;
 use symbolic::CompileError;
 
-use super::Case;
+use super::{Case, Unjudged};
 use referees::maggi::MaggiError;
 
 pub use agreement::{DIVERGES, Divergence};
-pub use null_tests::{NullTest, null_test};
+pub use null_tests::{NullTest, broken_null_test, null_test};
 
 /// Why a check could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -31,6 +31,9 @@ pub enum CheckError {
     /// An expression of the check itself has no value.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// The control could not be judged.
+    #[error(transparent)]
+    Unjudged(#[from] Unjudged),
 }
 
 /// One claim, or a group of them that shares its motions.

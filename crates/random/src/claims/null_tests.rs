@@ -3,10 +3,13 @@
 use deltaq::{Motion, SolveError, setting, solve};
 use mechanics::ConstantsRule;
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
 use scene::Scene;
 
-use crate::case::equations;
-use crate::finding::Findings;
+use crate::Fault;
+use crate::derived::equations;
+use crate::finding::{Finding, Findings};
+use crate::recipe::tree;
 
 /// Numbers for the three null tests.
 #[derive(Clone, Debug)]
@@ -34,6 +37,11 @@ impl NullTest {
             disc,
         })
     }
+
+    /// Those of `(seed, index)`, with their ways to shrink.
+    pub fn draw(seed: u64, index: u64) -> impl ValueTree<Value = NullTest> {
+        tree(&NullTest::strategy(), seed, index)
+    }
 }
 
 fn eighths(range: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = f64> {
@@ -46,16 +54,50 @@ const LIMIT: f64 = 1e-9;
 /// Instants.
 const INSTANTS: usize = 40;
 
+/// A system with a closed form: its scene, if there is one with these numbers, and what is claimed of it.
+struct Null {
+    scene: fn(&NullTest) -> Option<Scene>,
+    claims: fn(&mut Findings, &NullTest, &Scene) -> Result<(), SolveError>,
+}
+
+const NULL_TESTS: [Null; 3] = [
+    Null { scene: appell_hamel_scene, claims: appell_hamel },
+    Null { scene: heisenberg_scene, claims: heisenberg },
+    Null { scene: disc_scene, claims: disc },
+];
+
+impl Null {
+    /// Findings on its scene, if there is one.
+    fn run(&self, numbers: &NullTest, fault: &Fault) -> Result<Option<(Findings, Scene)>, SolveError> {
+        let Some(mut scene) = (self.scene)(numbers) else { return Ok(None) };
+        (fault.null)(&mut scene);
+        let mut found = Findings::default();
+        (self.claims)(&mut found, numbers, &scene)?;
+        Ok(Some((found, scene)))
+    }
+}
+
 /// Runs the three null tests.
 ///
 /// # Errors
 /// [`SolveError`] where a motion cannot be had.
-pub fn null_test(numbers: &NullTest) -> Result<Findings, SolveError> {
-    let mut found = Findings::default();
-    appell_hamel(&mut found, numbers.appell)?;
-    heisenberg(&mut found, numbers.heisenberg)?;
-    disc(&mut found, numbers.disc)?;
-    Ok(found)
+pub fn null_test(numbers: &NullTest, fault: &Fault) -> Result<Findings, SolveError> {
+    let mut all = Findings::default();
+    for test in &NULL_TESTS {
+        if let Some((found, _)) = test.run(numbers, fault)? {
+            all.join(found);
+        }
+    }
+    Ok(all)
+}
+
+/// The scene of the first null test that fails with these numbers, and the failure.
+pub fn broken_null_test(numbers: &NullTest, fault: &Fault) -> Option<(Scene, Finding)> {
+    NULL_TESTS.iter().find_map(|test| {
+        let (found, scene) = test.run(numbers, fault).ok()??;
+        let failure = found.failures().next()?.clone();
+        Some((scene, failure))
+    })
 }
 
 const APPELL_HAMEL: &str = include_str!("appell-hamel.toml");
@@ -89,12 +131,12 @@ fn error(motion: &mut Motion, exact: &dyn Fn(f64) -> Vec<f64>) -> Result<f64, So
     Ok(worst / way)
 }
 
-/// Straight lines with `v̇_h = −g a/(1 + a²)`, for Chetaev and for vakonomic with any `μ₀` but `m/(2a²)`.
-fn appell_hamel(found: &mut Findings, [m, g, a, heading, speed, mu]: [f64; 6]) -> Result<(), SolveError> {
-    if (mu - m / (2.0 * a * a)).abs() < 0.05 {
-        return Ok(()); // singular there
-    }
-    let deceleration = g * a / (1.0 + a * a);
+fn deceleration([_, g, a, ..]: [f64; 6]) -> f64 {
+    g * a / (1.0 + a * a)
+}
+
+fn appell_hamel_scene(numbers: &NullTest) -> Option<Scene> {
+    let [m, g, a, heading, speed, mu] = numbers.appell;
     let overrides = [
         ("m", m),
         ("g", g),
@@ -102,27 +144,38 @@ fn appell_hamel(found: &mut Findings, [m, g, a, heading, speed, mu]: [f64; 6]) -
         ("x'", speed * heading.cos()),
         ("y'", speed * heading.sin()),
         ("z'", a * speed),
-        ("duration", 0.8 * speed / deceleration),
+        ("duration", 0.8 * speed / deceleration(numbers.appell)),
     ];
-    let scene = scene(APPELL_HAMEL, &overrides);
+    let regular = (mu - m / (2.0 * a * a)).abs() >= 0.05;
+    regular.then(|| Scene { multipliers: vec![mu], ..scene(APPELL_HAMEL, &overrides) })
+}
+
+/// Straight lines with `v̇_h = −g a/(1 + a²)`, for Chetaev and for vakonomic with any `μ₀` but `m/(2a²)`.
+fn appell_hamel(found: &mut Findings, numbers: &NullTest, scene: &Scene) -> Result<(), SolveError> {
+    let ([_, _, a, heading, speed, _], deceleration) = (numbers.appell, deceleration(numbers.appell));
     let exact = |t: f64| {
         let s = speed * t - deceleration * t * t / 2.0;
         vec![s * heading.cos(), s * heading.sin(), a * s]
     };
-    found.bound(13, "Appell–Hamel: Chetaev runs straight", error(&mut motion(&scene, "chetaev", &[])?, &exact)?, LIMIT);
-    let vakonomic = error(&mut motion(&scene, "vakonomic", &[mu])?, &exact)?;
+    found.bound(13, "Appell–Hamel: Chetaev runs straight", error(&mut motion(scene, "chetaev", &[])?, &exact)?, LIMIT);
+    let vakonomic = error(&mut motion(scene, "vakonomic", &scene.multipliers)?, &exact)?;
     found.bound(13, "Appell–Hamel: vakonomic runs the same line", vakonomic, LIMIT);
     Ok(())
 }
 
+fn heisenberg_scene(numbers: &NullTest) -> Option<Scene> {
+    let [vx, vy, mu] = numbers.heisenberg;
+    Some(Scene { multipliers: vec![mu], ..scene(HEISENBERG, &[("x'", vx), ("y'", vy)]) })
+}
+
 /// Chetaev straight lines, vakonomic circles of rate `μ`.
-fn heisenberg(found: &mut Findings, [vx, vy, mu]: [f64; 3]) -> Result<(), SolveError> {
-    let scene = scene(HEISENBERG, &[("x'", vx), ("y'", vy)]);
+fn heisenberg(found: &mut Findings, numbers: &NullTest, scene: &Scene) -> Result<(), SolveError> {
+    let [vx, vy, mu] = numbers.heisenberg;
     let (x0, y0) = (scene.start.q[0], scene.start.q[1]);
     let z = |x: f64, y: f64| (x0 * y - y0 * x) / 2.0;
     let line = |t: f64| vec![x0 + vx * t, y0 + vy * t, z(x0 + vx * t, y0 + vy * t)];
-    found.bound(13, "Heisenberg: Chetaev runs straight", error(&mut motion(&scene, "chetaev", &[])?, &line)?, LIMIT);
-    let mut vakonomic = motion(&scene, "vakonomic", &[mu])?;
+    found.bound(13, "Heisenberg: Chetaev runs straight", error(&mut motion(scene, "chetaev", &[])?, &line)?, LIMIT);
+    let mut vakonomic = motion(scene, "vakonomic", &scene.multipliers)?;
     // v turns at the rate μ, in one sense or the other: d²/dt² v = −μ² v, and speed is kept
     let (mut worst, speed) = (0.0_f64, vx.hypot(vy));
     for t in vakonomic.grid(INSTANTS) {
@@ -134,19 +187,25 @@ fn heisenberg(found: &mut Findings, [vx, vy, mu]: [f64; 3]) -> Result<(), SolveE
     Ok(())
 }
 
-/// `μ₀ = −m (ẋ₀, ẏ₀)` gives the Chetaev motion, with `φ` and `ψ` uniform.
-fn disc(found: &mut Findings, [heading, roll, turn]: [f64; 3]) -> Result<(), SolveError> {
+fn disc_scene(numbers: &NullTest) -> Option<Scene> {
+    let [heading, roll, turn] = numbers.disc;
     let scene = scene(DISC, &[("phi", heading), ("psi'", roll), ("phi'", turn), ("duration", 3.0)]);
-    let (radius, start) = (0.5, scene.start.clone());
+    let multipliers = scene.start.v[..2].iter().map(|v| -v).collect();
+    Some(Scene { multipliers, ..scene })
+}
+
+/// `μ₀ = −m (ẋ₀, ẏ₀)` gives the Chetaev motion, with `φ` and `ψ` uniform.
+fn disc(found: &mut Findings, numbers: &NullTest, scene: &Scene) -> Result<(), SolveError> {
+    let ([heading, roll, turn], radius) = (numbers.disc, 0.5);
     let exact = |t: f64| {
         let angle = heading + turn * t;
         let circle = radius * roll / turn;
         vec![circle * (angle.sin() - heading.sin()), circle * (heading.cos() - angle.cos()), roll * t, angle]
     };
-    found.bound(13, "disc: Chetaev rolls uniformly", error(&mut motion(&scene, "chetaev", &[])?, &exact)?, LIMIT);
-    let special = error(&mut motion(&scene, "vakonomic", &[-start.v[0], -start.v[1]])?, &exact)?;
+    found.bound(13, "disc: Chetaev rolls uniformly", error(&mut motion(scene, "chetaev", &[])?, &exact)?, LIMIT);
+    let special = error(&mut motion(scene, "vakonomic", &scene.multipliers)?, &exact)?;
     found.bound(13, "disc: the special multipliers give the Chetaev motion", special, LIMIT);
-    let plain = error(&mut motion(&scene, "vakonomic", &[0.0, 0.0])?, &exact)?;
+    let plain = error(&mut motion(scene, "vakonomic", &[0.0, 0.0])?, &exact)?;
     found.require(13, "disc: zero multipliers do not", plain > 1e-6, format!("distance {plain:.1e}"));
     Ok(())
 }

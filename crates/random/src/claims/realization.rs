@@ -3,7 +3,8 @@
 use deltaq::{CERTAINTY, Metric, Motion, Setting, SolveError};
 
 use super::CheckError;
-use crate::case::{Which, equations};
+use crate::case::Which;
+use crate::derived::equations;
 use crate::realization::{Realization, distance, realize, with_kappa};
 use crate::{Case, Kind};
 

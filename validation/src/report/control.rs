@@ -1,0 +1,72 @@
+//! What is said of the control on scenes, and what Maggi's equations say of that.
+
+use deltaq::words::{enumerate, short};
+use deltaq::{Comparison, Metric, Setting, Verdict, setting};
+use random::{FoundOut, Unjudged, Word, found_out, referee, substitution};
+
+/// The control on one scene.
+pub(super) struct Control {
+    name: String,
+    /// Whether the program calls it Chetaev's motion.
+    is_same: bool,
+    /// What Maggi's equations say, if they could be asked.
+    found: Option<FoundOut>,
+}
+
+impl Control {
+    /// Where both Chetaev's and the control's motion are there.
+    pub(super) fn on(comparison: &Comparison) -> Option<Control> {
+        let (chetaev, control) = (comparison.run("chetaev")?, comparison.run(substitution::NAME)?);
+        let gap = &comparison.pair(chetaev, control)?.gap;
+        let judged = || -> Result<FoundOut, Unjudged> {
+            let scene = &comparison.scene;
+            let mut metric = Metric::new(&scene.system).map_err(deltaq::SolveError::from)?;
+            let setting = Setting { end: gap.end, ..setting(scene) };
+            let mut motion = comparison.runs[control].outcome.clone()?;
+            found_out(setting, &mut motion, gap, &mut referee(setting)?, &mut metric, 0.0)
+        };
+        let name = format!("`{}`", comparison.scene.name);
+        Some(Control { name, is_same: gap.verdict == Verdict::Same, found: judged().ok() })
+    }
+
+    /// A word for the table.
+    pub(super) fn word(&self) -> &'static str {
+        let Some(found) = &self.found else { return "undecided" };
+        match (found.word, found.flagged) {
+            (Some(Word::Fails), true) => "flagged, though right",
+            (Some(Word::Fails), false) => "wrong, and not flagged",
+            (Some(Word::Holds), true) => FLAGGED,
+            (Some(Word::Holds) | None, false) if self.is_same => RIGHT,
+            _ => "undecided",
+        }
+    }
+}
+
+const FLAGGED: &str = "flagged";
+const RIGHT: &str = "right here";
+
+/// The finding on all scenes.
+pub(super) fn sentence(controls: &[Control]) -> String {
+    let names = |wanted: &dyn Fn(&&Control) -> bool| {
+        controls.iter().filter(wanted).map(|control| control.name.clone()).collect::<Vec<_>>()
+    };
+    let called = |word: &'static str| names(&move |control: &&Control| control.word() == word);
+    let fails = names(&|control| control.found.as_ref().is_some_and(|found| found.word == Some(Word::Fails)));
+    let (title, otherwise) = match &fails[..] {
+        [] => ("The wrong formulation is found out.", String::new()),
+        some => (
+            "The wrong formulation is not found out.",
+            format!(" On {} Maggi's equations say otherwise: a fault of the program.", enumerate(some)),
+        ),
+    };
+    let wrong = names(&|control| control.found.as_ref().is_some_and(FoundOut::is_wrong)).len();
+    let right = controls.iter().filter(|control| control.word() == RIGHT).filter_map(|control| control.found.as_ref());
+    let residual = right.fold(0.0_f64, |largest, found| largest.max(found.residual));
+    format!(
+        "**{title}** Putting the constraint into $L$ violates Maggi's equations, which share nothing with the formulations, on {wrong} scenes. It is flagged on {}, \
+         and called right on {}, where their residual is at most {}.{otherwise}",
+        enumerate(&called(FLAGGED)),
+        enumerate(&called(RIGHT)),
+        short(residual)
+    )
+}
