@@ -101,8 +101,8 @@ pub trait Problem {
         &[]
     }
 
-    /// The highest power, from 20 on, of a quantity without bounds in the equations; 0 where there is none. It
-    /// may be nothing at both ends of a step, to all orders that are looked at: such steps are checked inside.
+    /// The highest power, from 20 on, of a quantity without bounds in the equations; 0 where there is none.
+    /// It may be nothing at both ends of a step, to all orders looked at: such steps are checked inside.
     fn highest_power(&self) -> f64 {
         0.0
     }

@@ -212,8 +212,8 @@ impl<'s, 'p> Taylor<'s, 'p> {
         Ok(())
     }
 
-    /// Compares the slope of the polynomial at the end with the rates there. Where they differ, they may by as
-    /// much as the last digits of the start say of the rates, too: a pendulum 1e-12 rad from its top.
+    /// Compares the slope of the polynomial at the end with the rates there. They may differ by as much as
+    /// the last digits of the start say of the rates, too: a pendulum 1e-12 rad from its top.
     fn check_slope(&mut self) -> Result<(), Failure> {
         let ends = Ends {
             reached: self.reached.as_chunks::<1>().0,

@@ -49,7 +49,7 @@ const STEADY: f64 = 1e-9;
 /// The equations of `choice` to first order about the start of `setting`, which has to be a steady motion.
 ///
 /// A rate counts as none up to 1e-9 of `Σ |J_ij| s_j` and what is added up to it, with `s` as far as states
-/// that are coupled both ways can be moved before their part of `J` is another one, and `s_j = |y_j|` of others.
+/// that are coupled both ways can be moved before their part of `J` is another one; of others `s_j = |y_j|`.
 ///
 /// # Errors
 /// [`LinearError::NotSteady`], [`LinearError::TimeDependent`]; [`LinearError::Solve`] where the formulation

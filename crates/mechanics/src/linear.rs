@@ -168,7 +168,7 @@ impl<T: Entry> Factors<T> {
         Ok(())
     }
 
-    /// `|L| |U| |x|`, in the rows and units of the matrix: what elimination adds up on the way to a solution `x`.
+    /// `|L| |U| |x|`, in the rows and units of the matrix: what elimination adds up on the way to `x`.
     pub fn eliminated(&self, x: &[T]) -> Vec<f64> {
         let n = self.n;
         let sizes: Vec<f64> = x.iter().zip(&self.column_scale).map(|(x, scale)| x.size() / scale.size()).collect();

@@ -192,8 +192,8 @@ fn inverse_or_one(x: f64) -> f64 {
     if x > 0.0 && (1.0 / x).is_finite() { 1.0 / x } else { 1.0 }
 }
 
-/// A unit for each velocity: where `M` knows the coordinate, the one that makes the largest entry of its row 1;
-/// else the one that makes its part in a constraint as large as that of the others.
+/// A unit for each velocity: where `M` knows the coordinate, the one that makes the largest entry of its row
+/// 1; else the one that makes its part in a constraint as large as that of the others.
 fn column_scale(a: &DMatrix<f64>, m: &DMatrix<f64>) -> DVector<f64> {
     let has_mass: Vec<bool> = m.row_iter().map(|row| row.amax() > 0.0).collect();
     let mut scale = DVector::from_fn(m.nrows(), |j, _| if has_mass[j] { 1.0 } else { 0.0 });
