@@ -205,7 +205,7 @@ fn the_overview_counts_its_own_table() {
         rows.iter().filter(|row| row["control"] == word).map(name).collect()
     };
     let control = format!(
-        "is flagged on {}, and called right on {}.",
+        "is flagged on {}, and called right on {}, where",
         deltaq::words::enumerate(&named("flagged")),
         deltaq::words::enumerate(&named("right here"))
     );
