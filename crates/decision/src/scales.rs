@@ -64,6 +64,8 @@ fn least(sizes: impl Iterator<Item = f64>) -> Option<f64> {
 const BALANCES: usize = 60;
 /// Under this part of what balances the equations, a rate at the start says no size.
 const SMALL: f64 = 1e-9;
+/// An acceleration under this part of the forces at work is round-off of their balance.
+const BALANCED: f64 = 1e-14;
 
 impl Scales {
     pub(crate) fn new(shape: &Shape, start: &Start) -> Scales {
@@ -73,19 +75,22 @@ impl Scales {
         let moving = &shape.accelerations;
         let to_acceleration = DMatrix::from_row_slice(n, moving.len(), start.instant.to_acceleration);
         let of_unknowns = to_acceleration.transpose() * &mass * &to_acceleration;
-        // the forces at work, by what they would do to one coordinate alone
-        let work = |(column, &z): (usize, &usize)| {
-            let force = (0..size).filter(|&r| matrix[(r, z)] != 0.0).map(|r| start.terms.rest[r]).fold(0.0, f64::max);
-            let mass = of_unknowns[(column, column)].abs();
-            if mass > 0.0 { (force * time).powi(2) / mass } else { 0.0 }
+        // what each equation would do alone: force or curvature over its length in the metric `M⁻¹`
+        let masses = of_unknowns.diagonal().abs();
+        let work = |r: usize| {
+            let square = |(&z, mass): (&usize, &f64)| if *mass > 0.0 { matrix[(r, z)].powi(2) / mass } else { 0.0 };
+            let length: f64 = moving.iter().zip(masses.iter()).map(square).sum();
+            if length > 0.0 { (start.terms.rest[r] * time).powi(2) / length } else { 0.0 }
         };
         let kinetic = |i: usize| {
             let [v, a] = [start.velocities[i], start.accelerations[i] * time];
             mass[(i, i)].abs() * (v * v + a * a)
         };
         let mut energy: f64 = (0..n).map(kinetic).sum();
-        if energy == 0.0 {
-            energy = moving.iter().enumerate().map(work).sum();
+        let works: f64 = (0..size).map(work).sum();
+        // what round-off leaves of accelerations where forces balance is no motion
+        if energy <= BALANCED.powi(2) * works {
+            energy = works;
         }
         let energy = if energy > 0.0 && energy.is_finite() { energy } else { 1.0 };
         let speed = |mass: f64| if mass != 0.0 { (energy / mass.abs()).sqrt() } else { 0.0 };

@@ -223,9 +223,9 @@ impl<'a> Transport<'a> {
         Ok(())
     }
 
-    /// What adds up in `Δz`, by column: `|J⁻¹| ((‖J‖ + |L| |U|) |Δz| + ‖R_η‖ |η| + ‖R₀‖)`; `‖·‖` sums all
-    /// terms. Elimination, `J = L U` with rows in another order, adds up more than `J` where rows are nearly
-    /// dependent.
+    /// What adds up in `Δz`, by column: `|J⁻¹| ((‖J‖ + |L| |U|) |Δz| + ‖R_η‖ |η| + ‖R₀‖ + |J| F)`; `‖·‖` sums
+    /// all terms, `F` are the forces that balance in an acceleration of the curve. Elimination, `J = L U` with
+    /// rows in another order, adds up more than `J` where rows are nearly dependent.
     fn terms(&mut self, columns: &DMatrix<f64>, solved: &DMatrix<f64>) -> DMatrix<f64> {
         let shape = &self.family.shape;
         let (size, k, last) = (shape.unknowns, shape.costates, shape.constants);
@@ -249,6 +249,13 @@ impl<'a> Transport<'a> {
         let matrix = shape.instant(&self.values).matrix;
         let scaled = DMatrix::from_fn(size, size, |r, z| residuals[r] * matrix[r * size + z] * unknowns[z]);
         right.row_iter_mut().zip(residuals).for_each(|(mut row, factor)| row *= *factor);
+        // the curve's own accelerations are known to the digits of the forces that balance in them
+        let forces: Vec<f64> = instant.rest.iter().zip(residuals).map(|(rest, factor)| rest * factor).collect();
+        for &z in &shape.accelerations {
+            let column = scaled.column(z).abs();
+            let force = column.iter().zip(&forces).filter(|(x, _)| **x > 0.0).map(|(_, f)| *f).fold(0.0, f64::max);
+            right.column_mut(last).axpy(force, &column, 1.0);
+        }
         let upper = DMatrix::from_row_slice(size, size, &self.matrix).upper_triangle();
         if let Some(lower) = upper.tr_solve_upper_triangular(&scaled.transpose()) {
             let own = DMatrix::from_fn(size, solved.ncols(), |z, c| (solved[(z, c)] / unknowns[z]).abs());

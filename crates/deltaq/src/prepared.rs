@@ -103,6 +103,12 @@ impl Prepared {
         Ok(prepared)
     }
 
+    /// `y(t₀)`, with what round-off leaves of a zero as zero: a rate may depend on it by any part.
+    pub fn start_without_round_off(&self) -> Vec<f64> {
+        let vanishing = self.values.vanishing();
+        self.start.iter().zip(vanishing).map(|(&y, vanishes)| if vanishes { 0.0 } else { y }).collect()
+    }
+
     /// Compiles what `method` needs beyond the rates, once; the first run does it anyway.
     ///
     /// # Errors

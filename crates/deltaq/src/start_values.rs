@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use equations::Equations;
 use mechanics::{State, complete_removal_start};
-use symbolic::{Evaluator, Expr, Symbol};
+use symbolic::{Bounded, Evaluator, Expr, Scalar, Symbol};
 
 use crate::{Setting, SolveError};
 
@@ -68,6 +68,13 @@ impl StartValues {
     pub(crate) fn set_constants(&mut self, constants: &[f64]) {
         let first = self.first_constant(constants.len());
         self.inputs[first..].copy_from_slice(constants);
+    }
+
+    /// Which states cannot be told from zero: momenta are sums that may cancel.
+    pub(crate) fn vanishing(&self) -> Vec<bool> {
+        let inputs: Vec<Bounded> = self.inputs.iter().map(|&x| Bounded::from_f64(x)).collect();
+        let mut program = Evaluator::new(self.program.tape().clone());
+        program.evaluate(&inputs)[..self.states].iter().map(|x: &Bounded| x.may_be_zero()).collect()
     }
 
     /// The states, and the guess for the unknowns of the instant, empty unless each has a derived one.

@@ -38,8 +38,9 @@ impl Point {
         let choice = in_quasi_velocities(setting, choice);
         let equations = derive_at(setting.system, setting.start, &choice)?;
         let prepared = prepare(setting, equations, &choice.constants, &settings)?;
-        let Prepared { equations, compiled, t, start, .. } = prepared;
-        Ok(Point { equations, compiled, t, y: start })
+        let y = prepared.start_without_round_off();
+        let Prepared { equations, compiled, t, .. } = prepared;
+        Ok(Point { equations, compiled, t, y })
     }
 
     /// `F(t, y)`.

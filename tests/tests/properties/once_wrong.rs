@@ -1,6 +1,8 @@
 //! Systems on which a claim failed once: what was wrong stood between the motions and the word.
 
+use deltaq::Answer;
 use random::{Batch, Kind, Word};
+use scene::Scene;
 
 /// Seed, index, kind, the claim's theorem, and what was wrong.
 const ONCE_WRONG: [(u64, u64, Kind, u8, &str); 12] = [
@@ -28,4 +30,29 @@ fn no_claim_fails_where_one_did() {
         let claimed = record.word(theorem).is_some();
         assert!(claimed || theorem == 5, "seed {seed}, system {index}: nothing is claimed by T{theorem}");
     }
+}
+
+/// Found by a generator of starts at rest: the force on `q2` is held by its constraint, but for 1e-16.
+const HELD: &str = r#"
+title = "held"
+[coordinates]
+q1 = { start = 0.75 }
+q2 = { start = 0.125 }
+q3 = { start = -0.625 }
+[system]
+lagrangian = "q1'^2/2 + 3*q2'^2/4 + 569*q3'^2/512 + 11*sin(q2)/16"
+constraints = ["q2'", "q1'"]
+[start.velocities]
+"q3'" = 0
+[run]
+duration = 1.5
+"#;
+
+#[test]
+fn what_round_off_leaves_of_forces_that_balance_is_no_motion() {
+    let scene = Scene::parse("held", HELD).expect("a scene");
+    let found = deltaq::membership(&scene, 1.5).expect("decided").expect("constrained");
+    assert!(found.contradiction().is_none(), "{:?}", found.contradiction());
+    assert!(matches!(found.answer(), Answer::Some { .. } | Answer::SomeProved), "{:?}", found.answer());
+    assert_eq!(found.decision.set.dimension(), 2);
 }
