@@ -223,9 +223,9 @@ impl<'a> Transport<'a> {
         Ok(())
     }
 
-    /// What adds up in `Δz`, by column: `|J⁻¹| ((‖J‖ + |L| |U|) |Δz| + ‖R_η‖ |η| + ‖R₀‖ + |J| F)`; `‖·‖` sums
-    /// all terms, `F` are the forces that balance in an acceleration of the curve. Elimination, `J = L U` with
-    /// rows in another order, adds up more than `J` where rows are nearly dependent.
+    /// What adds up in `Δz`, by column: `|J⁻¹| ((‖J‖ + |L| |U|) |Δz| + ‖R_η‖ |η| + ‖R₀‖ + |J| F)`; `‖·‖`
+    /// sums all terms, `F` are the forces that balance in an acceleration of the curve. Elimination,
+    /// `J = L U` with rows in another order, adds up more than `J` where rows are nearly dependent.
     fn terms(&mut self, columns: &DMatrix<f64>, solved: &DMatrix<f64>) -> DMatrix<f64> {
         let shape = &self.family.shape;
         let (size, k, last) = (shape.unknowns, shape.costates, shape.constants);
