@@ -4,6 +4,7 @@ use equations::Equations;
 use integrate::{BoundaryError, Dense, Interrupt, Options, ShootOptions, shoot};
 use mechanics::ConstantsRule;
 
+use crate::charts::{self, Course};
 use crate::{Ending, Prepared, Setting, Settings, SolveError, TIGHTER};
 
 /// Compiles `equations` and computes what they start from. Nothing is integrated, unless the constants are
@@ -31,22 +32,24 @@ pub fn prepare(
     settings: &Settings,
 ) -> Result<Prepared, SolveError> {
     let mut prepared = Prepared::new(setting, equations, settings)?;
-    resolve(&mut prepared, constants, settings, None)?;
+    resolve(&mut prepared, constants, settings, Some(setting), None)?;
     Ok(prepared)
 }
 
-/// Sets the free constants as `rule` says; those that are natural are looked for from `near` on, or zero.
+/// Sets the free constants as `rule` says; those that are natural are looked for from `near` on, or zero, and
+/// where a `setting` is known by motions that go from chart to chart.
 pub(crate) fn resolve(
     prepared: &mut Prepared,
     rule: &ConstantsRule,
     settings: &Settings,
+    setting: Option<Setting>,
     near: Option<&[f64]>,
 ) -> Result<(), SolveError> {
     let own = prepared.own_constants().len();
     let constants = match rule {
         ConstantsRule::Zero => vec![0.0; own],
         ConstantsRule::Given(values) => given_constants(&prepared.equations, own, values)?,
-        ConstantsRule::Natural { horizon } => natural_constants(prepared, *horizon, settings, near)?,
+        ConstantsRule::Natural { horizon } => natural_constants(prepared, *horizon, settings, setting, near)?,
     };
     prepared.set_constants(&constants);
     Ok(())
@@ -96,6 +99,7 @@ fn natural_constants(
     prepared: &mut Prepared,
     horizon: f64,
     settings: &Settings,
+    setting: Option<Setting>,
     near: Option<&[f64]>,
 ) -> Result<Vec<f64>, SolveError> {
     let equations = &prepared.equations;
@@ -146,16 +150,27 @@ fn natural_constants(
         }
         let run_options = Options { max_steps: left, dense: Dense::EndOnly, ..of_all.clone() };
         let run = prepared.integrate(horizon, &run_options).map_err(&mut refuse)?;
-        let steps = run.solution.work.steps + run.solution.work.rejected;
+        let mut steps = run.solution.work.steps + run.solution.work.rejected;
+        let mut end = vec![0.0; prepared.start.len()];
+        let mut ending = Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution, &[]);
+        if let (Ending::Stopped { .. }, true, Some(setting)) = (&ending, prepared.compiled.has_chart(), setting) {
+            let within = Settings { method, max_steps: left, times: None, ..settings.clone() };
+            let course = charts::run(Setting { end: horizon, ..setting }, prepared, &within, f64::INFINITY);
+            if let Course::Run(mut runs) = course.map_err(&mut refuse)? {
+                steps += 2 * (runs.work.steps + runs.work.rejected);
+                ending = runs.ending;
+                if ending == Ending::Completed {
+                    end = runs.trajectories[0].state(&mut prepared.compiled, horizon).map_err(&mut refuse)?;
+                }
+            }
+        } else if ending == Ending::Completed {
+            run.solution.dense.evaluate(horizon, &mut end);
+        }
         taken += steps;
         limit.get_or_insert(LONGER * runs * steps);
-        if let Ending::Stopped { t, cause } =
-            Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution, &[])
-        {
+        if let Ending::Stopped { t, cause } = ending {
             return Err(BoundaryError::Residual { reason: format!("the motion stops at t = {t:.6}: {cause}") });
         }
-        let mut end = vec![0.0; prepared.start.len()];
-        run.solution.dense.evaluate(horizon, &mut end);
         for ((r, &place), size) in residual.iter_mut().zip(&places).zip(&sizes) {
             *r = end[place] / size;
         }

@@ -242,7 +242,7 @@ pub fn solve(
     let mut prepared = Prepared::new(setting, equations, settings)?;
     let compile = clock.seconds();
     let clock = Clock::start();
-    resolve(&mut prepared, constants, settings, None)?;
+    resolve(&mut prepared, constants, settings, Some(setting), None)?;
     let (runs, chosen) = run(setting, &mut prepared, settings)?;
     let Runs { trajectories, changes, ending, work, projection, fallbacks } = runs;
     let seconds = Seconds { derive: 0.0, compile, integrate: clock.seconds() };

@@ -98,7 +98,7 @@ pub fn solve_by_steps(scene: &Scene, choice: &Choice, steps: Steps, settings: &S
     let mut prepared = Prepared::new(setting(scene), equations, settings)?;
     let compile = clock.seconds();
     let clock = Clock::start();
-    resolve(&mut prepared, &choice.constants, settings, None)?;
+    resolve(&mut prepared, &choice.constants, settings, Some(setting(scene)), None)?;
     let discrete = discrete_of(scene, choice, &prepared.constants)?.composed(steps.composition);
     let run = |count: usize| {
         let options = settings.options(settings.tolerance);

@@ -91,7 +91,7 @@ impl Varying {
         prepared.t = state.t;
         prepared.set_parameters(parameters);
         let near = near.then(|| prepared.own_constants().to_vec());
-        resolve(prepared, constants, &self.settings, near.as_deref())
+        resolve(prepared, constants, &self.settings, None, near.as_deref())
     }
 
     /// The equations, compiled and started.

@@ -1,7 +1,10 @@
 //! Changes of charts, with invariants of the user's own.
 
-use deltaq::{Choice, Ensemble, EnsembleOptions, Motion, Settings, choices, solve_choice};
-use mechanics::{ConstantsRule, Removal};
+use deltaq::{
+    Choice, Ensemble, EnsembleOptions, Motion, Setting, Settings, choices, derive_at, multipliers_of, setting, solve,
+    solve_choice,
+};
+use mechanics::{ConstantsRule, Removal, State};
 use scene::Scene;
 
 /// A sleigh that turns past heading 90°, where its pivot vanishes, with these invariants.
@@ -87,4 +90,49 @@ fn ensembles_complete_what_single_motions_complete() {
     }
     println!("{passed} members go on by another chart, {refused} stop as single motions do");
     assert!(passed >= 2 && refused == 0, "{passed} {refused}");
+}
+
+const CARRIAGE: &str = include_str!("../../catalogue/classics/two-wheeled-carriage.toml");
+const RACER: &str = include_str!("../../catalogue/classics/roller-racer.toml");
+
+/// `P = 0` at the horizon, beyond the end of a chart. The judge is the vakonomic motion that it is, whose
+/// momentum `∂(L + μ·f)/∂ẇ` vanishes there.
+#[test]
+fn natural_constants_are_found_beyond_the_end_of_a_chart() {
+    let text = text("");
+    let scenes = [("sleigh", &text[..], 4.0), ("carriage", CARRIAGE, 1.0), ("racer", RACER, 4.0)];
+    for (name, text, horizon) in scenes {
+        let scene = read(text, &[]);
+        let within = Setting { end: horizon, ..setting(&scene) };
+        let removal = Removal::by_coordinates(&scene.system, &scene.start).expect("linear");
+        let equations = derive_at(&scene.system, &scene.start, &removed(&scene)).expect("derives");
+        let natural = ConstantsRule::Natural { horizon };
+        let motion = solve(within, equations, &natural, &Settings::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(motion.is_complete() && !motion.charts.is_empty(), "{name}: {:?}", motion.ending);
+        let mut costates = vec![0.0; removal.memory.len()];
+        for (constant, value) in motion.equations.free_constants.iter().zip(&motion.constants) {
+            costates[constant.memory.expect("of a memory variable")] = *value;
+        }
+        let multipliers = multipliers_of(&scene, &removal, &costates).expect("evaluates").expect("by coordinates");
+        let family = choices(&scene).into_iter().find(|c| c.formulation == "vakonomic").expect("constrained");
+        let equations = derive_at(&scene.system, &scene.start, &family).expect("derives");
+        let given = ConstantsRule::Given(multipliers);
+        let mut judge = solve(within, equations, &given, &Settings::default()).expect("a vakonomic motion");
+        let end = judge.at(horizon).expect("it is there");
+        let (system, g) = (&scene.system, &scene.system.graph);
+        let state = State { t: horizon, q: end.coordinates, v: end.velocities };
+        let mut values = system.parameter_values();
+        values.extend(system.values_at(&state));
+        let number = |e| g.evaluate(e, &values).expect("finite");
+        for w in &removal.memory {
+            let i = system.coordinates.iter().position(|c| c.position == w.symbol).expect("a coordinate");
+            let v = system.coordinates[i].velocity;
+            let own = number(g.derivative(system.lagrangian, v));
+            let parts = system.constraints.iter().zip(&end.multipliers);
+            let parts: Vec<f64> = parts.map(|(f, mu)| mu * number(g.derivative(*f, v))).collect();
+            let momentum = own + parts.iter().sum::<f64>();
+            let size = own.abs() + parts.iter().map(|x| x.abs()).sum::<f64>();
+            assert!(momentum.abs() < 1e-6 * size.max(1e-3), "{name}: p_{} = {momentum:e} of {size:e}", g.name(v));
+        }
+    }
 }

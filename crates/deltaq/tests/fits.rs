@@ -89,7 +89,8 @@ fn swept(scene: &Scene, runs: &mut [deltaq::Run], fit: &Fit, fitted: &FittedMoti
     (least, at, count)
 }
 
-/// Fits whatever can be fitted in a scene and sweeps: what is less by more than 1 %.
+/// Fits whatever can be fitted in a scene and sweeps: what is less by more than 1 %, and gaps that a search
+/// has made larger.
 fn failures(name: &str, at_most: f64) -> Vec<String> {
     let path = ["scenes", "classics"].map(|folder| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalogue").join(folder);
@@ -101,14 +102,19 @@ fn failures(name: &str, at_most: f64) -> Vec<String> {
     let mut comparison: Comparison =
         compare_unfitted(scene.clone(), choices, Vec::new(), &Settings::default()).expect("compared");
     comparison.fit(Fits::All, &Settings::default()).expect("fitted");
+    let own = |fit: &Fit| comparison.pair(fit.run, fit.target).map_or(0.0, |pair| pair.gap.largest);
+    let own: Vec<f64> = comparison.fits.iter().map(own).collect();
     let Comparison { runs, fits, .. } = &mut comparison;
     let mut failures = Vec::new();
-    for fit in &*fits {
+    for (fit, own) in fits.iter().zip(own) {
         let pair = format!("{name}: {} to {}", runs[fit.run].choice.label, runs[fit.target].choice.label);
         let Some(fitted) = &fit.fitted else {
             println!("{pair}: no motion");
             continue;
         };
+        if fitted.gap.largest > own {
+            failures.push(format!("{pair}: {:.6e}, and {own:.6e} before the search", fitted.gap.largest));
+        }
         if fitted.gap.verdict != Verdict::Different {
             println!("{pair}: nothing left, {:.1e}", fitted.gap.largest);
             continue;

@@ -117,7 +117,7 @@ pub enum BoundaryError {
         cause: StopCause,
     },
     /// The residual stays above the tolerance.
-    #[error("the residual is {residual} after {iterations} iterations, the tolerance is {limit}")]
+    #[error("the residual is {residual:.1e} after {iterations} iterations, the tolerance is {limit:.0e}")]
     NotConverged {
         /// The smallest `|r|` found.
         residual: f64,
