@@ -1,4 +1,4 @@
-"""The advisories that `cargo xtask deny` checks dependencies against: `advisories.tsv`, one a line.
+"""The advisories that `cargo xtask deny` checks dependencies against: `advisories.tsv`, one per line.
 
     advisories.py lay FOLDER    writes them as the database that cargo-deny reads
     advisories.py take CLONE    renews advisories.tsv from a clone of the RustSec advisory database

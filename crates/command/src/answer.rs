@@ -1,4 +1,4 @@
-//! What a command answers, and how the answer comes to the reader.
+//! Output of a command.
 
 use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};

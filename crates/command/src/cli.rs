@@ -30,7 +30,7 @@ pub struct Cli {
     /// No progress bar.
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// Threads for work that can be divided; one a processor if left out. No result depends on it.
+    /// Number of worker threads; one per processor if left out. Does not affect results.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Options of the main job.
@@ -104,7 +104,7 @@ pub enum Command {
     Linearize(LinearizeArguments),
     /// Compare all formulations of one or more scenes.
     Compare(CompareArguments),
-    /// Write a page that explores scenes in a browser: sliders, bodies in motion, verdicts; without a server.
+    /// Write a self-contained page for browsers, without a server: sliders, bodies in motion, verdicts.
     Explore(ExploreArguments),
     /// Prove that no multipliers make a scene's vakonomic motion Chetaev's: a certificate others can check.
     Prove(ProveArguments),
@@ -195,7 +195,7 @@ pub struct CompareArguments {
     /// Formulations to compare, all if left out.
     #[arg(long, short, value_name = "NAME,…", value_delimiter = ',', value_parser = formulations())]
     pub formulation: Vec<String>,
-    /// Fit free constants to motions, too, of which it is decided whether some constants give them.
+    /// Also fit free constants where it is decided whether some constants give the motion.
     #[arg(long = "with", value_name = "PART")]
     pub with: Option<Searched>,
     /// Fit no free constants, not even where nothing is decided.
@@ -362,7 +362,7 @@ pub struct ReportsArguments {
 /// Output formats.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// One line a time.
+    /// One line per time.
     Csv,
     /// One object.
     Json,

@@ -1,4 +1,4 @@
-//! `deltaq compare`: the protocol for scenes of the user's own.
+//! `deltaq compare`: formulations of the user's scenes, compared.
 
 use anyhow::{Context, Result, ensure};
 use console::Term;

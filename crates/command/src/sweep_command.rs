@@ -17,7 +17,7 @@ const CHUNK: usize = 64;
 const COLUMNS: [&str; 9] =
     ["verdict", "apart", "largest", "limit", "answer", "order", "dimension", "mismatch", "cause"];
 
-/// A table, one row a point; of a file that was cut off the rest is computed.
+/// A table, one row per point; of a file that was cut off the rest is computed.
 pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
     let [name] = &arguments.scenes[..] else { bail!("--sweep is for one scene, not for {}", arguments.scenes.len()) };

@@ -1,4 +1,4 @@
-//! What a long answer is at, and what there is of it when the user ends it.
+//! Progress line, and the partial result that is printed on Ctrl-C.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

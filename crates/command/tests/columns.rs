@@ -69,7 +69,7 @@ fn add(rows: &mut Rows, group: &Value, name: impl Fn(&str) -> String) {
     }
 }
 
-/// Times, coordinates, velocities and multipliers of JSON, a row a time.
+/// Times, coordinates, velocities and multipliers of JSON, one row per time.
 fn motion(value: &Value) -> Rows {
     let times = value["times"].as_array().expect("times");
     let mut rows: Rows = times.iter().map(|t| BTreeMap::from([("t".into(), cell("t", t))])).collect();

@@ -37,7 +37,7 @@ fn a_run_that_was_cut_off_goes_on() {
     let path = log.display().to_string();
     let whole = json(&["--count", "30", "--seed", "2", "--log", &path]);
     let lines = fs::read_to_string(&log).expect("a log");
-    assert_eq!(lines.lines().count(), 31, "a header and a line a system");
+    assert_eq!(lines.lines().count(), 31, "a header and one line per system");
     // cut off in the middle of a line
     let cut = lines.match_indices('\n').nth(12).expect("lines").0 + 40;
     fs::write(&log, &lines[..cut]).expect("written");

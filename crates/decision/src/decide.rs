@@ -15,10 +15,12 @@ pub(crate) const NODES: usize = 2;
 const PANELS: usize = 40;
 /// The question is judged up to these parts of the time.
 const PARTS: [f64; 12] = [0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
-/// Noise over this part of the curve's own acceleration tells nothing: a mismatch below it may be real.
+/// Noise above this fraction of the curve's own acceleration leaves the result undecided: a mismatch below it
+/// may be real.
 const TOO_LOUD: f64 = 1e-5;
 
-/// Where round-off shortens steps: factors of the tolerances, with steps for each; the last spares nothing.
+/// Where round-off shortens steps: factors of the tolerances, with steps for each; the last attempt uses the
+/// full budget of steps.
 const ATTEMPTS: [(f64, usize); 3] = [(1.0, 3_000), (1e2, 3_000), (1.0, 100_000)];
 
 /// How the decision is computed.

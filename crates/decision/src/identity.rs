@@ -107,7 +107,7 @@ fn remainders(
     Some((g, rest))
 }
 
-/// Velocities in terms of the others on `f = 0`, one a constraint, in the order in which they are put in;
+/// Velocities in terms of the others on `f = 0`, one per constraint, in the order in which they are put in;
 /// where constraints are squares, for both signs of every root.
 fn on_constraints(g: &Graph, constraints: &[Expr], v: &[Symbol]) -> Option<Vec<Vec<(Symbol, Expr)>>> {
     let Some((&first, others)) = constraints.split_first() else { return Some(vec![Vec::new()]) };

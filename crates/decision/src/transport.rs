@@ -1,4 +1,4 @@
-//! The constants' images along a curve: `η(t) = Φ c + φ`, integrated beside it.
+//! Costates along a curve as functions of the free constants, `η(t) = Φ c + φ`, integrated beside it.
 
 use integrate::{
     Dense, DenseOutput, EvaluationError, Gauge, Method, Options, Problem, Start, Status, StopCause, integrate,

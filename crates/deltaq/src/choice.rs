@@ -111,7 +111,7 @@ pub(crate) fn watch(equations: &mut Equations, system: &System) {
     }
 }
 
-/// Whether `values`, one a memory variable, give a costate that was left out another value than zero.
+/// Whether `values`, one per memory variable, give a costate that was left out another value than zero.
 fn gives_constant_costates(equations: &Equations, values: &[f64]) -> bool {
     let kept = |i: usize| equations.free_constants.iter().any(|c| c.memory == Some(i));
     let memory = equations.removal.as_ref().map_or(0, |removal| removal.memory.len());

@@ -55,7 +55,7 @@ pub(crate) fn resolve(
     Ok(())
 }
 
-/// Values given one a free constant, or one a memory variable (then those without a costate have to be zero).
+/// One value per free constant, or one per memory variable (then those without a costate have to be zero).
 fn given_constants(equations: &Equations, own: usize, values: &[f64]) -> Result<Vec<f64>, SolveError> {
     let constants = &equations.free_constants[..own];
     if let Some(&value) = values.iter().find(|x| !x.is_finite()) {

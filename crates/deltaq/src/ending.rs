@@ -153,7 +153,7 @@ fn nearly_dependent(
     before: &[(f64, Vec<f64>)],
     dense: &DenseOutput,
 ) -> Option<String> {
-    /// Parts of the largest component of the direction that is not determined which are told.
+    /// Components of the undetermined direction above this fraction of the largest are named.
     const TOLD: f64 = 0.3;
     let [before, end] = [before, &[(dense.end(), dense.end_state().to_vec())]]
         .map(|points| points.iter().map(|(t, y)| compiled.block_matrices(*t, y)).collect::<Vec<_>>());

@@ -165,7 +165,7 @@ fn screening(scene: &Scene, choice: &Choice, equations: &Equations, settings: &S
 
 /// Where the constants of a fit come from.
 enum Start {
-    /// They are these, one a memory variable, found from so many starts.
+    /// They are these, one per memory variable, found from so many starts.
     Known((Vec<f64>, usize)),
     /// They are searched, from the least-norm element of the decided set or the nearest miss, from zero
     /// where nothing was decided; or from those of the run, where these are closer.

@@ -7,7 +7,7 @@ use crate::metric::subtract;
 /// Units in the last place by which a start is moved.
 pub(crate) const UNITS: f64 = 4.0;
 
-/// So many units in the last place of each, up or down as the place in `y` has it.
+/// Perturbation of each entry in units in the last place, with alternating sign.
 pub(crate) fn move_digits(y: &mut [f64], units: impl Fn(usize) -> f64) {
     let places = (0..y.len()).zip(signs());
     y.iter_mut().zip(places).for_each(|(x, (i, sign))| *x *= 1.0 + sign * units(i) * f64::EPSILON);

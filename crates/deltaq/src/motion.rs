@@ -328,7 +328,7 @@ pub fn solve_from(setting: Setting, choice: &Choice, settings: &Settings) -> Res
 }
 
 impl Motion {
-    /// It ends here: it cannot be read off behind.
+    /// Truncates the motion: outputs cannot be evaluated after `t`.
     pub(crate) fn end_at(&mut self, t: f64, error: &SolveError) {
         self.stop_at(t, format!("it cannot be read off behind: {error}"));
     }

@@ -57,7 +57,7 @@ impl Prepared {
         Prepared::around(setting, equations, constants, 0, settings)
     }
 
-    /// In a form that suits these values of the free constants, the last of which are so many parameters.
+    /// In a form that suits these values of the free constants; the last `parameters` are varied parameters.
     pub(crate) fn around(
         setting: Setting,
         equations: Equations,

@@ -6,7 +6,7 @@ use crate::{Prepared, SingleRun};
 
 /// Attempts of the trial: as many as a pace is measured by.
 pub(crate) const TRIAL: usize = 500;
-/// A step of [`Method::Radau5`] costs as much as so many others at most.
+/// Upper bound on the cost of a step of [`Method::Radau5`] over that of others.
 pub(crate) const FARTHER: f64 = 10.0;
 
 /// Why a method does not suit a motion.

@@ -35,7 +35,8 @@ pub struct Varying {
     settings: Settings,
 }
 
-/// So far from the scene's values of parameters equations for all values of them are derived.
+/// Offset from the scene's values of parameters at which equations are derived, so that nothing cancels by
+/// accident.
 const APART: f64 = 1e-2;
 
 impl Varying {

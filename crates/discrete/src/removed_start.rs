@@ -21,7 +21,7 @@ pub struct RemovedStart {
 }
 
 impl RemovedStart {
-    /// The values of `(u, u̇, w)` that belong to `state`, with `costates` one a memory variable.
+    /// The values of `(u, u̇, w)` that belong to `state`, with `costates` one per memory variable.
     ///
     /// # Errors
     /// [`DiscreteError::Removal`].

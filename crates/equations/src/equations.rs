@@ -136,8 +136,8 @@ pub struct Equations {
     pub time: Symbol,
     /// Values of the parameters.
     pub parameters: HashMap<Symbol, f64>,
-    /// `L`, `f` and `Q` as they were given: a derivation may write them so that a function that is steep, for
-    /// instance `1/(1 + u²)`, is no more seen to be one.
+    /// `L`, `f` and `Q` as they were given: simplification may hide rapidly varying functions, for instance
+    /// `1/(1 + u²)`.
     pub given: Vec<Expr>,
     /// Intermediate quantities in `(t, y, z)` and earlier ones, see [`crate::Definitions`]. Blocks and guards
     /// need only those without `z`.

@@ -78,7 +78,7 @@ pub struct Formulation {
     pub title: &'static str,
     /// Whether [`Derivation::removal`] is needed.
     pub needs_removal: bool,
-    /// Whether its free constants are multipliers `μ₀` at the start, one a constraint.
+    /// Whether its free constants are multipliers `μ₀` at the start, one per constraint.
     pub starts_multipliers: bool,
     /// Whether generalized forces `Q` stand in its equations; if not, its derivation refuses them.
     pub takes_forces: bool,

@@ -47,7 +47,7 @@ impl Kept {
         kept.map_or_else(|| Varying::new(scene, choice, &varied, settings), Ok)
     }
 
-    /// Keeps what a run at a glance was made of.
+    /// Caches the compiled equations of a preview run.
     pub(crate) fn keep(&mut self, choice: &Choice, varying: Varying) {
         self.motions.insert(key(choice), varying);
     }

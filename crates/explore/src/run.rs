@@ -37,8 +37,7 @@ impl Run {
         Ok(Run::Motion(Box::new(solve_choice(scene, choice, settings)?)))
     }
 
-    /// Integrates it at a glance; in full where that does not come to the end: another chart may lead on, and
-    /// why there is no motion is said in words.
+    /// Integrates a preview; falls back to a full run, which can change charts and explains failures.
     pub(crate) fn at_a_glance(
         scene: &Scene,
         choice: &Choice,

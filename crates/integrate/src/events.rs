@@ -7,8 +7,8 @@ use crate::system::{Failure, System};
 /// Each step is looked at in so many parts of equal length.
 pub(crate) const PARTS: usize = 8;
 
-/// A function with a pole where another is zero may change its sign before that and back behind it: it is
-/// looked at so close before the zero, in parts of the way to it.
+/// A function with a pole where another is zero may change its sign twice near that zero: it is sampled at
+/// this distance before the zero, as a part of the way to it.
 const BEFORE_ZERO: f64 = 1e-6;
 
 /// A function that grows again after it came under these parts of the largest value it had has touched zero.

@@ -68,7 +68,7 @@ impl Interrupt {
         Interrupt { shared: self.shared.clone(), deadline: at.map(|at| Deadline { at, seconds }) }
     }
 
-    /// Tells who watches that an integration has come to `t` in so many steps; then [`Interrupt::cause`].
+    /// Reports progress (time, steps) to the watcher; returns the stop cause, if any ([`Interrupt::cause`]).
     pub fn pass(&self, t: f64, steps: usize) -> Option<StopCause> {
         self.shared.time.store(t.to_bits(), Ordering::Relaxed);
         self.shared.steps.store(steps, Ordering::Relaxed);

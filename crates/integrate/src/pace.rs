@@ -1,23 +1,24 @@
-//! Whether a run gets anywhere.
+//! Detects runs that stall.
 
-/// A run creeps where so many steps move the time by less than this part of what it has come: the rest of it
-/// would take more than a thousand million.
+/// A run stalls where `MANY_STEPS` steps move the time by less than this part of the way so far: the rest
+/// would take more than a thousand million steps.
 const FEW: f64 = 1e-6;
 const MANY_STEPS: usize = 3_000;
 
-/// It creeps, too, where the rest would take so many times the attempts that are allowed, and so many in all,
-/// at the pace of each of so many stretches of so many attempts, none of which moves the time by less than
-/// half or more than twice of what the one before did, and the last by less than most of what the first did:
-/// towards a singularity steps that round-off limits shrink as 1/n, without end. Those that follow the
-/// motion shrink by the same factor in every stretch, and far more, until they are too short or past it.
+/// It stalls, too, where at the pace of each of the last `STRETCHES` windows of `STRETCH` attempts the rest
+/// needs more than `TIMES_ALLOWED` times the limit and more than `TO_GO` attempts, and the windows shrink
+/// smoothly: each moves the time by half to twice as much as the one before, the last by less than `MOST` of
+/// the first. Towards a singularity, steps that round-off limits shrink as 1/n, without end. Steps that
+/// follow the motion shrink by the same factor in every window, and far more, until they are too short or
+/// past it.
 const TIMES_ALLOWED: f64 = 10.0;
 const TO_GO: f64 = 1e7;
 const STRETCHES: usize = 4;
 const STRETCH: usize = 500;
 const MOST: f64 = 0.8;
 
-/// And where the rest would take as long as that at the pace of so many attempts, which is under this part of
-/// that of the whole run so far: once it went far faster.
+/// And where the rest would take as long at the pace of the last `LONG` attempts, which is under `SLOWER` of
+/// the average pace: once it went far faster.
 const LONG: usize = 8_000;
 const SLOWER: f64 = 1e-2;
 

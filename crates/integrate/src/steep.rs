@@ -20,7 +20,7 @@ const PARTS: usize = 16;
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 /// Between places the polynomial is off by so many roundings of what was added up to arguments at these.
 const BLUR: f64 = 16.0 * f64::EPSILON;
-/// Larger arguments are as good as this, of which there are differences.
+/// Arguments are clamped to ± this, so that differences stay finite.
 const HUGE: f64 = 1e100;
 
 /// Arguments of gauges, at the time reached and along the step.

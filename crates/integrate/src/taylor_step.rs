@@ -9,7 +9,7 @@ const TIGHTEST: f64 = 1e-18;
 const LEAST_ORDER: f64 = 4.0;
 /// The last term, in tolerances: e⁻².
 const LAST: f64 = 0.135;
-/// So much may a term before the last two be over the geometric sequence.
+/// Allowed factor by which a term before the last two exceeds geometric decay.
 const SLACK: f64 = 1e3;
 /// The slope of the polynomial, times the step, may differ from the rates by so many tolerances, and at the
 /// end by as many moves of a projection, which may move it by as many tolerances; a relative tolerance below

@@ -12,7 +12,7 @@ use crate::stepper::{Attempt, Stepper};
 use crate::system::{Failure, System, check_finite};
 use crate::taylor_step::{DEFECT, ROUND_OFF};
 
-/// So many times in a row is a step that cannot be evaluated halved.
+/// Maximum number of consecutive halvings of a step that cannot be evaluated.
 pub(crate) const HALVINGS: usize = 60;
 /// A move of a projection that as many halvings do not halve is none of a step.
 const PERSISTENT: usize = 6;

@@ -35,7 +35,7 @@ pub struct MemoryVariable {
 pub enum ConstantsRule {
     /// `P(t₀) = 0`.
     Zero,
-    /// `P(t₀)` given, one value a free constant, in the order of the memory variables.
+    /// `P(t₀)` given, one value per free constant, in the order of the memory variables.
     Given(Vec<f64>),
     /// `P(t₁) = 0` at the horizon `t₁` (natural boundary condition, a boundary-value problem).
     Natural {

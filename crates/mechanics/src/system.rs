@@ -60,7 +60,7 @@ pub struct System {
     pub lagrangian: Expr,
     /// `f(q, v, t)`, each to be zero along a motion.
     pub constraints: Vec<Expr>,
-    /// `Q(q, v, t)`, one a coordinate; the number 0 where no force was given.
+    /// `Q(q, v, t)`, one per coordinate; the number 0 where no force was given.
     pub forces: Vec<Expr>,
     /// What has to be no less than zero for `L`, `f` and `Q` as they were written, where their simpler
     /// forms do not say so: `√x √x` is `x`, for `x ≥ 0`.

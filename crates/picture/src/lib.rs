@@ -112,7 +112,7 @@ pub struct Picture {
     height: f64,
     /// Whether one unit is equally long on both axes; the shorter range is widened.
     equal: bool,
-    /// Every so many-th point of each curve has a dot, and the first point of the first one a ring; 0: none.
+    /// Every `every`-th point of each curve has a dot (0: none), the first point of the first curve a ring.
     every: usize,
 }
 

@@ -169,7 +169,7 @@ impl System {
     ///
     /// vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu0_1", ...).
     /// times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-    /// threads: 0 for one a processor; results do not depend on it. estimate: whether each member is run
+    /// threads: 0 for one per processor; results do not depend on it. estimate: whether each member is run
     /// twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
     /// and time_limit for one run of 4096 members.
     ///

@@ -28,7 +28,7 @@ def test_reaction_of_the_blade(sledge, system):
 
 
 def off_the_constraint(coordinates, velocities):
-    """The largest |y' cos(phi) - x' sin(phi)|; one row a time."""
+    """The largest |y' cos(phi) - x' sin(phi)|; one row per time."""
     (_, _, phi), (x, y, _) = np.moveaxis(coordinates, -1, 0), np.moveaxis(velocities, -1, 0)
     return np.abs(y * np.cos(phi) - x * np.sin(phi)).max()
 

@@ -37,7 +37,7 @@ const SHORTENED: usize = 6;
 pub struct Removed {
     /// The removal.
     pub removal: Removal,
-    /// `P(t₀)`, one a memory variable; zero for those without a costate.
+    /// `P(t₀)`, one per memory variable; zero for those without a costate.
     pub costates: Vec<f64>,
     /// The motion.
     pub motion: Motion,

@@ -19,7 +19,7 @@ pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Resu
     derive(system, &choice)
 }
 
-/// The free constants of `equations` out of costates that are given one a memory variable.
+/// The free constants of `equations` out of costates that are given one per memory variable.
 pub fn free_constants(equations: &Equations, costates: &[f64]) -> Vec<f64> {
     equations.free_constants.iter().map(|c| c.memory.and_then(|i| costates.get(i)).copied().unwrap_or(0.0)).collect()
 }

@@ -25,10 +25,10 @@ pub fn spinner(quiet: bool) -> ProgressBar {
     line.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
 }
 
-/// 0: one a processor.
+/// 0: one per processor.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
-/// How many threads all further work of this program has; 0: one a processor. No result depends on it.
+/// How many threads all further work of this program has; 0: one per processor. No result depends on it.
 pub fn use_threads(threads: usize) {
     THREADS.store(threads, Ordering::Relaxed);
 }

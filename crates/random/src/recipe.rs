@@ -130,7 +130,7 @@ impl Recipe {
         self.ordered()[..self.n() - self.h()].to_vec()
     }
 
-    /// Indices of the dependent coordinates, one a constraint.
+    /// Indices of the dependent coordinates, one per constraint.
     pub fn dependent(&self) -> Vec<usize> {
         self.ordered()[self.n() - self.h()..].to_vec()
     }

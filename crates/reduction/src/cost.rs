@@ -2,8 +2,9 @@
 
 use equations::{Compiled, Equations};
 
-/// Of equations of one motion, the first whose rates take fewest operations ([`Compiled::cost`]), nothing
-/// eliminated, the unneeded left out; failed ones last. Plans for each would cost more than deriving them.
+/// The candidate with the fewest operations per evaluation of the rates ([`Compiled::cost`]), before
+/// elimination, what is not needed left out; candidates that do not compile rank last. Plans for each would
+/// cost more than deriving them.
 ///
 /// # Panics
 /// If there are none.
@@ -15,7 +16,7 @@ pub fn cheapest(candidates: Vec<Equations>) -> Equations {
     candidates.into_iter().min_by_key(price).expect("at least one candidate")
 }
 
-/// Whether the matrix of the equations of the instant moves with time or state, so is eliminated every time.
+/// Whether the matrix of the equations of the instant depends on time or state.
 pub fn matrix_moves(equations: &Equations) -> bool {
     let rows = equations.blocks.iter().flat_map(|b| equations.graph.sparse_jacobian(&b.residuals, &b.unknowns));
     let behind = equations.symbols_behind(rows.flatten().map(|(_, e)| e));

@@ -6,14 +6,14 @@ use super::section::Section;
 use crate::{SceneError, SceneErrorKind, format};
 use mechanics::{ConstantsRule, MemoryVariable};
 
-/// `μ₀`, one a constraint; zero where the scene says nothing.
+/// `μ₀`, one per constraint; zero where the scene says nothing.
 pub(super) fn multipliers(context: &Context) -> Result<Vec<f64>, SceneError> {
     let expected = context.system.constraints.len();
     let mut multipliers = vec![0.0; expected];
     if let Some(section) = context.root.section("vakonomic")? {
         section.check_keys(format::VAKONOMIC);
         if let Some(entry) = section.get("multipliers") {
-            let elements = entry.elements("an array of numbers, one a constraint")?;
+            let elements = entry.elements("an array of numbers, one per constraint")?;
             if elements.len() != expected {
                 let (what, found) = ("multipliers", elements.len());
                 return Err(entry.error(SceneErrorKind::WrongLength { what, found, expected }));

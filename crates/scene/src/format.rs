@@ -110,7 +110,7 @@ pub const START: &[Key] = &[
 
 /// `[vakonomic]`.
 pub const VAKONOMIC: &[Key] =
-    &[may("multipliers", List(&Number), "μ at the start, one a constraint; zero if left out")];
+    &[may("multipliers", List(&Number), "μ at the start, one per constraint; zero if left out")];
 
 /// `[run]`.
 pub const RUN: &[Key] = &[

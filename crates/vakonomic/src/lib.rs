@@ -79,7 +79,7 @@ pub const COSTATE_FORM: Formulation = Formulation {
 
 /// What all forms of the vakonomic equations start from: `𝓛 = L + μ·f` and its derivatives.
 pub struct Augmented {
-    /// Symbols of `μ` at an instant, one a constraint.
+    /// Symbols of `μ` at an instant, one per constraint.
     pub multipliers: Vec<Symbol>,
     /// Symbols of `μ₀` at the start.
     pub starts: Vec<Symbol>,

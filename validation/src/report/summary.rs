@@ -28,7 +28,7 @@ pub fn summary(comparison: &mut Comparison, width: usize) -> Result<String> {
     Ok(text + &motions(comparison)? + &pairs(comparison) + &plot(comparison, width)?)
 }
 
-/// One line a motion: where it ends, how wrong it is; alone, with where it is then.
+/// One line per motion: where it ends, how wrong it is; alone, with where it is then.
 fn motions(comparison: &mut Comparison) -> Result<String> {
     let mut table = vec![["motion", "to", "error", "by", "steps"].map(String::from).to_vec()];
     let estimates: Vec<Option<f64>> = (0..comparison.runs.len()).map(|i| comparison.estimate(i)).collect();

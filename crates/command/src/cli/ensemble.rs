@@ -40,7 +40,7 @@ pub struct MotionArguments {
 /// What the start leaves free.
 #[derive(Args, Debug)]
 pub struct FreeArguments {
-    /// Vakonomic multipliers at the start, one a constraint.
+    /// Vakonomic multipliers at the start, one per constraint.
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', allow_hyphen_values = true)]
     pub mu0: Option<Vec<f64>>,
     /// Name of the removal: one of the scene, `coordinates` or `quasi-velocities`. The first one if left out.
@@ -52,18 +52,18 @@ pub struct FreeArguments {
     pub constants: Option<String>,
 }
 
-/// Limits on steps, and when a run is given up; it stops then, and what it reached is told.
+/// Limits on steps and time. A run that reaches one stops, with what it has so far.
 #[derive(Args, Debug)]
 pub struct Limits {
-    /// Steps that one run may take; a motion is integrated in two runs. If left out, a limit that only runs
-    /// reach that get nowhere.
+    /// Maximum number of steps per run; a motion is integrated in two runs. If left out, a limit that only
+    /// stalled runs reach.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_steps: Option<u32>,
-    /// Longest step, in the scene's unit of time; of the run that is kept, half of it. If left out, the
-    /// tolerance alone decides.
+    /// Maximum step, in the scene's unit of time; the tighter run, which is reported, uses half of it. If
+    /// left out, the tolerance alone decides.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub max_step: Option<f64>,
-    /// Seconds of the clock that one run may take; of an ensemble, one run of 4096 members.
+    /// Maximum seconds of the clock per run; of an ensemble, per run of 4096 members.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
 }
@@ -73,11 +73,11 @@ pub struct Limits {
 pub struct EnsembleArguments {
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// File with one member a line: commas between numbers, the first line names what they replace (a
+    /// File with one member per line: commas between numbers, the first line names what they replace (a
     /// parameter, a coordinate or a velocity at the start, mu0_1, …, P0_w of a memory variable w).
     #[arg(long, value_name = "FILE")]
     pub members: Option<PathBuf>,
-    /// Equidistant values of one of these, both ends included; several combine with each other and the file.
+    /// Equally spaced values, both ends included; repeat the option for all combinations, also with the file.
     /// FROM..TO:COUNT means the same.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", value_parser = range)]
     pub vary: Vec<Range>,

@@ -8,7 +8,7 @@ use scene::Scene;
 
 use crate::cli::{EnsembleArguments, MOST_MEMBERS, Range};
 
-/// Values of what varies, one row a member. Rows are made where they are needed.
+/// Values of what varies, one row per member. Rows are made where they are needed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Members {
     /// What varies.

@@ -141,7 +141,7 @@ impl<'a> Answers<'a> {
         (member < self.members.count()).then(|| format!("{},{},", member + 1, print(&self.members.row(member))))
     }
 
-    /// One row a time; one without numbers where nothing was reached.
+    /// One row per time; one without numbers where nothing was reached.
     pub(super) fn rows(&self, member: usize, outcome: &Outcome) -> String {
         let begin = self.begin(member).unwrap_or_default();
         let cause = quoted(outcome.cause.as_deref().unwrap_or_default());

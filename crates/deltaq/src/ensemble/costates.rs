@@ -10,7 +10,7 @@ use crate::Choice;
 /// Which numbers of a row are costates, and what the others are.
 #[derive(Clone, Default)]
 pub(crate) struct Costates {
-    /// `P(t₀)`, one a memory variable, without those of a row.
+    /// `P(t₀)`, one per memory variable, without those of a row.
     base: Vec<f64>,
     /// Place in a row and memory variable.
     varied: Vec<(usize, usize)>,

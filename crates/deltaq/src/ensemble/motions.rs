@@ -142,7 +142,7 @@ impl Ensemble {
         (runs, read)
     }
 
-    /// [`Ensemble::motions`] of those members that there are.
+    /// [`Ensemble::motions`] of the members that could be started.
     pub fn answers(
         &self,
         members: Vec<Result<EnsembleMember, String>>,

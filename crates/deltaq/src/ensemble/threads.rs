@@ -13,8 +13,8 @@ pub fn number_of_threads(threads: usize) -> usize {
     }
 }
 
-/// `work` on this thread and, for more items than a `group`, on others, `threads` in all (0: one a
-/// processor). Each takes items `0..count` as it gets to them; results are in order, `None` for none.
+/// Work queue: `work` on this thread and, for more items than a `group`, on others, `threads` in all (0: one
+/// per processor). Results keep the order of the items `0..count`, `None` where an item gave none.
 pub(super) fn shared<T: Send>(
     threads: usize,
     count: usize,

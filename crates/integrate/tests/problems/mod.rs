@@ -137,7 +137,7 @@ pub fn largest_error<const N: usize>(solution: &Solution, count: u32, exact: imp
     (0..=count).map(|i| distance(&state::<N>(solution, time(i)), &exact(time(i)))).fold(0.0, f64::max)
 }
 
-/// The largest error at 40 points a step, and at the ends of the steps alone.
+/// The largest error at 40 points per step, and at the ends of the steps alone.
 pub fn errors<const N: usize>(solution: &Solution, exact: impl Fn(f64) -> [f64; N]) -> (f64, f64) {
     let error = |t: f64| distance(&state::<N>(solution, t), &exact(t));
     let (mut everywhere, mut ends) = (0.0f64, 0.0f64);

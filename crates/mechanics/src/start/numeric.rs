@@ -8,7 +8,7 @@ use symbolic::{Bounded, CompileError, Evaluator, Expr, Scalar, Symbol};
 use crate::newton::{Evaluation, NewtonError, NewtonOptions, Root, solve};
 use crate::{SingularValues, State, System};
 
-/// Outputs compiled, or why they cannot be: told where they are asked for.
+/// Compiled outputs, or the compile error, reported on first use.
 #[derive(Clone)]
 pub(super) struct Program<T>(Result<Evaluator<T>, CompileError>);
 

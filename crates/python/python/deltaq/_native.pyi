@@ -312,7 +312,7 @@ class System:
 
         vary: name to array, shape (m,): parameters, start values ("x", "x'"), multipliers ("mu0_1", ...).
         times: where they are read off, shape (k,), ascending, to the last. By default the end of `duration`.
-        threads: 0 for one a processor; results do not depend on it. estimate: whether each member is run
+        threads: 0 for one per processor; results do not depend on it. estimate: whether each member is run
         twice, as in `solve`, or once and without an error estimate. Else as in `solve`, constants for all,
         and time_limit for one run of 4096 members.
 
@@ -597,7 +597,7 @@ class Motion:
         elsewhere.
         """
     def to_arrow(self) -> Any:
-        """A pyarrow.Table, a row a time: t, coordinates, velocities (x'), multipliers, invariants, observables.
+        """A pyarrow.Table, one row per time: t, coordinates, velocities (x'), multipliers, invariants, observables.
 
         What the motion did not reach is null; units are in the metadata of the columns.
         """
@@ -655,7 +655,7 @@ class Ensemble:
     seconds: Final[float]
     """Wall-clock seconds of the integration of all members."""
     def to_arrow(self, first: int = 0) -> Any:
-        """A pyarrow.Table, a row a member and time: member (its place in the arrays, from `first` on), what varies
+        """A pyarrow.Table, one row per member and time: member (its place in the arrays, from `first` on), what varies
         ("set x"), t, coordinates, velocities (x'), multipliers, invariants, error_estimate, status, cause. What a member
         did not reach is null; units are in the metadata of the columns.
         """

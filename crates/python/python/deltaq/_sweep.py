@@ -57,7 +57,7 @@ class _SweepPart:
 
 
 class Sweep:
-    """Two motions of a system compared over the values of one or more numbers, a row a point.
+    """Two motions of a system compared over the values of one or more numbers, one row per point.
 
     `table` is an Arrow table or, in a folder, a dataset of Parquet files. Columns: what varies, then `verdict` ("same",
     "different", "undecided", "" without a motion), `apart` (time to a gap of 1e-3), `largest` (gap, kinetic metric),
@@ -74,7 +74,7 @@ class Sweep:
         return self.table if hasattr(self.table, "column_names") else self.table.to_table()
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame, a row a point."""
+        """A pandas.DataFrame, one row per point."""
         needed("pandas")
         return self.to_arrow().to_pandas()
 
@@ -160,7 +160,7 @@ def sweep(
 
 
 class _EnsemblePart:
-    """Members of an ensemble as rows, one a member and time."""
+    """Members of an ensemble as rows, one per member and time."""
 
     def __init__(self, system: System, vary: dict[str, npt.NDArray[np.float64]], size: int, options: dict[str, Any]):
         self.system, self.vary, self.size, self.options = system, vary, size, options
@@ -183,7 +183,7 @@ def ensemble(
     progress: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> pa.Table | ds.Dataset:
-    """`System.ensemble` as a table, a row a member and time, for more members than have room in memory.
+    """`System.ensemble` as a table, one row per member and time, for more members than have room in memory.
 
     Columns as of `Ensemble.to_arrow`. client, out, progress: as in `sweep`; part: members of a file. options: those
     of `System.ensemble`. Without `out` a pyarrow.Table comes back, with it a pyarrow.dataset.Dataset, which reads

@@ -41,7 +41,7 @@ def _named(motion: Motion | Ensemble) -> dict[str, npt.NDArray[np.float64]]:
 
 
 def motion_to_arrow(self: Motion) -> Any:
-    """A pyarrow.Table, a row a time: t, coordinates, velocities (x'), multipliers, invariants, observables.
+    """A pyarrow.Table, one row per time: t, coordinates, velocities (x'), multipliers, invariants, observables.
 
     What the motion did not reach is null; units are in the metadata of the columns.
     """
@@ -64,7 +64,7 @@ def motion_to_xarray(self: Motion) -> Any:
 
 
 def ensemble_to_arrow(self: Ensemble, first: int = 0) -> Any:
-    """A pyarrow.Table, a row a member and time: member (its place in the arrays, from `first` on), what varies
+    """A pyarrow.Table, one row per member and time: member (its place in the arrays, from `first` on), what varies
     ("set x"), t, coordinates, velocities (x'), multipliers, invariants, error_estimate, status, cause. What a member
     did not reach is null; units are in the metadata of the columns."""
     pa = needed("pyarrow")

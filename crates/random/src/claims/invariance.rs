@@ -149,7 +149,7 @@ fn run_back(
     case.solve(other, &start, -case.scene.start.t, reversal.outputs(equations), &constants)
 }
 
-/// The same motion in other units of length (one a coordinate), time, action, and constraint.
+/// The same motion in other units of length (one per coordinate), time, action, and constraint.
 fn units(case: &mut Case, scaling: &Scaling) -> Result<(), CheckError> {
     let other = scaling.system(&case.scene.system);
     let start = scaling.state(&case.scene.start);

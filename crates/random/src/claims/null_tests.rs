@@ -48,7 +48,7 @@ fn eighths(range: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = f64> {
     range.prop_map(|k| f64::from(k) / 8.0)
 }
 
-/// What agreement is asked of a closed form, relative to the way.
+/// Tolerance against the closed form, relative to the way.
 const LIMIT: f64 = 1e-9;
 
 /// Instants.
