@@ -169,12 +169,15 @@ fn parametrizations(comparisons: &[Comparison]) -> String {
             }
         }
     }
+    let none_found = match &lacks[..] {
+        [] => "that is on each of them".to_string(),
+        lacks => format!("on {} none was found", enumerate(lacks)),
+    };
     format!(
         "**Removal by coordinates has the vakonomic motions and no others; other parameters may have more.** Of removals with variables of their own \
-         and all costates kept, some $P(t_0)$ gives the vakonomic motion on {}; on {} none was found. With the constants that their rules \
+         and all costates kept, some $P(t_0)$ gives the vakonomic motion on {}; {none_found}. With the constants that their rules \
          give, two removals of one constraint have different motions on {}.",
         enumerate(&has),
-        enumerate(&lacks),
         enumerate(&apart)
     )
 }
