@@ -123,8 +123,18 @@ impl Decision {
 
     /// Whether the constants `c` leave no mismatch that stands out from the noise.
     pub fn admits(&self, constants: &[f64]) -> bool {
+        self.verdict_at(constants) != Verdict::NotContained
+    }
+
+    /// The verdict on the constants `c` alone: the noise of large ones may be too loud to tell.
+    pub fn verdict_at(&self, constants: &[f64]) -> Verdict {
         let reach = (1.0 + self.scaled(constants).norm_squared()).sqrt();
-        self.mismatch_at(constants) <= CERTAIN * self.sizes.noise * reach
+        let noise = self.sizes.noise * reach;
+        match () {
+            () if self.mismatch_at(constants) > CERTAIN * noise => Verdict::NotContained,
+            () if CERTAIN * noise > TOO_LOUD * self.sizes.scale(reach) => Verdict::Undecided,
+            () => Verdict::Contained,
+        }
     }
 
     /// The same question with only the constants `kept` (by their places), the others zero.
@@ -296,9 +306,7 @@ fn judge(
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
     let directions = orthonormal(free.into_iter().map(own).collect());
     let noise = sizes.noise * reach;
-    let motion = sizes.acceleration.hypot(sizes.speed);
-    // where nothing moves, what balances is the scale
-    let scale = if sizes.moves { motion } else { sizes.terms * reach };
+    let scale = sizes.scale(reach);
     let verdict = if least > CERTAIN * noise {
         // what is so much more than the motion is round-off of it that has grown
         if ROUND_OFF * least > scale { Verdict::Undecided } else { Verdict::NotContained }

@@ -50,9 +50,14 @@ impl Question<'_> {
         let (curve, series) = self.series(&rounded(system, state), HIGHEST).ok()?;
         let proved = exact.and_then(|exact| self.agreed_order(exact, constants));
         let mismatch = |k: usize| rows(&series.accelerations[k], series.width, constants);
-        let seen = (0..HIGHEST).find(|&k| mismatch(k).any(|y| !y.may_be_zero()))?;
+        // no value stands for nothing: tanh has derivatives 0/0 where it is 1 to the last digit
+        let known = |k: usize| mismatch(k).all(|y| y.is_finite());
+        let seen = (0..HIGHEST).take_while(|&k| known(k)).find(|&k| mismatch(k).any(|y| !y.may_be_zero()))?;
         // decimals that stand for other numbers leave lower terms, of the size of round-off
         let order = proved.map_or(Some(seen), |order| order.map(|order| order.max(seen)))?;
+        if !(seen..=order).all(known) {
+            return None;
+        }
         let term = |k: usize| -> Vec<f64> {
             let over = ((k + 1) * (k + 2)) as f64;
             mismatch(k).map(|y| if y.may_be_zero() { 0.0 } else { y.value / over }).collect()
@@ -68,7 +73,10 @@ impl Question<'_> {
                 let most = mismatch(k).map(|y| (y.value.abs() + y.round_off()) / over);
                 (root.abs() * DVector::from_iterator(coefficient.len(), most)).norm()
             };
-            let meets = |k: usize| (own / most(k)).powf(1.0 / (k as f64 - order as f64));
+            let meets = |k: usize| {
+                let term = if known(k) { most(k) } else { f64::INFINITY };
+                (own / term).powf(1.0 / (k as f64 - order as f64))
+            };
             let lower = if proved == Some(Some(order)) { 0..0 } else { 0..order };
             ((order + 1..HIGHEST).map(meets).fold(f64::INFINITY, f64::min), lower.map(meets).fold(0.0, f64::max))
         });

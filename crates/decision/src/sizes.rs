@@ -33,6 +33,14 @@ pub(crate) struct Sizes {
     pub(crate) moves: bool,
 }
 
+impl Sizes {
+    /// What a mismatch is compared with, for constants of this size: the motion, or where nothing moves what
+    /// balances.
+    pub(crate) fn scale(&self, reach: f64) -> f64 {
+        if self.moves { self.acceleration.hypot(self.speed) } else { self.terms * reach }
+    }
+}
+
 /// Squares of lengths, added up; of the columns of `[O | y₀]` where there are several.
 pub(crate) struct Sums {
     pub(crate) noise: DVector<f64>,

@@ -1,8 +1,8 @@
 //! Constraints linear in the velocities, solved for as many of them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
-use symbolic::{Expr, Graph, Matrix, Symbol};
+use symbolic::{Bounded, Evaluator, Expr, Graph, Matrix, Scalar, Symbol};
 
 use crate::elimination::{Candidate, LinearForms, Pivot, SparseMatrix, choose_pivot};
 use crate::{RemovalError, State, System};
@@ -17,6 +17,13 @@ const CLEARED: usize = 10_000;
 /// A difference under this part of its terms, at the start, is tested for being zero: what is so exactly is
 /// taken out, what is only round-off there stays as 0 there, and so is no pivot.
 const CANCELLED: f64 = 1e-9;
+
+/// What is multiplied out may add up this much more than what it stands for: near `q = 24` the powers of `q`
+/// that are `(q − 24)⁴` add up a million to come to nothing.
+const ADDED_UP: f64 = 1e3;
+
+/// That is looked at where every value is larger by this part: at the start itself much is zero.
+const BESIDE: f64 = 1e-4;
 
 /// A coefficient, its value at the start (NaN where that is not finite) and the nodes of its expression.
 #[derive(Clone, Copy)]
@@ -76,7 +83,10 @@ impl SolvedConstraints {
                     if terms <= terms_left {
                         terms_left -= terms;
                         let over_pivot = known(cleared(g, g.div(g.expand(over_pivot), pivot.e)));
-                        rest = if 3 * over_pivot.size <= 4 * rest.size { over_pivot } else { rest };
+                        let added_up = |entry: Entry| added_up(g, entry.e, &values);
+                        let is_short = 3 * over_pivot.size <= 4 * rest.size;
+                        let better = is_short && added_up(over_pivot) <= ADDED_UP * added_up(rest);
+                        rest = if better { over_pivot } else { rest };
                     }
                     // what cancels unsimplified would be taken for a pivot, or for a dependence that is none
                     let terms = before.number.abs() + (factor.number * entry.number).abs();
@@ -130,6 +140,15 @@ impl SolvedConstraints {
         let g = &system.graph;
         g.add(g.dot(self.solution.row(row), independent), self.offset[row])
     }
+}
+
+/// How much is added up to the value of an expression beside these values; infinite where that is no number.
+fn added_up(g: &Graph, e: Expr, values: &HashMap<Symbol, f64>) -> f64 {
+    let symbols: Vec<Symbol> = values.keys().copied().collect();
+    let Ok(tape) = g.compile(&symbols, &[e], &HashMap::new()) else { return f64::INFINITY };
+    let inputs: Vec<Bounded> = symbols.iter().map(|s| Bounded::from_f64((1.0 + BESIDE) * values[s])).collect();
+    let value = Evaluator::new(tape).evaluate(&inputs)[0];
+    if value.is_finite() { value.magnitude } else { f64::INFINITY }
 }
 
 /// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of

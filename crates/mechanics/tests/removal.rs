@@ -56,6 +56,25 @@ fn what_parameters_cancel_to_is_round_off() {
     assert_eq!(rates.map(remains), [false, false, true, true]);
 }
 
+/// Powers of `q` would add up a million to be powers of `q − 24`.
+#[test]
+fn far_from_the_origin_constraints_are_solved_without_a_loss_of_digits() {
+    let constraints = [
+        "(4*b' - (a - 24)^2)*(sin(a) + 4)/16",
+        "b'/64 - d'/8 + (a - 24)^4/32 - (a - 24)^2/256 + (32*c' - 4*b' + 8*(24 - a)^3 + (a - 24)^2)*(sin(a) + 4)/128",
+        "(sin(a) + 4)*(32*d' - 4*b' - 8*(a - 24)^4 + (a - 24)^2)/128",
+    ];
+    let (system, mut state) = systems::kinetic(&["a", "b", "c", "d"], &[], &constraints);
+    state.q = vec![24.0; 4];
+    let removal = Removal::by_coordinates(&system, &state).unwrap();
+    state.q[0] = 24.25;
+    for (w, power) in removal.memory.iter().zip([2, 3, 4]) {
+        let (rate, expected) =
+            (system.graph.evaluate(w.rate, &system.values_at(&state)).unwrap(), 0.25_f64.powi(power) / 4.0);
+        assert!((rate - expected).abs() <= 1e-13 * expected, "{}: {rate} for {expected}", system.graph.plain(w.rate));
+    }
+}
+
 #[test]
 fn automatic_removals_need_linear_independent_constraints() {
     let automatic = [Removal::by_coordinates, Removal::by_quasi_velocities];

@@ -13,13 +13,16 @@
 //! constraints with `s_r ≡ 0` are the integrals, the others completely nonintegrable where the Wronskian of
 //! their `s_r′` is not zero: for distinct powers or frequencies of sines.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
-use mechanics::{Completion, ConstantsRule, DisplacementParameter, MemoryVariable, Removal, State, System, View};
+use mechanics::{Completion, State, System, View};
 use scene::Scene;
 use symbolic::{Expr, Function, Graph, Symbol};
 
+mod removal;
+
 use super::Kind;
+use super::class::Sudden;
 use super::feature::Part;
 use super::recipe::{MassTerm, Recipe, Shape, Term};
 
@@ -116,12 +119,38 @@ impl<'a> Builder<'a> {
             let strength = g.ratio(self.recipe.driving, 8);
             terms.push(g.product(&[strength, self.q(self.independent[0]), g.call(Function::Cos, self.time())]));
         }
+        terms.extend(self.later());
         let last = g.powi(self.v(n - 1), 2);
         terms.push(g.mul(self.switched(Part::Kinetic, 16), last));
         terms.push(g.mul(self.rooted(Part::Kinetic, &self.occurring), last));
         terms.push(g.mul(self.switched(Part::Potential, 32), self.to_the_switch()[1]));
         terms.push(self.rooted(Part::Potential, &self.occurring));
         g.sum(&terms)
+    }
+
+    /// What `L` has of [`crate::Classes`].
+    fn later(&self) -> Vec<Expr> {
+        let (g, drawn, first) = (&self.system.graph, &self.recipe.drawn, self.independent[0]);
+        let mut terms = Vec::new();
+        if let Some((pull, inertia)) = drawn.driven {
+            let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| g.call(function, self.time()));
+            let varying = g.mul(g.powi(self.v(first), 2), g.add(g.integer(2), sine));
+            terms.push(g.product(&[g.ratio(pull, 16), self.q(first), cosine]));
+            terms.push(g.mul(g.ratio(inertia, 32), varying));
+        }
+        if let Some(Sudden { strength, sharpness, at }) = drawn.sudden {
+            let passed = g.sub(self.time(), g.number(self.after(at)));
+            let width = g.number(DURATION * 10_f64.powi(-sharpness));
+            let on = g.add(g.one(), g.call(Function::Tanh, g.div(passed, width)));
+            terms.push(g.product(&[g.ratio(strength, 32), self.q(first), on]));
+        }
+        if drawn.indefinite {
+            // more than what else, by the constraints too, moves with v₁
+            let inertia = 4 + 4 * self.dependent.len() as i64;
+            terms.push(g.mul(g.integer(-inertia), g.powi(self.v(first), 2)));
+        }
+        terms.extend(drawn.quartic.map(|(c, place)| g.mul(g.ratio(c, 64), g.powi(self.v(place % self.recipe.n()), 4))));
+        terms
     }
 
     /// `s_r(q₁) τ_r(t) (γ v₂ + β)`: what is not integrable of constraint `r`.
@@ -133,9 +162,10 @@ impl<'a> Builder<'a> {
         }
         let first = self.independent[0];
         // powers of what is far are no well-conditioned functions
-        let q1 = g.sub(self.q(first), g.integer(self.recipe.features.shift(first)));
+        let q1 = g.sub(self.q(first), g.integer(self.recipe.shift(first)));
         let order = (r + 1 - self.recipe.integrals()) as i64;
-        let function = if self.recipe.rows[0].power {
+        // high powers are large, or nothing
+        let function = if self.recipe.rows[0].power && self.recipe.drawn.more == 0 {
             g.powi(q1, order as i32)
         } else {
             g.call(Function::Sin, g.mul(g.ratio(order + 1, 2), q1))
@@ -165,7 +195,7 @@ impl<'a> Builder<'a> {
         let g = &self.system.graph;
         let (at, timed) = self.recipe.features.switch.as_ref().map_or((1, false), |switch| (switch.at, switch.timed));
         match timed && self.recipe.moves() {
-            true => [g.sub(self.time(), g.integer(self.recipe.features.time())), g.ratio(3 * at, 16)],
+            true => [g.sub(self.time(), g.integer(self.recipe.first_time())), g.ratio(3 * at, 16)],
             false => [self.passed(self.independent[0]), g.ratio(3 * at * self.recipe.velocities[0], 128)],
         }
     }
@@ -174,6 +204,11 @@ impl<'a> Builder<'a> {
     fn rooted(&self, part: Part, allowed: &[usize]) -> Expr {
         let passed = |place: usize| self.passed(allowed[place % allowed.len()]);
         self.recipe.features.rooted(&self.system.graph, part, passed)
+    }
+
+    /// The time after so many eighths of the run.
+    fn after(&self, eighths: i64) -> f64 {
+        self.recipe.first_time() as f64 + eighths as f64 * DURATION / 8.0
     }
 
     /// `q_i − q_i(t₀)`
@@ -186,9 +221,8 @@ impl<'a> Builder<'a> {
     fn dependent_rates(&self, of_independent: &[Expr]) -> Vec<Expr> {
         let g = &self.system.graph;
         if self.recipe.kind == Kind::Nonlinear {
-            let squares: Vec<Expr> = of_independent.iter().map(|&v| g.powi(v, 2)).collect();
-            let speed = g.sqrt(g.sum(&squares));
-            return (0..self.dependent.len()).map(|r| g.mul(self.slope(r), speed)).collect();
+            let rate = |r: usize| self.recipe.drawn.surface.rate(g, self.slope(r), of_independent);
+            return (0..self.dependent.len()).map(rate).collect();
         }
         let mut rates: Vec<(Symbol, Expr)> = vec![(self.system.time, g.one())];
         rates.extend(self.independent.iter().zip(of_independent).map(|(&i, &v)| (self.position(i), v)));
@@ -246,9 +280,9 @@ impl<'a> Builder<'a> {
         let rows: Vec<Expr> = (0..self.dependent.len())
             .map(|r| {
                 if self.recipe.kind == Kind::Nonlinear {
-                    let squares: Vec<Expr> = self.independent.iter().map(|&i| g.powi(self.v(i), 2)).collect();
-                    let speed = g.mul(g.powi(self.slope(r), 2), g.sum(&squares));
-                    return g.sub(g.powi(self.v(self.dependent[r]), 2), speed);
+                    let along: Vec<Expr> = self.independent.iter().map(|&i| self.v(i)).collect();
+                    let v_d = self.v(self.dependent[r]);
+                    return self.recipe.drawn.surface.constraint(g, v_d, self.slope(r), &along);
                 }
                 let flow = self.system.flow();
                 let exact = g.add(self.q(self.dependent[r]), self.psi(r));
@@ -257,9 +291,11 @@ impl<'a> Builder<'a> {
             .collect();
         match self.recipe.kind {
             Kind::HiddenIntegrable | Kind::PartlyIntegrable => self.recombined(&rows),
+            _ if self.recipe.drawn.mixed => self.recombined(&rows),
             Kind::NearRankLoss => {
                 let mut rows = rows;
-                let angle = g.number(10f64.powi(-self.recipe.closeness));
+                let closeness = self.recipe.drawn.closeness.unwrap_or(self.recipe.closeness);
+                let angle = g.number(10f64.powi(-closeness));
                 rows[1] = g.add(rows[0], g.mul(angle, rows[1]));
                 rows
             }
@@ -290,65 +326,12 @@ impl<'a> Builder<'a> {
         rows
     }
 
-    /// `v_i = S(q) u̇` with `S` lower triangular and positive on its diagonal, all coordinates memory; for
-    /// nonlinear constraints, and where `S = 1`, the independent coordinates themselves.
-    fn removal(&self) -> Removal {
-        let g = &self.system.graph;
-        let plain = self.recipe.kind == Kind::Nonlinear;
-        let mut entries = self.recipe.removal.iter();
-        let (mut parameters, mut rates, mut start, mut memory) = (Vec::new(), Vec::new(), BTreeMap::new(), Vec::new());
-        let mut start_rates: Vec<Expr> = Vec::new();
-        for (j, &i) in self.independent.iter().enumerate() {
-            if plain {
-                let c = &self.system.coordinates[i];
-                let (symbol, rate, second_rate) = (c.position, c.velocity, c.acceleration);
-                parameters.push(DisplacementParameter { symbol, rate, second_rate, coordinate: Some(i) });
-                rates.push(self.v(i));
-                continue;
-            }
-            let symbols = ["", "'", "''"].map(|primes| g.symbol(&format!("u{}{primes}", j + 1)));
-            let [symbol, rate, second_rate] = symbols;
-            let row: Vec<Expr> = (0..=j)
-                .map(|k| {
-                    let &(coefficient, place) = entries.next().unwrap_or(&(0, 0));
-                    match k == j {
-                        true => self.factor(2 * coefficient, place, &self.occurring),
-                        false => g.mul(g.ratio(coefficient, 16), self.shape(Shape::Sine, place, None, &self.occurring)),
-                    }
-                })
-                .collect();
-            start_rates.push(g.div(g.sub(self.v(i), g.dot(&row[..j], &start_rates)), row[j]));
-            start.insert(symbol, g.zero());
-            start.insert(rate, start_rates[j]);
-            let u: Vec<Expr> = parameters.iter().map(|u: &DisplacementParameter| g.variable(u.rate)).collect();
-            parameters.push(DisplacementParameter { symbol, rate, second_rate, coordinate: None });
-            rates.push(g.add(g.dot(&row[..j], &u), g.mul(row[j], g.variable(rate))));
-            memory.push(MemoryVariable { symbol: self.position(i), rate: rates[j], coordinate: Some(i) });
-        }
-        let dependent = self.dependent_rates(&rates);
-        memory.extend(self.dependent.iter().zip(dependent).map(|(&d, rate)| MemoryVariable {
-            symbol: self.position(d),
-            rate,
-            coordinate: Some(d),
-        }));
-        memory.sort_by_key(|w| w.coordinate);
-        Removal {
-            name: REMOVAL.into(),
-            parameters,
-            memory,
-            coordinates: g.variables(&self.system.positions()),
-            start,
-            constants: ConstantsRule::Zero,
-            chart: Vec::new(),
-        }
-    }
-
     fn start(&self) -> State {
         let eighths = |x: i64| x as f64 / 8.0;
-        let (n, t) = (self.recipe.n(), self.recipe.features.time() as f64);
+        let (n, t) = (self.recipe.n(), self.recipe.first_time() as f64);
         let q: Vec<f64> = (0..n).map(|i| eighths(self.recipe.first_position(i))).collect();
         let mut v = vec![0.0; n];
-        for (&i, &x) in self.independent.iter().zip(&self.recipe.velocities) {
+        for (&i, x) in self.independent.iter().zip(self.recipe.first_velocities()) {
             v[i] = eighths(x);
         }
         let independent: Vec<Expr> = self.independent.iter().map(|&i| self.v(i)).collect();
@@ -375,6 +358,9 @@ impl<'a> Builder<'a> {
     fn scene(mut self, name: &str) -> Scene {
         self.system.lagrangian = self.lagrangian();
         self.system.constraints = self.constraints();
+        // one outside of the run does not count
+        self.system.breakpoints =
+            self.recipe.drawn.sudden.iter().flat_map(|sudden| [self.after(sudden.at), self.after(-1)]).collect();
         let (removal, start) = (self.removal(), self.start());
         Scene {
             name: name.into(),

@@ -48,9 +48,14 @@ impl Batch {
 
     /// [`Batch::record`] with something wrong on purpose.
     pub fn faulty_record(&self, index: u64, fault: &Fault) -> Record {
+        self.record_of(draw(self.seed, index, &self.kinds).current(), index, fault)
+    }
+
+    /// [`Batch::faulty_record`] with another recipe in the place of that with this index.
+    pub fn record_of(&self, recipe: Recipe, index: u64, fault: &Fault) -> Record {
         let thorough = self.is_thorough(index);
         let null = thorough.then(|| NullTest::draw(self.seed, index).current());
-        Record::of(draw(self.seed, index, &self.kinds).current(), index, thorough, null.as_ref(), fault)
+        Record::of(recipe, index, thorough, null.as_ref(), fault)
     }
 
     /// Name of a system.

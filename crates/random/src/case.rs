@@ -59,6 +59,8 @@ pub struct Case {
     pub removed: Vec<Removed>,
     /// Lindelöf's mistake, on the removal by coordinates where there is one.
     pub control: Option<(Removal, Motion)>,
+    /// The system with its forces, where it has any, and Chetaev's motion.
+    pub forced: Option<(System, Motion)>,
     /// Why the run was shortened, if it was.
     pub shortened: Option<String>,
     /// Gaps by round-off of data: `10² ε κ`, `κ` the condition of the saddle-point matrix at the start.
@@ -69,6 +71,8 @@ pub struct Case {
     pub planted: &'static str,
     /// What [`Case::membership`] has said, if it was asked.
     pub membership: Option<Membership>,
+    /// Stands for the motion of the scene's removal with constants natural at the end, if it is given.
+    pub natural: Option<Motion>,
     /// What [`Case::referee`] has said, if it was asked.
     referee: Option<[maggi::Motion; 2]>,
 }
@@ -112,8 +116,16 @@ impl Case {
             Some(Removed { removal, .. }) => Some((removal.clone(), run(substitution::derive(system, removal), &[])?)),
             None => None,
         };
+        let forced = match recipe.drawn.forced(system) {
+            Some(forced) => {
+                let motion = run(equations(&forced, "chetaev", None)?, &[])?;
+                Some((forced, motion))
+            }
+            None => None,
+        };
         Ok(Case {
             recipe: recipe.clone(),
+            forced,
             metric: Metric::new(system)?,
             scene: scene.clone(),
             chetaev,
@@ -125,16 +137,18 @@ impl Case {
             found: Findings::default(),
             planted: "vakonomic",
             membership: None,
+            natural: None,
             referee: None,
         })
     }
 
-    /// The set of all `μ₀` with which the vakonomic motion is Chetaev's; `None` where there is no constraint.
+    /// The set of all `μ₀` with which the vakonomic motion is Chetaev's; `None` where there is no constraint,
+    /// and for an indefinite `M`, which measures no mismatch.
     ///
     /// # Errors
     /// [`SolveError`] where it cannot be decided.
     pub fn membership(&mut self) -> Result<Option<Membership>, SolveError> {
-        if self.membership.is_none() {
+        if self.membership.is_none() && !self.recipe.drawn.indefinite {
             self.membership = membership(&self.scene, self.end())?;
         }
         Ok(self.membership.clone())
@@ -163,6 +177,7 @@ impl Case {
             .into_iter()
             .chain(removed)
             .chain(control)
+            .chain(self.forced.iter().map(|(_, motion)| ("Chetaev with forces".to_string(), motion)))
             .filter_map(|(label, motion)| stop(&label, motion))
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -252,16 +267,19 @@ impl Case {
     /// One of the case's own motions.
     ///
     /// # Panics
-    /// For a removal or a control that the case does not have.
+    /// For a removal, a control or forces that the case does not have.
     pub fn motion(&mut self, which: Which) -> &mut Motion {
         match which {
             Which::Chetaev => &mut self.chetaev,
             Which::Vakonomic => &mut self.vakonomic,
             Which::Removed(i) => &mut self.removed[i].motion,
-            Which::Control => match &mut self.control {
-                Some((_, motion)) => motion,
-                None => unreachable!("asked for only where there is one"),
-            },
+            Which::Control | Which::Forced => {
+                let pair = match which {
+                    Which::Control => self.control.as_mut().map(|(_, motion)| motion),
+                    _ => self.forced.as_mut().map(|(_, motion)| motion),
+                };
+                pair.unwrap_or_else(|| unreachable!("asked for only where there is one"))
+            }
         }
     }
 }
@@ -277,6 +295,8 @@ pub enum Which {
     Removed(usize),
     /// The control.
     Control,
+    /// Chetaev with forces.
+    Forced,
 }
 
 /// Costates of the recipe, zero where the variable has none.

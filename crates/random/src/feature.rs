@@ -85,7 +85,7 @@ impl Features {
 
     /// What is added to the start of coordinate `i`.
     pub fn shift(&self, i: usize) -> i64 {
-        self.far.as_ref().map_or(0, |far| far.positions[i])
+        self.far.as_ref().map_or(0, |far| far.positions[i % far.positions.len()])
     }
 
     /// `t₀`.

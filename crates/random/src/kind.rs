@@ -119,11 +119,6 @@ impl Kind {
         matches!(self, Kind::Free | Kind::ChaplyginIntegrable | Kind::Integrable | Kind::HiddenIntegrable)
     }
 
-    /// Whether constraints are homogeneous in the velocities where nothing depends on time.
-    pub fn is_homogeneous(self) -> bool {
-        !self.has_drift()
-    }
-
     /// Whether constraints may contain a part that is free of velocities.
     pub(super) fn has_drift(self) -> bool {
         matches!(self, Kind::Affine | Kind::TimeDependent)

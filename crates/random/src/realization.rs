@@ -163,21 +163,30 @@ pub fn with_kappa(system: &System, value: f64) -> System {
     other
 }
 
-/// Velocities that give `massive` the start's momenta `L_v + Aᵀ μ₀`: linear, as momenta are affine in `v`.
+/// Steps of Newton's method for a momentum; one does where momenta are affine in the velocities.
+const NEWTON: usize = 12;
+
+/// Velocities that give `massive` the start's momenta `L_v + Aᵀ μ₀`, by Newton's method.
 ///
 /// # Errors
 /// [`SolveError`] where momenta or the mass matrix have no value.
 pub fn at_momentum(setting: Setting, massive: &System, multipliers: &[f64]) -> Result<State, SolveError> {
     let (g, v) = (&massive.graph, massive.velocities());
-    let n = v.len();
     let own = g.gradient(massive.lagrangian, &v);
-    let mass = matrix(massive, &g.jacobian(&own, &v), setting.start)?;
-    let own = DVector::from_vec(numbers(g, &own, &values(massive, setting.start))?);
+    let mass = g.jacobian(&own, &v);
     let wanted = DVector::from_vec(momenta(setting.system, setting.start)?)
         + constraint_jacobian(setting.system, setting.start)?.transpose() * DVector::from_column_slice(multipliers);
-    let change = mass.lu().solve(&(wanted - own)).unwrap_or_else(|| DVector::from_element(n, f64::NAN));
-    let v = setting.start.v.iter().zip(change.iter()).map(|(v, d)| v + d).collect();
-    Ok(State { v, ..setting.start.clone() })
+    let mut state = setting.start.clone();
+    for _ in 0..NEWTON {
+        let left = &wanted - DVector::from_vec(numbers(g, &own, &values(massive, &state))?);
+        let change = matrix(massive, &mass, &state)?.lu().solve(&left);
+        let change = change.unwrap_or_else(|| DVector::from_element(v.len(), f64::NAN));
+        state.v.iter_mut().zip(change.iter()).for_each(|(v, d)| *v += d);
+        if change.norm() <= f64::EPSILON * DVector::from_column_slice(&state.v).norm() {
+            break;
+        }
+    }
+    Ok(state)
 }
 
 /// `∂L/∂v` at a state.

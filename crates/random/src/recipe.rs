@@ -8,11 +8,15 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
+use super::class::{Classes, classes};
 use super::feature::{Features, features};
 use super::{Kind, Truth};
 
-/// Most coordinates of a random system.
+/// Most coordinates of a random system, but for those of the class that has more.
 pub const MOST: usize = 6;
+
+/// Most coordinates of that class.
+pub const LARGEST: usize = 10;
 
 /// A function of one coordinate, or of the sum of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +75,7 @@ pub struct Row {
 pub struct Recipe {
     /// What is known of it.
     pub kind: Kind,
-    /// Number of coordinates, n.
+    /// Number of coordinates, n, unless [`Classes::more`] has more.
     pub coordinates: usize,
     /// Picks the number of constraints among those that the kind allows.
     pub constraints: usize,
@@ -111,12 +115,17 @@ pub struct Recipe {
     pub costates: Vec<i64>,
     /// What it has besides.
     pub features: Features,
+    /// What it has of what was drawn later.
+    pub drawn: Classes,
 }
 
 impl Recipe {
     /// n.
     pub fn n(&self) -> usize {
-        self.coordinates.max(self.kind.fewest_coordinates())
+        match self.drawn.more {
+            0 => self.coordinates.max(self.kind.fewest_coordinates()),
+            more => MOST + more,
+        }
     }
 
     /// h.
@@ -157,7 +166,21 @@ impl Recipe {
 
     /// `q_i(t₀)` in eighths.
     pub(crate) fn first_position(&self, i: usize) -> i64 {
-        self.positions[i] + 8 * self.features.shift(i)
+        self.positions[i] + 8 * self.shift(i)
+    }
+
+    /// What is added to the start of coordinate `i`.
+    pub(crate) fn shift(&self, i: usize) -> i64 {
+        self.farther(self.features.shift(i))
+    }
+
+    /// `t₀`
+    pub(crate) fn first_time(&self) -> i64 {
+        self.farther(self.features.time())
+    }
+
+    fn farther(&self, far: i64) -> i64 {
+        far * 10_i64.pow(self.drawn.farther)
     }
 
     /// Whether time may enter.
@@ -169,8 +192,24 @@ impl Recipe {
         }
     }
 
+    /// Start velocities of the independent coordinates, in eighths.
+    pub(crate) fn first_velocities(&self) -> Vec<i64> {
+        if self.drawn.rest { vec![0; self.velocities.len()] } else { self.velocities.clone() }
+    }
+
+    /// Whether constraints are homogeneous in the velocities where nothing depends on time.
+    pub fn is_homogeneous(&self) -> bool {
+        !self.kind.has_drift() && self.drawn.surface.is_homogeneous()
+    }
+
     fn ordered(&self) -> Vec<usize> {
-        self.order.iter().copied().filter(|&i| i < self.n()).collect()
+        let mut ordered: Vec<usize> =
+            self.order.iter().copied().chain(MOST..LARGEST).filter(|&i| i < self.n()).collect();
+        if self.drawn.more > 0 {
+            // those beyond are not the dependent ones always
+            ordered.rotate_left(self.constraints);
+        }
+        ordered
     }
 }
 
@@ -202,6 +241,11 @@ fn row() -> impl Strategy<Value = Row> {
     })
 }
 
+/// Material for the largest system: what there is, over and over.
+fn over<T: Clone>(material: Vec<T>, length: usize) -> Vec<T> {
+    material.iter().cycle().take(length).cloned().collect()
+}
+
 /// Recipes of one kind.
 pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
     let inertia = (
@@ -227,8 +271,8 @@ pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
     );
     let sizes = (2..=MOST, 0..MOST, Just((0..MOST).collect::<Vec<_>>()).prop_shuffle());
     let removal = vec((-3..=3_i64, 0..MOST), MOST * (MOST + 1) / 2);
-    let all = (sizes, inertia, constraint, removal, start, features(MOST));
-    all.prop_map(move |(sizes, inertia, constraint, removal, start, features)| {
+    let all = (sizes, inertia, constraint, removal, start, features(MOST), classes(MOST, LARGEST));
+    all.prop_map(move |(sizes, inertia, constraint, removal, start, features, drawn)| {
         let (coordinates, constraints, order) = sizes;
         let (masses, mass_terms, potential, gyroscopic, driving) = inertia;
         let (rows, mixing, along, drift, closeness, cyclic) = constraint;
@@ -238,22 +282,23 @@ pub fn recipes(kind: Kind) -> impl Strategy<Value = Recipe> {
             coordinates,
             constraints,
             order,
-            masses,
+            masses: over(masses, LARGEST),
             mass_terms,
             potential,
             gyroscopic: gyroscopic.into_iter().collect(),
             driving: driving.unwrap_or(0),
-            rows,
-            mixing,
+            rows: over(rows, LARGEST - 1),
+            mixing: over(mixing, LARGEST * (LARGEST - 1) / 2),
             along,
             drift,
             closeness,
             cyclic,
-            removal,
-            positions,
-            velocities,
-            multipliers,
-            costates,
+            removal: over(removal, LARGEST * (LARGEST + 1) / 2),
+            positions: over(positions, LARGEST),
+            velocities: over(velocities, LARGEST),
+            multipliers: over(multipliers, LARGEST),
+            costates: over(costates, LARGEST),
+            drawn: drawn.of(kind, &features),
             features,
         }
     })

@@ -5,12 +5,18 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::claims::{CHECKS, make};
+use super::claims::{CHECKS, DIVERGES, Divergence, make};
 use super::finding::Word;
 use super::{Case, Fault, Findings, Kind, NullTest, Recipe, null_test};
 
 /// Of each kind, one system in this many also gets the thorough checks, and a null test after it.
 pub const THOROUGH: u64 = 10;
+
+/// Pairs of formulations in dispute: all of [`DIVERGES`] but the one with the control, which nobody defends.
+const DISPUTED: &[Divergence] = DIVERGES.split_at(3).0;
+
+/// T13 is on systems of its own, on which formulations differ by closed forms.
+const NULL_TESTS: u8 = 13;
 
 /// A claim on one system that does not hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +67,7 @@ impl Record {
             kind: recipe.kind,
             coordinates: recipe.n(),
             constraints: recipe.h(),
-            features: recipe.features.names().into_iter().map(String::from).collect(),
+            features: recipe.features.names().into_iter().chain(recipe.drawn.names()).map(String::from).collect(),
             shortened: None,
             held: Vec::new(),
             open: Vec::new(),
@@ -120,6 +126,13 @@ impl Record {
             () if open(Word::Undecided) => Some(Word::Undecided),
             () => self.held.iter().any(|(t, _, _)| *t == theorem).then_some(Word::Holds),
         }
+    }
+
+    /// Whether something is at stake: formulations certainly have different motions here, for constants that
+    /// they are free to have.
+    pub fn is_disputed(&self) -> bool {
+        let differ = |what: &str| DISPUTED.iter().any(|names| names.differs == what);
+        self.observed.iter().any(|(_, what, value)| *value == 1.0 && differ(what))
     }
 
     /// Theorems of which a claim failed.
@@ -181,6 +194,8 @@ pub struct Summary {
     pub shortened: u64,
     /// Systems on which a theorem holds, fails or is undecided; 0 is what must hold within each formulation.
     pub theorems: BTreeMap<u8, Count>,
+    /// Of these, those on which something is at stake: [`Record::is_disputed`].
+    pub at_stake: BTreeMap<u8, u64>,
     /// Single claims.
     pub claims: BTreeMap<u8, BTreeMap<String, Count>>,
     /// What was measured, sorted.
@@ -201,6 +216,8 @@ impl Summary {
             for theorem in 0..=14 {
                 if let Some(word) = record.word(theorem) {
                     summary.theorems.entry(theorem).or_default().add(word, 1);
+                    *summary.at_stake.entry(theorem).or_default() +=
+                        u64::from(theorem == NULL_TESTS || record.is_disputed());
                 }
             }
             let mut claim = |theorem: u8, claim: &str, word: Word, times: u64| {

@@ -185,7 +185,10 @@ impl Rewritten {
         let map: HashMap<Symbol, Expr> = old.zip(positions.iter().chain(&velocities).copied()).collect();
         let lagrangian = g.substitute(system.lagrangian, &map);
         let constraints = g.substitute_all(&system.constraints, &map);
-        (other.lagrangian, other.constraints) = (lagrangian, constraints);
+        // the virtual work Q·δq with δq = ∂q/∂y δy
+        let forces = g.substitute_all(&system.forces, &map);
+        let forces = g.transpose_vec(&g.jacobian(&positions, &other.positions()), &forces);
+        (other.lagrangian, other.constraints, other.forces) = (lagrangian, constraints, forces);
         Rewritten { system: other, positions, velocities }
     }
 
@@ -209,6 +212,7 @@ pub fn augmented(system: &System, removal: &Removal) -> System {
     let coordinates: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "1")).collect();
     let mut other = System::new(g, &coordinates);
     other.parameters = system.parameters.clone();
+    other.breakpoints = system.breakpoints.clone();
     other.lagrangian = system.lagrangian;
     let rate = |w: &mechanics::MemoryVariable| other.graph.symbol(&format!("{}'", other.graph.name(w.symbol)));
     let constraints = removal.memory.iter().map(|w| other.graph.sub(other.graph.variable(rate(w)), w.rate)).collect();

@@ -79,7 +79,8 @@ fn t9_decision_proof_and_fit_agree() {
     assert!(count > 20 && shown >= 0.99, "of {count} refusals only {shown:.3} are proved or shown");
     // where a combination of the constraints is integrable no minor has full size
     let (proved, _) = part(&found, "no mu0, and that is proved");
-    assert!(proved > 0.7, "of {count} refusals only {proved:.3} are proved");
+    // 0.74 of 473 are; of 41, as many as here, three standard deviations less are 0.53
+    assert!(proved > 0.53, "of {count} refusals only {proved:.3} are proved");
 }
 
 #[test]

@@ -16,7 +16,7 @@ use scene::Scene;
 const SEED: u64 = 38;
 
 /// Systems of a kind that are tried for a fault that a claim notices.
-const TRIES: u64 = 8;
+const TRIES: u64 = 24;
 
 /// Steps of shrinking.
 const STEPS: usize = 30;
@@ -160,10 +160,24 @@ fn massless(scene: &mut Scene) {
     }
 }
 
+const FORCELESS: &str = "the forces forgotten";
+
+fn forceless(case: &mut Case) -> Result<(), SolveError> {
+    if let Some((_, motion)) = &mut case.forced {
+        *motion = case.chetaev.clone();
+    }
+    Ok(())
+}
+
 const FALSE: &[False] = &[
     in_case(0, "Chetaev: multipliers and Maggi's equations", Kind::Linear, EXCHANGED, exchanged),
     in_case(0, "vakonomic: multiplier form and costate form", Kind::Linear, EXCHANGED, exchanged),
     in_case(0, "the constraint is kept", Kind::Linear, FORGOTTEN, forgotten),
+    in_case(0, "Chetaev with forces: multipliers and Maggi's equations", Kind::Linear, FORCELESS, forceless),
+    in_case(0, "natural costates vanish at the horizon", Kind::Linear, "constants of another motion", |case| {
+        case.natural = case.removed.first().map(|removed| removed.motion.clone());
+        Ok(())
+    }),
     in_case(1, "vakonomic agrees with Chetaev", Kind::Linear, CALLED_INTEGRABLE, called_integrable),
     in_case(1, "coordinate removal agrees with Chetaev", Kind::Affine, CALLED_INTEGRABLE, called_integrable),
     in_case(
@@ -185,6 +199,8 @@ const FALSE: &[False] = &[
     in_case(4, "vakonomic: constraints recombined", Kind::Linear, OTHER_MULTIPLIERS, other_multipliers),
     in_case(4, "Chetaev: other coordinates", Kind::Nonlinear, RUBBED, rubbed),
     in_case(4, "vakonomic: other coordinates", Kind::TimeDependent, EXCHANGED, exchanged),
+    in_case(4, "Chetaev with forces: constraints recombined", Kind::Affine, FORCELESS, forceless),
+    in_case(4, "Chetaev with forces: other coordinates", Kind::Nonlinear, FORCELESS, forceless),
     in_case(5, "exponent of the leading divergence", Kind::Linear, OTHER_MULTIPLIERS, no_multipliers),
     in_case(5, "coefficient of the leading divergence", Kind::Affine, OTHER_MULTIPLIERS, other_multipliers),
     in_case(6, "Chetaev: energy", Kind::Affine, "called homogeneous", |case| called(case, Kind::Linear)),
@@ -195,6 +211,8 @@ const FALSE: &[False] = &[
     in_case(8, "added mass tends to vakonomic at rate 1/N", Kind::Linear, EXCHANGED, exchanged),
     in_case(8, "the family between begins at vakonomic", Kind::Linear, EXCHANGED, exchanged),
     in_case(8, "the family between tends to Chetaev at rate 1/kappa", Kind::Linear, EXCHANGED, exchanged),
+    in_case(8, "friction tends to Chetaev with forces at rate 1/N", Kind::Linear, FORCELESS, forceless),
+    in_case(8, "the family between tends to Chetaev with forces at rate 1/kappa", Kind::Linear, FORCELESS, forceless),
     in_case(9, "decision and proof agree", Kind::Linear, "the proof of another motion", proved_elsewhere),
     in_case(9, "the set has the dimension that ranks ask for", Kind::Integrable, "a direction lost", |case| {
         found(case, |found| drop(found.decision.set.directions.pop()))
@@ -214,6 +232,8 @@ const FALSE: &[False] = &[
     in_case(10, "Chetaev in other units", Kind::Nonlinear, RUBBED, rubbed),
     in_case(10, "vakonomic in other units", Kind::Linear, OTHER_MULTIPLIERS, other_multipliers),
     in_case(10, "removed constraint in other units", Kind::Affine, WITHOUT_COSTATES, without_costates),
+    in_case(10, "Chetaev with forces runs back the way it came", Kind::Linear, FORCELESS, forceless),
+    in_case(10, "Chetaev with forces in other units", Kind::Affine, FORCELESS, forceless),
     in_case(
         11,
         "Frobenius' test finds what the construction put in",

@@ -60,7 +60,7 @@ fn listed_invariants_are_constant_and_none_is_missing() {
             for r in &case.removed {
                 missing(&r.motion, "energy")?;
             }
-            if case.recipe.kind.is_homogeneous() {
+            if case.recipe.is_homogeneous() {
                 missing(&case.chetaev, "energy")?;
             }
         }

@@ -1,6 +1,7 @@
 //! T12: the deliberately wrong formulation.
 
-use deltaq::{Setting, Verdict, multipliers_of, setting};
+use decision::Verdict;
+use deltaq::{Setting, multipliers_of, setting};
 
 use super::CheckError;
 use crate::case::Which;
@@ -23,8 +24,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     }
     let claim = match (case.recipe.kind, found.is_right()) {
         (Kind::ChaplyginIntegrable, _) => {
-            let claim = "right in Chaplygin's integrable form";
-            case.found.require(12, claim, gap.verdict == Verdict::Same, &found.note);
+            case.note(12, "right in Chaplygin's integrable form", &gap, case.floor);
             return Ok(());
         }
         (_, true) => "not flagged where it is right",
@@ -50,13 +50,13 @@ fn criterion(case: &mut Case) -> Result<(), CheckError> {
     let mut motion = case.run(equations(&system, "vakonomic", None)?, &mu)?;
     case.same(12, "substitution is the vakonomic motion with c = 0", Which::Control, &mut motion);
     let Some(found) = case.membership()? else { return Ok(()) };
-    let (right, gap) = (found.decision.admits(&mu), case.gap(Which::Chetaev, Which::Control)?);
+    let (verdict, gap) = (found.decision.verdict_at(&mu), case.gap(Which::Chetaev, Which::Control)?);
     let note = format!("mismatch {:.1e}, gap {:.1e}", found.decision.mismatch_at(&mu), gap.largest);
     let claim = "right exactly where c = 0 gives Chetaev's motion";
-    match (right, gap.certain_from.is_some()) {
-        (true, flagged) => case.found.require(12, claim, !flagged, note),
-        (false, true) => case.found.require(12, claim, true, note),
-        (false, false) => case.found.undecided(12, claim, note),
+    match (verdict, gap.certain_from.is_some()) {
+        (Verdict::Contained, flagged) => case.found.require(12, claim, !flagged, note),
+        (Verdict::NotContained, true) => case.found.require(12, claim, true, note),
+        _ => case.found.undecided(12, claim, note),
     }
     Ok(())
 }

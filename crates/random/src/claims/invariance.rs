@@ -31,16 +31,14 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
         let mut vakonomic = case.run(equations(&other, "vakonomic", None)?, mu.as_slice())?;
         case.same(4, "vakonomic: constraints recombined", Which::Vakonomic, &mut vakonomic);
     }
-    // q₁ = y₁ + ¼ sin y₂, …, each shifted by the next, the last by none
-    let positions = system.positions();
-    let shift: Vec<Expr> = (0..positions.len())
-        .map(|i| {
-            positions.get(i + 1).map_or(g.zero(), |&next| g.mul(g.ratio(1, 4), g.call(Function::Sin, g.variable(next))))
-        })
-        .collect();
-    let rewritten = Rewritten::new(&system, &shift);
+    if let Some((forced, _)) = case.forced.clone().filter(|_| h > 0) {
+        let other = equations(&recombined(&forced, &self::mixing(&forced)), "chetaev", None)?;
+        case.same(4, "Chetaev with forces: constraints recombined", Which::Forced, &mut case.run(other, &[])?);
+    }
+    let n = system.dimension();
+    let rewritten = Rewritten::new(&system, &shift(&system));
     let mut start = case.scene.start.clone();
-    for i in (0..positions.len().saturating_sub(1)).rev() {
+    for i in (0..n.saturating_sub(1)).rev() {
         let (y, rate) = (start.q[i + 1], start.v[i + 1]);
         start.q[i] -= y.sin() / 4.0;
         start.v[i] -= rate * y.cos() / 4.0;
@@ -53,6 +51,12 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
         let claim = if which == Which::Chetaev { "Chetaev: other coordinates" } else { "vakonomic: other coordinates" };
         case.same(4, claim, which, &mut motion);
     }
+    if let Some((forced, _)) = case.forced.clone() {
+        let rewritten = Rewritten::new(&forced, &shift(&forced));
+        let equations = rewritten.outputs(equations(&rewritten.system, "chetaev", None)?);
+        let mut motion = case.solve(&rewritten.system, &start, case.end(), equations, &[])?;
+        case.same(4, "Chetaev with forces: other coordinates", Which::Forced, &mut motion);
+    }
     // the removed-constraint motion does depend on the parameters: measured, not required
     for i in 1..case.removed.len() {
         let differs = case.gap(Which::Removed(0), Which::Removed(i))?.certain_from.is_some();
@@ -64,6 +68,13 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
         case.found.count(4, what, differs);
     }
     Ok(())
+}
+
+/// `q₁ = y₁ + ¼ sin y₂`, …, each shifted by the next, the last by none.
+fn shift(system: &System) -> Vec<Expr> {
+    let (g, positions) = (&system.graph, system.positions());
+    let by = |next: &Symbol| g.mul(g.ratio(1, 4), g.call(Function::Sin, g.variable(*next)));
+    (0..positions.len()).map(|i| positions.get(i + 1).map_or(g.zero(), by)).collect()
 }
 
 /// Lower triangular with ones, and `1 + ¼ sin q₁` on the diagonal.
@@ -84,23 +95,26 @@ fn mixing(system: &System) -> Matrix {
 pub(super) fn reversal_and_units(case: &mut Case) -> Result<(), CheckError> {
     let n = case.scene.system.dimension();
     backwards(case, &Scaling::reversal(n))?;
-    let lengths = [4.0, 0.125, 10.0, 0.3, 1.0, 25.0][..n].to_vec();
-    units(case, &Scaling { lengths, time: 0.2, action: 7.0, constraint: 0.05 })
+    let scaling = case.recipe.drawn.scaling(n);
+    units(case, &scaling)
 }
 
 /// The reversed system, from the end of a motion with its multipliers and costates there, runs back.
 fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
     let t1 = case.end();
+    let forced = case.forced.as_ref().map(|(system, _)| reversal.system(system));
     let other = reversal.system(&case.scene.system);
     let clock = Sampling { rate: -1.0, offset: 0.0, ..Sampling::default() };
     let removed = (0..case.removed.len()).map(Which::Removed);
-    for which in [Which::Chetaev, Which::Vakonomic].into_iter().chain(removed).collect::<Vec<_>>() {
+    let all = [Which::Chetaev, Which::Vakonomic].into_iter().chain(removed);
+    for which in all.chain(forced.is_some().then_some(Which::Forced)).collect::<Vec<_>>() {
+        let other = forced.as_ref().filter(|_| which == Which::Forced).unwrap_or(&other);
         let (end, less) = case.motion(which).at_in_both_runs(t1)?;
-        let mut back = run_back(case, which, reversal, &other, &end)?;
+        let mut back = run_back(case, which, reversal, other, &end)?;
         let (gap, mut floor) = (case.gap_by(which, &mut back, &clock)?, case.floor);
         if case.is_apart(&gap) {
             // what the end is off by grows on the way back, too
-            let mut second = run_back(case, which, reversal, &other, &less)?;
+            let mut second = run_back(case, which, reversal, other, &less)?;
             let between = compare_motions(&mut back, &mut second, &mut case.metric.clone())?;
             floor = floor.max(CERTAINTY * between.largest);
         }
@@ -112,6 +126,7 @@ fn backwards(case: &mut Case, reversal: &Scaling) -> Result<(), CheckError> {
 fn claim(which: Which) -> &'static str {
     match which {
         Which::Chetaev => "Chetaev runs back the way it came",
+        Which::Forced => "Chetaev with forces runs back the way it came",
         Which::Removed(_) => "removed constraint runs back the way it came",
         _ => "vakonomic runs back the way it came",
     }
@@ -128,7 +143,7 @@ fn run_back(
     let state = State { t: case.end(), q: end.coordinates.clone(), v: end.velocities.clone() };
     let names: Vec<String> = case.motion(which).equations.multipliers.iter().map(|m| m.name.clone()).collect();
     let (equations, constants) = match which {
-        Which::Chetaev => (equations(other, "chetaev", None)?, Vec::new()),
+        Which::Chetaev | Which::Forced => (equations(other, "chetaev", None)?, Vec::new()),
         Which::Removed(i) => {
             let removal = &case.removed[i].removal;
             let graph = &case.scene.system.graph;
@@ -169,6 +184,10 @@ fn units(case: &mut Case, scaling: &Scaling) -> Result<(), CheckError> {
         let equations = equations(&other, "removed-constraint", Some(&removal))?;
         let constants = free_constants(&equations, &scaling.costates(&removal, &removed.costates));
         runs.push((Which::Removed(i), "removed constraint in other units", equations, constants));
+    }
+    if let Some((forced, _)) = &case.forced {
+        let equations = equations(&scaling.system(forced), "chetaev", None)?;
+        runs.push((Which::Forced, "Chetaev with forces in other units", equations, Vec::new()));
     }
     for (which, claim, equations, constants) in runs {
         let mut motion = case.solve(&other, &start, end, scaling.outputs(equations), &constants)?;

@@ -3,7 +3,7 @@
 use deltaq::{CERTAINTY, Motion, SolveError};
 use equations::Outputs;
 use mechanics::System;
-use symbolic::{Expr, Symbol};
+use symbolic::{Bounded, Expr, Scalar, Symbol};
 
 use super::CheckError;
 use crate::Case;
@@ -28,14 +28,21 @@ impl Drift {
     }
 }
 
-/// Follows `e(t, q, v, multipliers)` along a motion, whose first multipliers `multipliers` names.
-fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) -> Result<Drift, SolveError> {
+/// Follows `e(t, q, v, multipliers)` along a motion, whose first multipliers `multipliers` names; what they
+/// are factors of is known to a part `floor`.
+fn drift(
+    system: &System,
+    e: Expr,
+    multipliers: &[Symbol],
+    motion: &mut Motion,
+    floor: f64,
+) -> Result<Drift, SolveError> {
     let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
     let mut evaluator = system.evaluator(&symbols, &[e])?;
-    let mut value = |t: f64, o: &Outputs| {
-        let read = [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
-        evaluator.evaluate(&read)[0]
-    };
+    let mut terms = system.evaluator::<Bounded>(&symbols, &[e])?;
+    let read =
+        |t: f64, o: &Outputs| [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
+    let mut value = |t: f64, o: &Outputs| evaluator.evaluate(&read(t, o))[0];
     let (mut first, mut change, mut error, mut size) = (None, 0.0_f64, 0.0_f64, 1.0_f64);
     for t in motion.grid(INSTANTS) {
         let (kept, looser) = motion.at_in_both_runs(t)?;
@@ -43,11 +50,13 @@ fn drift(system: &System, e: Expr, multipliers: &[Symbol], motion: &mut Motion) 
         let start = *first.get_or_insert(now);
         change = change.max((now - start).abs());
         error = error.max((now - other).abs());
-        // terms μ_i A_ij may cancel: of nearly dependent constraints they are large
+        // terms μ_i A_ij, P_k B_k may cancel: of nearly dependent constraints they are large
+        let inputs: Vec<Bounded> = read(t, &kept).into_iter().map(Bounded::from_f64).collect();
+        let added_up = terms.evaluate(&inputs)[0].magnitude;
         let multiplier = kept.multipliers.iter().fold(0.0_f64, |largest, mu| largest.max(mu.abs()));
-        size = size.max(now.abs()).max(kept.velocities.iter().map(|v| v * v).sum()).max(multiplier);
+        size = size.max(added_up).max(kept.velocities.iter().map(|v| v * v).sum()).max(multiplier);
     }
-    Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) })
+    Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) + floor * size })
 }
 
 /// T6: `v·L_v − L` for Chetaev where nothing depends on time and `f` is homogeneous; with `𝓛 = L + μ·f`, and
@@ -58,18 +67,18 @@ pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
     if !system.is_autonomous() {
         return Ok(());
     }
-    let v = system.velocities();
+    let (v, floor) = (system.velocities(), case.floor);
     let of = |l: Expr| g.sub(g.dot(&g.variables(&v), &g.gradient(l, &v)), l);
     let plain = of(system.lagrangian);
-    let drifted = drift(&system, plain, &[], &mut case.chetaev)?;
-    if case.recipe.kind.is_homogeneous() {
+    let drifted = drift(&system, plain, &[], &mut case.chetaev, 0.0)?;
+    if case.recipe.is_homogeneous() {
         case.found.bound(6, "Chetaev: energy", drifted.change, drifted.limit);
     } else {
         case.found.count(6, "affine constraints, and Chetaev's energy is not constant", drifted.is_certain());
     }
     let mu: Vec<Symbol> = (0..system.constraints.len()).map(|i| g.symbol(&format!("multiplier {i}"))).collect();
     let augmented = g.add(system.lagrangian, g.dot(&g.variables(&mu), &system.constraints));
-    let drifted = drift(&system, of(augmented), &mu, &mut case.vakonomic)?;
+    let drifted = drift(&system, of(augmented), &mu, &mut case.vakonomic, floor)?;
     case.found.bound(6, "vakonomic: energy", drifted.change, drifted.limit);
     for removed in &mut case.removed {
         let removal = &removed.removal;
@@ -86,7 +95,7 @@ pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
         let energy = g.sub(g.sum(&terms.collect::<Vec<_>>()), generating);
         // u̇ from (q, v): what the removal says of its own start holds all along
         let energy = g.substitute(energy, &removal.start.iter().map(|(&s, &e)| (s, e)).collect());
-        let drifted = drift(&system, energy, &read_out, &mut removed.motion)?;
+        let drifted = drift(&system, energy, &read_out, &mut removed.motion, floor)?;
         case.found.bound(6, "removed constraint: energy", drifted.change, drifted.limit);
     }
     Ok(())
@@ -96,6 +105,7 @@ pub(super) fn energy(case: &mut Case) -> Result<(), CheckError> {
 pub(super) fn momentum(case: &mut Case) -> Result<(), CheckError> {
     let system = case.scene.system.clone();
     let g = &system.graph;
+    let floor = case.floor;
     let mu: Vec<Symbol> = (0..system.constraints.len()).map(|i| g.symbol(&format!("multiplier {i}"))).collect();
     let augmented = g.add(system.lagrangian, g.dot(&g.variables(&mu), &system.constraints));
     for c in &system.coordinates {
@@ -104,11 +114,11 @@ pub(super) fn momentum(case: &mut Case) -> Result<(), CheckError> {
             continue;
         }
         let momentum = g.derivative(augmented, c.velocity);
-        let drifted = drift(&system, momentum, &mu, &mut case.vakonomic)?;
+        let drifted = drift(&system, momentum, &mu, &mut case.vakonomic, floor)?;
         case.found.bound(7, "vakonomic: momentum of a cyclic coordinate", drifted.change, drifted.limit);
         if system.constraints.iter().any(|&f| g.depends_on(f, c.velocity)) {
             let plain = g.derivative(system.lagrangian, c.velocity);
-            let drifted = drift(&system, plain, &[], &mut case.chetaev)?;
+            let drifted = drift(&system, plain, &[], &mut case.chetaev, 0.0)?;
             case.found.count(
                 7,
                 "a constraint acts on a cyclic coordinate, and Chetaev does not keep its momentum",

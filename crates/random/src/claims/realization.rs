@@ -39,6 +39,8 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     }
     let (start, multipliers) = (case.scene.start.clone(), case.scene.multipliers.clone());
     let setting = Setting { system: &system, start: &start, end: case.end() };
+    // what slips has f' = −N A M⁻¹ Aᵀ f + …: with negative inertia friction may drive it on
+    let slows = !case.recipe.drawn.indefinite;
     for (kind, claim, what) in [
         (
             Realization::Friction,
@@ -51,13 +53,43 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
             "added mass: distance at N = 1000 over that at 10000",
         ),
     ] {
+        if kind == Realization::Friction && !slows {
+            continue;
+        }
         judge(case, claim, what, |case, power| {
             let mut motion = realize(kind, STRENGTH * power, setting, &multipliers)?;
-            let limit = if kind == Realization::Friction { &mut case.chetaev } else { &mut case.vakonomic };
-            Ok([distance(limit, &mut motion, &mut case.metric)?, own_error(&mut motion, &mut case.metric)?])
+            apart(case, if kind == Realization::Friction { Which::Chetaev } else { Which::Vakonomic }, &mut motion)
         })?;
     }
-    between(case)
+    between(case)?;
+    let Some((forced, _)) = case.forced.clone() else { return Ok(()) };
+    if slows {
+        judge(
+            case,
+            "friction tends to Chetaev with forces at rate 1/N",
+            "friction with forces: distance at N = 1000 over that at 10000",
+            |case, power| {
+                let setting = Setting { system: &forced, start: &start, end: case.end() };
+                let mut motion = realize(Realization::Friction, STRENGTH * power, setting, &multipliers)?;
+                apart(case, Which::Forced, &mut motion)
+            },
+        )?;
+    }
+    judge(
+        case,
+        "the family between tends to Chetaev with forces at rate 1/kappa",
+        "kappa with forces: distance at 100 over that at 1000",
+        |case, power| {
+            let family = equations(&with_kappa(&forced, KAPPA * power), "kappa", None)?;
+            apart(case, Which::Forced, &mut case.run(family, &multipliers)?)
+        },
+    )
+}
+
+/// The distance of a motion from one of the case's own, and its own error.
+fn apart(case: &mut Case, which: Which, motion: &mut Motion) -> Result<[f64; 2], CheckError> {
+    let mut metric = case.metric.clone();
+    Ok([distance(case.motion(which), motion, &mut metric)?, own_error(motion, &mut metric)?])
 }
 
 /// `d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ` is vakonomic at `κ = 0`, and tends to Chetaev at the rate `1/κ`.
@@ -73,7 +105,7 @@ fn between(case: &mut Case) -> Result<(), CheckError> {
         "kappa: distance at 100 over that at 1000",
         |case, power| {
             let mut motion = motion(case, KAPPA * power)?;
-            Ok([distance(&mut case.chetaev, &mut motion, &mut case.metric)?, own_error(&mut motion, &mut case.metric)?])
+            apart(case, Which::Chetaev, &mut motion)
         },
     )
 }
@@ -125,8 +157,16 @@ fn judge(
         }
     }
     let note = distances.iter().map(|d| format!("{d:.1e}")).collect::<Vec<_>>().join(", ");
+    // what both distances are off by moves their quotient
+    let range = match distances[..] {
+        [.., before, last] => [(before - error) / (last + error), (before + error) / (last - error).max(0.0)],
+        _ => [rate; 2],
+    };
     match rate.is_nan() {
         true => case.found.undecided(8, claim, "a motion stops early"),
+        false if !RATE.contains(&rate) && range[0] <= *RATE.end() && range[1] >= *RATE.start() => {
+            case.found.undecided(8, claim, format!("distances {note}, own error {error:.1e}"));
+        }
         false => case.found.require(8, claim, RATE.contains(&rate), format!("distances {note}")),
     }
     Ok(())

@@ -1,9 +1,14 @@
 //! What must hold within each formulation.
 
+use deltaq::Setting;
+use mechanics::{SingularValues, State, System};
+use referees::maggi;
+
 use super::CheckError;
-use crate::Case;
 use crate::case::Which;
 use crate::derived::equations;
+use crate::realization::constraint_jacobian;
+use crate::{Case, referee};
 
 /// Instants at which the constraint is looked at.
 const INSTANTS: usize = 12;
@@ -25,25 +30,67 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     Ok(())
 }
 
-/// Chetaev's motion against that of Maggi's equations, each with its own error estimate.
+/// Chetaev's motion against that of Maggi's equations.
 fn maggi(case: &mut Case) -> Result<(), CheckError> {
-    let (end, [looser, kept]) = (case.end(), &mut case.referee()?.clone());
+    let [looser, kept] = &mut case.referee()?.clone();
+    compared(case, Which::Chetaev, "Chetaev: multipliers and Maggi's equations", looser, kept)
+}
+
+/// The same with forces.
+pub(super) fn forced(case: &mut Case) -> Result<(), CheckError> {
+    let Some((system, _)) = &case.forced else { return Ok(()) };
+    let setting = Setting { system, start: &case.scene.start, end: case.end() };
+    let [looser, kept] = &mut referee(setting)?;
+    compared(case, Which::Forced, "Chetaev with forces: multipliers and Maggi's equations", looser, kept)
+}
+
+/// Each with its own error estimate.
+fn compared(
+    case: &mut Case,
+    which: Which,
+    claim: &'static str,
+    looser: &mut maggi::Motion,
+    kept: &mut maggi::Motion,
+) -> Result<(), CheckError> {
     let (mut gap, mut limit, mut size) = (0.0_f64, 0.0_f64, 1.0_f64);
-    let last = kept.end().min(looser.end());
-    for t in case.chetaev.grid(INSTANTS).into_iter().filter(|&t| t <= last) {
-        let (own, other) = case.chetaev.at_in_both_runs(t)?;
-        let (one, two) = (kept.state(t)?.q, looser.state(t)?.q);
+    let (end, mut last) = (case.end(), kept.end().min(looser.end()));
+    let system = case.scene.system.clone();
+    let rank = |t: f64, q: &[f64], v: &[f64]| rank(&system, &State { t, q: q.to_vec(), v: v.to_vec() });
+    let linear = system.constraints_linear_in_velocity();
+    let first = &case.scene.start;
+    let least = if linear { 0.0 } else { FAINT * rank(first.t, &first.q, &first.v)? };
+    let motion = case.motion(which);
+    for t in motion.grid(INSTANTS).into_iter().filter(|&t| t <= last) {
+        let (own, other) = motion.at_in_both_runs(t)?;
+        let (State { q: one, v, .. }, two) = (kept.state(t)?, looser.state(t)?.q);
+        if !linear && rank(t, &own.coordinates, &own.velocities)?.min(rank(t, &one, &v)?) < least {
+            last = t;
+            break;
+        }
         let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         gap = gap.max(largest(&own.coordinates, &one));
         limit = limit.max(largest(&own.coordinates, &other.coordinates) + largest(&one, &two));
         size = size.max(own.coordinates.iter().fold(0.0, |a, q| a.max(q.abs())));
     }
-    let claim = "Chetaev: multipliers and Maggi's equations";
     case.found.bound(0, claim, gap, deltaq::CERTAINTY * (limit + ROUND_OFF * size) + case.floor);
     if last < end {
-        case.found.undecided(0, claim, format!("the referee stops at t = {last:.4}: {:?}", kept.ending()));
+        let because = match last < kept.end() {
+            true => "the constraints nearly lose rank".into(),
+            false => format!("the referee stops: {:?}", kept.ending()),
+        };
+        case.found.undecided(0, claim, format!("from t = {last:.4} on, {because}"));
     }
     Ok(())
+}
+
+/// The part of its size at the start under which `∂f/∂v`, where that depends on `v`, tells no direction any
+/// more: at the tip of a cone.
+const FAINT: f64 = 1e-3;
+
+/// The smallest singular value of `∂f/∂v`.
+fn rank(system: &System, state: &State) -> Result<f64, CheckError> {
+    let values = SingularValues::of(&constraint_jacobian(system, state)?).values;
+    Ok(values.iter().copied().fold(f64::INFINITY, f64::min))
 }
 
 /// Round-off relative to the size of a quantity.
