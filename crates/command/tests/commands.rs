@@ -103,7 +103,7 @@ fn multipliers_and_constants_choose_the_motion() {
     assert!((negative - zero).abs() > 1e-3);
     assert_eq!(end(&[&vakonomic[..], &["--set", "mu0_1=-0.2"]].concat()), negative);
     let start = column(&json(&["sledge", "-f", "vakonomic", "--mu0", "-0.2", "--times", "0"]), "multipliers", "mu_1");
-    assert_eq!(start, [-0.2]);
+    assert!((start[0] + 0.2).abs() < 1e-15, "{start:?}");
     // the costate form is another way to the same motion
     assert!((end(&["sledge", "-f", "vakonomic-costate", "--mu0", "-0.2"]) - negative).abs() < 1e-8);
 

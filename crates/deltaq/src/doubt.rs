@@ -116,4 +116,22 @@ mod tests {
         assert!(doubt.because.contains("something else limits") && doubt.because.contains("stiff"), "{doubt:?}");
         assert!((doubt.from - 1.0).abs() < 0.2, "{doubt:?}");
     }
+
+    #[test]
+    fn a_method_made_for_stiff_equations_is_not_advised_to_itself() {
+        let (kept, looser) = (steps(54, 50), steps(30, 90));
+        let doubt = Doubt::of([&kept, &looser], 2.0, true, Some(Method::Radau5)).expect("too few steps");
+        assert!(doubt.because.ends_with("something else limits the steps"), "{doubt:?}");
+    }
+
+    #[test]
+    fn steps_just_before_a_stop_are_not_doubted() {
+        // to 1.9 as the order explains, and then short ones
+        let (mut kept, looser) = (steps(540, 1), steps(300, 1));
+        kept.retain(|t| *t < 1.9);
+        kept.extend((0..=100_000).map(|i| 1.9 + 1e-6 * f64::from(i)));
+        let doubt = |complete| Doubt::of([&kept, &looser], 2.0, complete, Some(Method::Dop853));
+        assert_eq!(doubt(false), None);
+        assert!(doubt(true).is_some_and(|doubt| doubt.from > 1.8));
+    }
 }

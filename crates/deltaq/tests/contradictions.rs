@@ -131,6 +131,11 @@ fn a_proved_difference_beside_motions_that_agree_and_beside_another_growth() {
     pair.gap.certain_from = certain_from;
     pair.growth.as_mut().expect("a growth").exponent += 1.0;
     assert!(found(&sledge).contains("part as t^3, but they were measured to part as t^4.0"));
+    // nothing is where another term is the larger one
+    let pair = self::pair(&mut sledge, "vakonomic");
+    let (growth, predicted) = (pair.growth.as_mut().expect("a growth"), pair.predicted.as_ref().expect("a term"));
+    growth.to = 0.5 * predicted.reach;
+    assert_eq!(sledge.contradictions(), Vec::new());
 }
 
 #[test]

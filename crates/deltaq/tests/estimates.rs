@@ -1,20 +1,24 @@
 //! What a motion says of its own errors, coordinate by coordinate.
 
-use deltaq::{ErrorEstimate, Settings, choices, error_estimates, setting, solve_choice};
+use deltaq::{
+    ErrorEstimate, Metric, Motion, Setting, Settings, Verdict, choices, compare_motions, error_estimates, setting,
+    solve_choice, solve_from,
+};
 use integrate::Method;
 use scene::Scene;
 
-/// The estimates at `times` and of the whole motion, with z at these times; z is a swing of frequency 40 with
-/// hardly any inertia.
-fn swing(settings: &Settings, times: &[f64]) -> (Vec<ErrorEstimate>, ErrorEstimate, Vec<f64>) {
+/// A swing z of frequency 40 about a place, with hardly any inertia.
+fn swinging(place: f64) -> Scene {
     let text = r#"
 title = "A light swing beside a free body at rest in y"
+[parameters]
+place = 0
 [coordinates]
 x = { start = 0 }
 y = { start = 0 }
-z = { start = 0 }
+z = { start = "place" }
 [system]
-lagrangian = "(x'^2 + y'^2)/2 + 1e-18*(z'^2 - 1600*z^2)/2"
+lagrangian = "(x'^2 + y'^2)/2 + 1e-18*(z'^2 - 1600*(z - place)^2)/2"
 [start.velocities]
 "x'" = 1
 "y'" = 0
@@ -22,7 +26,12 @@ lagrangian = "(x'^2 + y'^2)/2 + 1e-18*(z'^2 - 1600*z^2)/2"
 [run]
 duration = 2
 "#;
-    let scene = Scene::parse("swing", text).unwrap_or_else(|e| panic!("{e}"));
+    Scene::parse_with("swing", text, &[("place".to_string(), place)]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The estimates at `times` and of the whole motion, with z at these times.
+fn swing(settings: &Settings, times: &[f64]) -> (Vec<ErrorEstimate>, ErrorEstimate, Vec<f64>) {
+    let scene = swinging(0.0);
     let mut motion = solve_choice(&scene, &choices(&scene)[0], settings).expect("a motion");
     let (so_far, whole) = error_estimates(&mut motion, setting(&scene), times).expect("in range");
     let z = times.iter().map(|&t| motion.at(t).expect("in range").coordinates[2]).collect();
@@ -85,4 +94,53 @@ fn a_multiplier_that_is_not_known_makes_a_motion_untrusted() {
     for force in ["0", "x", "1e6*((x + 1)^2 - x^2 - 2*x - 1)", "1e6*(sin(x)^2 + cos(x)^2 - 1)"] {
         assert_eq!(held(force, &Settings::default()).complaint(), None, "{force}");
     }
+}
+
+const LOOSE: fn() -> Settings = || Settings { tolerance: 1e-3, method: Some(Method::Dop853), ..Settings::default() };
+
+#[test]
+fn motions_are_the_same_only_where_every_coordinate_is_known() {
+    let scene = swinging(0.0);
+    let mut motion = solve_choice(&scene, &choices(&scene)[0], &LOOSE()).expect("a motion");
+    let mut metric = Metric::new(&scene.system).expect("a metric");
+    let gap = compare_motions(&mut motion.clone(), &mut motion, &mut metric).expect("a gap");
+    let Verdict::Undecided { because } = gap.verdict else { panic!("{:?}", gap.verdict) };
+    assert!(because.starts_with("relative error estimate of z "), "{because}");
+}
+
+#[test]
+fn estimates_of_a_motion_back_in_time_are_those_up_to_each_time() {
+    let scene = swinging(0.0);
+    let back = Setting { end: -2.0, ..setting(&scene) };
+    let mut motion: Motion = solve_from(back, &choices(&scene)[0], &LOOSE()).expect("a motion");
+    let (so_far, whole) = error_estimates(&mut motion, back, &[-2.0, -0.2, -1.0]).expect("in range");
+    let [last, first, middle] = [0, 1, 2].map(|i| so_far[i].coordinates[2]);
+    assert!(0.0 < first && first < middle && middle < last && last == whole.coordinates[2], "{so_far:?}");
+}
+
+#[test]
+fn a_difference_is_a_part_of_where_a_coordinate_is_or_how_far_it_came() {
+    for (place, size) in [(0.0, 0.025), (3.0, 3.025)] {
+        let scene = swinging(place);
+        let mut motion = solve_choice(&scene, &choices(&scene)[0], &LOOSE()).expect("a motion");
+        let whole = error_estimates(&mut motion, setting(&scene), &[]).expect("in range").1;
+        let (name, part) = whole.worst.expect("not round-off alone");
+        let known = whole.coordinates[2] / size;
+        assert!(name == "z" && (part / known - 1.0).abs() < 0.05, "{place}: {name} {part:e}, known {known:e}");
+    }
+}
+
+#[test]
+fn a_multiplier_of_a_motion_at_rest_is_off_by_its_round_off() {
+    // both runs stay where they are, and the multiplier should be zero
+    let text = "title = \"At rest\"\n[coordinates]\nx = { start = 0.3 }\ny = { start = 0 }\n[system]\n\
+                lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"y'\"]\n\
+                forces = { y = \"1e6*((x + 1)^3 - x^3 - 3*x^2 - 3*x - 1)\" }\n\
+                [start]\nvelocities = { \"x'\" = 0 }\n[run]\nduration = 3\n";
+    let scene = Scene::parse("rest", text).unwrap_or_else(|e| panic!("{e}"));
+    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("linear constraints");
+    let mut motion = solve_choice(&scene, &chetaev, &Settings::default()).expect("a motion");
+    let estimate = error_estimates(&mut motion, setting(&scene), &[]).expect("in range").1.multipliers[0];
+    let error = motion.at(3.0).expect("in range").multipliers[0].abs();
+    assert!(error > 0.0 && estimate >= error && estimate < 1e-7, "{estimate:e}, wrong by {error:e}");
 }

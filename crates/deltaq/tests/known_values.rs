@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use deltaq::{
-    Doubt, Ending, ErrorEstimate, Gap, Metric, Motion, Settings, Verdict, choices, compare_motions, error_estimates,
-    setting, solve_choice,
+    Doubt, Ending, ErrorEstimate, Gap, Metric, Motion, Sampling, Settings, Verdict, choices, compare_motions,
+    compare_motions_by, error_estimates, setting, solve_choice,
 };
 use integrate::Method;
 use scene::Scene;
@@ -165,23 +165,41 @@ fn where_a_motion_is_doubted_nothing_is_certain_any_more() {
     let error = known_error(0.0, FINE);
     let apart = 2e4 * error;
     let mut metric = Metric::new(&pushed(0.0, [0.0; 2]).system).expect("a metric");
-    let doubted_from = |from: f64, metric: &mut Metric| {
+    let mut doubted_from = |from: f64, one: usize| {
         let push = [[0.0; 2], [apart / apart_at(PI), 0.0]];
-        let [mut still, mut moved] = push.map(|push| motion(0.0, push, &by(FINE)));
-        still.doubt = Some(Doubt { from, because: "doubted".into() });
-        compare_motions(&mut still, &mut moved, metric).expect("a gap")
+        let mut motions = push.map(|push| motion(0.0, push, &by(FINE)));
+        motions[one].doubt = Some(Doubt { from, because: "doubted".into() });
+        let [still, moved] = &mut motions;
+        compare_motions(still, moved, &mut metric).expect("a gap")
     };
-    // the gap is certain before the doubt begins, and only what is certain counts
-    let gap = doubted_from(2.8, &mut metric);
     let at = |t: f64| 2.0 * apart * apart_at(t) / apart_at(PI);
-    assert_eq!(gap.verdict, Verdict::Different);
-    assert!(gap.points.iter().all(|p| (p.t < 2.8) == p.limit.is_finite() && (!p.certain || p.t < 2.8)), "{gap:?}");
-    assert!(gap.largest > at(2.78) - 3.0 * error && gap.largest < at(2.8) + 3.0 * error, "{:e}", gap.largest);
-    assert!(gap.bound().is_infinite() && gap.limit_at(2.9).is_infinite() && gap.limit_at(2.7).is_finite());
-    // it has not begun
-    let gap = doubted_from(0.5, &mut metric);
-    assert_eq!(gap.verdict, Verdict::Undecided { because: "doubted".into() });
-    assert_eq!((gap.certain_from, gap.passes), (None, [None; 3]));
+    for one in [0, 1] {
+        // the gap is certain before the doubt begins, and only what is certain counts
+        let gap = doubted_from(2.8, one);
+        assert_eq!(gap.verdict, Verdict::Different);
+        assert!(gap.points.iter().all(|p| (p.t < 2.8) == p.limit.is_finite() && (!p.certain || p.t < 2.8)), "{gap:?}");
+        assert!(gap.largest > at(2.78) - 3.0 * error && gap.largest < at(2.8) + 3.0 * error, "{:e}", gap.largest);
+        assert!(gap.bound().is_infinite() && gap.limit_at(2.9).is_infinite() && gap.limit_at(2.7).is_finite());
+        // it has not begun
+        let gap = doubted_from(0.5, one);
+        assert_eq!(gap.verdict, Verdict::Undecided { because: "doubted".into() });
+        assert_eq!((gap.certain_from, gap.passes), (None, [None; 3]));
+    }
+}
+
+#[test]
+fn of_a_motion_back_every_limit_is_that_of_the_end() {
+    let from_there = [("x".to_string(), -1.0), ("z".to_string(), -1.0)];
+    let there = Scene::parse_with("pushed", PUSHED, &from_there).unwrap_or_else(|e| panic!("{e}"));
+    let [mut on, mut back] = [&pushed(0.0, [0.0; 2]), &there]
+        .map(|scene| solve_choice(scene, &choices(scene)[0], &by(FINE)).expect("a motion"));
+    let mut metric = Metric::new(&there.system).expect("a metric");
+    let sampling = Sampling { rate: -1.0, offset: PI, ..Sampling::default() };
+    let gap = compare_motions_by(&mut on, &mut back, &mut metric, &sampling).expect("a gap");
+    assert_eq!((gap.verdict.word(), gap.end), ("same", PI));
+    let limit = gap.limit_at(PI);
+    is_about("limit", limit, 10.0 * 2.0 * 2.0 * known_error(0.0, FINE));
+    assert!(gap.points.iter().all(|p| p.limit == limit), "{:?}", gap.points);
 }
 
 #[test]

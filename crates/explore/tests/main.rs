@@ -45,6 +45,9 @@ fn motions_are_those_of_the_library() {
         }
         let mut motion = solve_choice(&scene, &choice, &Settings::default()).unwrap();
         assert_eq!(place(&all["motions"][i], "rows"), 51, "{label}");
+        let estimate = deltaq::error_estimate(&mut motion, deltaq::setting(&scene)).unwrap();
+        assert_eq!(all["motions"][i]["error"], estimate.absolute, "{label}");
+        assert!(glance["motions"][i]["error"].is_null());
         for row in 0..=50 {
             let q = motion.at(row as f64 / 5.0).unwrap().coordinates;
             assert_eq!(coordinates(&all["motions"][i], &numbers, row, 3), q, "{label}");
@@ -60,6 +63,14 @@ fn motions_are_those_of_the_library() {
         assert!(largest > 1.0, "{name}: {largest}");
     }
     assert_eq!(all["gaps"][0]["verdict"], "different");
+    // a gap at a glance is that of the rows of its two motions
+    let gap = &glance["gaps"][0];
+    let mut metric = deltaq::Metric::new(&scene.system).unwrap();
+    for (row, numbers) in coarse[place(gap, "from")..].chunks_exact(3).take(place(gap, "rows")).enumerate() {
+        let motion = |i: usize, count: usize| coordinates(&glance["motions"][i], &coarse, row, count);
+        let (q, v) = motion(0, 6).split_at(3);
+        assert_eq!(numbers[..2], [row as f64 / 5.0, metric.distance(row as f64 / 5.0, q, v, motion(1, 3))]);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Jordan chains on the imaginary axis, with a feedback that splits them: the truth is in closed form.
 
-use linear::{Block, Chain, Growth, Part, Spectrum};
+use linear::{Block, Chain, Eigenvalue, Growth, Part, Spectrum};
 use nalgebra::{Complex, DMatrix};
 
 const FEEDBACK: [f64; 9] = [1e-20, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12];
@@ -169,5 +169,29 @@ fn a_chain_grows_like_a_power_of_time() {
             let [chain] = &chains[..] else { panic!("{what}") };
             assert_eq!((chain.size, chain.power, chain.is_exact), (k, k - 1, name != "companion"), "{what}");
         }
+    }
+}
+
+#[test]
+fn what_errors_leave_open_is_said_beside_what_they_do_not() {
+    let chain = |power: usize, is_exact: bool| {
+        let value = Complex::default();
+        vec![Chain { value, size: 3, radius: 1e-7, power, is_exact, blocks: vec![0] }]
+    };
+    for (parts, chains, words) in [
+        (&[1.0, 2.0, -1.0][..], Vec::new(), "2"),
+        (&[1.0, 2.0, 1e-10], Vec::new(), "2"),
+        (&[1.0, 2.0], chain(2, true), "2"),
+        (&[1.0, 2.0], chain(2, false), "2 or more"),
+        (&[-1.0], chain(2, false), "undecided"),
+        (&[-1.0], chain(2, true), "like t^2"),
+        (&[-1.0], chain(1, true), "like t"),
+        (&[-1.0], Vec::new(), "0"),
+        (&[], Vec::new(), "undecided"),
+    ] {
+        let of = |re: &f64| Eigenvalue { value: Complex::new(*re, 0.0), error: 1e-9 };
+        let eigenvalues = parts.iter().map(of).collect();
+        let part = Part { states: Vec::new(), eigenvalues, zeros: 0, zero_error: 0.0, chains };
+        assert_eq!(part.growth().to_string(), words, "{part:?}");
     }
 }

@@ -196,3 +196,16 @@ fn what_is_refused() {
     assert!(matches!(find_steady(setting(&cone)), Err(LinearError::NotLinear)));
     assert!(linearize(setting(&cone), &choice(&cone, "chetaev")).is_ok());
 }
+
+#[test]
+fn what_crosses_has_the_frequency_and_not_what_grows_all_along() {
+    // x falls like e^t at any k, and y has (k ± √(k² − 16))/2
+    let text = "title = \"fed\"\n[parameters]\nk = 0.3\n[coordinates]\nx = { start = 0 }\ny = { start = 0 }\n\
+                [system]\nlagrangian = \"(x'^2 + x^2 + y'^2 - 4*y^2)/2\"\nforces = { y = \"k*y'\" }\n\
+                [start.velocities]\n\"x'\" = 0\n\"y'\" = 0\n[run]\nduration = 1\n";
+    let scene = Scene::parse("fed", text).unwrap_or_else(|error| panic!("{error}"));
+    let found = sweep(&scene, &choices(&scene)[0], &[], ("k", &[-0.5, 0.7]), false).expect("a sweep");
+    let [change] = &found.changes[..] else { panic!("{:?}", found.changes) };
+    assert_eq!(change.unstable, [1, 3]);
+    assert!(change.value.abs() < 1e-7 && (change.frequency - 2.0).abs() < 1e-6, "{change:?}");
+}

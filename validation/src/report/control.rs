@@ -70,3 +70,19 @@ pub(super) fn sentence(controls: &[Control]) -> String {
         short(residual)
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn residuals_are_those_of_controls_that_are_right() {
+        let control = |name: &str, flagged: bool, residual: f64| {
+            let found = FoundOut { residual, flagged, word: Some(Word::Holds), note: String::new() };
+            Control { name: name.into(), is_same: !flagged, found: Some(found) }
+        };
+        let said = sentence(&[control("a", true, 0.3), control("b", false, 2e-14), control("c", false, 1e-15)]);
+        assert!(said.contains(" on 1 scenes.") && said.contains("flagged on a,"), "{said}");
+        assert!(said.ends_with("called right on b and c, where their residual is at most 2.0e-14."), "{said}");
+    }
+}

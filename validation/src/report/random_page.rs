@@ -277,3 +277,21 @@ fn exponents(summary: &Summary) -> Result<String> {
     let title = "Nonintegrable random systems: how the gap begins";
     Ok(Picture::panels(title, x, panels.collect(), 2).to_svg()?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_in_fifty_verdicts_may_be_undecided_and_none_may_fail() {
+        for ([holds, fails, undecided], expected) in [
+            ([98, 0, 2], "holds"),
+            ([97, 0, 3], "undecided"),
+            ([99, 1, 0], "fails"),
+            ([0, 1, 99], "fails"),
+            ([0, 0, 0], "holds"),
+        ] {
+            assert_eq!(word(Count { holds, fails, undecided }), expected, "{holds}, {fails}, {undecided}");
+        }
+    }
+}
