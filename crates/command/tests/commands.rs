@@ -261,6 +261,8 @@ fn a_chart_that_ends_is_a_stop_with_time_and_cause() {
     let stderr = text(&output.stderr);
     println!("{stderr}");
     assert!(stderr.contains("stopped at t = ") && stderr.contains("cos(phi)"), "{stderr}");
+    // no tolerance leads on
+    assert!(!stderr.contains("ask for a smaller"), "{stderr}");
     let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(value["status"], "stopped");
     assert!(value["cause"].as_str().is_some_and(|c| c.contains("cos(phi)")), "{}", value["cause"]);

@@ -152,3 +152,14 @@ fn faults_have_their_place() {
     file("duration\n9\n", &["m.csv:1:1", "--set"]);
     file("mu0_1\n9\n", &["m.csv:1:1", "vakonomic"]);
 }
+
+#[test]
+fn members_that_are_not_trusted_are_complained_about_and_counted() {
+    let arguments = ["sledge", "-f", "chetaev", "--tolerance", "0.5", "--times", "10", "--vary", "phi=0..0.6:4"];
+    let (text, complaint) = answer(&arguments, 3);
+    let (_, rows) = table(&text);
+    let status = |row: &&Vec<&str>| row[row.len() - 2] == "untrusted";
+    let untrusted = rows.iter().filter(status).count();
+    assert!(untrusted > 0, "{text}");
+    assert!(complaint.contains(&format!("{untrusted} of 4 members are not to be trusted to the end")), "{complaint}");
+}
