@@ -5,7 +5,7 @@ use random::{Batch, Classes, Fault, Kind, Recipe, Word, draw_recipe};
 use scene::Scene;
 
 /// Seed, index, kind, the claim's theorem, and what was wrong.
-const ONCE_WRONG: [(u64, u64, Kind, u8, &str); 12] = [
+const ONCE_WRONG: [(u64, u64, Kind, u8, &str); 13] = [
     (3141, 829, Kind::NearRankLoss, 10, "what a motion's end is off by grows on the way back"),
     (3141, 2289, Kind::NearRankLoss, 5, "a lower term, lost in round-off, leads"),
     (3141, 4266, Kind::Affine, 3, "a rate is a difference of numbers of a million"),
@@ -18,6 +18,7 @@ const ONCE_WRONG: [(u64, u64, Kind, u8, &str); 12] = [
     (3141, 16946, Kind::Affine, 2, "a rate is a difference of numbers of a million"),
     (2611, 3489, Kind::NearRankLoss, 9, "elimination adds up more than the equations"),
     (2613, 1539, Kind::NearRankLoss, 9, "elimination adds up more than the equations"),
+    (104_729, 10_879, Kind::NearRankLoss, 6, "costates and rates of memory add up more than an energy"),
 ];
 
 /// The same of systems of later classes.
