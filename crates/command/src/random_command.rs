@@ -53,7 +53,7 @@ fn told(batch: &Batch, records: &[Record], seconds: Option<f64>, arguments: &Ran
         let _ = writeln!(text, "\n{} systems{}", records.len(), seconds.map_or(String::new(), rate));
         let features: Vec<String> = summary.features.iter().map(|(name, count)| format!("{count} {name}")).collect();
         let _ = writeln!(text, "of which have {}", deltaq::words::enumerate(&features));
-        let (at_stake, all) = (summary.at_stake.values().sum::<u64>(), summary.total().total());
+        let (at_stake, all) = (summary.total_at_stake(), summary.total().total());
         let _ = writeln!(text, "{at_stake} of {all} verdicts are on systems on which formulations differ");
         text += &work(records);
         for path in &paths {

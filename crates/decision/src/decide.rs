@@ -129,12 +129,7 @@ impl Decision {
     /// The verdict on the constants `c` alone: the noise of large ones may be too loud to tell.
     pub fn verdict_at(&self, constants: &[f64]) -> Verdict {
         let reach = (1.0 + self.scaled(constants).norm_squared()).sqrt();
-        let noise = self.sizes.noise * reach;
-        match () {
-            () if self.mismatch_at(constants) > CERTAIN * noise => Verdict::NotContained,
-            () if CERTAIN * noise > TOO_LOUD * self.sizes.scale(reach) => Verdict::Undecided,
-            () => Verdict::Contained,
-        }
+        verdict_on(self.mismatch_at(constants), reach, &self.sizes)
     }
 
     /// The same question with only the constants `kept` (by their places), the others zero.
@@ -305,28 +300,36 @@ fn judge(
     let loud = free.iter().any(|c| CERTAIN * length(c, |k| k.noise) > TOO_LOUD * length(c, |k| k.size));
     let own = |c: DVector<f64>| DVector::from_iterator(last, c.iter().zip(&known).map(|(c, k)| c * k.scale));
     let directions = orthonormal(free.into_iter().map(own).collect());
-    let noise = sizes.noise * reach;
-    let scale = sizes.scale(reach);
-    let verdict = if least > CERTAIN * noise {
+    let verdict = match verdict_on(least, reach, &sizes) {
         // what is so much more than the motion is round-off of it that has grown
-        if ROUND_OFF * least > scale { Verdict::Undecided } else { Verdict::NotContained }
-    } else if CERTAIN * noise <= TOO_LOUD * scale && !loud {
-        Verdict::Contained
-    } else {
-        Verdict::Undecided
+        Verdict::NotContained if ROUND_OFF * least > sizes.scale(reach) => Verdict::Undecided,
+        Verdict::Contained if loud => Verdict::Undecided,
+        verdict => verdict,
     };
     Decision {
         verdict,
         set: AffineSet { point: own(point).as_slice().to_vec(), directions },
         least,
         at_zero: goal.norm(),
-        noise,
+        noise: sizes.noise * reach,
         acceleration: sizes.acceleration,
         constants,
         until,
         triangle,
         columns: known,
         sizes,
+    }
+}
+
+/// What a mismatch says that constants of a size `reach` leave.
+fn verdict_on(mismatch: f64, reach: f64, sizes: &Sizes) -> Verdict {
+    let noise = CERTAIN * sizes.noise * reach;
+    if mismatch > noise {
+        Verdict::NotContained
+    } else if noise <= TOO_LOUD * sizes.scale(reach) {
+        Verdict::Contained
+    } else {
+        Verdict::Undecided
     }
 }
 

@@ -149,23 +149,8 @@ fn natural_constants(
             return Err(refuse(SolveError::Ended { horizon, cause }));
         }
         let run_options = Options { max_steps: left, dense: Dense::EndOnly, ..of_all.clone() };
-        let run = prepared.integrate(horizon, &run_options).map_err(&mut refuse)?;
-        let mut steps = run.solution.work.steps + run.solution.work.rejected;
-        let mut end = vec![0.0; prepared.start.len()];
-        let mut ending = Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution, &[]);
-        if let (Ending::Stopped { .. }, true, Some(setting)) = (&ending, prepared.compiled.has_chart(), setting) {
-            let within = Settings { method, max_steps: left, times: None, ..settings.clone() };
-            let course = charts::run(Setting { end: horizon, ..setting }, prepared, &within, f64::INFINITY);
-            if let Course::Run(mut runs) = course.map_err(&mut refuse)? {
-                steps += 2 * (runs.work.steps + runs.work.rejected);
-                ending = runs.ending;
-                if ending == Ending::Completed {
-                    end = runs.trajectories[0].state(&mut prepared.compiled, horizon).map_err(&mut refuse)?;
-                }
-            }
-        } else if ending == Ending::Completed {
-            run.solution.dense.evaluate(horizon, &mut end);
-        }
+        let AtHorizon { ending, states: end, steps } =
+            at_horizon(prepared, horizon, &run_options, settings, setting).map_err(&mut refuse)?;
         taken += steps;
         limit.get_or_insert(LONGER * runs * steps);
         if let Ending::Stopped { t, cause } = ending {
@@ -182,4 +167,42 @@ fn natural_constants(
         (Err(_), Some(error)) => Err(error),
         (Err(error), None) => Err(SolveError::Boundary { horizon, error }),
     }
+}
+
+/// How a run to the horizon ended.
+struct AtHorizon {
+    ending: Ending,
+    /// In the first chart; zero where it was not reached.
+    states: Vec<f64>,
+    steps: usize,
+}
+
+/// One run to the horizon; where that leaves its chart and a `setting` is known, both runs of the motion from
+/// chart to chart.
+fn at_horizon(
+    prepared: &mut Prepared,
+    horizon: f64,
+    options: &Options,
+    settings: &Settings,
+    setting: Option<Setting>,
+) -> Result<AtHorizon, SolveError> {
+    let run = prepared.integrate(horizon, options)?;
+    let steps = run.solution.work.steps + run.solution.work.rejected;
+    let ending = Ending::of(&prepared.equations, &mut prepared.compiled, &run.solution, &[]);
+    let mut states = vec![0.0; prepared.start.len()];
+    if ending == Ending::Completed {
+        run.solution.dense.evaluate(horizon, &mut states);
+    } else if let Some(setting) = setting.filter(|_| prepared.compiled.has_chart()) {
+        let within =
+            Settings { method: Some(options.method), max_steps: options.max_steps, times: None, ..settings.clone() };
+        let course = charts::run(Setting { end: horizon, ..setting }, prepared, &within, f64::INFINITY)?;
+        if let Course::Run(mut runs) = course {
+            if runs.ending == Ending::Completed {
+                states = runs.trajectories[0].state(&mut prepared.compiled, horizon)?;
+            }
+            let steps = steps + 2 * (runs.work.steps + runs.work.rejected);
+            return Ok(AtHorizon { ending: runs.ending, states, steps });
+        }
+    }
+    Ok(AtHorizon { ending, states, steps })
 }

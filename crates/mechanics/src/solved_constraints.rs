@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use symbolic::{Bounded, Evaluator, Expr, Graph, Matrix, Scalar, Symbol};
+use symbolic::{Expr, Graph, Matrix, Symbol};
 
 use crate::elimination::{Candidate, LinearForms, Pivot, SparseMatrix, choose_pivot};
 use crate::{RemovalError, State, System};
@@ -62,6 +62,11 @@ impl SolvedConstraints {
         let known = |e: Expr| Entry { e, number: g.evaluate(e, &values).unwrap_or(f64::NAN), size: g.size(&[e]) };
         let all_known = |row: BTreeMap<usize, Expr>| row.into_iter().map(|(j, e)| (j, known(e))).collect();
         let mut matrix: SparseMatrix<Entry> = SparseMatrix::new(rows.into_iter().map(all_known).collect());
+        let beside: HashMap<Symbol, f64> = values.iter().map(|(&s, x)| (s, (1.0 + BESIDE) * x)).collect();
+        let added_up = |entry: Entry| {
+            let value = g.bounded(entry.e, &beside).filter(|value| value.is_finite());
+            value.map_or(f64::INFINITY, |value| value.magnitude)
+        };
         let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
         let mut quotients = Vec::new();
         let mut terms_left = TERMS;
@@ -83,7 +88,6 @@ impl SolvedConstraints {
                     if terms <= terms_left {
                         terms_left -= terms;
                         let over_pivot = known(cleared(g, g.div(g.expand(over_pivot), pivot.e)));
-                        let added_up = |entry: Entry| added_up(g, entry.e, &values);
                         let is_short = 3 * over_pivot.size <= 4 * rest.size;
                         let better = is_short && added_up(over_pivot) <= ADDED_UP * added_up(rest);
                         rest = if better { over_pivot } else { rest };
@@ -140,15 +144,6 @@ impl SolvedConstraints {
         let g = &system.graph;
         g.add(g.dot(self.solution.row(row), independent), self.offset[row])
     }
-}
-
-/// How much is added up to the value of an expression beside these values; infinite where that is no number.
-fn added_up(g: &Graph, e: Expr, values: &HashMap<Symbol, f64>) -> f64 {
-    let symbols: Vec<Symbol> = values.keys().copied().collect();
-    let Ok(tape) = g.compile(&symbols, &[e], &HashMap::new()) else { return f64::INFINITY };
-    let inputs: Vec<Bounded> = symbols.iter().map(|s| Bounded::from_f64((1.0 + BESIDE) * values[s])).collect();
-    let value = Evaluator::new(tape).evaluate(&inputs)[0];
-    if value.is_finite() { value.magnitude } else { f64::INFINITY }
 }
 
 /// What is no pivot yet, with its part in its row, all coordinates as fast as each other, and the length of

@@ -273,13 +273,8 @@ impl Case {
             Which::Chetaev => &mut self.chetaev,
             Which::Vakonomic => &mut self.vakonomic,
             Which::Removed(i) => &mut self.removed[i].motion,
-            Which::Control | Which::Forced => {
-                let pair = match which {
-                    Which::Control => self.control.as_mut().map(|(_, motion)| motion),
-                    _ => self.forced.as_mut().map(|(_, motion)| motion),
-                };
-                pair.unwrap_or_else(|| unreachable!("asked for only where there is one"))
-            }
+            Which::Control => &mut self.control.as_mut().expect("asked for only where there is one").1,
+            Which::Forced => &mut self.forced.as_mut().expect("asked for only where there is one").1,
         }
     }
 }

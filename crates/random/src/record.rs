@@ -239,6 +239,11 @@ impl Summary {
         summary
     }
 
+    /// How many of these are on systems on which something is at stake.
+    pub fn total_at_stake(&self) -> u64 {
+        self.at_stake.values().sum()
+    }
+
     /// All words on theorems together.
     pub fn total(&self) -> Count {
         self.theorems.values().fold(Count::default(), |mut sum, count| {

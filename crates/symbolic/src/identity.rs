@@ -99,11 +99,17 @@ impl Graph {
 
     /// Whether the value of `e` at these values of its symbols cannot be told from zero: no divisor.
     pub fn is_round_off(&self, e: Expr, values: &HashMap<Symbol, f64>) -> bool {
+        self.bounded(e, values).is_some_and(Bounded::may_be_zero)
+    }
+
+    /// The value of `e` at these values of its symbols, with the size of what is added up to it: NaN where a
+    /// symbol has no value; `None` where `e` cannot be compiled.
+    pub fn bounded(&self, e: Expr, values: &HashMap<Symbol, f64>) -> Option<Bounded> {
         let symbols: Vec<Symbol> = self.symbols_of(e).into_iter().collect();
-        let Ok(tape) = self.compile(&symbols, &[e], &HashMap::new()) else { return false };
+        let tape = self.compile(&symbols, &[e], &HashMap::new()).ok()?;
         let number = |s: &Symbol| Bounded::from_f64(values.get(s).copied().unwrap_or(f64::NAN));
         let inputs: Vec<Bounded> = symbols.iter().map(number).collect();
-        Evaluator::new(tape).evaluate(&inputs)[0].may_be_zero()
+        Some(Evaluator::new(tape).evaluate(&inputs)[0])
     }
 
     fn vanishes_in_truth(&self, open: Expr, constants: &HashMap<Symbol, f64>) -> Vanishing {

@@ -94,7 +94,7 @@ fn headline(summary: &Summary) -> String {
 
 /// How many verdicts are on systems on which the formulations have something to dispute.
 fn at_stake(summary: &Summary) -> String {
-    let (total, at_stake) = (summary.total().total(), summary.at_stake.values().sum::<u64>());
+    let (total, at_stake) = (summary.total().total(), summary.total_at_stake());
     let share = 100.0 * at_stake as f64 / total.max(1) as f64;
     format!(
         "{at_stake} of the {total} verdicts ({} %) are on systems on which something is at stake: two of Chetaev's motion, the vakonomic \

@@ -38,23 +38,22 @@ fn drift(
     floor: f64,
 ) -> Result<Drift, SolveError> {
     let symbols = [&[system.time], &system.positions()[..], &system.velocities(), multipliers].concat();
-    let mut evaluator = system.evaluator(&symbols, &[e])?;
-    let mut terms = system.evaluator::<Bounded>(&symbols, &[e])?;
-    let read =
-        |t: f64, o: &Outputs| [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
-    let mut value = |t: f64, o: &Outputs| evaluator.evaluate(&read(t, o))[0];
+    let mut evaluator = system.evaluator::<Bounded>(&symbols, &[e])?;
+    let mut value = |t: f64, o: &Outputs| {
+        let read = [&[t], &o.coordinates[..], &o.velocities, &o.multipliers[..multipliers.len()]].concat();
+        let read: Vec<Bounded> = read.into_iter().map(Bounded::from_f64).collect();
+        evaluator.evaluate(&read)[0]
+    };
     let (mut first, mut change, mut error, mut size) = (None, 0.0_f64, 0.0_f64, 1.0_f64);
     for t in motion.grid(INSTANTS) {
         let (kept, looser) = motion.at_in_both_runs(t)?;
         let (now, other) = (value(t, &kept), value(t, &looser));
-        let start = *first.get_or_insert(now);
-        change = change.max((now - start).abs());
-        error = error.max((now - other).abs());
+        let start = *first.get_or_insert(now.value);
+        change = change.max((now.value - start).abs());
+        error = error.max((now.value - other.value).abs());
         // terms μ_i A_ij, P_k B_k may cancel: of nearly dependent constraints they are large
-        let inputs: Vec<Bounded> = read(t, &kept).into_iter().map(Bounded::from_f64).collect();
-        let added_up = terms.evaluate(&inputs)[0].magnitude;
         let multiplier = kept.multipliers.iter().fold(0.0_f64, |largest, mu| largest.max(mu.abs()));
-        size = size.max(added_up).max(kept.velocities.iter().map(|v| v * v).sum()).max(multiplier);
+        size = size.max(now.magnitude).max(kept.velocities.iter().map(|v| v * v).sum()).max(multiplier);
     }
     Ok(Drift { change, limit: CERTAINTY * (error + ROUND_OFF * size) + floor * size })
 }
