@@ -61,6 +61,14 @@ impl Membership {
         self.section.as_ref().is_some_and(|section| section.proved)
     }
 
+    /// The dimension of the set by ranks modulo two primes, where these grow no more.
+    pub(crate) fn ranked(&self) -> Option<usize> {
+        match self.proof.this_start {
+            Finding::Contained { rank, .. } => Some(self.decision.constants.len() - rank),
+            _ => None,
+        }
+    }
+
     /// Whether what holds on the branch of the start does not hold up to the end.
     fn leaves_its_branch(&self) -> bool {
         self.proof.one_branch && self.decision.verdict == Verdict::NotContained

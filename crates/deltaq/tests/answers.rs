@@ -26,7 +26,7 @@ fn findings() -> [(&'static str, Finding); 5] {
     [
         ("a no", none(true)),
         ("a no by ranks", none(false)),
-        ("a yes", Finding::Contained { rank: 1, order: 3 }),
+        ("a yes", Finding::Contained { rank: 2, order: 3 }),
         ("open", Finding::ThroughOrder { rank: 1, order: 7 }),
         ("nothing", Finding::NotApplicable("a table is no formula".into())),
     ]
@@ -153,6 +153,16 @@ fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
         let expected = format!("With {which} the vakonomic motion is the Chetaev motion: through order 7 and to 1e-8.");
         assert_eq!(said, expected);
     }
+    // the dimension by ranks has the word, and numbers that say otherwise are named
+    found.decision.set = AffineSet { directions: vec![vec![1.0, 0.0]], ..found.decision.set.clone() };
+    for (rank, which) in [
+        (0, "μ₀ of a set of dimension 2 by ranks, 1 in numbers, through (0.25000, 0)"),
+        (1, "every μ₀ of a set of dimension 1 through (0.25000, 0)"),
+    ] {
+        found.proof.this_start = Finding::Contained { rank, order: 7 };
+        assert!(sentence(found).starts_with(&format!("With {which} the vakonomic")), "{}", sentence(found));
+    }
+    found.proof.this_start = Finding::ThroughOrder { rank: 1, order: 7 };
     // more than the motion's own, which is not at rest
     found.decision.least = 60.0;
     assert!(sentence(found).ends_with(": through order 7 and without acceleration."), "{}", sentence(found));

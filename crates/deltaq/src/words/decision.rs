@@ -53,10 +53,15 @@ fn constants(membership: &Membership, c: &str) -> String {
     // last digits of the others are no number
     let noise = 8.0 * f64::EPSILON * set.point.iter().fold(1.0_f64, |size, c| size.max(c.abs()));
     let point: Vec<String> = set.point.iter().map(|c| precise(if c.abs() <= noise { 0.0 } else { *c })).collect();
-    match set.dimension() {
-        0 => format!("{c} = ({})", point.join(", ")),
-        d if d == membership.decision.constants.len() => format!("every {c}"),
-        d => format!("every {c} of a set of dimension {d} through ({})", point.join(", ")),
+    let all = membership.decision.constants.len();
+    match (set.dimension(), membership.ranked()) {
+        // what fixes a constant may be less than round-off, and what is round-off seem to
+        (d, Some(ranked)) if d != ranked => {
+            format!("{c} of a set of dimension {ranked} by ranks, {d} in numbers, through ({})", point.join(", "))
+        }
+        (0, _) => format!("{c} = ({})", point.join(", ")),
+        (d, _) if d == all => format!("every {c}"),
+        (d, _) => format!("every {c} of a set of dimension {d} through ({})", point.join(", ")),
     }
 }
 
