@@ -1,7 +1,8 @@
 //! Stiff and extreme cases: no method returns a wrong trajectory in silence; what was mended stays so.
 
 use deltaq::{
-    Choice, Ending, Motion, Setting, Settings, default_constants, derive, derive_at, formulation, setting, solve,
+    Choice, Ending, Motion, Setting, Settings, Stepping, default_constants, derive, derive_at, formulation, setting,
+    solve,
 };
 use equations::Equations;
 use integrate::Method;
@@ -9,7 +10,7 @@ use mechanics::{ConstantsRule, Recombination};
 use scene::Scene;
 use serde_json::Value;
 use validation::stability::{
-    Answering, CASES, Case, Cell, LONG, Long, MILLION, Question, Reference, Stepping, Verdict, long_runs,
+    Answering, CASES, COMPARED, Case, Cell, LONG, Long, MILLION, Question, Reference, Verdict, long_runs,
 };
 
 fn questions(case: &str) -> Vec<Question> {
@@ -50,7 +51,7 @@ fn nothing_is_wrong_and_no_case_is_only_refused() {
 #[test]
 fn a_million_steps_keep_what_they_are_to_keep() {
     let runs = long_runs(true).expect("references reach as far");
-    assert_eq!(runs.len(), LONG.len() * Stepping::COMPARED.len());
+    assert_eq!(runs.len(), LONG.len() * COMPARED.len());
     for run in &runs {
         assert_eq!(run.verdict.word(), "accurate", "{run:?}");
         assert!(run.constraint < 1e-10, "{run:?}");

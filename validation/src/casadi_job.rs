@@ -25,7 +25,7 @@ use anyhow::{Context, Result};
 use scene::Scene;
 use serde::Deserialize;
 
-use random::parallel;
+use program::parallel;
 use random::{Batch, Kind, draw_recipe};
 
 mod environment;

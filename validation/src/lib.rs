@@ -1,7 +1,6 @@
-//! The harness: scenes, the paper's audit, benchmarks, stability, referees in Python, the reports.
+//! The evidence: the paper's audit, scaling, stability, referees in Python, the reports.
 
 pub mod audit;
-pub mod bench;
 pub mod casadi_job;
 pub mod report;
 pub mod scaling;

@@ -1,8 +1,9 @@
 //! Pages about many systems and many points: every count against records and rows of which it is known.
 
+use pages::sweep_files;
 use random::{Batch, DIVERGES, Kind, NEAREST, Record};
 use serde_json::json;
-use validation::report::{random_files, random_headline, sweep_files};
+use validation::report::{random_files, random_headline};
 
 use crate::pages::table;
 
@@ -94,7 +95,7 @@ fn the_page_of_a_sweep_counts_its_rows_and_draws_its_columns() {
         let table = head.to_owned() + &rows.iter().map(|row| format!("{row}\n")).collect::<String>();
         sweep_files("s", "A sweep", ["one", "two"], &ranges, &table).expect("files")
     };
-    let text = |files: &[validation::report::File], name: &str| {
+    let text = |files: &[program::File], name: &str| {
         files.iter().find(|file| file.path.ends_with(name)).map(|file| file.text.clone()).expect("a file")
     };
     let all = files(&rows);

@@ -1,8 +1,8 @@
 //! `deltaq bench`: what is measured is right, and what fails is listed.
 
+use bench::{Effort, ensemble_throughput, measure, prepare};
+use bench::{bench_files, bench_json};
 use integrate::Method;
-use validation::bench::{Effort, ensemble_throughput, measure, prepare};
-use validation::report::{bench_files, bench_json};
 
 fn effort(max_steps: usize) -> Effort {
     Effort { seconds: 1e-6, repeats: 1, max_steps, patience: 0.05 }

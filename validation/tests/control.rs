@@ -1,7 +1,6 @@
 //! The control is flagged on scenes where Maggi's equations say that it is wrong, and nowhere else.
 
 use deltaq::{Comparison, Extent, Run, Settings, choices, solve_choice};
-use random::substitution;
 use scene::Scene;
 use validation::report::overview;
 

@@ -2,9 +2,8 @@
 
 use deltaq::{Comparison, Metric, Settings, Verdict, choices, compare_motions, compare_unfitted, setting, solve};
 use mechanics::ConstantsRule;
-use random::substitution;
+use pages::Headline;
 use scene::Scene;
-use validation::report::Headline;
 
 fn compared(scene: Scene) -> Comparison {
     let choices = choices(&scene);

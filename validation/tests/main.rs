@@ -7,6 +7,15 @@ mod casadi;
 mod changed_pages;
 mod control;
 mod headlines;
+#[path = "../../crates/command/tests/killed.rs"]
+mod killed;
 mod pages;
 mod pictures;
+mod program;
+mod random_command;
 mod scaling;
+#[path = "../../crates/command/tests/support.rs"]
+mod support;
+
+/// The program.
+const PROGRAM: &str = env!("CARGO_BIN_EXE_evidence");

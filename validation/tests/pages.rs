@@ -7,11 +7,9 @@ use deltaq::{
     compare_unfitted, solve_choice,
 };
 use integrate::{Method, Projection};
-use random::substitution;
+use pages::{membership::value as membership_value, scene_page, summary, verdicts};
 use serde_json::{Value, json};
-use validation::report::{
-    AuditReport, BicycleReport, membership_value, overview, referees_section, scene_page, summary, verdicts,
-};
+use validation::report::{AuditReport, BicycleReport, overview, referees_section};
 
 /// A scene in all formulations, the control among them.
 fn compared(name: &str, duration: f64, settings: &Settings) -> Comparison {

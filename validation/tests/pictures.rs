@@ -1,7 +1,7 @@
 //! What the pictures of a scene show, and what they leave out.
 
 use deltaq::{Settings, choices, compare};
-use validation::report::pictures;
+use pages::pictures;
 
 /// The picture of a kind of a built-in scene, if it is drawn.
 fn picture(scene: &str, kind: &str) -> Option<String> {

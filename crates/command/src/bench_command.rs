@@ -1,14 +1,10 @@
-//! `deltaq bench` and `deltaq scaling`: what it costs, over accuracy and over size.
+//! `deltaq bench`: error against run time.
 
 use anyhow::{Result, bail};
 use serde_json::json;
 
-use crate::cli::{BenchArguments, ScalingArguments};
-use crate::main_job::{bench_all, references};
-use random::parallel;
-use validation::bench::{Effort, ensemble_throughput};
-use validation::report::{bench_files, bench_json, bench_table, ensemble_text, scaling_files, scaling_text};
-use validation::scaling::{FORMULATIONS, Limits, TRAILERS, measure};
+use crate::cli::BenchArguments;
+use bench::{Effort, bench_all, bench_files, bench_json, bench_table, ensemble_text, ensemble_throughput, references};
 
 /// Repeats of each way to integrate an ensemble; the least time counts.
 const REPEATS: usize = 5;
@@ -32,16 +28,4 @@ pub(crate) fn run(arguments: &BenchArguments, quiet: bool) -> Result<String> {
     let names: Vec<&str> = if given.is_empty() { all() } else { given };
     let benches = bench_all(references(&names, &arguments.set.overrides, quiet)?, &effort, quiet)?;
     arguments.output.answer("bench", || bench_files(&benches, &[]), || bench_table(&benches), || bench_json(&benches))
-}
-
-/// Measures how cost grows with the length of a train of trailers.
-pub(crate) fn scaling(arguments: &ScalingArguments, quiet: bool) -> Result<String> {
-    let limits = Limits { trailers: arguments.longest, seconds: arguments.seconds, repeats: arguments.repeats.into() };
-    let bar = parallel::progress(FORMULATIONS.len() * TRAILERS.len(), quiet);
-    let lines = measure(&limits, &mut |name, trailers| {
-        bar.set_message(format!("{name}, n = {trailers}"));
-        bar.inc(1);
-    })?;
-    bar.finish_and_clear();
-    arguments.output.answer("scaling", || scaling_files(&lines), || scaling_text(&lines), || json!({ "lines": lines }))
 }

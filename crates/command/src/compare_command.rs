@@ -6,14 +6,15 @@ use deltaq::{Comparison, Extent, Fits, Settings, choices_among};
 use scene::Scene;
 use serde_json::{Value, json};
 
-use crate::answer::{pretty, print};
-use crate::cli::{CompareArguments, TextOrJson};
-use crate::main_job::{protocol, scene_files};
+use crate::cli::CompareArguments;
 use crate::solve_command::limited;
 use crate::sweep_command;
 use crate::watch::Watch;
-use random::substitution;
-use validation::report::{summary, verdicts, write_all};
+use pages::scene_files;
+use pages::{summary, verdicts};
+use program::TextOrJson;
+use program::write_all;
+use program::{pretty, print};
 
 /// Prints a summary of each scene as soon as it is compared; or returns pages or verdicts, or writes pages
 /// and pictures to a folder and says so. Nothing is computed before every scene has been read.
@@ -21,7 +22,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     if !arguments.sweep.is_empty() {
         return sweep_command::run(arguments, quiet);
     }
-    let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
+    let settings = limited(Settings { tolerance: arguments.tolerance, ..Settings::protocol() }, &arguments.limits)?;
     let mut scenes: Vec<Scene> = Vec::new();
     for name in &arguments.scenes {
         let scene = catalogue::find(name, &arguments.set.overrides)?;

@@ -10,13 +10,13 @@ use anyhow::{Result, bail};
 use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, formulation, setting};
 use integrate::Method;
 
-use crate::answer::Answer;
 use crate::cli::{EnsembleArguments, Format, MotionArguments};
 use crate::sink::Sink;
 use crate::solve_command::{choice, settings, times};
 use members::Members;
 use output::{Answers, Outcome, Seconds};
-use random::parallel;
+use program::Answer;
+use program::parallel;
 use resume::resume;
 use scene::Scene;
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fs::create_dir_all;
 
 use anyhow::{Context, Result, ensure};
+use program::write_one;
 use serde_json::json;
-use validation::report::write_one;
 
 use crate::cli::ExploreArguments;
 

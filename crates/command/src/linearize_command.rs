@@ -7,11 +7,12 @@ use mechanics::State;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-use crate::answer::pretty;
 use crate::cli::{LinearizeArguments, TableFormat};
 use crate::columns::header;
 use crate::solve_command::choice;
-use validation::report::{File, sweep_picture, sweep_text, write_all};
+use pages::{sweep_picture, sweep_text};
+use program::pretty;
+use program::{File, write_all};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {

@@ -5,9 +5,11 @@ use deltaq::{PlainScene, certificate, holds_beside_numbers, membership};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::answer::{Answer, pretty, sorted};
-use crate::cli::{ProveArguments, TextOrJson};
-use validation::report::{membership_sentence, membership_value, write_one};
+use crate::cli::ProveArguments;
+use pages::{membership::value as membership_value, membership_sentence};
+use program::TextOrJson;
+use program::write_one;
+use program::{Answer, pretty, sorted};
 
 /// Writes the certificate; where there is none, says what is known instead.
 ///

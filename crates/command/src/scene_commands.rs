@@ -7,9 +7,9 @@ use std::io::{IsTerminal, Write as _, stderr};
 use anyhow::{Context, Result, bail};
 use scene::{Scene, SceneError};
 
-use crate::answer::plain;
 use crate::cli::{CheckArguments, NewArguments};
 use crate::schema::schema;
+use program::plain;
 
 const TEMPLATE: &str = include_str!("template.toml");
 

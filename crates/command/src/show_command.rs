@@ -12,8 +12,9 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::json;
 
-use crate::answer::pretty;
-use crate::cli::{ShowArguments, TextOrJson};
+use crate::cli::ShowArguments;
+use program::TextOrJson;
+use program::pretty;
 
 /// The built-in scenes, then those of the pages about the literature, a line each.
 pub(crate) fn list(format: TextOrJson) -> Result<String> {

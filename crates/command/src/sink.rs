@@ -5,10 +5,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Error, Result, ensure};
-use random::Lines;
-use validation::report::may_replace;
-
-use crate::answer;
+use program::Lines;
+use program::may_replace;
 
 /// Where the pieces go.
 pub(crate) enum Sink {
@@ -63,7 +61,7 @@ impl Sink {
     /// Writes a piece; `false` where nobody reads on.
     pub(crate) fn write(&mut self, text: &str) -> Result<bool> {
         match self {
-            Sink::Terminal => answer::print(text),
+            Sink::Terminal => program::print(text),
             Sink::Device(file, path) | Sink::Part(file, path, _) => {
                 let written = file.write_all(text.as_bytes());
                 written.with_context(|| format!("cannot write {}", path.display())).map(|()| true)

@@ -18,11 +18,11 @@ use mechanics::{ConstantsRule, Observables, Removal};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-use crate::answer::{Answer, pretty};
 use crate::cli::{Format, FreeArguments, Limits, MotionArguments, SolveArguments};
 use crate::columns::{Columns, error_row, header, named_columns, row};
-use random::parallel;
-use validation::stability::Stepping;
+use deltaq::Stepping;
+use program::parallel;
+use program::{Answer, pretty};
 
 /// Times at which invariants are sampled, less one: those of error estimates.
 const SAMPLES: usize = 200;

@@ -5,11 +5,11 @@ use deltaq::{Settings, Sweep, SweepPoint};
 
 use crate::cli::{CompareArguments, MOST_MEMBERS, Range};
 use crate::columns::{header, quoted};
-use crate::main_job::protocol;
 use crate::sink::Sink;
 use crate::solve_command::limited;
-use random::{Lines, parallel};
-use validation::report::{Swept, sweep_files, write_all};
+use pages::{Swept, sweep_files};
+use program::write_all;
+use program::{Lines, parallel};
 
 /// Points computed before they are written down.
 const CHUNK: usize = 64;
@@ -19,7 +19,7 @@ const COLUMNS: [&str; 9] =
 
 /// A table, one row per point; of a file that was cut off the rest is computed.
 pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
-    let settings = limited(Settings { tolerance: arguments.tolerance, ..protocol() }, &arguments.limits)?;
+    let settings = limited(Settings { tolerance: arguments.tolerance, ..Settings::protocol() }, &arguments.limits)?;
     let [name] = &arguments.scenes[..] else { bail!("--sweep is for one scene, not for {}", arguments.scenes.len()) };
     let grid = Grid::of(&arguments.sweep)?;
     if let Some((fixed, _)) = arguments.set.overrides.iter().find(|(set, _)| grid.names().any(|name| name == set)) {

@@ -6,8 +6,8 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 
-use crate::answer::{complain, plain, print};
-use random::parallel;
+use program::parallel;
+use program::{complain, plain, print};
 
 /// Exit code of a program ended by SIGINT, to a shell.
 const INTERRUPTED: i32 = 130;

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::Output;
 use std::time::Instant;
 
-use crate::support::deltaq;
+use crate::support::run;
 
 const GOOD: &str = include_str!("good.toml");
 
@@ -22,7 +22,7 @@ fn solve(bytes: &[u8]) -> Answer {
     let path = file.path().to_str().expect("UTF-8").to_string();
     let clock = Instant::now();
     let arguments = ["solve", &path, "-f", "chetaev"];
-    let output = deltaq(&arguments);
+    let output = run(&arguments);
     Answer { output, path, seconds: clock.elapsed().as_secs_f64() }
 }
 

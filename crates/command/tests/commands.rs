@@ -4,7 +4,7 @@ use std::process::Output;
 
 use serde_json::Value;
 
-use crate::support::{answer, deltaq, refused, text};
+use crate::support::{answer, refused, run, text};
 
 #[track_caller]
 fn exit(output: &Output, code: i32) {
@@ -16,7 +16,7 @@ fn exit(output: &Output, code: i32) {
 /// What `deltaq solve … --format json` prints.
 #[track_caller]
 fn json(arguments: &[&str]) -> Value {
-    let output = deltaq(&[&["solve"], arguments, &["--format", "json"]].concat());
+    let output = run(&[&["solve"], arguments, &["--format", "json"]].concat());
     exit(&output, 0);
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
@@ -62,7 +62,7 @@ fn json_has_every_field() {
 fn csv_has_the_same_numbers() {
     let arguments = ["sledge", "-f", "chetaev", "--times", "0,2.5,10"];
     let value = json(&arguments);
-    let output = deltaq(&[&["solve"], &arguments[..]].concat());
+    let output = run(&[&["solve"], &arguments[..]].concat());
     exit(&output, 0);
     let text = text(&output.stdout);
     let mut lines = text.lines();
@@ -197,7 +197,7 @@ fn no_step_is_compared_with_itself() {
     // the truth at t = 10 is y = 17.9; one step over everything gave -122.9 with an estimate of 0
     for step in ["10", "6", "5", "4", "3", "1"] {
         let leapfrog = ["--method", "leapfrog", "--step", step, "--times", "10", "--format", "json"];
-        let output = deltaq(&[&["solve", "sledge", "-f", "chetaev"], &leapfrog[..]].concat());
+        let output = run(&[&["solve", "sledge", "-f", "chetaev"], &leapfrog[..]].concat());
         let value: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("--step {step}"));
         println!("--step {step}: {} {}, {}", value["status"], value["coordinates"]["y"], value["error_estimate"]);
         exit(&output, 3);
@@ -256,7 +256,7 @@ fn limits_end_a_run_with_what_was_reached() {
 #[test]
 fn a_chart_that_ends_is_a_stop_with_time_and_cause() {
     let arguments = ["solve", "sledge", "-f", "removed-constraint", "--removal", "along-x", "--constants", "zero"];
-    let output = deltaq(&[&arguments[..], &["--format", "json"]].concat());
+    let output = run(&[&arguments[..], &["--format", "json"]].concat());
     exit(&output, 3);
     let stderr = text(&output.stderr);
     println!("{stderr}");
@@ -269,7 +269,7 @@ fn a_chart_that_ends_is_a_stop_with_time_and_cause() {
     let end = value["end"].as_f64().expect("a number");
     // and that is where the blade points across the slope
     let times = format!("0,{}", end * (1.0 - 1e-9));
-    let last = deltaq(&[&arguments[..], &["--format", "json", "--times", &times]].concat());
+    let last = run(&[&arguments[..], &["--format", "json", "--times", &times]].concat());
     let value: Value = serde_json::from_slice(&last.stdout).expect("JSON");
     let phi = column(&value, "coordinates", "phi")[1];
     assert!((phi.abs() - std::f64::consts::FRAC_PI_2).abs() < 1e-5, "stopped at phi = {phi}");
@@ -277,7 +277,7 @@ fn a_chart_that_ends_is_a_stop_with_time_and_cause() {
 
 #[test]
 fn the_scenes_own_horizon_beyond_the_chart_is_no_success() {
-    let output = deltaq(&["solve", "sledge", "-f", "removed-constraint", "--removal", "along-x"]);
+    let output = run(&["solve", "sledge", "-f", "removed-constraint", "--removal", "along-x"]);
     let (code, stderr) = (output.status.code(), text(&output.stderr));
     println!("sledge --removal along-x: {code:?}, {stderr}");
     assert_eq!(code, Some(3), "{stderr}");
@@ -295,10 +295,10 @@ fn bad_input_is_refused_in_words() {
 
 #[test]
 fn list_and_show_answer() {
-    let output = deltaq(&["list"]);
+    let output = run(&["list"]);
     exit(&output, 0);
     assert!(text(&output.stdout).lines().count() >= 13);
-    let output = deltaq(&["show", "sledge"]);
+    let output = run(&["show", "sledge"]);
     exit(&output, 0);
     let shown = text(&output.stdout);
     for word in ["Chetaev", "vakonomic", "arc-length", "L ="] {
@@ -309,14 +309,14 @@ fn list_and_show_answer() {
 #[test]
 fn show_writes_code() {
     let code = |language: &str| {
-        let output = deltaq(&["show", "disc", "-f", "vakonomic", "--code", language]);
+        let output = run(&["show", "disc", "-f", "vakonomic", "--code", language]);
         exit(&output, 0);
         text(&output.stdout).to_string()
     };
     assert!(code("c").contains("int disc_vakonomic_rates(double t, const double state[10],"));
     assert!(code("numpy").contains("def rates(t, state, parameters=PARAMETERS):"));
     assert!(code("sympy").contains("RATES = sp.Matrix(["));
-    let output = deltaq(&["show", "disc", "--code", "c"]);
+    let output = run(&["show", "disc", "--code", "c"]);
     assert!(text(&output.stdout).contains("disc_chetaev_rates"));
     refused(&["show", "disc", "-f", "chetaev,vakonomic", "--code", "c"], &["--code takes one formulation"]);
     refused(&["show", "appell-hamel", "-f", "vakonomic-costate", "--code", "c"], &["are not linear in them"]);
@@ -324,7 +324,7 @@ fn show_writes_code() {
 
 #[test]
 fn show_says_in_which_form_equations_are_evaluated() {
-    let output = deltaq(&["show", "trailer"]);
+    let output = run(&["show", "trailer"]);
     exit(&output, 0);
     let shown = text(&output.stdout);
     for words in
@@ -333,7 +333,7 @@ fn show_says_in_which_form_equations_are_evaluated() {
         assert!(shown.contains(words), "`{words}` is not in {shown}");
     }
     // two roots: Newton's method, and one form only
-    let shown = text(&deltaq(&["show", "appell-hamel"]).stdout);
+    let shown = text(&run(&["show", "appell-hamel"]).stdout);
     assert!(
         shown.contains("do not enter linearly") && shown.contains("instructions and LU factorizations of"),
         "{shown}"

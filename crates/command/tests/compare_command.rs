@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
-use crate::support::{answer, deltaq, refused, text};
+use crate::support::{answer, refused, run, text};
 
 const SNAKE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/snake-14.toml");
 
@@ -149,7 +149,7 @@ fn files(folder: &Path) -> Vec<(String, u64)> {
 fn compare_writes_whole_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("new");
-    let output = deltaq(&["compare", "bowl", "--out", out.to_str().expect("UTF-8"), "--set", "duration=1"]);
+    let output = run(&["compare", "bowl", "--out", out.to_str().expect("UTF-8"), "--set", "duration=1"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let mut found = files(&out);
     println!("{found:?}");
@@ -172,20 +172,20 @@ fn a_compare_that_fails_leaves_nothing() {
     let to = out.to_str().expect("UTF-8");
     // the second scene is the bad one: the first is already computed
     for bad in [&["bowl", "no-such-scene"][..], &["bowl", "disc", "--set", "kx=1"]] {
-        let output = deltaq(&[&["compare"], bad, &["--out", to]].concat());
+        let output = run(&[&["compare"], bad, &["--out", to]].concat());
         assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
         assert!(!out.exists() || files(&out).is_empty(), "{:?}", files(&out));
     }
     // what was there stays as it was
     fs::create_dir_all(out.join("scenes")).expect("a folder");
     fs::write(out.join("scenes/bowl.md"), "mine").expect("written");
-    let output = deltaq(&["compare", "bowl", "no-such-scene", "--out", to]);
+    let output = run(&["compare", "bowl", "no-such-scene", "--out", to]);
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
     assert_eq!(fs::read_to_string(out.join("scenes/bowl.md")).expect("readable"), "mine");
     assert_eq!(files(&out).len(), 1);
     // a folder that cannot be one
     let file = folder.path().join("file");
     fs::write(&file, "").expect("written");
-    let output = deltaq(&["compare", "bowl", "--set", "duration=1", "--out", file.to_str().expect("UTF-8")]);
+    let output = run(&["compare", "bowl", "--set", "duration=1", "--out", file.to_str().expect("UTF-8")]);
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use scene::format::{BODY, COORDINATE, REMOVAL, RUN, SCENE, START, SYSTEM, VAKONOMIC};
 
-use crate::support::deltaq;
+use crate::support;
 
 /// The file that the README tells its reader to write.
 const DISC: &str = include_str!("../../deltaq/examples/disc-on-slope.toml");
@@ -64,7 +64,7 @@ fn the_template_is_sound_and_rolls() {
     let path = folder.path().join("own.toml");
     let path = path.to_str().expect("UTF-8");
     let run = |words: &[&str]| {
-        let output = deltaq(words);
+        let output = support::run(words);
         (
             output.status.code(),
             String::from_utf8_lossy(&output.stdout).into_owned(),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::support::{self, deltaq, refused};
+use crate::support::{self, refused, run};
 
 #[track_caller]
 fn answer(arguments: &[&str], code: i32) -> (String, String) {
@@ -41,7 +41,7 @@ fn members_are_the_motions_of_solve() {
         for member in rows.chunks(3) {
             let set: Vec<String> = (1..4).map(|i| format!("{}={}", &names[i][4..], member[0][i])).collect();
             let set = set.iter().flat_map(|x| ["--set", x]).collect::<Vec<_>>();
-            let single = deltaq(&[&["solve"], &arguments[..], &["--method", "taylor"], &set].concat());
+            let single = run(&[&["solve"], &arguments[..], &["--method", "taylor"], &set].concat());
             let single = String::from_utf8(single.stdout).expect("UTF-8");
             let (mut known, expected) = table(&single);
             known.retain(|name| !name.starts_with("error "));

@@ -7,13 +7,16 @@ mod compare_command;
 mod documents;
 mod ensemble_command;
 mod explore_command;
+mod killed;
 mod kills;
 mod linearize_command;
 mod memory;
 mod output;
 mod prove_command;
-mod random_command;
 mod shell;
 mod singularities;
 mod support;
 mod sweep;
+
+/// The program.
+const PROGRAM: &str = env!("CARGO_BIN_EXE_deltaq");

@@ -66,8 +66,8 @@ fn a_scene_is_read_from_standard_input() {
 
 #[test]
 fn results_do_not_depend_on_threads() {
-    let random = ["random", "--count", "12", "--format", "json", "--quiet", "--threads"];
-    let of = |threads| answer(&[&random[..], &[threads]].concat(), 0).0;
+    let sweep = ["compare", "turntable", "--sweep", "psi'=0.3:0.9:6", "--set", "duration=1", "--quiet", "--threads"];
+    let of = |threads| answer(&[&sweep[..], &[threads]].concat(), 0).0;
     assert_eq!(of("1"), of("3"));
-    refused(&["random", "--threads", "0"], &["--threads"]);
+    refused(&["solve", "sledge", "--threads", "0"], &["--threads"]);
 }

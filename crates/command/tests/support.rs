@@ -1,16 +1,18 @@
-//! Running the program.
+//! Running a program of the workspace, which is `PROGRAM` of the tests that say this is a part of them.
 
 use std::process::{Command, Output};
 
+use crate::PROGRAM;
+
 /// The program with these arguments, to be started.
 pub fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_deltaq"));
+    let mut command = Command::new(PROGRAM);
     command.args(arguments);
     command
 }
 
 /// What the program did.
-pub fn deltaq(arguments: &[&str]) -> Output {
+pub fn run(arguments: &[&str]) -> Output {
     command(arguments).output().expect("the command runs")
 }
 
@@ -22,7 +24,7 @@ pub fn text(bytes: &[u8]) -> String {
 /// Standard output and standard error of a program that has to end with this code.
 #[track_caller]
 pub fn answer(arguments: &[&str], code: i32) -> (String, String) {
-    let output = deltaq(arguments);
+    let output = run(arguments);
     let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
     assert!(!stderr.contains("panicked"), "{arguments:?}: {stderr}");
@@ -38,4 +40,13 @@ pub fn refused(arguments: &[&str], words: &[&str]) {
     for word in words {
         assert!(stderr.contains(word), "{arguments:?}: `{word}` is not in {stderr}");
     }
+}
+
+/// What the program does in a folder of its own; the folder must be as empty afterwards.
+#[track_caller]
+pub fn elsewhere(arguments: &[&str]) -> Output {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = command(arguments).current_dir(&folder).output().expect("the command runs");
+    assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 0, "{arguments:?} left something behind");
+    output
 }

@@ -141,7 +141,7 @@ pub use prepared::Prepared;
 pub use runs::{Decided, Pair, Run};
 pub use settings::{CERTAINTY, Setting, Settings, TIGHTER, setting};
 pub use single_run::SingleRun;
-pub use steps::{STEP_LIMIT, Steps, discrete_of, solve_by_steps};
+pub use steps::{STEP_LIMIT, Stepping, Steps, discrete_of, solve_by_steps};
 pub use sweep::{Sweep, SweepPoint};
 pub use table::{FORMS, FORMULATIONS, formulation};
 pub use varying::Varying;

@@ -83,6 +83,12 @@ impl Default for Settings {
 pub const LEAST_TOLERANCE: f64 = 1e-15;
 
 impl Settings {
+    /// How motions that are compared are integrated.
+    pub fn protocol() -> Settings {
+        // twice what any motion of the catalogue takes that does not run into a singularity
+        Settings { max_steps: 200_000, ..Settings::default() }
+    }
+
     /// Refuses a tolerance with which no run would be right.
     ///
     /// # Errors

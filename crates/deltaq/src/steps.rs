@@ -1,7 +1,7 @@
 //! One motion by a discrete principle, in equal steps.
 
 use discrete::{Composition, Discrete, RemovedStart};
-use integrate::{StopCause, Work};
+use integrate::{Method, StopCause, Work};
 use scene::Scene;
 
 use crate::clock::Clock;
@@ -13,7 +13,32 @@ use crate::{Choice, Ending, Motion, Prepared, Seconds, Settings, SolveError, der
 /// Largest number of steps of a motion that is kept.
 pub const STEP_LIMIT: usize = 10_000_000;
 
-/// How a motion is stepped.
+/// How time is stepped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stepping {
+    /// Equal steps that keep the structure of the motion: by a discrete variational principle.
+    Leapfrog,
+    /// As many as the tolerance asks for, with projection; `None`: by the method that suits the motion.
+    Adaptive(Option<Method>),
+}
+
+impl Stepping {
+    /// Every way that there is.
+    pub fn all() -> impl Iterator<Item = Stepping> {
+        let methods = Method::ALL.into_iter().map(Some);
+        [None].into_iter().chain(methods).map(Stepping::Adaptive).chain([Stepping::Leapfrog])
+    }
+
+    /// Its name, as on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stepping::Leapfrog => "leapfrog",
+            Stepping::Adaptive(method) => method.map_or("auto", Method::name),
+        }
+    }
+}
+
+/// Equal steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
     /// Longest step > 0, not above the time to go, in the scene's unit of time; that is cut into as few equal

@@ -21,6 +21,7 @@ ROOT = Path(__file__).resolve().parents[3]
 CATALOGUE = ROOT / "crates/catalogue"
 # the module is laid out beside the programs of its build
 PROGRAM = Path(os.environ.get("DELTAQ", Path(sys.prefix).parent / "release" / "deltaq"))
+EVIDENCE = PROGRAM.with_name("evidence")
 SCRIPT = ROOT / "validation/proof/verify.py"
 VERIFIED, FORGED, UNREADABLE = range(3)
 # all single changes in the place of a drawn part
@@ -146,7 +147,7 @@ def test_of_the_template(tmp_path):
 @pytest.mark.parametrize("index", [5, 7, 9, 15, 29])
 def test_of_random_systems(tmp_path, index):
     # their velocities are all decimals, some of which the constraints have to complete
-    subprocess.run([PROGRAM, "random", "--seed", "1", "--index", str(index), "--quiet", "--out", tmp_path], check=True, capture_output=True)
+    subprocess.run([EVIDENCE, "random", "--seed", "1", "--index", str(index), "--quiet", "--out", tmp_path], check=True, capture_output=True)
     scene = tmp_path / f"random-1-{index}.toml"
     certificate = written(tmp_path, scene)
     completed = certificate["completed"]

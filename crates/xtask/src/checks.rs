@@ -217,7 +217,7 @@ fn doctests() -> Result<Outcome> {
 fn reports() -> Result<Outcome> {
     // the features of one package would build every dependency once more
     build()?;
-    succeed(outside(target()?.join("release").join("deltaq")).args(["reports", "--check"]))
+    succeed(outside(target()?.join("release").join("evidence")).args(["reports", "--check"]))
 }
 
 /// The folder of build results.

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use std::mem::swap;
 
 use deltaq::{Membership, Pairing, SolveError, choices};
+use program::parallel::map;
 use proptest::strategy::ValueTree;
-use random::parallel::map;
 use random::{Batch, CHECKS, Case, Fault, Finding, Findings, Kind, Word, draw_recipe, equations, make, null_test};
 use random::{NullTest, Summary};
 use scene::Scene;

@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use catalogue::find;
 use engine::{Ladder, Study, files};
-use validation::report::write_all;
+use program::write_all;
 
 fn main() -> Result<()> {
     let folder = PathBuf::from(std::env::args_os().nth(1).unwrap_or_else(|| "reports".into()));

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use pages::{Table, fill};
 use picture::{Axis, Curve, Picture, PictureError, Style};
+use program::File;
 use rapier3d_f64::VERSION;
-use validation::report::{File, Table, fill};
 
 use crate::study::{FAR, Level, NEAR, ORDER, SAMPLES, Study, Target};
 

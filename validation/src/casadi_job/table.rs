@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::{Outcome, Row, Word};
-use crate::report::Table;
+use pages::Table;
 
 /// `< 1e-12`: the smallest power of ten above the difference.
 fn bound(row: &Row) -> String {

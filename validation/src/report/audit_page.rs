@@ -9,8 +9,9 @@ use symbolic::Vanishing;
 use crate::audit::{
     Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
-use crate::report::{File, Table, fill};
 use deltaq::words::{enumerate, short};
+use pages::{Table, fill};
+use program::File;
 
 /// Below this `dI/dε` counts as zero: differences of the perturbed action are good to about 1e-9.
 const STATIONARY: f64 = 1e-8;

@@ -6,9 +6,10 @@ use linear::{Sweep, SweepPoint, equidistant, sweep};
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
-use crate::report::linear_page::{pairs, sweep_picture};
-use crate::report::{File, Table, fill};
 use deltaq::words::short;
+use pages::{Table, fill};
+use pages::{pairs, sweep_picture};
+use program::File;
 
 /// Speed or name, real and imaginary part, in 25 digits.
 const REFERENCE: &str = include_str!("../../linear/bicycle.csv");

@@ -2,7 +2,7 @@
 
 use deltaq::words::{enumerate, short};
 use deltaq::{Comparison, Metric, Setting, Verdict, setting};
-use random::{FoundOut, Unjudged, Word, found_out, referee, substitution};
+use random::{FoundOut, Unjudged, Word, found_out, referee};
 
 /// The control on one scene.
 pub(super) struct Control {

@@ -6,14 +6,15 @@ use std::fmt::{self, Write};
 use anyhow::{Context, Result, ensure};
 use deltaq::{Answer, Contradicted, Finding, Membership, Pairing, Section, choices, membership};
 use mechanics::Removal;
-use random::{parallel, substitution};
+use program::parallel;
 use scene::{Number, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::report::{File, Table};
 use catalogue::CLASSICS;
 use deltaq::words::short;
+use pages::Table;
+use program::File;
 
 const DATA: &str = include_str!("../../equivalence/pages/systems.toml");
 

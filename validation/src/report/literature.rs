@@ -5,13 +5,14 @@ use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
 use deltaq::{Settings, choices, solve_choice};
-use random::{parallel, substitution};
+use program::parallel;
 use serde::Deserialize;
 use serde_json::Value;
 
 use crate::report::equivalence::{Asked, Found, Written};
-use crate::report::{File, Table};
 use deltaq::words::short;
+use pages::Table;
+use program::File;
 
 const DATA: &str = include_str!("../../equivalence/pages/claims.toml");
 

@@ -3,9 +3,9 @@
 use deltaq::{Answer, Comparison, Fit, Membership, Verdict};
 
 use crate::report::control::{self, Control};
-use crate::report::tables::verdict_words;
-use crate::report::{Table, fill, membership};
 use deltaq::words::{enumerate, precise, short};
+use pages::verdict_words;
+use pages::{Table, fill, membership};
 
 /// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.
 pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String {

@@ -5,9 +5,10 @@ use std::fmt::Write;
 use anyhow::Result;
 use serde_json::{Map, Value, json};
 
-use crate::report::{File, Table, fill};
 use deltaq::words::{enumerate, or_dash, short};
+use pages::{Table, fill};
 use picture::{Axis, Curve, Panel, Picture, Style};
+use program::File;
 use random::{Batch, Count, DIVERGES, DURATION, LARGEST, NEAREST, Record, Summary, theorem_title};
 
 /// The part of the verdicts on a theorem that may be undecided.

@@ -6,10 +6,11 @@ use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-use crate::report::{File, Table, fill};
 use deltaq::words::short;
+use pages::{Table, fill};
 use picture::{Axis, Curve, Picture, Style};
-use random::parallel;
+use program::File;
+use program::parallel;
 use random::realization::{Realization, distance, realize, realize_removal, with_kappa};
 use random::{Case, Kind, draw_recipe, equations, free_constants};
 

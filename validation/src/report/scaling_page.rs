@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use anyhow::Result;
 
-use crate::report::{File, Table};
 use crate::scaling::{Exponent, FROM, Line, Point};
 use deltaq::words::{or_dash, short};
+use pages::Table;
 use picture::{Axis, Curve, Picture, Style};
+use program::File;
 
 /// Largest exponents that are asked for: of one right-hand side, and of the derivation.
 const RIGHT_HAND_SIDE: f64 = 1.2;

@@ -8,12 +8,13 @@ use discrete::Composition;
 use integrate::Method;
 use serde_json::{Map, Value, json};
 
-use crate::report::{File, Table, fill};
 use crate::stability::{
     Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
 };
 use deltaq::words::short;
+use pages::{Table, fill};
 use picture::{Axis, Curve, Picture, Style};
+use program::File;
 
 /// Cases that are drawn, with the formulation that is.
 const DRAWN: [(&str, &str); 2] = [("viscous", "Newton, with friction"), ("added-mass", "Newton, with added mass")];

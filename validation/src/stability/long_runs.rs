@@ -1,7 +1,7 @@
 //! A million steps: what a long run loses of its energy, of its constraints and of its way.
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Metric, Motion, Setting, Settings, Steps, derive_at, solve, solve_by_steps};
+use deltaq::{Choice, Metric, Motion, Setting, Settings, Stepping, Steps, derive_at, solve, solve_by_steps};
 use discrete::Composition;
 use integrate::Method;
 use mechanics::ConstantsRule;
@@ -13,7 +13,7 @@ use super::cases::{choice, sledge_reference};
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::question::tolerance;
 use super::reference::Reference;
-use random::parallel;
+use program::parallel;
 
 /// What the long runs are called, on the command line and in reports.
 pub const LONG_RUNS: &str = "million-steps";
@@ -27,39 +27,12 @@ const SAMPLES: usize = 20_000;
 /// Parts of a run whose mean energies are compared.
 const PARTS: usize = 10;
 
-/// How a long run is stepped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stepping {
-    /// Equal steps that keep the structure of the motion: in the long runs a million of them, of order 2.
-    Leapfrog,
-    /// As many as the tolerance asks for, with projection; `None`: by the method that suits the motion.
-    Adaptive(Option<Method>),
-}
+/// How the long runs are stepped.
+pub const COMPARED: [Stepping; 3] =
+    [Stepping::Leapfrog, Stepping::Adaptive(Some(Method::Taylor)), Stepping::Adaptive(Some(Method::Dop853))];
 
-impl Stepping {
-    /// Every way that there is.
-    pub fn all() -> impl Iterator<Item = Stepping> {
-        let methods = Method::ALL.into_iter().map(Some);
-        [None].into_iter().chain(methods).map(Stepping::Adaptive).chain([Stepping::Leapfrog])
-    }
-
-    /// Those that are compared.
-    pub const COMPARED: [Stepping; 3] =
-        [Stepping::Leapfrog, Stepping::Adaptive(Some(Method::Taylor)), Stepping::Adaptive(Some(Method::Dop853))];
-
-    /// Its name, as on the command line and in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Stepping::Leapfrog => "leapfrog",
-            Stepping::Adaptive(method) => method.map_or("auto", Method::name),
-        }
-    }
-}
-
-impl Serialize for Stepping {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
+fn name<S: Serializer>(stepping: &Stepping, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(stepping.name())
 }
 
 /// A motion over a long time.
@@ -100,6 +73,7 @@ pub struct LongRun {
     pub duration: f64,
     /// How it was stepped.
     #[serde(rename = "method")]
+    #[serde(serialize_with = "name")]
     pub stepping: Stepping,
     /// Steps of the kept run.
     pub steps: usize,
@@ -122,7 +96,7 @@ pub struct LongRun {
 /// Where a scene or a reference cannot be had.
 pub fn long_runs(quiet: bool) -> Result<Vec<LongRun>> {
     let asked: Vec<(&Long, Stepping)> =
-        LONG.iter().flat_map(|long| Stepping::COMPARED.into_iter().map(move |stepping| (long, stepping))).collect();
+        LONG.iter().flat_map(|long| COMPARED.into_iter().map(move |stepping| (long, stepping))).collect();
     let name = |(long, _): &(&Long, Stepping)| format!("{}, {}", long.scene, long.formulation);
     parallel::try_map(&asked, quiet, name, |asked| asked.0.run(asked.1).with_context(|| name(asked)))
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::judge::{Allowance, BETTER_THAN_IT_KNOWS, FLOOR, Verdict, judge};
 use super::reference::{Known, Reference};
-use random::parallel;
+use program::parallel;
 
 /// Limit on the steps of one run: what needs more is refused.
 pub const MAX_STEPS: usize = 8_000;

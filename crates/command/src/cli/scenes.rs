@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use scene::{Number, Scene};
 
-use super::TextOrJson;
 use catalogue::NotFound;
+use program::TextOrJson;
 
 /// A scene with changes.
 #[derive(Args, Debug)]

@@ -6,9 +6,9 @@ use scene::Scene;
 use serde_json::{Map, Value, json};
 
 use super::members::Members;
-use crate::answer::pretty;
 use crate::cli::Format;
 use crate::columns::{Columns, header, print, quoted, row};
+use program::pretty;
 
 /// Members that a complaint describes.
 const DESCRIBED: usize = 3;

@@ -1,7 +1,7 @@
 //! What an earlier call has left of a table of members.
 
 use anyhow::Result;
-use random::Lines;
+use program::Lines;
 
 use super::output::Answers;
 

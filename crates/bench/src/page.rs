@@ -1,0 +1,295 @@
+//! The page about error against run time.
+
+use std::fmt::Write;
+
+use anyhow::Result;
+use integrate::Method;
+use serde_json::{Value, json};
+
+use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
+use deltaq::words::{enumerate, short};
+use pages::Table;
+use pages::markdown::{inert, link};
+use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
+use program::File;
+
+/// The error at which formulations are compared in the headline.
+const HEADLINE_TARGET: f64 = 1e-10;
+
+/// The first line of the page.
+pub fn bench_headline(benches: &[Bench]) -> String {
+    let all: Vec<&Measurements> =
+        benches.iter().flat_map(|b| &b.entries).filter_map(|e| e.outcome.as_ref().ok()).collect();
+    let winners: Vec<Fastest> = all.iter().filter_map(|m| m.fastest(HEADLINE_TARGET, None)).collect();
+    let count = |method: Method| winners.iter().filter(|winner| winner.method == method).count();
+    let mut names = Method::ALL.map(|method| (method.name(), count(method))).to_vec();
+    names.retain(|(_, count)| *count > 0);
+    names.sort_by_key(|&(name, count)| (std::cmp::Reverse(count), name));
+    let words: Vec<String> = names.iter().map(|(name, count)| format!("{name} on {count}")).collect();
+    format!(
+        "An error of at most {HEADLINE_TARGET:.0e} is reached on {} of {} motions; fastest there: {}.",
+        winners.len(),
+        all.len(),
+        enumerate(&words)
+    )
+}
+
+/// Page and pictures, with a section on ensembles where any were measured.
+///
+/// # Errors
+/// Where a picture cannot be drawn.
+pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<File>> {
+    let mut files = Vec::new();
+    let mut page = format!("# Error against run time\n\n**{}**\n\n", bench_headline(benches));
+    page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor; what it takes to get to the \
+             equations stands apart. The error is the largest distance from the reference in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine \
+             and from run to run; the numbers of evaluations do not. (`solve` and the other reports integrate every motion twice, for the sake of an error estimate.)\n\n\
+             ";
+    page += &usual_section(benches);
+    page += "\n## The fastest setting\n\n";
+    page += &bench_table(benches);
+    page += &ensemble_section(ensembles);
+    for bench in benches {
+        let _ = writeln!(page, "\n## {}\n", inert(&bench.title));
+        match picture(bench) {
+            Ok(text) => {
+                files.push(File { path: format!("error-vs-time/{}.svg", bench.scene).into(), text });
+                let _ =
+                    writeln!(page, "!{}\n", link("Error over run time", &format!("error-vs-time/{}.svg", bench.scene)));
+            }
+            Err(PictureError::NothingToDraw { .. }) => page += "Nothing could be measured.\n",
+            Err(error) => return Err(error.into()),
+        }
+        for entry in &bench.entries {
+            page += &section(entry);
+        }
+    }
+    files.push(File { path: "error-vs-time.md".into(), text: page });
+    Ok(files)
+}
+
+/// Both runs may take so many times the fastest single one.
+const WANTED: f64 = 2.5;
+
+/// What one gets who gives nothing but a tolerance, beside the fastest single run of all forms and settings.
+fn usual_section(benches: &[Bench]) -> String {
+    let mut table = Table::new(
+        [
+            "scene",
+            "formulation",
+            "form, method",
+            ">both runs (ms)",
+            ">error",
+            ">its estimate",
+            ">fastest single run (ms)",
+            ">ratio",
+        ]
+        .map(String::from),
+    );
+    let (mut within, mut all, mut below) = (0, 0, 0);
+    for bench in benches {
+        for entry in
+            bench.entries.iter().filter(|entry| entry.formulation == entry.motion || entry.motion == entry.label)
+        {
+            let Ok(m) = &entry.outcome else { continue };
+            let usual = match &m.usual {
+                Ok(usual) => usual,
+                Err(reason) => {
+                    table.cells([&bench.scene[..], &entry.label, reason, "", "", "", "", ""].map(String::from));
+                    continue;
+                }
+            };
+            // nothing is known below the error of the reference
+            let reached = usual.error.max(m.reference_error).max(f64::EPSILON);
+            let single = bench.fastest(&entry.motion, reached);
+            let ratio = single.map(|single| usual.seconds / single.seconds);
+            all += 1;
+            within += usize::from(ratio.is_none_or(|ratio| ratio <= WANTED));
+            below += usize::from(usual.estimate.max(f64::EPSILON) < usual.error);
+            table.cells([
+                bench.scene.clone(),
+                entry.label.clone(),
+                format!("{}, {}", usual.form, usual.method.map_or("", Method::name)),
+                short(1e3 * usual.seconds),
+                short(usual.error),
+                short(usual.estimate),
+                single.map_or("none so accurate".into(), |single| short(1e3 * single.seconds)),
+                ratio.map_or(String::new(), |ratio| format!("{ratio:.2}")),
+            ]);
+        }
+    }
+    format!(
+        "## Without options\n\nNothing is given but a tolerance, 1e-10: form, method and plan are chosen, and both runs made. On {within} of {all} motions that takes at most {WANTED} times \
+         the fastest single run, of all forms, methods and tolerances below, that has this error. The error is over its estimate on {below}.\n\n{table}"
+    )
+}
+
+/// The fastest setting for every error, scene by scene.
+pub fn bench_table(benches: &[Bench]) -> String {
+    let columns = ["scene", "formulation", ">read, derive, compile (ms)"].map(String::from);
+    let mut table = Table::new(columns.into_iter().chain(TARGETS.map(|target| format!("error ≤ {target:.0e}"))));
+    for bench in benches {
+        for entry in &bench.entries {
+            let (setup, found) = match &entry.outcome {
+                Ok(m) => {
+                    let setup = [bench.parse, m.derive, m.compile].map(|s| short(1e3 * s)).join(", ");
+                    (setup, TARGETS.map(|target| fastest(m.fastest(target, None))))
+                }
+                Err(reason) => {
+                    let mut found = [""; TARGETS.len()].map(String::from);
+                    found[0] = format!("not measured: {reason}");
+                    ("–".into(), found)
+                }
+            };
+            table.cells([bench.scene.clone(), entry.label.clone(), setup].into_iter().chain(found));
+        }
+    }
+    table.to_string()
+}
+
+fn fastest(found: Option<Fastest>) -> String {
+    found.map_or("not reached".into(), |f| {
+        format!("{} ms, {} at {:.0e}", short(1e3 * f.seconds), f.method.name(), f.tolerance)
+    })
+}
+
+/// The section on ensembles, where any were measured.
+fn ensemble_section(measured: &[Throughput]) -> String {
+    if measured.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\n## Many motions at once\n\n{}\nSo few members are for a look: `deltaq bench --ensemble 1e-10` measures {MEMBERS}.\n",
+        ensemble_text(measured)
+    )
+}
+
+/// Throughput of ensembles: what was measured, and how.
+pub fn ensemble_text(measured: &[Throughput]) -> String {
+    let Some(first) = measured.first() else { return String::new() };
+    let mut text = format!(
+        "Sledges with random starts, {} of each formulation, by `taylor` at {:.0e} over the time of the scene: one by one, eight at a time in the lanes of \
+         the processor's vectors, and in lanes over {} cores. Compiled once, states at the end only. *Start* is the time to find what a member starts from, in no other column. \
+         *Lanes* is the throughput in lanes over that one by one, *cores* that over all cores \
+         over that on one. *Processor time* is that spent in lanes on one core over that spent together on all: 1 where dividing the work costs nothing, whatever else runs on \
+         the machine. *Difference* is the largest of a state at the end, one by one and in lanes; over the cores there is none, to the last bit{}.\n\n",
+        first.members,
+        first.tolerance,
+        first.threads,
+        if measured.iter().all(|m| m.over_cores == 0.0) { "" } else { " (**not so here**)" },
+    );
+    let columns =
+        ["formulation", ">members", ">steps, one by one and in lanes", ">start (µs each)", ">one by one (µs each)"];
+    let more =
+        [">lanes (µs each)", ">all cores (µs each)", ">lanes", ">cores", ">processor time", ">difference", ">alone"];
+    let mut table = Table::new(columns.into_iter().chain(more));
+    for m in measured {
+        let head =
+            [m.label.clone(), m.members.to_string(), m.mean_steps().map(|steps| format!("{steps:.1}")).join(", ")];
+        let [single, lanes, cores] = m.microseconds();
+        let times = [1e6 * m.prepare / m.members as f64, single, lanes, cores].map(short);
+        let ratios = [m.over_single(), m.over_one_core()].map(|ratio| format!("{ratio:.2}"));
+        let efficiency = m.efficiency().map_or("–".into(), |e| format!("{e:.2}"));
+        let tail = [efficiency, format!("{:.1e}", m.difference), m.alone.0.to_string()];
+        table.cells(head.into_iter().chain(times).chain(ratios).chain(tail));
+    }
+    text += &table.to_string();
+    for (label, why) in measured.iter().filter_map(|m| Some((&m.label, m.alone.1.as_ref()?))) {
+        let _ = writeln!(text, "\n{label}, the first that went alone: {why}.");
+    }
+    text
+}
+
+fn section(entry: &Entry) -> String {
+    let mut text = format!("\n### {}\n\n", entry.label);
+    let m = match &entry.outcome {
+        Ok(m) => m,
+        Err(reason) => return text + "Not measured: " + reason + ".\n",
+    };
+    let shortened = if m.shortened { ", a little before the motion's own end" } else { "" };
+    let _ = writeln!(
+        text,
+        "{} states, t = {} to {}{shortened}. Reference: {}, error {:.1e}.\n",
+        m.states,
+        short(m.span.0),
+        short(m.span.1),
+        m.reference,
+        m.reference_error
+    );
+    let targets = TARGETS.into_iter().flat_map(|target| [format!(">ms to {target:.0e}"), ">evaluations".into()]);
+    let mut table = Table::new(["method".to_string()].into_iter().chain(targets).chain([">least error".to_string()]));
+    for series in &m.series {
+        let found = TARGETS.into_iter().flat_map(|target| match m.fastest(target, Some(series.method)) {
+            Some(f) => [short(1e3 * f.seconds), f.work.evaluations.to_string()],
+            None => ["–", "–"].map(String::from),
+        });
+        let least = series.points.iter().filter_map(|p| Some(p.outcome.as_ref().ok()?.error)).reduce(f64::min);
+        let least = least.map_or("–".into(), |e| format!("{e:.1e}"));
+        table.cells([series.method.name().to_string()].into_iter().chain(found).chain([least]));
+    }
+    text += &table.to_string();
+    let failures = m.series.iter().flat_map(failures).collect::<Vec<_>>();
+    if !failures.is_empty() {
+        let _ = writeln!(text, "\nFailed: {}.", failures.join("; "));
+    }
+    text
+}
+
+/// Failed settings of a method, those with the same cause together.
+fn failures(series: &Series) -> Vec<String> {
+    let mut causes: Vec<(&str, Vec<String>)> = Vec::new();
+    for point in &series.points {
+        if let Err(cause) = &point.outcome {
+            let tolerance = format!("{:.0e}", point.tolerance);
+            match causes.iter_mut().find(|(known, _)| known == cause) {
+                Some((_, tolerances)) => tolerances.push(tolerance),
+                None => causes.push((cause, vec![tolerance])),
+            }
+        }
+    }
+    let name = series.method.name();
+    causes.into_iter().map(|(cause, tolerances)| format!("{name} at {}: {cause}", enumerate(&tolerances))).collect()
+}
+
+fn picture(bench: &Bench) -> Result<String, PictureError> {
+    let panel = |entry: &Entry| -> Option<Panel> {
+        let m = entry.outcome.as_ref().ok()?;
+        let curves: Vec<Curve> = m.series.iter().enumerate().map(|(i, series)| curve(i, series)).collect();
+        let drawn = curves.iter().any(|curve| !curve.points.is_empty());
+        let panel = Panel::new(Axis::log("error (m √kg)"), curves);
+        drawn.then(|| Panel { title: entry.label.clone(), ..panel })
+    };
+    let panels = bench.entries.iter().filter_map(panel).collect();
+    Picture::panels(format!("{}: error over run time", bench.title), Axis::log("run time (ms)"), panels, 2).to_svg()
+}
+
+fn curve(index: usize, series: &Series) -> Curve {
+    let points = series.points.iter().filter_map(|p| {
+        let m = p.outcome.as_ref().ok()?;
+        Some((1e3 * m.seconds, m.error))
+    });
+    Curve { label: series.method.name().into(), style: Style::Member(index as u8), points: points.collect() }
+}
+
+/// Everything that was measured, for machines.
+pub fn bench_json(benches: &[Bench]) -> Value {
+    let point = |p: &crate::Point| match &p.outcome {
+        Ok(m) => json!({
+            "tolerance": p.tolerance, "seconds": m.seconds, "error": m.error, "steps": m.work.steps,
+            "rejected": m.work.rejected, "evaluations": m.work.evaluations, "jacobians": m.work.jacobians, "orders": m.work.orders,
+        }),
+        Err(cause) => json!({ "tolerance": p.tolerance, "failed": cause }),
+    };
+    let series =
+        |s: &Series| json!({ "method": s.method.name(), "points": s.points.iter().map(point).collect::<Vec<_>>() });
+    let entry = |e: &Entry| match &e.outcome {
+        Ok(m) => json!({
+            "label": e.label, "formulation": e.formulation, "derive": m.derive, "compile": m.compile,
+            "states": m.states, "start": m.span.0, "end": m.span.1, "reference": m.reference,
+            "reference error": m.reference_error, "series": m.series.iter().map(series).collect::<Vec<_>>(),
+        }),
+        Err(reason) => json!({ "label": e.label, "formulation": e.formulation, "not measured": reason }),
+    };
+    let bench = |b: &Bench| json!({ "scene": b.scene, "parse": b.parse, "motions": b.entries.iter().map(entry).collect::<Vec<_>>() });
+    json!({ "unit of times": "s", "scenes": benches.iter().map(bench).collect::<Vec<_>>() })
+}

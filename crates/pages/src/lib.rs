@@ -1,0 +1,29 @@
+//! Pages and pictures of what was compared: Markdown that reads well on a code host, SVG by relative link,
+//! one JSON value for machines.
+
+mod bodies;
+mod family;
+mod fill;
+mod linear_page;
+pub mod markdown;
+pub mod membership;
+mod pictures;
+mod scene_page;
+mod summary;
+mod sweep_page;
+mod table;
+mod tables;
+mod verdicts;
+
+pub use bodies::bodies;
+pub use deltaq::words::Headline;
+pub use deltaq::words::sentence as membership_sentence;
+pub use fill::fill;
+pub use linear_page::{pairs, sweep_picture, sweep_text};
+pub use pictures::pictures;
+pub use scene_page::{scene_files, scene_page};
+pub use summary::summary;
+pub use sweep_page::{Swept, sweep_files};
+pub use table::Table;
+pub use tables::verdict_words;
+pub use verdicts::{difference_of_verdicts, verdicts};

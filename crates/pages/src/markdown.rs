@@ -1,0 +1,83 @@
+//! Markdown of texts that are not ours.
+
+use program::File;
+
+/// A link in Markdown: of its path all but letters, digits and `-._/` is percent-encoded.
+pub fn link(text: &str, path: &str) -> String {
+    // all brackets are escaped: the text has no links of its own
+    let text = tagless(text).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
+    let text = text.replace("](", "]\\(");
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._/".contains(&byte);
+    let encoded = |byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
+    format!("[{text}]({})", path.bytes().map(encoded).collect::<String>())
+}
+
+/// Text of a scene in a page: Markdown without HTML, with links to the web and to files beside only, and with
+/// none in formulas.
+pub fn inert(text: &str) -> String {
+    let text = tagless(text).replace("\\href", "\\\\href");
+    let address = |behind: &str| behind.strip_prefix(['(', ':']).is_some_and(|address| !is_harmless(address));
+    replaced(&text, ']', |behind| if address(behind) { "\\]\\" } else { "]" })
+}
+
+/// Text in which nothing begins a tag of HTML.
+fn tagless(text: &str) -> String {
+    let begins_a_tag = |c: char| c.is_ascii_alphabetic() || "/!?".contains(c);
+    replaced(text, '<', |behind| if behind.starts_with(begins_a_tag) { "&lt;" } else { "<" })
+}
+
+/// A text with something in the place of a character, by what stands behind it.
+fn replaced(text: &str, character: char, by: impl Fn(&str) -> &'static str) -> String {
+    let ends = text.match_indices(character).map(|(at, found)| by(&text[at + found.len()..]));
+    let mut parts = text.split(character);
+    let first = parts.next().unwrap_or_default().to_owned();
+    ends.zip(parts).fold(first, |text, (by, part)| text + by + part)
+}
+
+/// Whether an address, which stands first in a text, is of the web or a plain path.
+fn is_harmless(text: &str) -> bool {
+    let address = text.trim_start().split([')', ' ', '\n']).next().unwrap_or_default();
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-._/#%=".contains(c);
+    ["https://", "http://", "mailto:"].iter().any(|scheme| address.starts_with(scheme)) || address.chars().all(plain)
+}
+
+/// What stands for a character in the text of a picture, which is XML.
+const ENTITIES: [(&str, &str); 4] = [("&quot;", "\""), ("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&")];
+
+/// A picture in a page beside it; those who cannot see it are told its title.
+pub fn image(picture: &File) -> String {
+    let name = picture.path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    let title = picture.text.split_once("<title>").and_then(|(_, rest)| Some(rest.split_once("</title>")?.0));
+    let plain = |title: &str| ENTITIES.iter().fold(title.to_owned(), |text, (entity, c)| text.replace(entity, c));
+    format!("!{}", link(&title.map_or(name.clone(), plain), &name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{image, inert, link};
+    use program::File;
+
+    #[test]
+    fn a_page_obeys_no_text_of_a_scene() {
+        let told = "x < y and a<b, [a](https://a.org/?b=1), [b](../c.md#d): [1], *no*";
+        assert_eq!(inert(told), told.replace("a<b", "a&lt;b"));
+        assert_eq!(inert("<script>x</script><!-- -->"), "&lt;script>x&lt;/script>&lt;!-- -->");
+        assert_eq!(inert(r"$\href{javascript:x}{y}$, \phi"), r"$\\href{javascript:x}{y}$, \phi");
+        for address in ["javascript:x", "JavaScript&#58;x", " <javascript:x>", "\njava\tscript:x", "data:x", "//\\x:y"]
+        {
+            assert_eq!(inert(&format!("[a]({address})")), format!("[a\\]\\({})", inert(address)));
+            assert_eq!(inert(&format!("[a]: {address}")), format!("[a\\]\\: {}", inert(address)));
+        }
+    }
+
+    #[test]
+    fn names_of_files_do_not_end_links() {
+        assert_eq!(link("my [1].svg", "a/my [1](ü).svg"), "[my \\[1\\].svg](a/my%20%5B1%5D%28%C3%BC%29.svg)");
+        assert_eq!(link("x", "ball-in-cone_2.svg"), "[x](ball-in-cone_2.svg)");
+        let picture = |text: &str| File { path: "scenes/own.svg".into(), text: text.into() };
+        assert_eq!(image(&picture("<svg><title>gap &lt; 1 &amp; more</title></svg>")), "![gap < 1 & more](own.svg)");
+        assert_eq!(image(&picture("<svg/>")), "![own.svg](own.svg)");
+        let title = "<svg><title>a [x](javascript:y) &lt;b&gt; c</title></svg>";
+        assert_eq!(image(&picture(title)), r"![a \[x\]\(javascript:y) &lt;b> c](own.svg)");
+    }
+}

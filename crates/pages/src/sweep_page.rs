@@ -1,0 +1,150 @@
+//! The page and the picture of a sweep.
+
+use std::fmt::Write;
+
+use anyhow::{Context, Result};
+use picture::{Axis, Curve, HeatMap, Picture, Style};
+
+use crate::markdown::inert;
+use program::File;
+
+/// What varies: name, first value, last value, number of values.
+pub type Swept = (String, f64, f64, usize);
+
+/// What is read of a row of the table.
+struct Point {
+    at: Vec<f64>,
+    verdict: String,
+    apart: Option<f64>,
+    answer: String,
+    mismatch: Option<f64>,
+}
+
+/// What is drawn of a point.
+type Measure = fn(&Point) -> Option<f64>;
+
+impl Point {
+    fn has_some(&self) -> bool {
+        self.answer.starts_with("some")
+    }
+}
+
+/// A page about the table of a sweep over these ranges, with lines or maps of when the motions of the two
+/// formulations part and of what is decided. The table is that of `deltaq compare --sweep`, whole.
+///
+/// # Errors
+/// Where the table is none, or a picture cannot be drawn.
+pub fn sweep_files(
+    name: &str,
+    title: &str,
+    [first, second]: [&str; 2],
+    ranges: &[Swept],
+    table: &str,
+) -> Result<Vec<File>> {
+    let count = ranges.len();
+    let title = &format!("{title}: {first} and {second}");
+    let mark = &format!("constants make the {second} motion the {first} one");
+    let point = |line: &str| -> Option<Point> {
+        let cells: Vec<&str> = line.split(',').collect();
+        let at = cells.get(..count)?.iter().map(|x| x.parse().ok()).collect::<Option<Vec<f64>>>()?;
+        let cell = |i: usize| cells.get(count + i).copied();
+        let number = |i: usize| cell(i).and_then(|x| x.parse().ok());
+        let (apart, mismatch) = (number(1), number(7));
+        Some(Point { at, verdict: cell(0)?.into(), apart, answer: cell(4)?.into(), mismatch })
+    };
+    let points = table.lines().skip(1).map(|line| point(line).with_context(|| format!("no row of a sweep: {line}")));
+    let points: Vec<Point> = points.collect::<Result<_>>()?;
+    let mut text = page(title, mark, ranges, &points);
+    let mut files = Vec::new();
+    let measures: [(&str, &str, Measure); 2] = [
+        ("apart", "time to a gap of 1e-3 (s)", |point| point.apart),
+        ("decision", "least mismatch ρ", |point| point.mismatch),
+    ];
+    for (kind, label, value) in measures {
+        let svg = match ranges {
+            [one] => line(title, (second, mark), one, label, &points, value),
+            [y, x] => Ok(map(title, mark, x, y, label, &points, value)),
+            _ => break,
+        };
+        let path = format!("{name}-{kind}.svg");
+        match svg {
+            Ok(svg) => {
+                let _ = writeln!(text, "![{label}]({path})");
+                files.push(File { path: path.into(), text: svg });
+            }
+            // motions that never part have no times to be drawn
+            Err(picture::PictureError::NothingToDraw { .. }) => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    files.push(File { path: format!("{name}-sweep.md").into(), text });
+    Ok(files)
+}
+
+fn page(title: &str, mark: &str, ranges: &[Swept], points: &[Point]) -> String {
+    let number = |word: &str| points.iter().filter(|point| point.verdict == word).count();
+    let some: Vec<&Point> = points.iter().filter(|point| point.has_some()).collect();
+    let proved = points.iter().filter(|point| point.answer == "none proved").count();
+    let names: Vec<&str> = ranges.iter().map(|(name, ..)| name.as_str()).collect();
+    let title = inert(title);
+    let mut text = format!(
+        "# {title} over {}\n\n**Of {} points {} are different, {} the same, {} undecided, {} without a motion. No {mark}: \
+         proved at {proved}. Some do at {}.**\n",
+        names.join(" and "),
+        points.len(),
+        number("different"),
+        number("same"),
+        number("undecided"),
+        number(""),
+        some.len(),
+    );
+    const SHOWN: usize = 10;
+    for point in some.iter().take(SHOWN) {
+        let at: Vec<String> = names.iter().zip(&point.at).map(|(name, x)| format!("{name} = {x}")).collect();
+        let _ = write!(text, "\n- {}: {}", at.join(", "), point.answer);
+    }
+    if some.len() > SHOWN {
+        let _ = write!(text, "\n- and {} more", some.len() - SHOWN);
+    }
+    text + "\n\n"
+}
+
+fn map(
+    title: &str,
+    mark: &str,
+    (x, x0, x1, columns): &Swept,
+    (y, y0, y1, _): &Swept,
+    label: &str,
+    points: &[Point],
+    value: Measure,
+) -> String {
+    HeatMap {
+        title: title.into(),
+        x: Axis { range: Some((*x0, *x1)), ..Axis::linear(x.clone()) },
+        y: Axis { range: Some((*y0, *y1)), ..Axis::linear(y.clone()) },
+        columns: *columns,
+        value: Axis::log(label),
+        cells: points.iter().map(value).collect(),
+        marked: points.iter().map(Point::has_some).collect(),
+        mark: format!("some {mark}"),
+    }
+    .to_svg()
+}
+
+fn line(
+    title: &str,
+    (second, mark): (&str, &str),
+    (name, ..): &Swept,
+    label: &str,
+    points: &[Point],
+    value: Measure,
+) -> Result<String, picture::PictureError> {
+    let along = points.iter().filter_map(|point| Some((point.at[0], value(point)?))).collect();
+    let mut curves = vec![Curve { label: second.into(), style: Style::Vakonomic, points: along }];
+    for point in points.iter().filter(|point| point.has_some()) {
+        let at = value(point).map(|value| (point.at[0], value));
+        curves.push(Curve { label: format!("some {mark}"), style: Style::Threshold, points: at.into_iter().collect() });
+    }
+    curves.retain(|curve| !curve.points.is_empty());
+    Picture::new(title, Axis::linear(name.clone()), Axis::log(label), curves).to_svg()
+}

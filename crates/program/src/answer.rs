@@ -1,0 +1,132 @@
+//! Output of a command.
+
+use std::borrow::Cow;
+use std::fmt::{self, Display, Formatter};
+use std::io::{ErrorKind, Write, stderr, stdout};
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+
+use crate::files::{File, write_all};
+use crate::options::{Output, TextOrJson};
+
+/// How a command ended: the text to print, and whether it can be trusted.
+pub struct Answer {
+    /// For standard output.
+    pub text: String,
+    /// Why it cannot be trusted, for standard error.
+    pub complaint: Option<String>,
+}
+
+impl From<String> for Answer {
+    fn from(text: String) -> Answer {
+        Answer { text, complaint: None }
+    }
+}
+
+impl Answer {
+    /// Prints the text.
+    pub fn print(&self) -> Result<()> {
+        print(&self.text).map(|_| ())
+    }
+}
+
+/// A text without what a terminal would obey: of control characters only ends of lines and tabs are left,
+/// the others are written as in Rust.
+pub fn plain(text: &str) -> Cow<'_, str> {
+    let is_obeyed = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    if !text.contains(is_obeyed) {
+        return Cow::Borrowed(text);
+    }
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        match c {
+            '\r' if rest.peek() == Some(&'\n') => plain.push(c),
+            _ if is_obeyed(c) => plain.extend(c.escape_default()),
+            _ => plain.push(c),
+        }
+    }
+    Cow::Owned(plain)
+}
+
+/// Prints a text, all of it, as [`plain`] has it; `false` for a reader that has seen enough and closed the
+/// pipe: no error.
+pub fn print(text: &str) -> Result<bool> {
+    print_as_is(&plain(text))
+}
+
+/// Says something on standard error, as [`plain`] has it, if somebody listens.
+pub fn complain(text: &str) {
+    let _ = writeln!(stderr(), "{}", plain(text));
+}
+
+/// [`print`] of a text of ours, with its colours.
+pub fn print_as_is(text: &str) -> Result<bool> {
+    let mut out = stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        written => written.context(Unwritten).map(|()| true),
+    }
+}
+
+/// Standard output takes no more: exit code 1.
+#[derive(Debug)]
+pub struct Unwritten;
+
+impl Display for Unwritten {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str("cannot write the answer")
+    }
+}
+
+impl Output {
+    /// Writes the files to the folder asked for, if any; then prints JSON of this kind, or text.
+    pub fn answer(
+        &self,
+        kind: &str,
+        files: impl FnOnce() -> Result<Vec<File>>,
+        text: impl FnOnce() -> String,
+        json: impl FnOnce() -> Value,
+    ) -> Result<String> {
+        if let Some(folder) = &self.out {
+            write_all(folder, &files()?)?;
+        }
+        Ok(match self.format {
+            TextOrJson::Text => text(),
+            TextOrJson::Json => pretty(kind, &json()),
+        })
+    }
+}
+
+/// An object as JSON for readers, with an end of line; first its file of `docs/schemas`, and the version.
+/// Coordinates are in the order of the scene, verdicts and proofs by name.
+pub fn pretty(kind: &str, object: &Value) -> String {
+    if matches!(kind, "verdicts" | "certificate") {
+        return printed(kind, &sorted(object.clone()));
+    }
+    printed(kind, object)
+}
+
+/// Every object in it by name.
+pub fn sorted(mut object: Value) -> Value {
+    object.sort_all_objects();
+    object
+}
+
+fn printed(kind: &str, object: &Value) -> String {
+    let version = if matches!(kind, "solve" | "linearize" | "certificate") { 2 } else { 1 };
+    let text = format!("{object:#}\n");
+    text.replacen('{', &format!("{{\n  \"schema\": \"deltaq/{kind}/{version}\","), 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain;
+
+    #[test]
+    fn a_terminal_is_told_nothing_that_it_would_obey() {
+        assert_eq!(plain("a\x1b]0;x\x07\u{9b}31m\rb\x7f"), "a\\u{1b}]0;x\\u{7}\\u{9b}31m\\rb\\u{7f}");
+        assert_eq!(plain("x\ty\r\nκ µ\n"), "x\ty\r\nκ µ\n");
+    }
+}

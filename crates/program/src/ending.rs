@@ -1,0 +1,96 @@
+//! How a program begins and ends.
+
+use std::borrow::Cow;
+use std::io::{self, ErrorKind, IsTerminal};
+use std::process::ExitCode;
+
+use anyhow::{Error, Result};
+use clap::Parser;
+use deltaq::Contradicted;
+
+use crate::answer::{Answer, Unwritten, complain, plain, print_as_is};
+
+/// What the command line asks for.
+///
+/// # Errors
+/// The exit code, once the help is printed or the fault is said.
+pub fn parse<Asked: Parser>() -> Result<Asked, ExitCode> {
+    Asked::try_parse().map_err(|told| {
+        // the help that was asked for is an answer, too
+        if !told.use_stderr() {
+            let help = told.render();
+            let help = if io::stdout().is_terminal() { help.ansi().to_string() } else { help.to_string() };
+            return print_as_is(&help).map_or_else(|error| failed(&error), |_| ExitCode::SUCCESS);
+        }
+        // it names what was asked for
+        if matches!(plain(&told.to_string()), Cow::Owned(_)) {
+            complain(told.to_string().trim_end());
+            return ExitCode::from(2);
+        }
+        told.exit()
+    })
+}
+
+/// Prints the answer, or says what went wrong, and returns the exit code.
+pub fn finish(answer: Result<Answer>) -> ExitCode {
+    answer.map_or_else(|error| failed(&error), |answer| printed(&answer))
+}
+
+fn printed(answer: &Answer) -> ExitCode {
+    if let Err(error) = answer.print() {
+        return failed(&error);
+    }
+    match &answer.complaint {
+        None => ExitCode::SUCCESS,
+        Some(complaint) => {
+            complain(&format!("deltaq: {complaint}"));
+            ExitCode::from(3)
+        }
+    }
+}
+
+/// The exit code of an error.
+fn code(error: &Error) -> u8 {
+    match () {
+        () if error.is::<Unwritten>() || error.chain().any(is_full) => 1,
+        () if error.is::<Contradicted>() => 4,
+        () => 2,
+    }
+}
+
+/// Whether there is no room for what is to be written.
+fn is_full(cause: &(dyn std::error::Error + 'static)) -> bool {
+    use ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull, WriteZero};
+    let kind = cause.downcast_ref::<io::Error>().map(io::Error::kind);
+    kind.is_some_and(|kind| matches!(kind, FileTooLarge | QuotaExceeded | StorageFull | WriteZero))
+}
+
+/// Says what went wrong, and why, unless nobody listens any more.
+fn failed(error: &Error) -> ExitCode {
+    let mut told = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !told.contains(&cause) {
+            told += &format!("\n  {cause}");
+        }
+    }
+    complain(&format!("deltaq: {told}"));
+    ExitCode::from(code(error))
+}
+
+#[cfg(test)]
+mod tests {
+
+    use super::*;
+
+    #[test]
+    fn every_kind_of_error_has_its_exit_code() {
+        let contradicted = || Error::from(Contradicted(vec!["scene: one, but another".into()]));
+        let errors = [
+            Error::msg("bad input"),
+            Error::msg("full").context(Unwritten),
+            contradicted(),
+            contradicted().context("scene"),
+        ];
+        assert_eq!(errors.map(|error| code(&error)), [2, 1, 4, 4]);
+    }
+}

@@ -1,0 +1,19 @@
+//! What the programs of this workspace share: threads and progress, files that are written whole, answers on
+//! the terminal, options and exit codes.
+//!
+//! [`finish`] has the exit codes: 1 where the answer cannot be written, 2 for bad input, 3 for an answer that
+//! cannot be trusted, 4 where results contradict each other, which is a fault of the program.
+
+mod answer;
+mod ending;
+mod files;
+mod lines;
+mod options;
+pub mod parallel;
+mod turns;
+
+pub use answer::{Answer, Unwritten, complain, plain, pretty, print, print_as_is, sorted};
+pub use ending::{finish, parse};
+pub use files::{File, may_replace, write_all, write_one, write_own};
+pub use lines::Lines;
+pub use options::{Common, Output, TextOrJson, by_name};

@@ -1,0 +1,310 @@
+//! The main job: every scene in every formulation, and reports.
+
+use std::panic::resume_unwind;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Mutex, PoisonError};
+use std::thread::ScopedJoinHandle;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use clap::{CommandFactory, ValueEnum};
+use deltaq::{Comparison, Fits, Settings, choices, compare_unfitted};
+use scene::Scene;
+use serde_json::{Value, json};
+
+use crate::cli::{Cli, JobArguments, Section};
+use crate::sections::{JOBS, Part};
+use bench::{Effort, bench_all, bench_files, bench_headline, references};
+use pages::{Headline, scene_files, verdicts};
+use program::{Answer, File, TextOrJson, parallel, pretty, write_all, write_own};
+use validation::casadi_job::{self, Outcome};
+use validation::report::{overview, referees_section};
+
+/// A compared scene with its page and pictures.
+pub struct SceneReport {
+    /// What was found.
+    pub comparison: Comparison,
+    /// Page and pictures.
+    pub files: Vec<File>,
+}
+
+/// Compares all formulations of a scene, the control among them; nothing is fitted.
+fn compared(scene: Scene, settings: &Settings) -> Result<Comparison> {
+    let name = scene.name.clone();
+    let choices = choices(&scene);
+    let control = substitution::run(&scene, &choices, settings).into_iter().collect();
+    compare_unfitted(scene, choices, control, settings).with_context(|| format!("scene `{name}`"))
+}
+
+/// Tolerance of the ensembles of the main job, and repeats of every way to integrate them.
+const ENSEMBLE_TOLERANCE: f64 = 1e-10;
+const ENSEMBLE_REPEATS: usize = 2;
+
+/// The rank of the scenes among [`JOBS`]: they are first to answer.
+const SCENES_FIRST: usize = 0;
+
+/// The place in the reports that the overview's line about CasADi leads to.
+pub(crate) const CASADI: &str = "scenes/sledge.md#referees";
+
+/// The rank of the references that errors are taken against.
+const REFERENCES_THEN: usize = 1;
+
+fn finished<T>(job: ScopedJoinHandle<'_, T>) -> T {
+    job.join().unwrap_or_else(|panic| resume_unwind(panic))
+}
+
+/// What the main job computed.
+pub(crate) struct Results {
+    pub(crate) comparisons: Vec<Comparison>,
+    scene_files: Vec<File>,
+    /// What referees say of scenes, by the paths of their pages, on which it stands last.
+    referees: Vec<(PathBuf, String)>,
+    parts: Vec<Part>,
+    /// Times, which no two machines share.
+    measured: Option<Part>,
+    /// Why CasADi was asked and did not answer.
+    pub(crate) casadi_not_run: Option<String>,
+}
+
+impl Results {
+    /// What works at the same time shares the threads: so none is idle while a section comes to its end.
+    /// Errors are set against run times where `timed`.
+    pub(crate) fn of(sections: &[Section], names: &[&str], timed: bool, quiet: bool) -> Result<Results> {
+        let asked = |section: &Section| sections.contains(section);
+        let (scenes, prepared, parts, casadi) = std::thread::scope(|scope| {
+            // mostly another process
+            let referee = asked(&Section::Casadi).then(|| scope.spawn(|| casadi_job::section(names)));
+            let scenes = || parallel::in_turn(SCENES_FIRST, || compare_all(names, quiet));
+            let scenes = asked(&Section::Scenes).then(|| scope.spawn(scenes));
+            let prepared = || parallel::in_turn(REFERENCES_THEN, || references(names, &[], quiet));
+            let prepared = (timed && asked(&Section::ErrorVsTime)).then(|| scope.spawn(prepared));
+            let jobs = JOBS.iter().filter(|(section, ..)| asked(section));
+            let jobs: Vec<_> =
+                jobs.map(|(_, rank, job)| scope.spawn(|| parallel::in_turn(*rank, || job(quiet)))).collect();
+            let scenes = scenes.map(finished).transpose()?.unwrap_or_default();
+            let prepared = prepared.map(finished).transpose()?;
+            let mut parts = Vec::new();
+            for job in jobs {
+                parts.extend(finished(job)?);
+            }
+            Ok::<_, anyhow::Error>((scenes, prepared, parts, referee.map(finished).transpose()?))
+        })?;
+        // last, and one after the other: nothing else is to run beside what is timed
+        let measured = prepared.map(|prepared| Results::measured(prepared, names, quiet)).transpose()?;
+        let casadi_not_run = match &casadi {
+            Some(Outcome::NotRun(reason)) => Some(reason.to_string()),
+            _ => None,
+        };
+        let (comparisons, scene_files, referees) = Default::default();
+        let mut results = Results { comparisons, scene_files, referees, parts, measured, casadi_not_run };
+        results.add_referee(casadi.as_ref(), scenes, asked(&Section::ErrorVsTime))?;
+        Ok(results)
+    }
+
+    fn measured(prepared: Vec<bench::Prepared>, names: &[&str], quiet: bool) -> Result<Part> {
+        let benches = bench_all(prepared, &Effort::brief(), quiet)?;
+        let mut ensembles = Vec::new();
+        if names.contains(&bench::ENSEMBLE_SCENE) {
+            ensembles = bench::ensemble_throughput(bench::FEW_MEMBERS, ENSEMBLE_TOLERANCE, ENSEMBLE_REPEATS)?;
+        }
+        let (headline, files) = (bench_headline(&benches), bench_files(&benches, &ensembles)?);
+        Ok(Part { page: "error-vs-time.md", headline, verdicts: None, files })
+    }
+
+    /// The pages of scenes with what the referee says of them, and where times are to be found.
+    fn add_referee(&mut self, casadi: Option<&Outcome>, scenes: Vec<SceneReport>, times: bool) -> Result<()> {
+        if let Some(outcome) = casadi {
+            let headline = casadi_job::headline(outcome);
+            let headline = format!("Referees that share no derivation with this program: {headline}.");
+            let verdicts = casadi_job::verdict_words(outcome).map(|words| ("casadi", words));
+            self.parts.insert(0, Part { page: CASADI, headline, verdicts, files: Vec::new() });
+        }
+        for mut report in scenes {
+            let section = referees_section(&mut report.comparison, casadi)?;
+            if let Some(page) = report.files.iter_mut().find(|f| f.path.extension().is_some_and(|e| e == "md")) {
+                let name = &report.comparison.scene.name;
+                page.text += &format!("\nWith sliders, in a browser: [this scene](../explore.html#scene={name}).\n");
+                if times {
+                    page.text += "\nWhich method reaches which error in which time: [error against run time](../measured/error-vs-time.md).\n";
+                }
+                self.referees.push((page.path.clone(), section));
+            }
+            self.scene_files.extend(report.files);
+            self.comparisons.push(report.comparison);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn verdicts(&self) -> Value {
+        let mut verdicts = verdicts(&self.comparisons);
+        for (name, words) in self.parts.iter().filter_map(|part| part.verdicts.clone()) {
+            verdicts[name] = words;
+        }
+        verdicts
+    }
+
+    /// Pages and pictures of every section that ran, but for those of times.
+    pub(crate) fn files(&self) -> Vec<File> {
+        let mut files = self.scene_files.clone();
+        for (path, section) in &self.referees {
+            files.iter_mut().filter(|file| file.path == *path).for_each(|page| page.text += section);
+        }
+        files.into_iter().chain(self.parts.iter().flat_map(|part| part.files.clone())).collect()
+    }
+
+    /// Nothing of what referees say is on any page.
+    pub(crate) fn leave_out_referees(&mut self) {
+        self.referees.clear();
+        self.parts.retain(|part| part.page != CASADI);
+    }
+
+    /// What sections besides the scenes say, and on which page.
+    fn further(&self) -> Vec<(&str, &str)> {
+        self.parts.iter().map(|part| (&part.headline[..], part.page)).collect()
+    }
+
+    /// The page that every other one is reached from.
+    pub(crate) fn overview(&self) -> File {
+        File { path: "README.md".into(), text: overview(&self.comparisons, &self.further()) }
+    }
+}
+
+/// What is said to somebody who starts the program somewhere without saying what to do.
+const ELSEWHERE: &str = "say what to do: without a command the main job runs, which writes every report of the project, \
+    and this folder does not belong to its sources; --out DIR runs it here";
+
+/// The root of the sources of this program, if the current folder belongs to them.
+pub(crate) fn sources() -> Option<PathBuf> {
+    let here = std::env::current_dir().unwrap_or_default();
+    let is_root =
+        |folder: &&Path| folder.join("crates/catalogue/scenes").is_dir() && folder.join("validation").is_dir();
+    here.ancestors().find(is_root).map(Path::to_owned)
+}
+
+/// Runs the main job and returns what to tell the user. Where it fails, nothing is written.
+pub(crate) fn run(arguments: &JobArguments, quiet: bool) -> Result<String> {
+    let clock = Instant::now();
+    // an answer for machines is one object
+    let quiet = quiet || arguments.format == TextOrJson::Json;
+    let out = match &arguments.out {
+        Some(folder) => folder.clone(),
+        None if sources().is_some() => "reports".into(),
+        None => bail!("{ELSEWHERE}\n\n{}", Cli::command().render_help()),
+    };
+    let known: Vec<&str> = catalogue::SCENES.iter().map(|(name, _)| *name).collect();
+    if let Some(unknown) = arguments.scenes.iter().find(|s| !known.contains(&s.as_str())) {
+        bail!("unknown scene `{unknown}`; known: {}", known.join(", "));
+    }
+    let all_scenes = arguments.scenes.is_empty();
+    let sections = match (&arguments.sections[..], all_scenes) {
+        ([], true) => Section::value_variants(),
+        ([], false) => &[Section::Scenes],
+        (some, _) => some,
+    };
+    let sections: Vec<Section> = sections.iter().copied().filter(|s| !arguments.without.contains(s)).collect();
+    let sections = &sections[..];
+    let complete = all_scenes && Section::value_variants().iter().all(|s| sections.contains(s));
+    let names: Vec<&str> =
+        known.into_iter().filter(|n| all_scenes || arguments.scenes.iter().any(|s| s == n)).collect();
+    let mut results = Results::of(sections, &names, true, quiet)?;
+    results.comparisons.iter().try_for_each(Comparison::is_sound)?;
+    let mut files = results.files();
+    if complete {
+        files.push(results.overview());
+        let text = pretty("verdicts", &results.verdicts());
+        files.push(File { path: "verdicts.json".into(), text });
+    }
+    // folders that nobody named are the project's own
+    let write = |named: &Option<PathBuf>| if named.is_some() { write_all } else { write_own };
+    write(&arguments.out)(&out, &files)?;
+    let folder = match &arguments.measured {
+        Some(folder) => folder.clone(),
+        None if sources().is_some() => "target/measured".into(),
+        None => out.join("measured"),
+    };
+    let mut measured = results.measured.take();
+    if let Some(part) = &mut measured {
+        let pages = part.files.iter_mut().filter(|file| file.path.extension().is_some_and(|e| e == "md"));
+        pages.for_each(|page| page.text += &provenance(clock.elapsed().as_secs_f64()));
+        write(&arguments.measured)(&folder, &part.files)?;
+    }
+    let untold = if quiet { &results.comparisons[..] } else { &[] };
+    let scenes = untold.iter().map(first_sentence);
+    let pages = results.further().into_iter().map(|(line, page)| (page.to_owned(), line.to_owned()));
+    let measured = measured.map(|part| (folder.join(part.page).display().to_string(), part.headline));
+    let answers: Vec<(String, String)> = scenes.chain(pages).chain(measured).collect();
+    let (count, seconds) = (files.len(), clock.elapsed().as_secs_f64());
+    Ok(match arguments.format {
+        TextOrJson::Text => {
+            let lines: String = answers.iter().map(|(of, line)| told(of, line)).collect();
+            lines + &format!("\n{count} files in {} after {seconds:.1} s\n", out.display())
+        }
+        TextOrJson::Json => {
+            let answers: Vec<Value> =
+                answers.iter().map(|(of, answer)| json!({ "of": of, "answer": answer })).collect();
+            pretty("job", &json!({ "answers": answers, "files": count, "folder": out, "seconds": seconds }))
+        }
+    })
+}
+
+/// Of what, and the first sentence of its answer.
+fn first_sentence(comparison: &Comparison) -> (String, String) {
+    let answer = Headline::of(comparison).verdict;
+    (comparison.scene.name.clone(), answer.split_inclusive(". ").next().unwrap_or_default().to_owned())
+}
+
+fn told(of: &str, line: &str) -> String {
+    format!("{of:<24} {line}\n")
+}
+
+/// All scenes, over all processors, in the order of `names`; answers are told at once, before fits, unless
+/// `quiet`.
+fn compare_all(names: &[&str], quiet: bool) -> Result<Vec<SceneReport>> {
+    let settings = Settings::protocol();
+    let bar = parallel::progress(2 * names.len(), quiet);
+    let found = parallel::map(names, |name| {
+        bar.set_message(name.to_string());
+        let comparison = compared(catalogue::find(name, &[])?, &settings)?;
+        if !quiet {
+            let (of, line) = first_sentence(&comparison);
+            bar.suspend(|| Answer::from(told(&of, &line)).print())?;
+        }
+        bar.inc(1);
+        Ok(Mutex::new(comparison))
+    });
+    let found = found.into_iter().collect::<Result<Vec<_>>>()?;
+    let files = parallel::map(&found, |comparison| {
+        let mut comparison = comparison.lock().unwrap_or_else(PoisonError::into_inner);
+        bar.set_message(format!("{}, fits", comparison.scene.name));
+        let name = comparison.scene.name.clone();
+        comparison.fit(Fits::All, &settings).with_context(|| format!("scene `{name}`"))?;
+        let files = scene_files(&mut comparison);
+        bar.inc(1);
+        files
+    });
+    bar.finish_and_clear();
+    let whole = |(comparison, files): (Mutex<Comparison>, _)| {
+        let comparison = comparison.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok(SceneReport { comparison, files: files? })
+    };
+    found.into_iter().zip(files).map(whole).collect()
+}
+
+/// Version and commit of the program, the machine, and how long the job took until then.
+fn provenance(seconds: f64) -> String {
+    let describe = || Command::new("git").args(["describe", "--always", "--dirty"]).output().ok();
+    let commit = sources()
+        .is_some()
+        .then(describe)
+        .flatten()
+        .filter(|output| output.status.success())
+        .map(|output| String::from_utf8_lossy(&output.stdout).trim().to_string());
+    let commit = commit.map_or(String::new(), |c| format!(" at commit {c}"));
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let (system, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
+    format!(
+        "\ndeltaq {}{commit}, {system} on {architecture}, {processors} processors, {seconds:.0} s for everything.\n",
+        env!("CARGO_PKG_VERSION")
+    )
+}
