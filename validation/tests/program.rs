@@ -6,7 +6,7 @@ use std::process::Stdio;
 
 use serde_json::Value;
 
-use crate::support::{answer, command, elsewhere, refused, text};
+use crate::support::{all_refused, answer, command, elsewhere, refused, text};
 
 /// Reports of the main job.
 const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/main-job");
@@ -127,4 +127,15 @@ fn results_do_not_depend_on_threads() {
     let of = |threads| answer(&[&random[..], &[threads]].concat(), 0).0;
     assert_eq!(of("1"), of("3"));
     refused(&["random", "--threads", "0"], &["--threads"]);
+}
+
+#[test]
+fn the_page_of_the_evidence_is_true() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/evidence.md");
+    trycmd::TestCases::new().case(&page).run();
+}
+
+#[test]
+fn bad_input_is_refused_in_words() {
+    all_refused(include_str!("refusals.txt"));
 }

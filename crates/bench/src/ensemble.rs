@@ -12,7 +12,6 @@ use deltaq::{
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
-use serde::Serialize;
 use symbolic::Xorshift;
 
 /// The scene whose members they are.
@@ -24,7 +23,7 @@ pub const MEMBERS: usize = 4096;
 pub const FEW_MEMBERS: usize = 256;
 
 /// What was measured of one formulation.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Throughput {
     /// What the reader sees.
     pub label: String,
@@ -53,7 +52,7 @@ pub struct Throughput {
 }
 
 /// What something took, the least of several times.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
     /// Seconds of the clock.
     pub clock: f64,

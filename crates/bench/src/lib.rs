@@ -12,7 +12,7 @@ mod usual;
 
 pub use ensemble::{ENSEMBLE_SCENE, FEW_MEMBERS, MEMBERS, Throughput, Time, ensemble_throughput};
 pub use measure::{Measured, Point, Series};
-pub use page::{bench_files, bench_headline, bench_json, bench_table, ensemble_text};
+pub use page::{bench_files, bench_headline, bench_json, bench_table, ensemble_json, ensemble_text};
 pub use truth::Truth;
 pub use usual::Usual;
 

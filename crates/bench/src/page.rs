@@ -6,7 +6,7 @@ use anyhow::Result;
 use integrate::Method;
 use serde_json::{Value, json};
 
-use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput};
+use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput, Time};
 use deltaq::words::{enumerate, short};
 use pages::Table;
 use pages::markdown::{inert, link};
@@ -292,4 +292,17 @@ pub fn bench_json(benches: &[Bench]) -> Value {
     };
     let bench = |b: &Bench| json!({ "scene": b.scene, "parse": b.parse, "motions": b.entries.iter().map(entry).collect::<Vec<_>>() });
     json!({ "unit of times": "s", "scenes": benches.iter().map(bench).collect::<Vec<_>>() })
+}
+
+/// Throughput of ensembles for machines, times in seconds.
+pub fn ensemble_json(measured: &[Throughput]) -> Value {
+    let time = |t: &Time| json!({ "clock": t.clock, "processors": t.processors });
+    let of = |m: &Throughput| {
+        json!({
+            "label": m.label, "tolerance": m.tolerance, "members": m.members, "alone": m.alone,
+            "prepare": m.prepare, "one_by_one": time(&m.one_by_one), "lanes": time(&m.lanes), "cores": time(&m.cores),
+            "threads": m.threads, "steps": m.steps, "difference": m.difference, "over_cores": m.over_cores,
+        })
+    };
+    json!({ "formulations": measured.iter().map(of).collect::<Vec<_>>() })
 }

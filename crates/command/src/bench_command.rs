@@ -1,10 +1,9 @@
 //! `deltaq bench`: error against run time.
 
 use anyhow::{Result, bail};
-use serde_json::json;
 
 use crate::cli::BenchArguments;
-use bench::{Effort, bench_all, bench_files, bench_json, bench_table, ensemble_text, ensemble_throughput, references};
+use bench::{Effort, bench_all, bench_files, bench_json, bench_table, ensemble_json, ensemble_text, ensemble_throughput, references};
 
 /// Repeats of each way to integrate an ensemble; the least time counts.
 const REPEATS: usize = 5;
@@ -19,8 +18,8 @@ pub(crate) fn run(arguments: &BenchArguments, quiet: bool) -> Result<String> {
             bail!("--ensemble is {tolerance}; it must be between 0 and 1");
         }
         let measured = ensemble_throughput(arguments.members.into(), tolerance, REPEATS)?;
-        let json = || json!({ "formulations": measured });
-        return arguments.output.answer("bench-ensemble", || Ok(Vec::new()), || ensemble_text(&measured), json);
+        let (text, json) = (|| ensemble_text(&measured), || ensemble_json(&measured));
+        return arguments.output.answer("bench-ensemble", || Ok(Vec::new()), text, json);
     }
     let effort = Effort { seconds: arguments.seconds, ..Effort::default() };
     let all = || catalogue::SCENES.iter().map(|(name, _)| *name).collect();

@@ -3,7 +3,6 @@
 use anyhow::Result;
 use deltaq::{PlainScene, certificate, holds_beside_numbers, membership};
 use serde_json::{Map, Value, json};
-use sha2::{Digest, Sha256};
 
 use crate::cli::ProveArguments;
 use pages::{membership::value as membership_value, membership_sentence};
@@ -102,5 +101,5 @@ fn plain(scene: PlainScene) -> Value {
 
 /// SHA-256 of the plain scene as JSON without spaces.
 fn digest(plain: &Value) -> String {
-    Sha256::digest(plain.to_string()).iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
+    hmac_sha256::Hash::hash(plain.to_string().as_bytes()).iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }

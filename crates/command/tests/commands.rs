@@ -4,7 +4,7 @@ use std::process::Output;
 
 use serde_json::Value;
 
-use crate::support::{answer, refused, run, text};
+use crate::support::{all_refused, answer, refused, run, text};
 
 #[track_caller]
 fn exit(output: &Output, code: i32) {
@@ -286,11 +286,7 @@ fn the_scenes_own_horizon_beyond_the_chart_is_no_success() {
 
 #[test]
 fn bad_input_is_refused_in_words() {
-    for row in include_str!("refusals.txt").lines().filter(|row| !row.is_empty() && !row.starts_with('#')) {
-        let (call, words) = row.split_once(" =>").unwrap_or_else(|| panic!("`{row}` in refusals.txt"));
-        let words: Vec<&str> = words.split('|').map(str::trim).collect();
-        refused(&call.split(' ').collect::<Vec<_>>(), &words);
-    }
+    all_refused(include_str!("refusals.txt"));
 }
 
 #[test]

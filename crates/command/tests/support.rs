@@ -50,3 +50,13 @@ pub fn elsewhere(arguments: &[&str]) -> Output {
     assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 0, "{arguments:?} left something behind");
     output
 }
+
+/// Every call of a list must be refused: its words, `=>`, and those of the error, between bars.
+#[track_caller]
+pub fn all_refused(calls: &str) {
+    for row in calls.lines().filter(|row| !row.is_empty() && !row.starts_with('#')) {
+        let (call, words) = row.split_once(" =>").unwrap_or_else(|| panic!("`{row}` in refusals.txt"));
+        let words: Vec<&str> = words.split('|').map(str::trim).collect();
+        refused(&call.split(' ').collect::<Vec<_>>(), &words);
+    }
+}

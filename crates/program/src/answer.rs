@@ -53,21 +53,16 @@ pub fn plain(text: &str) -> Cow<'_, str> {
 /// Prints a text, all of it, as [`plain`] has it; `false` for a reader that has seen enough and closed the
 /// pipe: no error.
 pub fn print(text: &str) -> Result<bool> {
-    print_as_is(&plain(text))
+    let mut out = stdout().lock();
+    match out.write_all(plain(text).as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        written => written.context(Unwritten).map(|()| true),
+    }
 }
 
 /// Says something on standard error, as [`plain`] has it, if somebody listens.
 pub fn complain(text: &str) {
     let _ = writeln!(stderr(), "{}", plain(text));
-}
-
-/// [`print`] of a text of ours, with its colours.
-pub fn print_as_is(text: &str) -> Result<bool> {
-    let mut out = stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
-        written => written.context(Unwritten).map(|()| true),
-    }
 }
 
 /// Standard output takes no more: exit code 1.

@@ -1,14 +1,14 @@
 //! How a program begins and ends.
 
 use std::borrow::Cow;
-use std::io::{self, ErrorKind, IsTerminal};
+use std::io::{self, ErrorKind};
 use std::process::ExitCode;
 
 use anyhow::{Error, Result};
 use clap::Parser;
 use deltaq::Contradicted;
 
-use crate::answer::{Answer, Unwritten, complain, plain, print_as_is};
+use crate::answer::{Answer, Unwritten, complain, plain, print};
 
 /// What the command line asks for.
 ///
@@ -18,9 +18,7 @@ pub fn parse<Asked: Parser>() -> Result<Asked, ExitCode> {
     Asked::try_parse().map_err(|told| {
         // the help that was asked for is an answer, too
         if !told.use_stderr() {
-            let help = told.render();
-            let help = if io::stdout().is_terminal() { help.ansi().to_string() } else { help.to_string() };
-            return print_as_is(&help).map_or_else(|error| failed(&error), |_| ExitCode::SUCCESS);
+            return print(&told.to_string()).map_or_else(|error| failed(&error), |_| ExitCode::SUCCESS);
         }
         // it names what was asked for
         if matches!(plain(&told.to_string()), Cow::Owned(_)) {

@@ -12,7 +12,7 @@ mod options;
 pub mod parallel;
 mod turns;
 
-pub use answer::{Answer, Unwritten, complain, plain, pretty, print, print_as_is, sorted};
+pub use answer::{Answer, Unwritten, complain, plain, pretty, print, sorted};
 pub use ending::{finish, parse};
 pub use files::{File, may_replace, write_all, write_one, write_own};
 pub use lines::Lines;

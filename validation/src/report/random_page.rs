@@ -219,7 +219,7 @@ fn open_words(batch: &Batch, records: &[Record], counterexamples: &[(u8, String)
     }
     if open.len() > LISTED {
         let _ =
-            writeln!(text, "- and {} more: `deltaq random --seed {} --format json`", open.len() - LISTED, batch.seed);
+            writeln!(text, "- and {} more: `evidence random --seed {} --format json`", open.len() - LISTED, batch.seed);
     }
     for (theorem, path) in counterexamples {
         let _ = writeln!(text, "\nSmallest system found on which {} fails: [{path}]({path}).", label(*theorem));

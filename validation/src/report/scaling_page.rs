@@ -23,7 +23,7 @@ pub fn scaling_files(lines: &[Line]) -> Result<Vec<File>> {
     let side = picture(lines, "One right-hand side", "right-hand side (s)", |p| Some(p.right_hand_side))?;
     let solve = picture(lines, "Solve over 10 s", "solve (s)", |p| p.solve)?;
     let mut page = format!("# Cost over size: the car with n trailers\n\n{}", answer(lines));
-    page += "Written by `deltaq scaling --out reports/measured`. One knife edge a body: two degrees of freedom however long the train. In maximal \
+    page += "Written by `evidence scaling --out reports/measured`. One knife edge a body: two degrees of freedom however long the train. In maximal \
              coordinates (x, y, heading of every body) every constraint touches neighbours only; that is what all rows use that do not say otherwise. \
              Times are the shortest of some repeats on one machine; *expressions* (made for derivation and compilation), *operations* (of one right-hand \
              side: instructions, and n³/3 for each dense elimination, an upper bound where it meets zeros) and *evaluations* are the same on every machine.\n\n";

@@ -25,7 +25,7 @@ const PAGES: [(&str, &[&str]); 7] = [
     (
         "measured/error-vs-time.md",
         &[
-            "validation/src/bench",
+            "crates/bench/src",
             "crates/symbolic/src",
             "crates/equations/src",
             "crates/integrate/src",

@@ -1,4 +1,4 @@
-//! `deltaq random`.
+//! `evidence random`.
 
 use std::fmt::Write;
 use std::time::Instant;

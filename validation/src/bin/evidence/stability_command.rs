@@ -1,4 +1,4 @@
-//! `deltaq stability`.
+//! `evidence stability`.
 
 use std::time::Instant;
 
