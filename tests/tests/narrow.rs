@@ -1,6 +1,6 @@
 //! Pulses and walls of any width at any place are found or told, by every method: against integrals.
 
-use deltaq::{Ending, Settings, choices, error_estimate, setting, solve_choice};
+use deltaq::{CHETAEV, Ending, Settings, choices, error_estimate, setting, solve_choice};
 use integrate::Method;
 use scene::Scene;
 use symbolic::SplitMix;
@@ -163,7 +163,7 @@ fn pulses_and_walls_are_found_or_told_at_any_place() {
     for case in (0..draws).flat_map(|_| 0..PULSES.len() + WALLS.len()).map(|family| Case::new(family, &mut random)) {
         let Case { truth, effect, width, place, .. } = case;
         let scene = Scene::parse("narrow", &case.scene).unwrap_or_else(|e| panic!("{e}\n{}", case.scene));
-        let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("it is there");
+        let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("it is there");
         let is_wide = width > WIDE * place;
         for method in methods.clone() {
             let tolerance = if matches!(method, Some(Method::TrBdf2 | Method::Esdirk34)) { 1e-6 } else { 1e-8 };

@@ -1,10 +1,10 @@
 //! Stiff and extreme cases: no method returns a wrong trajectory in silence; what was mended stays so.
 
 use deltaq::{
-    Choice, Ending, Motion, Setting, Settings, Stepping, default_constants, derive, derive_at, formulation, setting,
-    solve,
+    CHETAEV, Choice, Ending, Motion, Setting, Settings, Stepping, VAKONOMIC, VAKONOMIC_COSTATE, default_constants,
+    derive, derive_at, setting, solve,
 };
-use equations::Equations;
+use equations::{Equations, Formulation};
 use integrate::Method;
 use mechanics::{ConstantsRule, Recombination};
 use scene::Scene;
@@ -66,10 +66,10 @@ fn a_million_steps_keep_what_they_are_to_keep() {
 
 #[test]
 fn a_long_run_that_goes_elsewhere_is_called_wrong() {
-    let elsewhere = |_: &str| Reference::Closed(Box::new(|t| vec![0.0, 0.0, 0.3 + 1.1 * t]));
+    let elsewhere = |_: &Formulation| Reference::Closed(Box::new(|t| vec![0.0, 0.0, 0.3 + 1.1 * t]));
     let known = LONG[0].reference;
-    for (reference, word) in [(known, "accurate"), (Some(elsewhere as fn(&str) -> Reference), "wrong")] {
-        let long = Long { scene: "sledge", formulation: "chetaev", duration: 20.0, constants: None, reference };
+    for (reference, word) in [(known, "accurate"), (Some(elsewhere as fn(&Formulation) -> Reference), "wrong")] {
+        let long = Long { scene: "sledge", formulation: CHETAEV, duration: 20.0, constants: None, reference };
         let run = long.run(Stepping::Adaptive(Some(Method::Dop853))).expect("a scene");
         assert_eq!(run.verdict.word(), word, "{run:?}");
     }
@@ -238,14 +238,9 @@ fn nearly_one(d: Option<f64>) -> Scene {
     Scene::parse("nearly-one", &NEARLY_ONE.replace("SECOND", &second)).expect("a scene")
 }
 
-fn choice(scene: &Scene, name: &str) -> Choice {
-    let entry = formulation(name).expect("in the table");
-    Choice {
-        label: entry.title.into(),
-        formulation: entry.name,
-        removal: None,
-        constants: default_constants(entry, scene),
-    }
+fn choice(scene: &Scene, formulation: &'static Formulation) -> Choice {
+    let constants = default_constants(formulation, scene);
+    Choice { label: formulation.title.into(), formulation, removal: None, constants }
 }
 
 fn solved(scene: &Scene, equations: Equations, constants: ConstantsRule) -> Motion {
@@ -262,25 +257,25 @@ fn recombined_constraints_have_the_same_motion_and_the_multipliers_of_those_give
     let given = [-700.0, 900.0];
     let same = [given[0] + given[1], d * given[1]];
     for (name, near_rule, apart_rule) in [
-        ("chetaev", ConstantsRule::Zero, ConstantsRule::Zero),
-        ("vakonomic", ConstantsRule::Given(given.to_vec()), ConstantsRule::Given(same.to_vec())),
-        ("vakonomic-costate", ConstantsRule::Given(given.to_vec()), ConstantsRule::Given(same.to_vec())),
+        (CHETAEV, ConstantsRule::Zero, ConstantsRule::Zero),
+        (VAKONOMIC, ConstantsRule::Given(given.to_vec()), ConstantsRule::Given(same.to_vec())),
+        (VAKONOMIC_COSTATE, ConstantsRule::Given(given.to_vec()), ConstantsRule::Given(same.to_vec())),
     ] {
         let equations = derive_at(&near.system, &near.start, &choice(&near, name)).expect("equations");
-        assert!(equations.left_out.iter().any(|l| l.words.contains("nearly dependent")), "{name} does not say so");
+        assert!(equations.left_out.iter().any(|l| l.words.contains("nearly dependent")), "{name:?} does not say so");
         let mut one = solved(&near, equations, near_rule);
         let mut two = solved(&apart, derive(&apart.system, &choice(&apart, name)).expect("equations"), apart_rule);
-        assert!(one.is_complete() && two.is_complete(), "{name}: {:?}", one.ending);
+        assert!(one.is_complete() && two.is_complete(), "{name:?}: {:?}", one.ending);
         for t in [0.0, 1.0, 3.0] {
             let (one, two) = (one.at(t).expect("a state"), two.at(t).expect("a state"));
             for (a, b) in one.coordinates.iter().zip(&two.coordinates) {
-                assert!((a - b).abs() < 1e-9, "{name} at t = {t}: {a} is not {b}");
+                assert!((a - b).abs() < 1e-9, "{name:?} at t = {t}: {a} is not {b}");
             }
             let (found, known) = (&one.multipliers, &two.multipliers);
             let expected = [known[0] - known[1] / d, known[1] / d];
             let size = expected[0].abs().max(expected[1].abs()).max(1.0);
             for (a, b) in found.iter().zip(expected) {
-                assert!((a - b).abs() < 1e-8 * size, "{name} at t = {t}: multiplier {a} is not {b}");
+                assert!((a - b).abs() < 1e-8 * size, "{name:?} at t = {t}: multiplier {a} is not {b}");
             }
         }
     }

@@ -3,9 +3,11 @@
 
 use catalogue::built_in;
 use deltaq::{
-    Choice, Ensemble, EnsembleOptions, EnsembleStart, Form, Metric, Motion, Setting, Settings, Verdict, choices_among,
-    compare_motions, derive_in_form, error_estimate, forms, multipliers_of, setting, solve, solve_choice,
+    CHETAEV, Choice, Ensemble, EnsembleOptions, EnsembleStart, Form, Metric, Motion, REMOVED_CONSTRAINT, Setting,
+    Settings, VAKONOMIC, VAKONOMIC_COSTATE, Verdict, choices_among, compare_motions, derive_in_form, error_estimate,
+    forms, multipliers_of, setting, solve, solve_choice,
 };
+use equations::Formulation;
 use mechanics::{ConstantsRule, Coordinate, Parameter, fresh_symbol};
 use scene::Scene;
 use symbolic::{Expr, SplitMix};
@@ -28,7 +30,7 @@ fn trusted(scene: &Scene, choice: &Choice, form: Form) -> Option<Motion> {
     (estimate.status(&motion).0 == "completed").then_some(motion)
 }
 
-fn choice(scene: &Scene, name: &str) -> Choice {
+fn choice(scene: &Scene, name: &Formulation) -> Choice {
     let all = choices_among(scene, |_| true).into_iter().chain(forms(scene));
     all.into_iter().find(|choice| choice.formulation == name).expect("a formulation")
 }
@@ -59,16 +61,16 @@ impl Tally {
     }
 
     fn scene(&mut self, what: &str, scene: &Scene) {
-        let mut plain = trusted(scene, &choice(scene, "chetaev"), Form::Named);
-        let mut suited = trusted(scene, &choice(scene, "chetaev"), Form::Suited);
+        let mut plain = trusted(scene, &choice(scene, CHETAEV), Form::Named);
+        let mut suited = trusted(scene, &choice(scene, CHETAEV), Form::Suited);
         self.pair(&format!("{what}: Chetaev, forms"), scene, [&mut plain, &mut suited]);
         self.ensemble(&format!("{what}: ensemble"), scene, suited);
-        let mut plain = trusted(scene, &choice(scene, "vakonomic"), Form::Named);
-        for (name, form) in [("vakonomic", Form::Suited), ("vakonomic-costate", Form::Named)] {
+        let mut plain = trusted(scene, &choice(scene, VAKONOMIC), Form::Named);
+        for (name, form) in [(VAKONOMIC, Form::Suited), (VAKONOMIC_COSTATE, Form::Named)] {
             let mut other = trusted(scene, &choice(scene, name), form);
-            self.pair(&format!("{what}: vakonomic, {name} {form:?}"), scene, [&mut plain, &mut other]);
+            self.pair(&format!("{what}: vakonomic, {name:?} {form:?}"), scene, [&mut plain, &mut other]);
         }
-        for choice in choices_among(scene, |name| name == "removed-constraint") {
+        for choice in choices_among(scene, |name| name == REMOVED_CONSTRAINT) {
             let Some(removal) = &choice.removal else { continue };
             let zeros = vec![0.0; removal.memory.len()];
             let choice = Choice { constants: ConstantsRule::Zero, ..choice.clone() };
@@ -76,7 +78,7 @@ impl Tally {
             match multipliers_of(scene, removal, &zeros) {
                 Ok(Some(mu)) => {
                     let scene = Scene { multipliers: mu, ..scene.clone() };
-                    let mut other = trusted(&scene, &self::choice(&scene, "vakonomic"), Form::Named);
+                    let mut other = trusted(&scene, &self::choice(&scene, VAKONOMIC), Form::Named);
                     self.pair(&format!("{what}: {}", choice.label), &scene, [&mut other, &mut removed]);
                 }
                 Ok(None) if removed.is_some() => self.alone += 1,
@@ -87,7 +89,7 @@ impl Tally {
 
     fn ensemble(&mut self, what: &str, scene: &Scene, alone: Option<Motion>) {
         let settings = Settings { max_steps: MAX_STEPS, ..Settings::default() };
-        let Ok(mut ensemble) = Ensemble::new(scene, &choice(scene, "chetaev"), &[], &settings) else {
+        let Ok(mut ensemble) = Ensemble::new(scene, &choice(scene, CHETAEV), &[], &settings) else {
             self.refused += 1;
             return;
         };
@@ -119,7 +121,7 @@ impl Tally {
 
 /// A switch that is off at the start: its text in the coordinate that goes farthest, at half of the time.
 fn switch(scene: &Scene, kind: usize) -> Option<(usize, Expr)> {
-    let mut motion = trusted(scene, &choice(scene, "chetaev"), Form::Suited)?;
+    let mut motion = trusted(scene, &choice(scene, CHETAEV), Form::Suited)?;
     let (start, half) = (scene.start.q.clone(), motion.at(scene.start.t + 0.5 * scene.duration).ok()?.coordinates);
     let moved = |&i: &usize| (half[i] - start[i]).abs() / (1.0 + start[i].abs());
     let farthest = (0..start.len()).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
@@ -227,7 +229,7 @@ fn a_term_taken_out_by_hand_is_caught_by_the_residual() {
             let made = places.iter().find_map(|&(i, j)| multiplied(&lost, i, j, kind));
             let Some(true_scene) = made else { continue };
             let (equations, _) =
-                derive_in_form(&lost.system, &lost.start, &choice(&lost, "chetaev"), Form::Suited).unwrap();
+                derive_in_form(&lost.system, &lost.start, &choice(&lost, CHETAEV), Form::Suited).unwrap();
             let all = setting(&true_scene);
             let here = Setting { system: &true_scene.system, start: &lost.start, end: all.end };
             let Ok(mut motion) = solve(here, equations, &ConstantsRule::Zero, &Settings::default()) else { continue };
@@ -292,7 +294,7 @@ fn a_constraint_that_begins_at_a_place_is_no_other_in_any_form() {
     }
     assert!(tally.wrong.is_empty() && tally.agreed > 10, "{:?}, {} agree", tally.wrong, tally.agreed);
     // by two independent programs: w(3) = 1.986
-    let w = trusted(&scenes[0], &choice(&scenes[0], "chetaev"), Form::Suited).unwrap().at(3.0).unwrap().coordinates[3];
+    let w = trusted(&scenes[0], &choice(&scenes[0], CHETAEV), Form::Suited).unwrap().at(3.0).unwrap().coordinates[3];
     assert!((w - 1.98604516020986).abs() < 1e-10, "{w}");
 }
 
@@ -300,7 +302,7 @@ fn a_constraint_that_begins_at_a_place_is_no_other_in_any_form() {
 #[test]
 fn members_have_terms_that_vanish_at_the_start_of_the_scene() {
     let scene = place();
-    for formulation in ["chetaev", "vakonomic"] {
+    for formulation in [CHETAEV, VAKONOMIC] {
         let chosen = choice(&scene, formulation);
         let mut ensemble = Ensemble::new(&scene, &chosen, &["x", "X"], &Settings::default()).unwrap();
         let rows = [[0.0, 5.0], [3.0, 5.0], [7.0, 5.0], [0.0, -20.0], [0.0, 2.0]];
@@ -318,7 +320,7 @@ fn members_have_terms_that_vanish_at_the_start_of_the_scene() {
             }
             let mut alone = trusted(&alone, &choice(&alone, formulation), Form::Named).unwrap();
             let off = (alone.at(3.0).unwrap().coordinates[3] - found.outputs[0].coordinates[3]).abs();
-            assert!(off < 1e-9, "{formulation}, {row:?}: w is {off} off");
+            assert!(off < 1e-9, "{formulation:?}, {row:?}: w is {off} off");
         }
     }
 }
@@ -339,7 +341,7 @@ fn a_removal_by_hand_that_forgets_what_begins_is_refused() {
     // far away: no random point finds it, and the motion runs into it
     let mut scene = Scene::parse("hand", &text("z' - x' - x'*exp(-((x - 801)/20)^2)")).unwrap();
     (scene.start.v[0], scene.start.v[2]) = (400.0, 400.0);
-    let removed = choices_among(&scene, |name| name == "removed-constraint").remove(0);
+    let removed = choices_among(&scene, |name| name == REMOVED_CONSTRAINT).remove(0);
     let motion = solve_choice(&scene, &removed, &Settings::default()).unwrap();
     assert!(motion.doubt.as_ref().is_some_and(|d| d.because.contains("does not hold")), "{:?}", motion.doubt);
 }
@@ -351,19 +353,19 @@ fn what_is_listed_as_constant_is_constant() {
     let scene =
         scene_of(&["x", "y", "z"], "(x'^2 + y'^2 + z'^2)/2 - 0.2*z", &[constraint], "\"x'\" = 4\n\"y'\" = 1", "");
     let mut found = Vec::new();
-    for (formulation, form) in [("chetaev", Form::Suited), ("chetaev", Form::Named), ("vakonomic", Form::Suited)] {
+    for (formulation, form) in [(CHETAEV, Form::Suited), (CHETAEV, Form::Named), (VAKONOMIC, Form::Suited)] {
         let mut motion = trusted(&scene, &choice(&scene, formulation), form).unwrap();
         let times = motion.grid(50);
         found.extend(motion.invariant_drift(&times).unwrap());
     }
-    for removed in choices_among(&scene, |name| name == "removed-constraint") {
+    for removed in choices_among(&scene, |name| name == REMOVED_CONSTRAINT) {
         let mut motion = trusted(&scene, &removed, Form::Suited).unwrap();
         let times = motion.grid(50);
         found.extend(motion.invariant_drift(&times).unwrap());
     }
     assert!(found.iter().all(|(_, _, drift)| *drift < 1e-9) && !found.is_empty(), "{found:?}");
     // Chetaev's energy changes by this, and was listed: to the last digit, `f` is homogeneous at first
-    let mut motion = trusted(&scene, &choice(&scene, "chetaev"), Form::Named).unwrap();
+    let mut motion = trusted(&scene, &choice(&scene, CHETAEV), Form::Named).unwrap();
     let energy = |t: f64, motion: &mut Motion| {
         let now = motion.at(t).unwrap();
         0.5 * now.velocities.iter().map(|v| v * v).sum::<f64>() + 0.2 * now.coordinates[2]

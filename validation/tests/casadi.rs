@@ -1,5 +1,6 @@
 //! The referee in Python: it must run, agree where we are right, and disagree where we are not.
 
+use deltaq::CHETAEV;
 use random::{Batch, Kind, draw_recipe};
 use scene::Scene;
 use validation::casadi_job::{Amount, Outcome, Question, Row, Word, ask, built_in, random};
@@ -46,7 +47,7 @@ fn a_wrong_sign_is_found() {
                 *residual = g.add(*residual, g.mul(g.integer(factor), gradient));
             }
         };
-        question.corrupt(&scene, "chetaev", FEW.states, change).expect("rates");
+        question.corrupt(&scene, CHETAEV, FEW.states, change).expect("rates");
         questions.push(question);
     }
     let rows = rows(&questions);

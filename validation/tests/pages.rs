@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use deltaq::{
-    Comparison, Ending, Finding, Fit, Fits, FittedMotion, Form, Membership, Metric, Settings, Verdict, choices,
-    compare_unfitted, solve_choice,
+    CHETAEV, Comparison, Ending, Finding, Fit, Fits, FittedMotion, Form, Membership, Metric, Settings, VAKONOMIC,
+    Verdict, choices, compare_unfitted, solve_choice,
 };
 use integrate::{Method, Projection};
 use pages::{membership::value as membership_value, scene_page, summary, verdicts};
 use serde_json::{Value, json};
+use substitution::SUBSTITUTION;
 use validation::report::{AuditReport, BicycleReport, overview, referees_section};
 
 /// A scene in all formulations, the control among them.
@@ -52,7 +53,7 @@ fn the_tables_of_a_scene_say_what_its_rows_are() {
     let gap = sledge.pairs[0].gap.clone();
     let fitted =
         FittedMotion { constants: vec![("mu0_1".into(), 0.25)], gap: deltaq::Gap { largest: 0.125, ..gap }, starts: 7 };
-    let vakonomic = sledge.run("vakonomic").expect("a run");
+    let vakonomic = sledge.run(VAKONOMIC).expect("a run");
     sledge.fits.push(Fit { run: vakonomic, target: 0, fitted: Some(fitted), by_identity: false });
     let page = scene_page(&mut sledge, &[]).expect("a page");
     let label = |i: usize| sledge.runs[i].choice.label.clone();
@@ -155,7 +156,7 @@ fn the_summary_and_the_verdicts_say_what_the_rows_are() {
     says(cells[4], gap.passes[1]);
     says(cells[5], Some(gap.largest));
     // pairs that are not shown are counted by their verdicts
-    let principal = |i: usize| ["chetaev", "vakonomic"].contains(&sledge.runs[i].choice.formulation);
+    let principal = |i: usize| [CHETAEV, VAKONOMIC].contains(&sledge.runs[i].choice.formulation);
     let others = deltaq::words::rows(&sledge).filter(|p| !principal(p.first));
     let mut counts = BTreeMap::new();
     others.for_each(|p| *counts.entry(p.gap.verdict.word()).or_insert(0) += 1);
@@ -210,7 +211,7 @@ fn the_overview_counts_its_own_table() {
     assert!(page.contains(&control), "{control}\n{page}");
     for (row, scene) in rows.iter().zip(&scenes) {
         let judged =
-            scene.pairs.iter().find(|p| scene.runs[p.second].choice.formulation == substitution::NAME && p.first == 0);
+            scene.pairs.iter().find(|p| scene.runs[p.second].choice.formulation == &SUBSTITUTION && p.first == 0);
         let word = judged.map_or("–", |p| match p.gap.verdict {
             Verdict::Same => "right here",
             Verdict::Different => "flagged",
@@ -262,7 +263,7 @@ fn maggis_equations_agree_with_a_motion_that_is_right_and_with_no_other() {
     // gravity off by a millionth
     let set = [("duration".into(), duration.into()), ("g".into(), (9.81 * (1.0 + 1e-6)).into())];
     let other = catalogue::find("sledge", &set).expect("built in");
-    let chetaev = sledge.run("chetaev").expect("a run");
+    let chetaev = sledge.run(CHETAEV).expect("a run");
     sledge.runs[chetaev].outcome = solve_choice(&other, &sledge.runs[chetaev].choice, &Settings::default());
     let section = referees_section(&mut sledge, None).expect("a section");
     assert!(row(&section).to_lowercase().contains("disagrees"), "{section}");

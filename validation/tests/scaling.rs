@@ -1,18 +1,24 @@
 //! How cost grows: counts that do not depend on the machine.
 
+use catalogue::trailer::Coordinates;
+use deltaq::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC};
+use equations::Formulation;
 use validation::scaling::{FROM, Limits, TRAILERS, counts, exponent, line};
 
 #[test]
 fn a_train_costs_what_its_length_costs() {
-    for name in ["chetaev-reduced", "vakonomic-reduced"] {
-        grows_with_its_length(name);
+    for formulation in [REDUCED_CHETAEV, REDUCED_VAKONOMIC] {
+        grows_with_its_length(formulation);
     }
 }
 
-fn grows_with_its_length(name: &str) {
+fn grows_with_its_length(formulation: &'static Formulation) {
+    let name = formulation.name;
     let long: Vec<usize> = TRAILERS.into_iter().filter(|&n| n >= FROM).collect();
-    let counts: Vec<(f64, (usize, usize))> =
-        long.iter().map(|&n| (n as f64, counts(name, n).expect("has equations"))).collect();
+    let counts: Vec<(f64, (usize, usize))> = long
+        .iter()
+        .map(|&n| (n as f64, counts((formulation, Coordinates::Maximal), n).expect("has equations")))
+        .collect();
     assert_eq!(counts.len(), 5);
     let fit = |of: fn(&(usize, usize)) -> usize| {
         exponent(&counts.iter().map(|(n, c)| (*n, of(c) as f64)).collect::<Vec<_>>()).expect("five points")
@@ -27,10 +33,11 @@ fn grows_with_its_length(name: &str) {
 #[test]
 fn a_line_has_a_point_for_every_length_and_says_where_it_ends() {
     let limits = Limits { trailers: 5, repeats: 1, ..Limits::default() };
-    let whole = line("chetaev-reduced", &limits, &mut |_, _| {}).expect("has motions");
+    let whole = line((REDUCED_CHETAEV, Coordinates::Maximal), &limits, &mut |_, _| {}).expect("has motions");
     assert_eq!(whole.points.iter().map(|p| p.trailers).collect::<Vec<_>>(), [1, 2, 5]);
     assert!(whole.ended.is_none() && whole.points.iter().all(|p| p.solve.is_some() && p.reached == 10.0));
-    let cut = line("chetaev", &Limits { seconds: 0.0, ..limits }, &mut |_, _| {}).expect("has equations");
+    let cut = line((CHETAEV, Coordinates::Maximal), &Limits { seconds: 0.0, ..limits }, &mut |_, _| {})
+        .expect("has equations");
     assert_eq!(cut.points.len(), 1);
     assert!(cut.ended.is_some(), "its derivation takes longer than no time at all");
 }

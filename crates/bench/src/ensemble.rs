@@ -3,11 +3,13 @@
 //! All ways take the same members, equations compiled once, method, tolerance and projection. One by one is
 //! the ordinary time loop, which keeps the ends of a run only ([`integrate::Dense::EndOnly`]).
 
+use equations::Formulation;
 use std::time::Instant;
 
 use anyhow::{Result, bail, ensure};
 use deltaq::{
-    Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Prepared, Settings, choices, prepare, setting,
+    CHETAEV, Choice, Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart, Prepared, REMOVED_CONSTRAINT, Settings,
+    VAKONOMIC, choices, prepare, setting,
 };
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, State};
@@ -132,9 +134,9 @@ fn starts(count: usize) -> Vec<State> {
 pub fn ensemble_throughput(count: usize, tolerance: f64, repeats: usize) -> Result<Vec<Throughput>> {
     let scene = catalogue::find(ENSEMBLE_SCENE, &[])?;
     let starts = starts(count);
-    let wanted = ["chetaev", "vakonomic", "removed-constraint"];
+    let wanted = [CHETAEV, VAKONOMIC, REMOVED_CONSTRAINT];
     let all = choices(&scene);
-    let first = |name: &&str| all.iter().find(|choice| choice.formulation == *name).cloned();
+    let first = |own: &&Formulation| all.iter().find(|choice| choice.formulation == *own).cloned();
     wanted.iter().filter_map(first).map(|choice| throughput(&scene, choice, &starts, tolerance, repeats)).collect()
 }
 

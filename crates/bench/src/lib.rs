@@ -19,7 +19,10 @@ pub use usual::Usual;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Settings, choices, derive_at, forms, setting};
+use deltaq::{
+    CHETAEV, Choice, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, VAKONOMIC, VAKONOMIC_COSTATE, choices, derive_at,
+    forms, setting,
+};
 use integrate::{Method, Work};
 use mechanics::ConstantsRule;
 use program::parallel;
@@ -166,9 +169,10 @@ fn entries(scene: &Scene) -> Vec<Choice> {
 
 /// The motion of a choice: forms of one formulation share it.
 fn motion(choice: &Choice) -> String {
-    match choice.formulation.split_once('-') {
-        Some((formulation @ ("chetaev" | "vakonomic"), _)) => formulation.into(),
-        _ if choice.removal.is_none() => choice.formulation.into(),
+    match choice.formulation {
+        form if form == REDUCED_CHETAEV => CHETAEV.name.into(),
+        form if [VAKONOMIC_COSTATE, REDUCED_VAKONOMIC].contains(&form) => VAKONOMIC.name.into(),
+        own if choice.removal.is_none() => own.name.into(),
         _ => choice.label.clone(),
     }
 }
@@ -211,7 +215,7 @@ pub fn measure(prepared: Prepared, effort: &Effort, tell: impl Fn(&str)) -> Resu
             Some((_, Err(reason))) => Err(reason.clone()),
             Some((_, Ok(truth))) => measurements(&scene, &choice, truth, effort).map_err(|error| format!("{error:#}")),
         };
-        Entry { label: choice.label, formulation: choice.formulation, motion, outcome }
+        Entry { label: choice.label, formulation: choice.formulation.name, motion, outcome }
     });
     Ok(Bench { entries: entries.collect(), scene: scene.name.clone(), title: scene.title.clone(), parse })
 }

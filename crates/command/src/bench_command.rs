@@ -3,7 +3,10 @@
 use anyhow::{Result, bail};
 
 use crate::cli::BenchArguments;
-use bench::{Effort, bench_all, bench_files, bench_json, bench_table, ensemble_json, ensemble_text, ensemble_throughput, references};
+use bench::{
+    Effort, bench_all, bench_files, bench_json, bench_table, ensemble_json, ensemble_text, ensemble_throughput,
+    references,
+};
 
 /// Repeats of each way to integrate an ensemble; the least time counts.
 const REPEATS: usize = 5;

@@ -14,6 +14,7 @@ use clap_complete::Shell;
 use bench::MEMBERS;
 use deltaq::{Fits, Stepping};
 pub use ensemble::{EnsembleArguments, FreeArguments, Limits, MotionArguments};
+use equations::Formulation;
 pub use linearize::{LinearizeArguments, TableFormat};
 use program::{Common, Output, TextOrJson, by_name};
 pub use range::{MOST_MEMBERS, Range};
@@ -112,7 +113,7 @@ pub struct CompareArguments {
     pub markdown: bool,
     /// Formulations to compare, all if left out.
     #[arg(long, short, value_name = "NAME,…", value_delimiter = ',', value_parser = formulations())]
-    pub formulation: Vec<String>,
+    pub formulation: Vec<&'static Formulation>,
     /// Also fit free constants where it is decided whether some constants give the motion.
     #[arg(long = "with", value_name = "PART")]
     pub with: Option<Searched>,
@@ -151,8 +152,9 @@ pub enum Searched {
     Fits,
 }
 
-fn formulations() -> PossibleValuesParser {
-    PossibleValuesParser::new(deltaq::FORMULATIONS.iter().map(|formulation| formulation.name))
+fn formulations() -> impl TypedValueParser<Value = &'static Formulation> {
+    let names = PossibleValuesParser::new(deltaq::FORMULATIONS.iter().map(|formulation| formulation.name));
+    names.try_map(|name| deltaq::formulation(&name))
 }
 
 /// `deltaq explore`.

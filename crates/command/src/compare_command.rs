@@ -87,8 +87,12 @@ fn compared(
     mut tell: impl FnMut(&str, &mut Comparison) -> Result<()>,
 ) -> Result<Comparison> {
     let only = &arguments.formulation;
-    let choices = choices_among(&scene, |name| only.is_empty() || only.iter().any(|wanted| wanted == name));
-    ensure!(!choices.is_empty(), "{} needs a parameter that the scene does not have", only.join(", "));
+    let choices = choices_among(&scene, |own| only.is_empty() || only.contains(&own));
+    ensure!(
+        !choices.is_empty(),
+        "{} needs a parameter that the scene does not have",
+        only.iter().map(|own| own.name).collect::<Vec<_>>().join(", ")
+    );
     // the control judges the harness, which is for pages and machines
     let wanted = arguments.output.format == TextOrJson::Json || arguments.output.out.is_some() || arguments.markdown;
     let control = if wanted && only.is_empty() { substitution::run(&scene, &choices, settings) } else { None };

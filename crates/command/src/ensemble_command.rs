@@ -7,7 +7,7 @@ mod resume;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, formulation, setting};
+use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, setting};
 use integrate::Method;
 
 use crate::cli::{EnsembleArguments, Format, MotionArguments};
@@ -89,8 +89,8 @@ fn check_multipliers(scene: &Scene, members: &Members, choice: &Choice, argument
     let multipliers = scene.multiplier_names();
     let Some(name) = members.names.iter().find(|name| multipliers.contains(name)) else { return Ok(()) };
     let place = members.place(name);
-    if !formulation(choice.formulation).is_some_and(|entry| entry.starts_multipliers) {
-        bail!("{place}: `{name}` belongs to the vakonomic formulation, not to {}", choice.formulation);
+    if !choice.formulation.starts_multipliers {
+        bail!("{place}: `{name}` belongs to the vakonomic formulation, not to {}", choice.formulation.name);
     }
     if arguments.motion.free.mu0.is_some() {
         bail!("{place}: `{name}` varies, and --mu0 fixes it");

@@ -17,7 +17,7 @@ use program::{File, write_all};
 /// Runs the command.
 pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
     let mut scene = arguments.scene.find()?;
-    let choice = choice(&scene, (&arguments.formulation, "auto"), &arguments.free_constants)?;
+    let choice = choice(&scene, (arguments.formulation, "auto"), &arguments.free_constants)?;
     let free: Vec<&str> = arguments.free.iter().map(String::as_str).collect();
     let sweep = match &arguments.sweep {
         Some(range) => {
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &LinearizeArguments) -> Result<String> {
         TableFormat::Csv => csv(&sweep),
         TableFormat::Json => {
             let mut object = json_of(&scene, &sweep);
-            (object["scene"], object["formulation"]) = (json!(scene.name), json!(choice.formulation));
+            (object["scene"], object["formulation"]) = (json!(scene.name), json!(choice.formulation.name));
             object["free"] = json!(free);
             pretty("linearize", &object)
         }

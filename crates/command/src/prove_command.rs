@@ -101,5 +101,7 @@ fn plain(scene: PlainScene) -> Value {
 
 /// SHA-256 of the plain scene as JSON without spaces.
 fn digest(plain: &Value) -> String {
-    hmac_sha256::Hash::hash(plain.to_string().as_bytes()).iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
+    hmac_sha256::Hash::hash(plain.to_string().as_bytes())
+        .iter()
+        .fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }

@@ -45,16 +45,19 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let mut equations = Vec::new();
     let asked = &arguments.formulation;
     let all: Vec<Choice> = choices(&scene).into_iter().chain(forms(&scene)).collect();
-    if let Some(unknown) = asked.iter().find(|name| all.iter().all(|choice| choice.formulation != **name)) {
-        let mut known: Vec<&str> = all.iter().map(|choice| choice.formulation).collect();
+    if let Some(other) = asked.iter().find(|own| all.iter().all(|choice| choice.formulation != **own)) {
+        let mut known: Vec<&str> = all.iter().map(|choice| choice.formulation.name).collect();
         known.dedup();
-        bail!("--formulation {unknown}: this scene has {}", known.join(", "));
+        bail!("--formulation {}: this scene has {}", other.name, known.join(", "));
     }
-    let wanted = |choice: &Choice| asked.is_empty() || asked.iter().any(|name| name == choice.formulation);
+    let wanted = |choice: &Choice| asked.is_empty() || asked.contains(&choice.formulation);
     let all: Vec<Choice> = all.into_iter().filter(wanted).collect();
     if let Some(language) = arguments.code {
         if asked.len() > 1 {
-            bail!("--code takes one formulation, and --formulation names {}", asked.join(", "));
+            bail!(
+                "--code takes one formulation, and --formulation names {}",
+                asked.iter().map(|own| own.name).collect::<Vec<_>>().join(", ")
+            );
         }
         let equations = derive_at(&scene.system, &scene.start, &all[0])?;
         return Ok(code(&scene, &started(&scene, equations, &all[0])?, language.into())?);
@@ -64,7 +67,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
             Ok(equations) => {
                 let text = equations_text(&equations, style);
                 if asked.is_empty() && text.len() > LONG {
-                    let (size, name) = (text.len() / 1000, choice.formulation);
+                    let (size, name) = (text.len() / 1000, choice.formulation.name);
                     Ok(format!(
                         "Equations of {size} kB; `deltaq show {} -f {name}` prints them.\n",
                         arguments.scene.scene
@@ -87,7 +90,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
             let removal = choice.removal.as_ref().map(|removal| &removal.name);
             let (equations, refused) = (derived.as_ref().ok(), derived.as_ref().err());
             json!({
-                "label": choice.label, "formulation": choice.formulation, "removal": removal,
+                "label": choice.label, "formulation": choice.formulation.name, "removal": removal,
                 "equations": equations, "refused": refused,
                 "form": integrated.as_ref().map(|form| json!({ "name": form.name, "because": form.why })),
             })
@@ -106,7 +109,7 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<String> {
     let _ = writeln!(text, "\nConstraint: {integrability}");
     for (choice, derived, integrated) in equations {
         let mut derived = derived.unwrap_or_else(|error| format!("refused: {error}\n"));
-        if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation) {
+        if let Some(ChosenForm { name, why }) = integrated.filter(|form| form.name != choice.formulation.name) {
             let _ = writeln!(derived, "- integrated as {name}, unless another form is asked for: {why}");
         }
         let by_hand = scene.removals.iter().find(|own| choice.removal.as_ref().is_some_and(|r| r.name == own.name));

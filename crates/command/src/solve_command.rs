@@ -6,12 +6,11 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use deltaq::{
-    Choice, ErrorEstimate, FORMS, FORMULATIONS, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants,
-    error_estimates, formulation, formulation_in, removal, removal_names, removals, setting, solve_by_steps,
-    solve_choice,
+    Choice, ErrorEstimate, Form, Motion, STEP_LIMIT, Setting, Settings, Steps, default_constants, error_estimates,
+    formulation_in, removal, removal_names, removals, setting, solve_by_steps, solve_choice,
 };
 use discrete::Composition;
-use equations::Outputs;
+use equations::{Formulation, Outputs};
 use integrate::{Interrupt, Projection};
 use linear::equidistant;
 use mechanics::{ConstantsRule, Observables, Removal};
@@ -159,12 +158,13 @@ pub(crate) fn limited(settings: Settings, limits: &Limits) -> Result<Settings> {
 }
 
 /// The formulation with the removal and the constants that were asked for.
-pub(crate) fn choice(scene: &Scene, (name, word): (&str, &str), arguments: &FreeArguments) -> Result<Choice> {
-    if formulation(name).is_none() {
-        let names: Vec<&str> = FORMULATIONS.iter().chain(FORMS).map(|f| f.name).collect();
-        bail!("unknown formulation `{name}`; known: {}", names.join(", "));
-    }
-    let (entry, _) = formulation_in(word, name).with_context(|| format!("--form {word}: {name} has no such form"))?;
+pub(crate) fn choice(
+    scene: &Scene,
+    (own, word): (&'static Formulation, &str),
+    arguments: &FreeArguments,
+) -> Result<Choice> {
+    let no_such_form = || format!("--form {word}: {} has no such form", own.name);
+    let (entry, _) = formulation_in(word, own).with_context(no_such_form)?;
     let removal = if entry.needs_removal { Some(pick_removal(scene, arguments.removal.as_deref())?) } else { None };
     if removal.is_none() && (arguments.removal.is_some() || arguments.constants.is_some()) {
         bail!("--removal and --constants belong to the removed-constraint formulation, not to {}", entry.name);
@@ -178,7 +178,7 @@ pub(crate) fn choice(scene: &Scene, (name, word): (&str, &str), arguments: &Free
         (None, _, Some(mu0)) => ConstantsRule::Given(mu0.clone()),
         (None, _, None) => default_constants(entry, scene),
     };
-    Ok(Choice { label: entry.title.into(), formulation: entry.name, removal, constants })
+    Ok(Choice { label: entry.title.into(), formulation: entry, removal, constants })
 }
 
 fn pick_removal(scene: &Scene, name: Option<&str>) -> Result<Removal> {
@@ -239,7 +239,7 @@ fn json_of(scene: &Scene, choice: &Choice, motion: &mut Motion, times: &[f64]) -
         deltaq::constant_names(&motion.equations).into_iter().zip(motion.constants.iter().map(|&c| json!(c))).collect();
     Ok(json!({
         "scene": scene.name,
-        "formulation": choice.formulation,
+        "formulation": choice.formulation.name,
         "removal": choice.removal.as_ref().map(|r| &r.name),
         "end": motion.end(),
         "free_constants": constants,

@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &CompareArguments, quiet: bool) -> Result<String> {
     }
     let formulations = match &arguments.formulation[..] {
         [] => None,
-        [first, second] => Some([first.clone(), second.clone()]),
+        [first, second] => Some([*first, *second]),
         other => bail!("--sweep compares two formulations, not {}", other.len()),
     };
     // a name that means nothing is a fault of the call, a start that there is not an answer

@@ -45,6 +45,23 @@ fn only_the_formulations_asked_for() {
 }
 
 #[test]
+fn every_command_refuses_a_name_that_is_no_formulation() {
+    refused(&["compare", "sledge", "-f", "chetaev,vakonomik"], &["vakonomik", "a similar value exists: 'vakonomic'"]);
+    let others: [&[&str]; 4] = [
+        &["solve", "sledge"],
+        &["ensemble", "sledge", "--vary", "phi=0..1:2"],
+        &["linearize", "sledge"],
+        &["show", "sledge"],
+    ];
+    for command in others {
+        let asked = [command, &["-f", "vakonomik"]].concat();
+        refused(&asked, &["unknown formulation `vakonomik`, did you mean `vakonomic`?; known: chetaev, "]);
+        // the control has no name that leads to it
+        refused(&[command, &["-f", "substitution"]].concat(), &["unknown formulation `substitution`"]);
+    }
+}
+
+#[test]
 fn fits_are_made_where_nothing_is_decided_or_on_request() {
     let fits = |option: &[&str]| {
         let call = [&["compare", "sledge", "--set", "duration=1", "--format", "json"], option].concat();

@@ -153,7 +153,7 @@ fn going_on(
         watch(&mut equations, system);
         ("canonical momenta", equations.leave_out_unneeded())
     } else {
-        let (label, formulation) = (String::new(), as_derived(here.equations.formulation)?.name);
+        let (label, formulation) = (String::new(), as_derived(here.equations.formulation)?);
         let choice = Choice { label, formulation, removal: None, constants: ConstantsRule::Zero };
         ("multipliers", derive_at(system, start, &choice).ok()?)
     };

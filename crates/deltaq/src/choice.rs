@@ -7,16 +7,15 @@ use mechanics::{ConstantsRule, Recombination, Removal, RemovalError, State, Syst
 use scene::Scene;
 use symbolic::{Expr, Symbol};
 
-use crate::table::known;
-use crate::{FORMS, FORMULATIONS, SolveError, formulation};
+use crate::{FORMS, FORMULATIONS, SolveError};
 
 /// One formulation of the scene, with all choices made.
 #[derive(Clone)]
 pub struct Choice {
     /// What the reader sees: the formulation, and the removal where there are several.
     pub label: String,
-    /// Name of the formulation.
-    pub formulation: &'static str,
+    /// The formulation: one of [`FORMULATIONS`] or [`FORMS`], or a control of one's own.
+    pub formulation: &'static Formulation,
     /// The removal, where the formulation needs one: expressions in the graph of its scene. In that of
     /// another reading of it, or of a clone made before, they mean nothing.
     pub removal: Option<Removal>,
@@ -30,13 +29,13 @@ pub fn choices(scene: &Scene) -> Vec<Choice> {
     choices_among(scene, |_| true)
 }
 
-/// [`choices`] of the formulations whose names are wanted.
-pub fn choices_among(scene: &Scene, wanted: impl Fn(&str) -> bool) -> Vec<Choice> {
+/// [`choices`] of the formulations that are wanted.
+pub fn choices_among(scene: &Scene, wanted: impl Fn(&Formulation) -> bool) -> Vec<Choice> {
     let mut choices = Vec::new();
     let parameters: Vec<String> = scene.system.parameters.iter().map(|p| scene.system.graph.name(p.symbol)).collect();
     let has = |name: &str| parameters.iter().any(|p| p == name);
-    let suits = |entry: &&Formulation| wanted(entry.name) && entry.parameter.is_none_or(has);
-    for formulation in FORMULATIONS.iter().filter(suits) {
+    let suits = |entry: &&'static Formulation| wanted(entry) && entry.parameter.is_none_or(has);
+    for formulation in FORMULATIONS.iter().copied().filter(suits) {
         let removals = if formulation.needs_removal { removals(scene).unwrap_or_default() } else { Vec::new() };
         if removals.is_empty() {
             choices.push(without_removal(formulation, scene));
@@ -44,7 +43,7 @@ pub fn choices_among(scene: &Scene, wanted: impl Fn(&str) -> bool) -> Vec<Choice
         for removal in removals {
             choices.push(Choice {
                 label: format!("{} ({})", formulation.title, removal.name),
-                formulation: formulation.name,
+                formulation,
                 constants: removal.constants.clone(),
                 removal: Some(removal),
             });
@@ -58,9 +57,9 @@ pub fn forms(scene: &Scene) -> Vec<Choice> {
     FORMS.iter().map(|form| without_removal(form, scene)).collect()
 }
 
-fn without_removal(formulation: &Formulation, scene: &Scene) -> Choice {
+fn without_removal(formulation: &'static Formulation, scene: &Scene) -> Choice {
     let constants = default_constants(formulation, scene);
-    Choice { label: formulation.title.into(), formulation: formulation.name, removal: None, constants }
+    Choice { label: formulation.title.into(), formulation, removal: None, constants }
 }
 
 /// Free constants without a removal: the scene's multipliers if the formulation starts from them, else zero.
@@ -70,25 +69,26 @@ pub fn default_constants(formulation: &Formulation, scene: &Scene) -> ConstantsR
 
 /// The free constants of `choice` in `scene`: its multipliers where the formulation starts from them.
 pub fn constants_of(choice: &Choice, scene: &Scene) -> ConstantsRule {
-    match formulation(choice.formulation) {
-        Some(formulation) if formulation.starts_multipliers => default_constants(formulation, scene),
-        _ => choice.constants.clone(),
+    if choice.formulation.starts_multipliers {
+        default_constants(choice.formulation, scene)
+    } else {
+        choice.constants.clone()
     }
 }
 
 /// Derives the equations of a choice, without what they do not need.
 ///
 /// # Errors
-/// [`SolveError::UnknownFormulation`], [`SolveError::Derivation`], [`SolveError::Removal`].
+/// [`SolveError::Derivation`], [`SolveError::Removal`].
 pub fn derive(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
     derive_from(system, None, choice)
 }
 
 /// [`derive()`] for a motion that starts at `start`, where pivots may have to be chosen.
 fn derive_from(system: &System, start: Option<&State>, choice: &Choice) -> Result<Equations, SolveError> {
-    let formulation = known(choice.formulation)?;
     let removal = choice.removal.as_ref();
-    let derived = |all_costates: bool| (formulation.derive)(system, &Derivation { removal, start, all_costates });
+    let derived =
+        |all_costates: bool| (choice.formulation.derive)(system, &Derivation { removal, start, all_costates });
     let mut equations = derived(false)?;
     if let ConstantsRule::Given(values) = &choice.constants
         && gives_constant_costates(&equations, values)

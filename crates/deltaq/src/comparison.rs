@@ -1,5 +1,6 @@
 //! One scene in every formulation, pair by pair.
 
+use equations::Formulation;
 use mechanics::Integrability;
 use scene::Scene;
 
@@ -7,8 +8,10 @@ use crate::fits::{Fit, Fits, fits};
 use crate::gap::{Verdict, compare_motions};
 use crate::growth::growth;
 use crate::runs::{Decided, Pair, Run, decide, predicted, questions};
+use crate::table::is_in_table;
 use crate::{
-    Answer, Choice, Membership, Metric, Settings, SolveError, constant_names, formulation, integrability, solve_choice,
+    Answer, CHETAEV, Choice, Membership, Metric, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, constant_names,
+    integrability, solve_choice,
 };
 
 /// A scene in every formulation.
@@ -76,9 +79,8 @@ impl Comparison {
             let (Ok(one), Ok(two)) = (&mut before.outcome, &mut run.outcome) else { continue };
             let mut gap = compare_motions(one, two, &mut metric)?;
             let limit = |t: f64| gap.limit_at(t);
-            let names = [before.choice.formulation, run.choice.formulation];
-            let asked =
-                self.extent == Extent::Everything || names == [chetaev::FORMULATION.name, vakonomic::FORMULATION.name];
+            let formulations = [before.choice.formulation, run.choice.formulation];
+            let asked = self.extent == Extent::Everything || formulations == [CHETAEV, VAKONOMIC];
             let growth = match gap.verdict {
                 // where it cannot be read off, nothing is fitted
                 Verdict::Different if asked => growth(two, one, &mut metric, &limit).unwrap_or(None),
@@ -87,7 +89,7 @@ impl Comparison {
             let predicted = match gap.verdict {
                 Verdict::Different if growth.is_none() => None,
                 // what no gap shows may be proved, of all motions that Chetaev's is compared with
-                Verdict::Same | Verdict::Undecided { .. } if names[0] != chetaev::FORMULATION.name => None,
+                Verdict::Same | Verdict::Undecided { .. } if formulations[0] != CHETAEV => None,
                 _ => predicted(&self.scene, &before.choice, &run),
             };
             if predicted.as_ref().is_some_and(|term| term.proved) {
@@ -104,7 +106,7 @@ impl Comparison {
     pub fn undecided(&self) -> Option<(usize, usize)> {
         let is_new = |asked: &(usize, usize)| !self.decided.iter().any(|d| (d.family, d.curve) == *asked);
         let asked = questions(&self.scene, &self.runs);
-        let principal = self.run(vakonomic::FORMULATION.name).zip(self.run(chetaev::FORMULATION.name));
+        let principal = self.run(VAKONOMIC).zip(self.run(CHETAEV));
         asked.into_iter().filter(|asked| self.extent == Extent::Everything || Some(*asked) == principal).find(is_new)
     }
 
@@ -122,13 +124,13 @@ impl Comparison {
     }
 
     /// The first run of a formulation.
-    pub fn run(&self, formulation: &str) -> Option<usize> {
+    pub fn run(&self, formulation: &Formulation) -> Option<usize> {
         self.runs.iter().position(|r| r.choice.formulation == formulation)
     }
 
     /// Is Chetaev's motion vakonomic for some `μ₀`? `None` without a constraint, or if one has no motion.
     pub fn membership(&self) -> Option<&Result<Membership, SolveError>> {
-        let (family, curve) = (self.run("vakonomic")?, self.run("chetaev")?);
+        let (family, curve) = (self.run(VAKONOMIC)?, self.run(CHETAEV)?);
         self.decided.iter().find(|d| (d.family, d.curve) == (family, curve)).map(|d| &d.outcome)
     }
 
@@ -186,11 +188,11 @@ impl Comparison {
 ///
 /// ```
 /// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
-/// use deltaq::{Settings, Verdict, choices, compare};
+/// use deltaq::{CHETAEV, Settings, VAKONOMIC, Verdict, choices, compare};
 /// // the ice sledge, with multipliers that are zero at the start
 /// let choices = choices(&scene);
 /// let comparison = compare(scene, choices, Vec::new(), &Settings::default())?;
-/// let runs = (comparison.run("chetaev").unwrap(), comparison.run("vakonomic").unwrap());
+/// let runs = (comparison.run(CHETAEV).unwrap(), comparison.run(VAKONOMIC).unwrap());
 /// let pair = comparison.pair(runs.0, runs.1).unwrap();
 /// assert_eq!(pair.gap.verdict, Verdict::Different);
 /// assert_eq!(pair.predicted.as_ref().unwrap().exponent, 3);
@@ -228,11 +230,9 @@ pub fn compare_unfitted(
 
 /// The costate form is compared with the vakonomic one only, a run from outside the table with Chetaev only.
 fn worth_comparing(first: &Run, second: &Run) -> bool {
-    let names = [first.choice.formulation, second.choice.formulation];
-    let only_with = |name: &str, partner: &str| !names.contains(&name) || names.contains(&partner);
-    let outside = names.iter().find(|name| formulation(name).is_none());
-    only_with(vakonomic::COSTATE_FORM.name, vakonomic::FORMULATION.name)
-        && outside.is_none_or(|name| only_with(name, chetaev::FORMULATION.name))
+    let both = [first.choice.formulation, second.choice.formulation];
+    let outside = both.iter().any(|own| !is_in_table(own));
+    (!both.contains(&VAKONOMIC_COSTATE) || both.contains(&VAKONOMIC)) && (!outside || both.contains(&CHETAEV))
 }
 
 #[cfg(test)]
@@ -246,7 +246,7 @@ mod tests {
         let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
         let all = choices(&scene);
         let mut comparison = compare_unfitted(scene, all, Vec::new(), &Settings::default()).expect("a comparison");
-        let (target, run) = (0, comparison.run("vakonomic").expect("a run"));
+        let (target, run) = (0, comparison.run(VAKONOMIC).expect("a run"));
         let own = comparison.pair(target, run).expect("a pair").gap.clone();
         let fit = |largest: f64| {
             let gap = crate::Gap { largest, ..own.clone() };

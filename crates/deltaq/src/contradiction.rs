@@ -9,7 +9,8 @@ use decision::{Finding, Verdict as Floating};
 use scene::Scene;
 
 use crate::runs::{Decided, Pair};
-use crate::{Answer, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, formulation, membership};
+use crate::table::is_in_table;
+use crate::{Answer, CHETAEV, Comparison, Growth, LeadingTerm, Membership, Run, Verdict, membership};
 
 /// Two results that exclude each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -169,14 +170,14 @@ impl Comparison {
     fn agree_if_integrable(&self, first: usize, second: usize) -> bool {
         let is_bound = |run: &Run| {
             let by_coordinates = |u: &mechanics::DisplacementParameter| u.coordinate.is_some();
-            formulation(run.choice.formulation).is_some()
+            is_in_table(run.choice.formulation)
                 && run.choice.removal.as_ref().is_none_or(|removal| removal.parameters.iter().all(by_coordinates))
         };
         self.integrability.is_integrable() && [first, second].into_iter().all(|i| is_bound(&self.runs[i]))
     }
 
     fn is_chetaev(&self, run: usize) -> bool {
-        self.runs[run].choice.formulation == chetaev::FORMULATION.name
+        self.runs[run].choice.formulation == CHETAEV
     }
 
     fn name(&self, run: usize) -> &str {

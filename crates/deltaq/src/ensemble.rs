@@ -17,7 +17,7 @@ use integrate::{Interrupt, Method};
 use mechanics::{ConstantsRule, State, System};
 use scene::{Scene, Start, Starts};
 
-use crate::{Choice, Metric, Prepared, Settings, SolveError, Varying, formulation, setting};
+use crate::{Choice, Metric, Prepared, Settings, SolveError, Varying, setting};
 pub(crate) use costates::Costates;
 pub use costates::{costate_names, given_costates, is_costate};
 pub use motions::MemberMotion;
@@ -127,9 +127,8 @@ impl Ensemble {
             Costates::among(names, scene, choice).map_err(|reason| SolveError::Member { reason })?;
         let choice = &costates.choice(choice);
         let starts = scene.starts(&names).map_err(|error| SolveError::Scene(Box::new(error)))?;
-        let starts_multipliers = formulation(choice.formulation).is_some_and(|entry| entry.starts_multipliers);
-        if starts.vary_multipliers() && !starts_multipliers {
-            return refused(format!("multipliers vary, and {} does not start from them", choice.formulation));
+        if starts.vary_multipliers() && !choice.formulation.starts_multipliers {
+            return refused(format!("multipliers vary, and {} does not start from them", choice.formulation.name));
         }
         let varied = starts.parameters();
         let settings = Settings { method: Some(Method::Taylor), ..settings.clone() };

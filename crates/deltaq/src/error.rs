@@ -11,14 +11,6 @@ use symbolic::CompileError;
 /// A motion that could not be started. How a motion that was started ended is [`crate::Ending`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
-    /// The name is that of no formulation and of no form.
-    #[error("unknown formulation `{name}`; known: {known}")]
-    UnknownFormulation {
-        /// What was asked for.
-        name: String,
-        /// What could have been.
-        known: String,
-    },
     /// The formulation has no equations for this system.
     #[error(transparent)]
     Derivation(#[from] DerivationError),

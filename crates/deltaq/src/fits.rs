@@ -1,6 +1,6 @@
 //! What the free constants of one run can do to meet another.
 
-use equations::{Equations, FreeConstant};
+use equations::{Equations, Formulation, FreeConstant};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
@@ -10,8 +10,8 @@ use crate::gap_search::{Aim, Closest, WORK, closest};
 use crate::runs::{Decided, Pair, Run};
 use crate::screening::Screening;
 use crate::{
-    Answer, Choice, Ensemble, Metric, Motion, Setting, Settings, SolveError, constant_names, costates_of, derive_at,
-    multipliers_of, setting, solve,
+    Answer, CHETAEV, Choice, Ensemble, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC,
+    constant_names, costates_of, derive_at, multipliers_of, setting, solve,
 };
 
 /// The vakonomic motion is searched for Chetaev's by this many times the work of other searches.
@@ -61,11 +61,11 @@ pub(crate) fn fits(
     metric: &mut Metric,
     settings: &Settings,
 ) -> Result<Vec<Fit>, SolveError> {
-    let of = |name: &str| -> Vec<usize> {
-        let motion = |r: &Run| r.choice.formulation == name && r.outcome.as_ref().is_ok_and(|m| m.end() > m.start());
+    let of = |own: &Formulation| -> Vec<usize> {
+        let motion = |r: &Run| r.choice.formulation == own && r.outcome.as_ref().is_ok_and(|m| m.end() > m.start());
         (0..runs.len()).filter(|&i| motion(&runs[i])).collect()
     };
-    let (chetaev, vakonomic, removed) = (of("chetaev"), of("vakonomic"), of("removed-constraint"));
+    let (chetaev, vakonomic, removed) = (of(CHETAEV), of(VAKONOMIC), of(REMOVED_CONSTRAINT));
     let mut wanted: Vec<(usize, usize)> = Vec::new();
     for &target in &chetaev {
         wanted.extend(vakonomic.iter().chain(removed.first()).map(|&run| (run, target)));
@@ -112,7 +112,7 @@ pub(crate) fn fits(
 fn by_identity(scene: &Scene, choice: &Choice, target: &Run, before: &[Fit]) -> Result<Option<Vec<f64>>, SolveError> {
     let (Some(removal), Ok(motion)) = (&choice.removal, &target.outcome) else { return Ok(None) };
     let multipliers = match &target.choice.removal {
-        None if target.choice.formulation == "vakonomic" => Some(motion.constants.clone()),
+        None if target.choice.formulation == VAKONOMIC => Some(motion.constants.clone()),
         None => {
             let fitted = before.first().and_then(|fit| fit.fitted.as_ref());
             fitted.map(|fitted| fitted.constants.iter().map(|(_, mu)| *mu).collect())
@@ -199,7 +199,7 @@ fn fit_run(
     if constants.is_empty() {
         return Ok(None);
     }
-    let is_principal = [run, target].map(|i| runs[i].choice.formulation) == ["vakonomic", "chetaev"];
+    let is_principal = [run, target].map(|i| runs[i].choice.formulation) == [VAKONOMIC, CHETAEV];
     let choice = runs[run].choice.clone();
     let searched = !matches!(start, Start::Known((_, 0)));
     let Ok(goal) = &mut runs[target].outcome else { return Ok(None) };

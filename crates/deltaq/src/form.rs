@@ -4,8 +4,8 @@ use equations::{Equations, Formulation};
 use mechanics::{State, System};
 
 use crate::choice::derive_at;
-use crate::table::reduced;
-use crate::{Choice, SolveError, formulation};
+use crate::table::{in_costates, reduced};
+use crate::{CHETAEV, Choice, SolveError, VAKONOMIC};
 
 /// Which of the forms of a formulation is integrated; the motions are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,20 +20,16 @@ pub enum Form {
 /// What a form can be asked for by: the one that suits, that with multipliers, other forms by name.
 pub const FORM_WORDS: [&str; 4] = ["auto", "multipliers", "costates", "quasi-velocities"];
 
-/// The formulation of that name in the form of that word; none where there is no such formulation or form.
-pub fn formulation_in(word: &str, name: &str) -> Option<(&'static Formulation, Form)> {
-    let own = formulation(name)?;
+/// A formulation in the form of that word; none where there is no such form.
+pub fn formulation_in(word: &str, own: &'static Formulation) -> Option<(&'static Formulation, Form)> {
     match word {
         "auto" => Some((own, Form::Suited)),
-        "multipliers" => (own.name == "chetaev" || own.name == "vakonomic").then_some((own, Form::Named)),
-        "costates" => Some((formulation(&format!("{name}{COSTATES}"))?, Form::Named)),
-        "quasi-velocities" => Some((reduced(name)?, Form::Named)),
+        "multipliers" => [CHETAEV, VAKONOMIC].contains(&own).then_some((own, Form::Named)),
+        "costates" => Some((in_costates(own)?, Form::Named)),
+        "quasi-velocities" => Some((reduced(own)?, Form::Named)),
         _ => None,
     }
 }
-
-/// What the name of a form in costates ends with.
-const COSTATES: &str = "-costate";
 
 /// In which form equations are, and why.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -60,10 +56,10 @@ pub fn derive_in_form(
     choice: &Choice,
     form: Form,
 ) -> Result<(Equations, ChosenForm), SolveError> {
-    let derived = |name, why| {
-        let mut equations = derive_at(system, start, &Choice { formulation: name, ..choice.clone() })?;
-        equations.formulation = choice.formulation;
-        Ok((equations, ChosenForm { name, why }))
+    let derived = |form: &'static Formulation, why| {
+        let mut equations = derive_at(system, start, &Choice { formulation: form, ..choice.clone() })?;
+        equations.formulation = choice.formulation.name;
+        Ok((equations, ChosenForm { name: form.name, why }))
     };
     let own = choice.formulation;
     let Some(entry) = reduced(own).filter(|_| form == Form::Suited) else {
@@ -73,11 +69,11 @@ pub fn derive_in_form(
     if system.constraints.is_empty() {
         return derived(own, "there is no constraint".into());
     }
-    let in_costates = formulation(&format!("{own}{COSTATES}"));
+    let in_costates = in_costates(own);
     if in_costates.is_some() && !is_quadratic(system) {
         return derived(own, "L is not quadratic in the velocities".into());
     }
-    let (equations, chosen) = match derived(entry.name, "the constraints are linear in the velocities".into()) {
+    let (equations, chosen) = match derived(entry, "the constraints are linear in the velocities".into()) {
         Ok(reduced) => reduced,
         Err(error) => return derived(own, error.to_string()),
     };
@@ -86,7 +82,7 @@ pub fn derive_in_form(
     }
     // a pole of a constraint is passed in costates as if it were none
     let regular = equations.singularities(&system.graph, &system.constraints).is_empty();
-    let other = in_costates.filter(|_| regular).map_or(own, |form| form.name);
+    let other = in_costates.filter(|_| regular).unwrap_or(own);
     derived(other, "quasi-velocities have pivots that may vanish".into())
 }
 

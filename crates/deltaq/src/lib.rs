@@ -6,7 +6,7 @@
 //! of these names. This crate puts them into one table, integrates them with one time loop, and says whether
 //! two motions are the same.
 //!
-//! - [`FORMULATIONS`]: the table.
+//! - [`FORMULATIONS`]: the table: [`CHETAEV`], [`VAKONOMIC`], …; [`formulation`] reads a name.
 //! - [`derive()`], [`solve`]: one motion, with its global error estimate `e(t)`, the difference of two runs.
 //! - [`solve_by_steps`]: one motion by a discrete principle, in equal steps that keep its structure.
 //! - [`prepare`]: the equations compiled and started, for other integrators; [`code()`]: as source text.
@@ -24,7 +24,7 @@
 //! *Same* asks for small estimates besides; everything else is *undecided* ([`Verdict`]).
 //!
 //! ```
-//! use deltaq::{Metric, Settings, Verdict, choices, compare_motions, solve_choice};
+//! use deltaq::{CHETAEV, Metric, Settings, VAKONOMIC, Verdict, choices, compare_motions, solve_choice};
 //!
 //! // a skate on level ice, at 1 m/s and turning at 1 rad/s
 //! let text = r#"
@@ -42,9 +42,9 @@
 //! duration = 2
 //! "#;
 //! let scene = scene::Scene::parse("skate", text)?;
-//! let choice = |name| choices(&scene).into_iter().find(|c| c.formulation == name).unwrap();
-//! let mut chetaev = solve_choice(&scene, &choice("chetaev"), &Settings::default())?;
-//! let mut vakonomic = solve_choice(&scene, &choice("vakonomic"), &Settings::default())?;
+//! let choice = |own| choices(&scene).into_iter().find(|c| c.formulation == own).unwrap();
+//! let mut chetaev = solve_choice(&scene, &choice(CHETAEV), &Settings::default())?;
+//! let mut vakonomic = solve_choice(&scene, &choice(VAKONOMIC), &Settings::default())?;
 //! let gap = compare_motions(&mut chetaev, &mut vakonomic, &mut Metric::new(&scene.system)?)?;
 //! assert_eq!(gap.verdict, Verdict::Different);
 //! // Chetaev's skate runs on a circle of radius 1
@@ -143,5 +143,8 @@ pub use settings::{CERTAINTY, Setting, Settings, TIGHTER, setting};
 pub use single_run::SingleRun;
 pub use steps::{STEP_LIMIT, Stepping, Steps, discrete_of, solve_by_steps};
 pub use sweep::{Sweep, SweepPoint};
-pub use table::{FORMS, FORMULATIONS, formulation};
+pub use table::{
+    CHETAEV, FORMS, FORMULATIONS, KAPPA, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, UnknownFormulation,
+    VAKONOMIC, VAKONOMIC_COSTATE, formulation,
+};
 pub use varying::Varying;

@@ -4,14 +4,13 @@ use decision::{
     Certificate, Decision, DecisionError, DecisionSettings, ExactStart, Family, Finding, Proof, Question, Section,
     Verdict, decide_flow,
 };
-use equations::{Derivation, Equations, refuse_forces};
+use equations::{Derivation, Equations, Formulation, refuse_forces};
 use mechanics::{ConstantsRule, Removal, System};
 use nalgebra::{DMatrix, DVector};
 use scene::Scene;
 use symbolic::Expr;
 
-use crate::table::known;
-use crate::{Choice, LeadingTerm, Metric, SolveError, choices};
+use crate::{CHETAEV, Choice, LeadingTerm, Metric, SolveError, VAKONOMIC, choices};
 
 /// All constants that give a formulation a given motion: what was computed and what was proved of them.
 ///
@@ -224,7 +223,7 @@ impl<'a> Pairing<'a> {
 /// A choice's equations, nothing left out.
 fn as_derived(system: &System, choice: &Choice) -> Result<Equations, SolveError> {
     let derivation = Derivation { removal: choice.removal.as_ref(), start: None, all_costates: true };
-    Ok((known(choice.formulation)?.derive)(system, &derivation)?)
+    Ok((choice.formulation.derive)(system, &derivation)?)
 }
 
 /// Decides whether Chetaev's motion of a scene up to `end` is vakonomic; `None` where there is no constraint.
@@ -247,10 +246,10 @@ pub fn certificate(scene: &Scene, almost_every_start: bool) -> Result<Result<Cer
 
 /// Chetaev's motion and the vakonomic family; refused where forces act, constrained or not.
 fn principal(scene: &Scene) -> Result<Option<Pairing<'_>>, SolveError> {
-    refuse_forces(&scene.system, vakonomic::FORMULATION.name)?;
+    refuse_forces(&scene.system, VAKONOMIC.name)?;
     let choices = choices(scene);
-    let named = |name: &str| choices.iter().find(|choice| choice.formulation == name);
-    match (named(chetaev::FORMULATION.name), named(vakonomic::FORMULATION.name)) {
+    let of = |own: &Formulation| choices.iter().find(|choice| choice.formulation == own);
+    match (of(CHETAEV), of(VAKONOMIC)) {
         (Some(curve), Some(family)) if !scene.system.constraints.is_empty() => {
             Pairing::new(scene, curve, family).map(Some)
         }

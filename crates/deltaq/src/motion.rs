@@ -20,7 +20,7 @@ use crate::trajectory::Trajectory;
 use crate::trial::{FARTHER, NotSuited, TRIAL};
 use crate::wanted::kept_before;
 use crate::watch::Watch;
-use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, formulation, setting};
+use crate::{Choice, ChosenForm, Doubt, Ending, Prepared, Setting, Settings, SolveError, setting};
 
 /// Wall-clock seconds spent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -299,16 +299,16 @@ fn run(setting: Setting, prepared: &mut Prepared, settings: &Settings) -> Result
 ///
 /// ```
 /// # let scene = scene::Scene::parse("sledge", include_str!("../../scene/sledge.toml"))?;
-/// use deltaq::{Settings, choices, solve_choice};
+/// use deltaq::{CHETAEV, Settings, choices, solve_choice};
 /// // the ice sledge turns at a constant rate: phi = 0.3 + t
-/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").unwrap();
+/// let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).unwrap();
 /// let mut motion = solve_choice(&scene, &chetaev, &Settings::default())?;
 /// assert!(motion.is_complete());
 /// assert!((motion.at(1.0)?.coordinates[2] - 1.3).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve_choice(scene: &Scene, choice: &Choice, settings: &Settings) -> Result<Motion, SolveError> {
-    if choice.removal.is_none() && formulation(choice.formulation).is_some_and(|f| f.needs_removal) {
+    if choice.removal.is_none() && choice.formulation.needs_removal {
         removals(scene)?;
     }
     solve_from(setting(scene), choice, settings)

@@ -1,11 +1,13 @@
 //! Runs of a scene, pairs of them, and what is decided about them.
 
+use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 
 use crate::gap::Gap;
 use crate::growth::{Growth, LeadingTerm};
-use crate::{Choice, Membership, Motion, Pairing, SolveError, constant_names, costates_of, formulation};
+use crate::table::is_in_table;
+use crate::{CHETAEV, Choice, KAPPA, Membership, Motion, Pairing, SolveError, VAKONOMIC, constant_names, costates_of};
 
 /// A choice and what became of it.
 pub struct Run {
@@ -55,19 +57,20 @@ pub(crate) fn predicted(scene: &Scene, curve: &Choice, run: &Run) -> Option<Lead
 /// Families and motions: of Chetaev's it is asked whether it belongs to the other families, of the vakonomic
 /// one whether it belongs to those of removals that have more than coordinates for their variables.
 pub(crate) fn questions(scene: &Scene, runs: &[Run]) -> Vec<(usize, usize)> {
-    let known = |i: usize| formulation(runs[i].choice.formulation).is_some();
-    let has = |i: &usize| runs[*i].outcome.is_ok() && known(*i) && !scene.system.constraints.is_empty();
-    let of = |name: &str| (0..runs.len()).filter(has).find(|&i| runs[i].choice.formulation == name);
+    let has = |i: &usize| {
+        runs[*i].outcome.is_ok() && is_in_table(runs[*i].choice.formulation) && !scene.system.constraints.is_empty()
+    };
+    let of = |own: &Formulation| (0..runs.len()).filter(has).find(|&i| runs[i].choice.formulation == own);
     let own_variables = |i: &usize| {
         let removal = runs[*i].choice.removal.as_ref();
         removal.is_some_and(|r| !matches!(costates_of(scene, r, &scene.multipliers), Ok(Some(_))))
     };
     let removed: Vec<usize> = (0..runs.len()).filter(has).filter(own_variables).collect();
     let mut asked: Vec<(usize, usize)> = Vec::new();
-    if let Some(curve) = of("chetaev") {
-        asked.extend(of("vakonomic").into_iter().chain(of("kappa")).chain(removed.clone()).map(|i| (i, curve)));
+    if let Some(curve) = of(CHETAEV) {
+        asked.extend(of(VAKONOMIC).into_iter().chain(of(KAPPA)).chain(removed.clone()).map(|i| (i, curve)));
     }
-    if let Some(curve) = of("vakonomic") {
+    if let Some(curve) = of(VAKONOMIC) {
         asked.extend(removed.iter().map(|&i| (i, curve)));
     }
     asked

@@ -8,7 +8,10 @@ use crate::clock::Clock;
 use crate::constants::resolve;
 use crate::discrete_run::{DiscreteRun, PassedOver};
 use crate::trajectory::Trajectory;
-use crate::{Choice, Ending, Motion, Prepared, Seconds, Settings, SolveError, derive, setting};
+use crate::{
+    CHETAEV, Choice, Ending, Motion, Prepared, REMOVED_CONSTRAINT, Seconds, Settings, SolveError, VAKONOMIC,
+    VAKONOMIC_COSTATE, derive, setting,
+};
 
 /// Largest number of steps of a motion that is kept.
 pub const STEP_LIMIT: usize = 10_000_000;
@@ -55,13 +58,13 @@ pub struct Steps {
 pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<Discrete, SolveError> {
     let (system, start) = (&scene.system, &scene.start);
     let end = start.t + scene.duration;
-    let named = |formulation: &equations::Formulation| formulation.name == choice.formulation;
+    let own = choice.formulation;
     match &choice.removal {
-        None if named(&chetaev::FORMULATION) => Ok(Discrete::chetaev(system, start, end)?),
-        None if named(&vakonomic::FORMULATION) || named(&vakonomic::COSTATE_FORM) => {
+        None if own == CHETAEV => Ok(Discrete::chetaev(system, start, end)?),
+        None if [VAKONOMIC, VAKONOMIC_COSTATE].contains(&own) => {
             Ok(Discrete::vakonomic(system, start, constants, end)?)
         }
-        Some(removal) if named(&removed_constraint::FORMULATION) => {
+        Some(removal) if own == REMOVED_CONSTRAINT => {
             let equations = derive(system, choice)?;
             let mut costates = vec![0.0; removal.memory.len()];
             for (constant, &value) in equations.free_constants.iter().zip(constants) {
@@ -72,7 +75,7 @@ pub fn discrete_of(scene: &Scene, choice: &Choice, constants: &[f64]) -> Result<
             let at = RemovedStart::at(system, removal, start, &costates)?;
             Ok(Discrete::removed(system, removal, &at, end)?)
         }
-        _ => Err(SolveError::NoPrinciple { formulation: choice.formulation.into() }),
+        _ => Err(SolveError::NoPrinciple { formulation: own.name.into() }),
     }
 }
 

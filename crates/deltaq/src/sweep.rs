@@ -1,13 +1,14 @@
 //! One point of a sweep: where two motions of a scene part, and whether they have to.
 
+use equations::Formulation;
 use scene::{Number, Scene};
 
 use mechanics::ConstantsRule;
 
 use crate::ensemble::{Costates, is_costate};
 use crate::{
-    Answer, Choice, Comparison, Extent, FORMULATIONS, Membership, Settings, SolveError, THRESHOLDS, Verdict, choices,
-    choices_among,
+    Answer, CHETAEV, Choice, Comparison, Extent, FORMULATIONS, Membership, REMOVED_CONSTRAINT, Settings, SolveError,
+    THRESHOLDS, VAKONOMIC, Verdict, choices, choices_among,
 };
 
 /// What a comparison of two motions found.
@@ -50,7 +51,8 @@ pub struct Sweep {
     text: String,
     overrides: Vec<(String, Number)>,
     names: Vec<String>,
-    formulations: [String; 2],
+    /// In the order of the table.
+    formulations: [&'static Formulation; 2],
     settings: Settings,
 }
 
@@ -66,20 +68,18 @@ impl Sweep {
         text: &str,
         overrides: &[(String, N)],
         names: &[String],
-        formulations: Option<[String; 2]>,
+        formulations: Option<[&'static Formulation; 2]>,
         settings: &Settings,
     ) -> Result<Sweep, SolveError> {
         settings.check()?;
         let usual = || {
-            let second = match names.iter().any(|name| is_costate(name)) {
-                true => removed_constraint::FORMULATION.name,
-                false => vakonomic::FORMULATION.name,
-            };
-            [chetaev::FORMULATION.name, second].map(String::from)
+            let costates = names.iter().any(|name| is_costate(name));
+            [CHETAEV, if costates { REMOVED_CONSTRAINT } else { VAKONOMIC }]
         };
         let overrides = overrides.iter().map(|(name, x)| (name.clone(), x.clone().into())).collect();
         let (name, text, names) = (name.into(), text.into(), names.to_vec());
-        let formulations = formulations.unwrap_or_else(usual);
+        let mut formulations = formulations.unwrap_or_else(usual);
+        formulations.sort_by_key(|own| FORMULATIONS.iter().position(|entry| entry == own));
         let sweep = Sweep { name, text, overrides, names, formulations, settings: settings.clone() };
         let scene = sweep.read(&[])?;
         let (costates, others): (Vec<&str>, Vec<&str>) =
@@ -112,9 +112,7 @@ impl Sweep {
 
     /// Titles of the two formulations, in the order in which they are compared.
     pub fn titles(&self) -> [&'static str; 2] {
-        let mut places = [0, 1].map(|i| FORMULATIONS.iter().position(|entry| entry.name == self.formulations[i]));
-        places.sort_unstable();
-        places.map(|place| FORMULATIONS[place.unwrap_or_default()].title)
+        self.formulations.map(|own| own.title)
     }
 
     fn read(&self, others: &[(String, f64)]) -> Result<Scene, SolveError> {
@@ -124,17 +122,21 @@ impl Sweep {
         scene.map_err(|error| SolveError::Scene(Box::new(error)))
     }
 
-    /// The two choices for a scene, in the order of the table; of several removals the first.
+    /// The two choices for a scene; of several removals the first.
     fn choices(&self, scene: &Scene, costates: &[(String, f64)]) -> Result<[Choice; 2], SolveError> {
-        let [first, second] = &self.formulations;
-        let of = |name: &String| choices_among(scene, |known| known == name).into_iter().next();
+        let [first, second] = self.formulations;
+        let of = |own: &Formulation| choices_among(scene, |known| known == own).into_iter().next();
         let (Some(one), Some(two), true) = (of(first), of(second), first != second) else {
-            let mut known: Vec<_> = choices(scene).iter().map(|choice| choice.formulation).collect();
+            let mut known: Vec<_> = choices(scene).iter().map(|choice| choice.formulation.name).collect();
             known.dedup();
-            return Err(refused(format!("{first}, {second}: two of {} can be compared", known.join(", "))));
+            return Err(refused(format!(
+                "{}, {}: two of {} can be compared",
+                first.name,
+                second.name,
+                known.join(", ")
+            )));
         };
         let mut choices = [one, two];
-        choices.sort_by_key(|choice| FORMULATIONS.iter().position(|entry| entry.name == choice.formulation));
         if !costates.is_empty() {
             let names: Vec<&str> = costates.iter().map(|(name, _)| name.as_str()).collect();
             let values: Vec<f64> = costates.iter().map(|(_, value)| *value).collect();

@@ -3,8 +3,8 @@
 use decision::{AffineSet, Finding, NoConstants, Verdict};
 use deltaq::words::{Headline, decisions, sentence};
 use deltaq::{
-    Answer, Comparison, Fit, FittedMotion, Gap, Membership, Section, Settings, Sweep, choices, choices_among,
-    compare_unfitted,
+    Answer, CHETAEV, Comparison, Fit, FittedMotion, Gap, Membership, Section, Settings, Sweep, VAKONOMIC, choices,
+    choices_among, compare_unfitted,
 };
 use scene::Scene;
 
@@ -15,7 +15,7 @@ fn compared(name: &str, text: &str) -> Comparison {
 }
 
 fn membership(comparison: &mut Comparison) -> &mut Membership {
-    let asked = (comparison.run("vakonomic"), comparison.run("chetaev"));
+    let asked = (comparison.run(VAKONOMIC), comparison.run(CHETAEV));
     let is = |d: &&mut deltaq::Decided| (Some(d.family), Some(d.curve)) == asked;
     comparison.decided.iter_mut().find(is).and_then(|d| d.outcome.as_mut().ok()).expect("a decision")
 }
@@ -177,7 +177,7 @@ fn what_is_said_of_a_mismatch_and_of_constants_has_its_numbers() {
                     through order 7.";
     assert_eq!(said, expected);
     // the gap that a search has come to is told with its constants
-    let [run, target] = ["vakonomic", "chetaev"].map(|name| disc.run(name).expect("a run"));
+    let [run, target] = [VAKONOMIC, CHETAEV].map(|own| disc.run(own).expect("a run"));
     let gap = Gap { largest: 0.375, ..disc.pair(run, target).expect("a pair").gap.clone() };
     let constants = vec![("mu0_1".to_string(), 0.5), ("mu0_2".to_string(), -2.0)];
     let fitted = FittedMotion { constants, gap, starts: 11 };
@@ -200,7 +200,7 @@ fn a_point_of_a_sweep_has_the_answer_of_its_scene() {
         for value in [0.0, 0.4] {
             let point = sweep.point(&[value]);
             let scene = Scene::parse_with(name, text, &[(varied.into(), value)]).expect("a scene");
-            let choices = choices_among(&scene, |name| ["chetaev", "vakonomic"].contains(&name));
+            let choices = choices_among(&scene, |own| [CHETAEV, VAKONOMIC].contains(&own));
             let mut one = compare_unfitted(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
             let passes = one.pairs[0].gap.passes[1];
             assert_eq!(point.apart, passes.map(|t| t - one.scene.start.t), "{name} {varied} {value}");

@@ -1,8 +1,8 @@
 //! Changes of charts, with invariants of the user's own.
 
 use deltaq::{
-    Choice, Ensemble, EnsembleOptions, Motion, Setting, Settings, choices, derive_at, multipliers_of, setting, solve,
-    solve_choice,
+    Choice, Ensemble, EnsembleOptions, Motion, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC, choices, derive_at,
+    multipliers_of, setting, solve, solve_choice,
 };
 use mechanics::{ConstantsRule, Removal, State};
 use scene::Scene;
@@ -31,7 +31,7 @@ fn read(text: &str, overrides: &[(String, f64)]) -> Scene {
 fn removed(scene: &Scene) -> Choice {
     let removal = Some(Removal::by_coordinates(&scene.system, &scene.start).expect("linear"));
     let constants = ConstantsRule::Given(vec![0.02]);
-    Choice { label: "removed".into(), formulation: "removed-constraint", removal, constants }
+    Choice { label: "removed".into(), formulation: REMOVED_CONSTRAINT, removal, constants }
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn natural_constants_are_found_beyond_the_end_of_a_chart() {
             costates[constant.memory.expect("of a memory variable")] = *value;
         }
         let multipliers = multipliers_of(&scene, &removal, &costates).expect("evaluates").expect("by coordinates");
-        let family = choices(&scene).into_iter().find(|c| c.formulation == "vakonomic").expect("constrained");
+        let family = choices(&scene).into_iter().find(|c| c.formulation == VAKONOMIC).expect("constrained");
         let equations = derive_at(&scene.system, &scene.start, &family).expect("derives");
         let given = ConstantsRule::Given(multipliers);
         let mut judge = solve(within, equations, &given, &Settings::default()).expect("a vakonomic motion");

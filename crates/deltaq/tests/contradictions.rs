@@ -2,7 +2,10 @@
 
 use decision::{Finding, NoConstants};
 use deltaq::words::Headline;
-use deltaq::{Comparison, Settings, Verdict, choices, compare, compare_unfitted};
+use deltaq::{
+    CHETAEV, Comparison, REMOVED_CONSTRAINT, Settings, VAKONOMIC, Verdict, choices, compare, compare_unfitted,
+};
+use equations::Formulation;
 use mechanics::Integrability;
 use scene::Scene;
 
@@ -43,13 +46,13 @@ fn found(comparison: &Comparison) -> String {
 
 /// What was decided about Chetaev's motion and the vakonomic family.
 fn decided(comparison: &mut Comparison) -> &mut deltaq::Membership {
-    let asked = (comparison.run("vakonomic"), comparison.run("chetaev"));
+    let asked = (comparison.run(VAKONOMIC), comparison.run(CHETAEV));
     let is = |d: &&mut deltaq::Decided| (Some(d.family), Some(d.curve)) == asked;
     comparison.decided.iter_mut().find(is).and_then(|d| d.outcome.as_mut().ok()).expect("a decision")
 }
 
-fn pair<'a>(comparison: &'a mut Comparison, other: &str) -> &'a mut deltaq::Pair {
-    let wanted = (comparison.run("chetaev").unwrap(), comparison.run(other).unwrap());
+fn pair<'a>(comparison: &'a mut Comparison, other: &Formulation) -> &'a mut deltaq::Pair {
+    let wanted = (comparison.run(CHETAEV).unwrap(), comparison.run(other).unwrap());
     comparison.pairs.iter_mut().find(|p| (p.first, p.second) == wanted).expect("a pair")
 }
 
@@ -109,7 +112,7 @@ fn an_integrable_constraint_beside_motions_that_differ_or_no_multipliers() {
     assert!(all.iter().any(|c| c.other == "the motions of Chetaev and vakonomic differ"), "{all:?}");
     assert!(all.iter().any(|c| c.other == "no constants of vakonomic give the motion of Chetaev"), "{all:?}");
     let mut bowl = bowl();
-    pair(&mut bowl, "removed-constraint").gap.verdict = Verdict::Different;
+    pair(&mut bowl, REMOVED_CONSTRAINT).gap.verdict = Verdict::Different;
     assert!(found(&bowl).starts_with("the constraint is integrable"));
 }
 
@@ -117,22 +120,22 @@ fn an_integrable_constraint_beside_motions_that_differ_or_no_multipliers() {
 fn every_multiplier_beside_motions_that_differ() {
     let mut bowl = bowl();
     bowl.integrability = Integrability::NonlinearInVelocity;
-    pair(&mut bowl, "vakonomic").gap.verdict = Verdict::Different;
+    pair(&mut bowl, VAKONOMIC).gap.verdict = Verdict::Different;
     assert!(found(&bowl).ends_with("but the two motions differ"));
 }
 
 #[test]
 fn a_proved_difference_beside_motions_that_agree_and_beside_another_growth() {
     let mut sledge = sledge();
-    let gap = &mut pair(&mut sledge, "vakonomic").gap;
+    let gap = &mut pair(&mut sledge, VAKONOMIC).gap;
     let certain_from = gap.certain_from.take();
     assert!(found(&sledge).contains("agree within their errors, but it is proved that they part as"));
-    let pair = pair(&mut sledge, "vakonomic");
+    let pair = pair(&mut sledge, VAKONOMIC);
     pair.gap.certain_from = certain_from;
     pair.growth.as_mut().expect("a growth").exponent += 1.0;
     assert!(found(&sledge).contains("part as t^3, but they were measured to part as t^4.0"));
     // nothing is where another term is the larger one
-    let pair = self::pair(&mut sledge, "vakonomic");
+    let pair = self::pair(&mut sledge, VAKONOMIC);
     let (growth, predicted) = (pair.growth.as_mut().expect("a growth"), pair.predicted.as_ref().expect("a term"));
     growth.to = 0.5 * predicted.reach;
     assert_eq!(sledge.contradictions(), Vec::new());
@@ -144,7 +147,7 @@ fn one_family_whose_motions_differ() {
     let choices = choices(&scene);
     let mut heisenberg = compare(scene, choices, Vec::new(), &Settings::default()).expect("a comparison");
     assert_eq!(heisenberg.contradictions(), Vec::new());
-    let chetaev = heisenberg.run("chetaev");
+    let chetaev = heisenberg.run(CHETAEV);
     let fit = heisenberg.fits.iter_mut().find(|fit| fit.by_identity && Some(fit.target) != chetaev).expect("a fit");
     fit.fitted.as_mut().expect("a motion").gap.verdict = Verdict::Different;
     assert!(found(&heisenberg).contains("are one family, but their motions differ"));

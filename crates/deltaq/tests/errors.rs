@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use deltaq::{
-    Choice, Motion, Pairing, Settings, SolveError, certificate, choices, compare, derive, formulation, membership,
-    removals, setting, solve_choice,
+    CHETAEV, Choice, Motion, Pairing, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE,
+    certificate, choices, compare, derive, membership, removals, setting, solve_choice,
 };
-use equations::{DerivationError, EvaluationFailure};
+use equations::{DerivationError, EvaluationFailure, Formulation};
 use integrate::{BoundaryError, CallError};
 use mechanics::{ConstantsRule, Removal, RemovalError, StartError};
 use scene::{Scene, SceneErrorKind};
@@ -37,14 +37,13 @@ fn sledge() -> Scene {
     Scene::parse("sledge", SLEDGE).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn choice(name: &str, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
-    let entry = formulation(name).expect("in the table");
-    Choice { label: entry.title.into(), formulation: entry.name, removal: removal.cloned(), constants }
+fn choice(formulation: &'static Formulation, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
+    Choice { label: formulation.title.into(), formulation, removal: removal.cloned(), constants }
 }
 
-fn solve(scene: &Scene, name: &str, constants: ConstantsRule) -> Result<Motion, SolveError> {
-    let removal = formulation(name).expect("in the table").needs_removal.then(|| &scene.removals[0]);
-    solve_choice(scene, &choice(name, removal, constants), &Settings::default())
+fn solve(scene: &Scene, formulation: &'static Formulation, constants: ConstantsRule) -> Result<Motion, SolveError> {
+    let removal = formulation.needs_removal.then(|| &scene.removals[0]);
+    solve_choice(scene, &choice(formulation, removal, constants), &Settings::default())
 }
 
 #[track_caller]
@@ -58,40 +57,40 @@ fn refused(outcome: Result<Motion, SolveError>) -> SolveError {
 fn a_wrong_number_of_constants_names_those_that_there_are() {
     let scene = sledge();
     for (name, found, names) in [
-        ("vakonomic", vec![1.0, 2.0], "mu0_1"),
-        ("vakonomic-costate", vec![], "mu0_1"),
-        ("removed-constraint", vec![], "P0_x"),
-        ("removed-constraint", vec![1.0, 2.0, 3.0], "P0_x"),
+        (VAKONOMIC, vec![1.0, 2.0], "mu0_1"),
+        (VAKONOMIC_COSTATE, vec![], "mu0_1"),
+        (REMOVED_CONSTRAINT, vec![], "P0_x"),
+        (REMOVED_CONSTRAINT, vec![1.0, 2.0, 3.0], "P0_x"),
     ] {
         let expected = SolveError::ConstantCount {
-            formulation: name.into(),
+            formulation: name.name.into(),
             expected: 1,
             names: names.into(),
             found: found.len(),
         };
         assert_eq!(refused(solve(&scene, name, ConstantsRule::Given(found))), expected);
     }
-    let error = refused(solve(&scene, "chetaev", ConstantsRule::Given(vec![1.0])));
+    let error = refused(solve(&scene, CHETAEV, ConstantsRule::Given(vec![1.0])));
     assert!(matches!(error, SolveError::ConstantCount { expected: 0, found: 1, .. }), "{error}");
-    let given = solve(&scene, "removed-constraint", ConstantsRule::Given(vec![1.0, 0.0])).expect("zero for y");
+    let given = solve(&scene, REMOVED_CONSTRAINT, ConstantsRule::Given(vec![1.0, 0.0])).expect("zero for y");
     assert_eq!(given.constants, [1.0]);
     // the costate of y never moves: it is there where it is given
-    let given = solve(&scene, "removed-constraint", ConstantsRule::Given(vec![1.0, 2.0])).expect("both");
+    let given = solve(&scene, REMOVED_CONSTRAINT, ConstantsRule::Given(vec![1.0, 2.0])).expect("both");
     assert_eq!(given.constants, [1.0, 2.0]);
 }
 
 #[test]
 fn only_removed_constraints_have_a_natural_boundary_condition() {
     let scene = sledge();
-    for name in ["vakonomic", "vakonomic-costate"] {
+    for name in [VAKONOMIC, VAKONOMIC_COSTATE] {
         let error = refused(solve(&scene, name, ConstantsRule::Natural { horizon: 1.0 }));
-        assert_eq!(error, SolveError::NoNaturalCondition { formulation: name.into() });
+        assert_eq!(error, SolveError::NoNaturalCondition { formulation: name.name.into() });
     }
     // nothing to choose
-    let motion = solve(&scene, "chetaev", ConstantsRule::Natural { horizon: 1.0 }).expect("no constants");
+    let motion = solve(&scene, CHETAEV, ConstantsRule::Natural { horizon: 1.0 }).expect("no constants");
     assert!(motion.constants.is_empty());
     // P_x' = −∂L/∂x = −4
-    let motion = solve(&scene, "removed-constraint", ConstantsRule::Natural { horizon: 1.0 }).expect("a horizon");
+    let motion = solve(&scene, REMOVED_CONSTRAINT, ConstantsRule::Natural { horizon: 1.0 }).expect("a horizon");
     assert!((motion.constants[0] - 4.0).abs() < 1e-8, "{:?}", motion.constants);
 }
 
@@ -99,7 +98,7 @@ fn only_removed_constraints_have_a_natural_boundary_condition() {
 fn the_horizon_is_after_the_start() {
     let scene = sledge();
     for horizon in [0.0, -1.0, f64::NAN] {
-        let error = refused(solve(&scene, "removed-constraint", ConstantsRule::Natural { horizon }));
+        let error = refused(solve(&scene, REMOVED_CONSTRAINT, ConstantsRule::Natural { horizon }));
         assert!(matches!(error, SolveError::Horizon { start: 0.0, .. }), "{error}");
     }
 }
@@ -108,7 +107,7 @@ fn the_horizon_is_after_the_start() {
 fn a_horizon_beyond_a_singularity_has_no_constants() {
     // without constants φ runs into π/2, where the chart of this removal ends
     let scene = Scene::parse("sledge", &SLEDGE.replace("4*x\"", "4*x + y\"")).unwrap_or_else(|e| panic!("{e}"));
-    let along_x = choice("removed-constraint", Some(&scene.removals[1]), ConstantsRule::Natural { horizon: 30.0 });
+    let along_x = choice(REMOVED_CONSTRAINT, Some(&scene.removals[1]), ConstantsRule::Natural { horizon: 30.0 });
     let error = refused(solve_choice(&scene, &along_x, &Settings::default()));
     let SolveError::Boundary { horizon: 30.0, error: BoundaryError::Residual { reason } } = error else {
         panic!("{error}")
@@ -137,7 +136,7 @@ duration = 3
 fn a_search_that_comes_to_motions_of_many_steps_is_given_up() {
     let scene = Scene::parse("late-blow", LATE_BLOW).unwrap_or_else(|e| panic!("{e}"));
     let removal = Removal::by_coordinates(&scene.system, &scene.start).expect("linear constraints");
-    let natural = choice("removed-constraint", Some(&removal), ConstantsRule::Natural { horizon: 3.0 });
+    let natural = choice(REMOVED_CONSTRAINT, Some(&removal), ConstantsRule::Natural { horizon: 3.0 });
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
     let error = refused(solve_choice(&scene, &natural, &settings));
     assert!(matches!(error, SolveError::Search { horizon: 3.0, steps: 1..2_000_000 }), "{error}");
@@ -147,22 +146,22 @@ fn a_search_that_comes_to_motions_of_many_steps_is_given_up() {
 fn forces_are_for_chetaev_only() {
     let text = SLEDGE.replace("[start.velocities]", "forces = { phi = 0.2, y = 0 }\n[start.velocities]");
     let scene = Scene::parse("sledge", &text).unwrap_or_else(|e| panic!("{e}"));
-    for name in ["vakonomic", "vakonomic-costate", "removed-constraint"] {
+    for name in [VAKONOMIC, VAKONOMIC_COSTATE, REMOVED_CONSTRAINT] {
         let error = refused(solve(&scene, name, ConstantsRule::Zero));
-        let formulation = formulation(name).expect("in the table").name;
+        let formulation = name.name;
         let derivation = DerivationError::ForceInVariationalPrinciple { formulation, coordinate: "phi".into() };
         let error_of_a_motion = SolveError::Derivation(derivation);
         assert_eq!(error, error_of_a_motion);
-        let [chetaev, family] = ["chetaev", name].map(|name| {
+        let [chetaev, family] = [CHETAEV, name].map(|name| {
             let removal = choices(&scene).into_iter().find(|c| c.formulation == name).and_then(|c| c.removal);
             choice(name, removal.as_ref(), ConstantsRule::Zero)
         });
-        let Err(error) = Pairing::new(&scene, &chetaev, &family) else { panic!("{name} has a family") };
+        let Err(error) = Pairing::new(&scene, &chetaev, &family) else { panic!("{name:?} has a family") };
         assert_eq!(error, error_of_a_motion);
     }
     assert!(membership(&scene, 1.0).is_err() && certificate(&scene, true).is_err());
     // φ'' = 0.2/0.5
-    let mut motion = solve(&scene, "chetaev", ConstantsRule::Zero).expect("Chetaev takes forces");
+    let mut motion = solve(&scene, CHETAEV, ConstantsRule::Zero).expect("Chetaev takes forces");
     let phi = motion.at(1.0).expect("readable").coordinates[2];
     assert!((phi - (0.3 + 1.1 + 0.2)).abs() < 1e-10, "{phi}");
 }
@@ -170,15 +169,15 @@ fn forces_are_for_chetaev_only() {
 #[test]
 fn a_removal_is_needed_and_has_to_be_of_first_order_or_regular() {
     let scene = sledge();
-    let none = choice("removed-constraint", None, ConstantsRule::Zero);
+    let none = choice(REMOVED_CONSTRAINT, None, ConstantsRule::Zero);
     let error = refused(solve_choice(&scene, &none, &Settings::default()));
-    let missing = DerivationError::RemovalMissing { formulation: "removed-constraint" };
+    let missing = DerivationError::RemovalMissing { formulation: REMOVED_CONSTRAINT.name };
     assert_eq!(error, SolveError::Derivation(missing));
     // φ = u'/w', speed u' along the blade: second rates are in φ' only, so in one combination
     let removal = "[removal.second]\nparameters = [\"u\", \"w\"]\ndirect = { phi = \"u'/w'\" }\n\
                    rates = { x = \"u'*cos(u'/w')\", y = \"u'*sin(u'/w')\" }\n[run]";
     let scene = Scene::parse("sledge", &SLEDGE.replace("[run]", removal)).unwrap_or_else(|e| panic!("{e}"));
-    let second = choice("removed-constraint", scene.removals.last(), ConstantsRule::Zero);
+    let second = choice(REMOVED_CONSTRAINT, scene.removals.last(), ConstantsRule::Zero);
     let error = refused(solve_choice(&scene, &second, &Settings::default()));
     let SolveError::Derivation(DerivationError::SingularHighestHessian { removal, rank, size, .. }) = error else {
         panic!("{error}")
@@ -196,10 +195,10 @@ fn constraints_that_nothing_removes() {
     // the others are compared all the same, and the refusal is part of the result
     let comparison =
         compare(scene.clone(), choices(&scene), Vec::new(), &Settings::default()).unwrap_or_else(|e| panic!("{e}"));
-    let removed = comparison.run("removed-constraint").expect("a run that says why not");
+    let removed = comparison.run(REMOVED_CONSTRAINT).expect("a run that says why not");
     let error = comparison.runs[removed].outcome.as_ref().err().expect("refused");
     assert!(matches!(error, SolveError::Removal(RemovalError::NotLinear { constraint: 1, .. })), "{error}");
-    let (chetaev, vakonomic) = (comparison.run("chetaev"), comparison.run("vakonomic"));
+    let (chetaev, vakonomic) = (comparison.run(CHETAEV), comparison.run(VAKONOMIC));
     assert!(chetaev.zip(vakonomic).is_some_and(|(a, b)| comparison.pair(a, b).is_some()));
 }
 
@@ -211,7 +210,7 @@ fn a_removal_that_cannot_represent_the_start() {
     elsewhere.start = BTreeMap::from([(u, scene.system.graph.number(7.0))]);
     let error = refused(solve_choice(
         &scene,
-        &choice("removed-constraint", Some(&elsewhere), ConstantsRule::Zero),
+        &choice(REMOVED_CONSTRAINT, Some(&elsewhere), ConstantsRule::Zero),
         &Settings::default(),
     ));
     let SolveError::Start(StartError::RemovalStart { removal, residual, limit }) = error else { panic!("{error}") };
@@ -223,7 +222,7 @@ fn dependent_constraints_at_the_start() {
     let mut scene = sledge();
     let f = scene.system.constraints[0];
     scene.system.constraints.push(f);
-    for name in ["chetaev", "vakonomic", "vakonomic-costate"] {
+    for name in [CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE] {
         let error = refused(solve(&scene, name, ConstantsRule::Zero));
         assert!(matches!(error, SolveError::Start(StartError::DependentConstraints { .. })), "{error}");
         // equations that were derived without a look at the start are refused when they are solved there
@@ -247,7 +246,7 @@ fn undefined_symbols_do_not_compile() {
     let g = &scene.system.graph;
     let stray = g.mul(g.variable(g.symbol("stray")), g.variable(scene.system.coordinates[0].position));
     scene.system.lagrangian = g.add(scene.system.lagrangian, stray);
-    for name in ["chetaev", "vakonomic", "vakonomic-costate", "removed-constraint"] {
+    for name in [CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE, REMOVED_CONSTRAINT] {
         let error = refused(solve(&scene, name, ConstantsRule::Zero));
         assert!(matches!(error, SolveError::Compile(_)) && error.to_string().contains("stray"), "{error}");
     }
@@ -257,7 +256,7 @@ fn undefined_symbols_do_not_compile() {
 fn wrong_calls_of_the_integrator() {
     let run = |duration: f64, settings: &Settings| {
         let scene = Scene { duration, ..sledge() };
-        refused(solve_choice(&scene, &choice("chetaev", None, ConstantsRule::Zero), settings))
+        refused(solve_choice(&scene, &choice(CHETAEV, None, ConstantsRule::Zero), settings))
     };
     let usual = Settings::default();
     assert!(matches!(run(0.0, &usual), SolveError::Call(CallError::EmptyInterval { .. })));

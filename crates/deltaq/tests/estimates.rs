@@ -1,8 +1,8 @@
 //! What a motion says of its own errors, coordinate by coordinate.
 
 use deltaq::{
-    ErrorEstimate, Metric, Motion, Setting, Settings, Verdict, choices, compare_motions, error_estimates, setting,
-    solve_choice, solve_from,
+    CHETAEV, ErrorEstimate, Metric, Motion, Setting, Settings, Verdict, choices, compare_motions, error_estimates,
+    setting, solve_choice, solve_from,
 };
 use integrate::Method;
 use scene::Scene;
@@ -72,7 +72,7 @@ fn held(force: &str, settings: &Settings) -> ErrorEstimate {
          [start]\nvelocities = {{ \"x'\" = 1 }}\n[run]\nduration = 3\n"
     );
     let scene = Scene::parse("held", &text).unwrap_or_else(|e| panic!("{e}"));
-    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("linear constraints");
+    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("linear constraints");
     let mut motion = solve_choice(&scene, &chetaev, settings).expect("a motion");
     let estimate = error_estimates(&mut motion, setting(&scene), &[]).expect("in range").1;
     assert!(motion.is_complete(), "{:?}", motion.ending);
@@ -138,7 +138,7 @@ fn a_multiplier_of_a_motion_at_rest_is_off_by_its_round_off() {
                 forces = { y = \"1e6*((x + 1)^3 - x^3 - 3*x^2 - 3*x - 1)\" }\n\
                 [start]\nvelocities = { \"x'\" = 0 }\n[run]\nduration = 3\n";
     let scene = Scene::parse("rest", text).unwrap_or_else(|e| panic!("{e}"));
-    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("linear constraints");
+    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("linear constraints");
     let mut motion = solve_choice(&scene, &chetaev, &Settings::default()).expect("a motion");
     let estimate = error_estimates(&mut motion, setting(&scene), &[]).expect("in range").1.multipliers[0];
     let error = motion.at(3.0).expect("in range").multipliers[0].abs();

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use deltaq::{
-    Choice, Comparison, Ensemble, EnsembleOptions, Fit, Fits, FittedMotion, Metric, Motion, Settings, Verdict, choices,
-    compare_unfitted,
+    Choice, Comparison, Ensemble, EnsembleOptions, Fit, Fits, FittedMotion, Metric, Motion, Settings, VAKONOMIC,
+    Verdict, choices, compare_unfitted,
 };
 use mechanics::ConstantsRule;
 use scene::Scene;
@@ -127,7 +127,7 @@ fn failures(name: &str, at_most: f64) -> Vec<String> {
             fitted.starts
         );
         println!("{line}");
-        let is_principal = runs[fit.run].choice.formulation == "vakonomic";
+        let is_principal = runs[fit.run].choice.formulation == VAKONOMIC;
         if gain > 1.0 || is_principal && gap > at_most {
             println!("    at {at:?}, the fit at {:?}", fitted.constants);
             failures.push(line);

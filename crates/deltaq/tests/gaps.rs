@@ -1,9 +1,10 @@
 //! What is said of two motions is neither more nor less than what was measured or proved.
 
 use deltaq::{
-    Choice, Comparison, Ending, Ensemble, EnsembleOptions, Metric, Run, Settings, SolveError, Verdict, choices,
-    compare_motions, compare_unfitted, derive, solve_choice, words,
+    CHETAEV, Choice, Comparison, Ending, Ensemble, EnsembleOptions, FORMS, FORMULATIONS, Metric, Run, Settings,
+    VAKONOMIC, Verdict, choices, compare_motions, compare_unfitted, formulation, solve_choice, words,
 };
+use equations::Formulation;
 use scene::Scene;
 
 fn scene(text: &str) -> Scene {
@@ -69,9 +70,9 @@ fn an_indefinite_mass_matrix_makes_no_distance_zero() {
 
 /// (x, y, z, w) of [`INDEFINITE`] at t = 3 in Chetaev's and the vakonomic motion: derived by hand, integrated
 /// by mpmath with 60 digits. x − y stays 0, and z is the same in both.
-const AT_THREE: [(&str, [f64; 4]); 2] = [
-    ("chetaev", [-2.966_457_630_273_797, -2.966_457_630_273_797, 2.205_552_687_624_833_3, 2.387_231_328_944_562_8]),
-    ("vakonomic", [-1.744_911_144_074_385, -1.744_911_144_074_385, 2.205_552_687_624_833_3, 2.387_231_328_944_562_8]),
+const AT_THREE: [(&Formulation, [f64; 4]); 2] = [
+    (CHETAEV, [-2.966_457_630_273_797, -2.966_457_630_273_797, 2.205_552_687_624_833_3, 2.387_231_328_944_562_8]),
+    (VAKONOMIC, [-1.744_911_144_074_385, -1.744_911_144_074_385, 2.205_552_687_624_833_3, 2.387_231_328_944_562_8]),
 ];
 
 #[test]
@@ -95,7 +96,7 @@ fn ensembles_estimate_errors_along_null_directions() {
             for (i, x) in truth.iter().enumerate() {
                 let error = (motion.outputs[0].coordinates[i] - x).abs();
                 let allowed = estimate.coordinates[i] + 1e-14 * (1.0 + x.abs());
-                assert!(error <= allowed, "{formulation}, {tolerance:e}, {i}: {error:e}, {estimate:?}");
+                assert!(error <= allowed, "{formulation:?}, {tolerance:e}, {i}: {error:e}, {estimate:?}");
                 largest = largest.max(error);
             }
             // M = diag(1, −1, 1, 1): the length of what x and y alone are wrong by
@@ -110,7 +111,7 @@ fn what_is_proved_to_differ_is_never_called_the_same() {
     let system = "lagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\nconstraints = [\"z' - 1e-7*y*x'\"]";
     let comparison = compared(&text(&[("x", 0.0), ("y", 0.0), ("z", 0.0)], system, &[("x", 1.0), ("y", 0.5)], 3.0));
     for pair in &comparison.pairs {
-        let chetaev = comparison.runs[pair.first].choice.formulation == "chetaev";
+        let chetaev = comparison.runs[pair.first].choice.formulation == CHETAEV;
         assert_eq!((pair.gap.proved, pair.gap.certain_from), (chetaev, None));
         assert_eq!(pair.gap.verdict == Verdict::Different, chetaev);
         // truth: Δz = −1e-14 x″-terms of order λ₀ t³/6 with λ₀ ~ 1e-7
@@ -163,30 +164,42 @@ fn a_formulation_that_cannot_be_read_off_does_not_end_the_others() {
     }
 }
 
+/// Beside the table, where no name leads to it.
+static CONTROL: Formulation = Formulation { name: "control", ..chetaev::FORMULATION };
+
 #[test]
-fn an_unknown_formulation_cannot_be_built() {
-    let scene = scene(&text(
-        &[("x", 0.0), ("y", 0.0)],
-        "lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"y' - x'\"]",
-        &[("x", 1.0)],
-        1.0,
-    ));
-    let choice = Choice { formulation: "vakonomik", ..choices(&scene)[1].clone() };
-    let refused = |error: &SolveError| matches!(error, SolveError::UnknownFormulation { name, known } if name == "vakonomik" && known.contains("vakonomic"));
-    assert!(derive(&scene.system, &choice).is_err_and(|error| refused(&error)));
-    let outcome = solve_choice(&scene, &choice, &Settings::default());
-    assert!(outcome.as_ref().is_err_and(refused));
-    assert!(Ensemble::new(&scene, &choice, &[], &Settings::default()).is_err_and(|error| refused(&error)));
-    // nor is anything decided or predicted of a run that has this name
+fn of_a_formulation_beside_the_table_nothing_is_decided() {
     let mut comparison = compared(&text(
         &[("x", 0.0), ("y", 0.0)],
         "lagrangian = \"(x'^2 + y'^2)/2\"\nconstraints = [\"y' - x'\"]",
         &[("x", 1.0)],
         1.0,
     ));
+    let choice = Choice { formulation: &CONTROL, ..comparison.runs[0].choice.clone() };
+    let outcome = solve_choice(&comparison.scene, &choice, &Settings::default());
+    assert!(outcome.is_ok());
     comparison.add(Run { choice, outcome }).expect("added");
     let last = comparison.runs.len() - 1;
-    assert!(comparison.pairs.iter().all(|p| p.second != last));
+    let with = comparison.pairs.iter().filter(|p| p.second == last).map(|p| p.first);
+    assert_eq!(with.collect::<Vec<_>>(), [comparison.run(CHETAEV).expect("a run")]);
+    while let Some((family, curve)) = comparison.undecided() {
+        assert!(family != last && curve != last);
+        comparison.decide_next();
+    }
+}
+
+#[test]
+fn an_unknown_formulation_is_refused_by_name() {
+    let error = formulation("vakonomik").expect_err("there is none").to_string();
+    assert_eq!(
+        error,
+        "unknown formulation `vakonomik`, did you mean `vakonomic`?; known: chetaev, vakonomic, vakonomic-costate, \
+         removed-constraint, kappa, chetaev-reduced, vakonomic-reduced"
+    );
+    assert!(formulation("control").is_err() && formulation("").is_err() && formulation("Chetaev").is_err());
+    for own in FORMULATIONS.iter().chain(FORMS) {
+        assert_eq!(formulation(own.name), Ok(*own));
+    }
 }
 
 /// Numbers in 0 … 1, from a seed.

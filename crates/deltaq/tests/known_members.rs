@@ -1,6 +1,9 @@
 //! Members of ensembles against motions known in closed form: their estimates, and their constraints.
 
-use deltaq::{Ending, Ensemble, EnsembleOptions, ErrorEstimate, Form, MemberMotion, Settings, choices, solve_choice};
+use deltaq::{
+    CHETAEV, Ending, Ensemble, EnsembleOptions, ErrorEstimate, Form, MemberMotion, Settings, VAKONOMIC, choices,
+    solve_choice,
+};
 use integrate::Projection;
 use scene::Scene;
 
@@ -9,7 +12,7 @@ use crate::known_values::{HELD, is_about};
 /// Members of an ensemble in lanes that start with `x' = a`, at these times: `x = a sin t`, `λ = −x²`.
 fn members(speeds: &[f64], times: &[f64], tolerance: f64, projection: Projection) -> Vec<MemberMotion> {
     let scene = Scene::parse("held", HELD).unwrap_or_else(|e| panic!("{e}"));
-    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("linear constraints");
+    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("linear constraints");
     let settings = Settings { tolerance, projection, form: Form::Named, ..Settings::default() };
     let ensemble = Ensemble::new(&scene, &chetaev, &["x'"], &settings).expect("an ensemble");
     let rows: Vec<[f64; 1]> = speeds.iter().map(|a| [*a]).collect();
@@ -65,7 +68,7 @@ duration = 3
 #[test]
 fn members_in_lanes_stay_on_their_constraint_by_projection_alone() {
     let scene = Scene::parse("round", ROUND).unwrap_or_else(|e| panic!("{e}"));
-    for formulation in ["chetaev", "vakonomic"] {
+    for formulation in [CHETAEV, VAKONOMIC] {
         let choice = choices(&scene).into_iter().find(|c| c.formulation == formulation).expect("a choice");
         let off = |projection: Projection| {
             let settings = Settings { tolerance: 1e-4, projection, form: Form::Named, ..Settings::default() };
@@ -75,15 +78,15 @@ fn members_in_lanes_stay_on_their_constraint_by_projection_alone() {
             let motions = ensemble.answers(ensemble.members(&rows, 1), &[3.0], &options);
             let off = |motion: Result<MemberMotion, String>| {
                 let MemberMotion { outputs, run, .. } = motion.expect("a member");
-                assert!(run.alone.is_none(), "{formulation}: {:?}", run.alone);
+                assert!(run.alone.is_none(), "{formulation:?}: {:?}", run.alone);
                 let (q, v) = (&outputs[0].coordinates, &outputs[0].velocities);
                 ((q[0] * v[0] + q[1] * v[1]).abs(), run.projection)
             };
             motions.into_iter().map(off).collect::<Vec<_>>()
         };
         for ((without, none), (with, report)) in off(Projection::Off).into_iter().zip(off(Projection::EveryStep)) {
-            println!("{formulation}: off by {without:.1e} without, by {with:.1e} with projection, {report:?}");
-            assert!(without > 1e-8 && with < 1e-13, "{formulation}: {without:e}, {with:e}");
+            println!("{formulation:?}: off by {without:.1e} without, by {with:.1e} with projection, {report:?}");
+            assert!(without > 1e-8 && with < 1e-13, "{formulation:?}: {without:e}, {with:e}");
             // every projection is counted, and the largest is about what it prevented
             assert!(none.projections == 0 && report.projections > 5, "{report:?}");
             assert!(report.largest > 1e-3 * without && report.largest < 1e3 * without, "{without:e}, {report:?}");

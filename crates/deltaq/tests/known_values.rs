@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use deltaq::{
-    Doubt, Ending, ErrorEstimate, Gap, Metric, Motion, Sampling, Settings, Verdict, choices, compare_motions,
+    CHETAEV, Doubt, Ending, ErrorEstimate, Gap, Metric, Motion, Sampling, Settings, Verdict, choices, compare_motions,
     compare_motions_by, error_estimates, setting, solve_choice,
 };
 use integrate::Method;
@@ -283,7 +283,7 @@ pub(crate) fn is_about(what: &str, estimate: f64, known: f64) {
 #[test]
 fn estimates_are_what_the_looser_run_is_wrong_by() {
     let scene = Scene::parse("held", HELD).unwrap_or_else(|e| panic!("{e}"));
-    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("linear constraints");
+    let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("linear constraints");
     for method in [Method::Dop853, Method::Tsit45, Method::Radau5, Method::Taylor] {
         for tolerance in [1e-5, 1e-7] {
             let settings = |tolerance| Settings { tolerance, method: Some(method), ..Settings::default() };

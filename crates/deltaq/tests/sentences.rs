@@ -1,14 +1,17 @@
 //! Every sentence of a headline against rows that say what it should: numbers, names, counts.
 
 use deltaq::words::{Headline, rows};
-use deltaq::{Choice, Comparison, Gap, Pair, Run, Settings, SolveError, Verdict, choices, compare_unfitted};
+use deltaq::{
+    Choice, Comparison, Gap, Pair, Run, Settings, SolveError, VAKONOMIC_COSTATE, Verdict, choices, compare_unfitted,
+};
+use equations::Formulation;
 use scene::Scene;
 
 /// Three motions of the sledge, of which nothing is known but what rows say.
 fn three() -> Comparison {
     let scene = Scene::parse("sledge", include_str!("../../scene/sledge.toml")).expect("a scene");
     let mut three: Vec<Choice> = choices(&scene);
-    three.retain(|choice| choice.formulation != "vakonomic-costate");
+    three.retain(|choice| choice.formulation != VAKONOMIC_COSTATE);
     three.truncate(3);
     let mut comparison = compare_unfitted(scene, three, Vec::new(), &Settings::default()).expect("a comparison");
     comparison.decided.clear();
@@ -129,13 +132,16 @@ fn the_largest_estimate_of_all_rows_is_told() {
     assert!(Headline::of(&three).sure.contains("at most NaN"));
 }
 
+/// Beside the table, where no name leads to it.
+static CONTROL: Formulation = Formulation { name: "control", ..chetaev::FORMULATION };
+
 #[test]
 fn the_control_has_no_say() {
     let mut three = three();
     let expected = verdict(&three);
     // a fourth motion, of no formulation of the table, that differs from all of them by much
     let outcome = three.runs[0].outcome.clone();
-    let choice = Choice { formulation: "control", label: "control".into(), ..three.runs[0].choice.clone() };
+    let choice = Choice { formulation: &CONTROL, label: "control".into(), ..three.runs[0].choice.clone() };
     three.runs.push(Run { choice, outcome });
     let gap = apart(row(&mut three, 0, 1), [Some(0.1); 3], 7.0);
     three.pairs.push(Pair {

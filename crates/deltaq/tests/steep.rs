@@ -1,6 +1,6 @@
 //! High powers, saws and quotients in forces and constraints: never wrong in silence, alone or in lanes.
 
-use deltaq::{Choice, Ensemble, EnsembleOptions, Settings, choices, error_estimate, setting, solve_choice};
+use deltaq::{CHETAEV, Choice, Ensemble, EnsembleOptions, Settings, choices, error_estimate, setting, solve_choice};
 use integrate::Method;
 use scene::Scene;
 
@@ -112,7 +112,7 @@ fn powers_saws_and_quotients_are_never_wrong_in_silence() {
     let (mut right, mut told, mut wrong) = (0, 0, Vec::new());
     for (text, truth) in cases() {
         let scene = Scene::parse("steep", &text).unwrap_or_else(|e| panic!("{text}: {e}"));
-        let chetaev = choices(&scene).into_iter().find(|c| c.formulation == "chetaev").expect("it is there");
+        let chetaev = choices(&scene).into_iter().find(|c| c.formulation == CHETAEV).expect("it is there");
         let methods = [None, Some(Method::Taylor), Some(Method::Dop853), Some(Method::Radau5)];
         let by = |method: Option<Method>| (method.map_or("default", Method::name), alone(&scene, &chetaev, method));
         for (by, found) in methods.into_iter().map(by).chain([("in lanes", in_lanes(&scene, &chetaev))]) {

@@ -1,5 +1,7 @@
 //! What a formulation is to the rest of the program: a name and a pass from a system to equations.
 
+use std::fmt;
+
 use crate::Equations;
 use mechanics::{Removal, RemovalError, State, System};
 
@@ -69,7 +71,7 @@ pub enum DerivationError {
     },
 }
 
-/// One entry of the table of formulations.
+/// One entry of the table of formulations; equal where the names are.
 #[derive(Clone, Copy)]
 pub struct Formulation {
     /// Name on the command line and in files.
@@ -86,6 +88,20 @@ pub struct Formulation {
     pub parameter: Option<&'static str>,
     /// The derivation.
     pub derive: fn(&System, &Derivation) -> Result<Equations, DerivationError>,
+}
+
+impl PartialEq for Formulation {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Formulation {}
+
+impl fmt::Debug for Formulation {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 /// Refuses generalized forces on behalf of a variational formulation.

@@ -43,7 +43,7 @@ fn answered(question: &str, kept: &mut Kept, numbers: &mut Vec<f64>) -> Result<V
 fn scene(subject: &Subject) -> Value {
     let Subject { scene, choices } = subject;
     let coordinate = |c: &mechanics::Coordinate| json!({ "name": c.name, "unit": c.unit });
-    let motion = |c: &deltaq::Choice| json!({ "label": c.label, "formulation": c.formulation });
+    let motion = |c: &deltaq::Choice| json!({ "label": c.label, "formulation": c.formulation.name });
     json!({
         "title": scene.title, "source": scene.source, "notes": scene.notes,
         "start": scene.start.t, "duration": scene.duration,

@@ -37,7 +37,7 @@ pub(crate) fn sampled(
     let ground = sampler.ground(scene, numbers);
     let (mut answers, mut runs) = (Vec::new(), Vec::new());
     for (i, choice) in choices.iter().enumerate() {
-        let mut answer = json!({ "label": choice.label, "formulation": choice.formulation });
+        let mut answer = json!({ "label": choice.label, "formulation": choice.formulation.name });
         let run = match question.glance {
             true => Run::at_a_glance(scene, choice, &settings, kept),
             false => Run::of(scene, choice, &settings),

@@ -1,6 +1,6 @@
 //! Steady motions that are looked for.
 
-use deltaq::{Choice, Setting};
+use deltaq::{CHETAEV, Choice, Setting};
 use mechanics::{ConstantsRule, SingularValues, State};
 use nalgebra::{DMatrix, DVector};
 
@@ -32,7 +32,7 @@ pub fn find_steady(setting: Setting) -> Result<State, LinearError> {
 
 /// Chetaev's formulation, which takes no constants.
 pub(crate) fn chetaev() -> Choice {
-    Choice { label: "Chetaev".into(), formulation: "chetaev", removal: None, constants: ConstantsRule::Zero }
+    Choice { label: "Chetaev".into(), formulation: CHETAEV, removal: None, constants: ConstantsRule::Zero }
 }
 
 /// The power of 1000 nearest to `scale`; 1 where there is none.

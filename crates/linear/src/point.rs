@@ -148,5 +148,5 @@ pub(crate) fn in_quasi_velocities(setting: Setting, choice: &Choice) -> Choice {
     if setting.system.constraints.is_empty() || !setting.system.constraints_linear_in_velocity() {
         return own;
     }
-    Choice { formulation: form.name, ..own }
+    Choice { formulation: form, ..own }
 }

@@ -3,7 +3,11 @@
 mod chains;
 mod scales;
 
-use deltaq::{Choice, Setting, Settings, SolveError, choices, removals, setting};
+use deltaq::{
+    CHETAEV, Choice, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, VAKONOMIC_COSTATE, choices,
+    removals, setting,
+};
+use equations::Formulation;
 use linear::{LinearError, Linearization, Spectrum, find_steady, linearize, linearize_at, sweep};
 use mechanics::ConstantsRule;
 use nalgebra::{DMatrix, dmatrix};
@@ -22,11 +26,11 @@ fn scene(coordinates: &[(&str, f64)], lagrangian: &str, constraints: &[&str], ve
     Scene::parse("test", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn choice(scene: &Scene, formulation: &str) -> Choice {
-    choices(scene).into_iter().find(|c| c.formulation == formulation).expect(formulation)
+fn choice(scene: &Scene, formulation: &Formulation) -> Choice {
+    choices(scene).into_iter().find(|c| c.formulation == formulation).expect(formulation.name)
 }
 
-fn steady(scene: &Scene, formulation: &str) -> Result<Linearization, LinearError> {
+fn steady(scene: &Scene, formulation: &Formulation) -> Result<Linearization, LinearError> {
     linearize(setting(scene), &choice(scene, formulation))
 }
 
@@ -47,7 +51,7 @@ const GRAVITY: &str = "8*z";
 #[test]
 fn a_position_constraint_is_kept_to_first_order() {
     // rad/s: √(g/r) = 2, twice
-    let found = steady(&in_a_sphere(GRAVITY), "chetaev").expect("an equilibrium");
+    let found = steady(&in_a_sphere(GRAVITY), CHETAEV).expect("an equilibrium");
     let part = found.part(&[]).expect("all");
     let imaginary: Vec<f64> = part.eigenvalues.iter().map(|e| e.value.im.abs()).collect();
     assert_eq!((imaginary.len(), part.zeros, part.unstable()), (4, 1, 0), "{found:?}");
@@ -62,23 +66,22 @@ fn a_position_constraint_is_kept_to_first_order() {
 #[test]
 fn every_formulation_of_an_integrable_constraint_swings_alike() {
     // under gravity the multiplier grows: it is the impulse of the reaction
-    let error = steady(&in_a_sphere(GRAVITY), "vakonomic").expect_err("not steady");
+    let error = steady(&in_a_sphere(GRAVITY), VAKONOMIC).expect_err("not steady");
     assert!(matches!(&error, LinearError::NotSteady { state, rate: -8.0, .. } if state == "p_z"), "{error}");
     // springs have the same frequency, and need no reaction
     let scene = in_a_sphere("2*(x^2 + y^2)");
-    for formulation in ["vakonomic", "vakonomic-costate", "removed-constraint"] {
+    for formulation in [VAKONOMIC, VAKONOMIC_COSTATE, REMOVED_CONSTRAINT] {
         let own = choice(&scene, formulation);
-        let own = match formulation {
-            "removed-constraint" => {
-                let removal = removals(&scene).expect("linear").into_iter().find(|r| r.name == "coordinates");
-                Choice { removal, constants: ConstantsRule::Zero, ..own }
-            }
-            _ => own,
+        let own = if formulation == REMOVED_CONSTRAINT {
+            let removal = removals(&scene).expect("linear").into_iter().find(|r| r.name == "coordinates");
+            Choice { removal, constants: ConstantsRule::Zero, ..own }
+        } else {
+            own
         };
-        let part = linearize(setting(&scene), &own).and_then(|found| found.part(&[])).expect(formulation);
+        let part = linearize(setting(&scene), &own).and_then(|found| found.part(&[])).expect(formulation.name);
         let swinging = part.eigenvalues.iter().filter(|e| (e.value.im.abs() - 2.0).abs() < 1e-7).count();
-        assert!(swinging >= 4, "{formulation}: {part:?}");
-        assert_eq!(part.unstable(), 0, "{formulation}: {part:?}");
+        assert!(swinging >= 4, "{formulation:?}: {part:?}");
+        assert_eq!(part.unstable(), 0, "{formulation:?}: {part:?}");
     }
 }
 
@@ -110,7 +113,7 @@ fn a_steady_motion_is_found_on_its_position_constraint() {
     let state = find_steady(setting(&scene)).expect("the lowest point");
     let radius = state.q.iter().map(|x| x * x).sum::<f64>().sqrt();
     assert!(state.q[0].abs() < 1e-9 && state.q[1].abs() < 1e-9 && (radius - 2.0).abs() < 1e-9, "{state:?}");
-    let found = linearize(Setting { start: &state, ..setting(&scene) }, &choice(&scene, "chetaev"));
+    let found = linearize(Setting { start: &state, ..setting(&scene) }, &choice(&scene, CHETAEV));
     assert!(found.is_ok(), "{found:?}");
     // nothing stands still on a slope
     let slope =
@@ -125,17 +128,16 @@ fn a_steady_motion_is_found_on_its_position_constraint() {
 #[test]
 fn eigenvalues_over_a_parameter() {
     let scene = oscillator(0.0);
-    let found =
-        sweep(&scene, &choice(&scene, "chetaev"), &[], ("k", &[-4.0, 1.0, 9.0]), false).expect("all are steady");
+    let found = sweep(&scene, &choice(&scene, CHETAEV), &[], ("k", &[-4.0, 1.0, 9.0]), false).expect("all are steady");
     let first: Vec<f64> = found.points.iter().map(|p| p.part.eigenvalues[0].value.norm()).collect();
     assert!(first.iter().zip([2.0, 1.0, 3.0]).all(|(a, b)| (a - b).abs() < 1e-14), "{first:?}");
     let [change] = &found.changes[..] else { panic!("{:?}", found.changes) };
     assert!(change.value.abs() < 1e-10 && change.unstable == [1, 0], "{change:?}");
-    let error = sweep(&scene, &choice(&scene, "chetaev"), &[], ("x", &[0.0, 1.0]), false).expect_err("1 is not steady");
+    let error = sweep(&scene, &choice(&scene, CHETAEV), &[], ("x", &[0.0, 1.0]), false).expect_err("1 is not steady");
     assert!(matches!(error, LinearError::At { value: 1.0, .. }), "{error}");
-    let error = sweep(&scene, &choice(&scene, "chetaev"), &[], ("q", &[0.0]), false).expect_err("there is no q");
+    let error = sweep(&scene, &choice(&scene, CHETAEV), &[], ("q", &[0.0]), false).expect_err("there is no q");
     assert!(matches!(error, LinearError::Solve(SolveError::Scene(_))), "{error}");
-    let error = sweep(&scene, &choice(&scene, "chetaev"), &[], ("k", &[f64::NAN]), false).expect_err("no number");
+    let error = sweep(&scene, &choice(&scene, CHETAEV), &[], ("k", &[f64::NAN]), false).expect_err("no number");
     assert!(matches!(&error, LinearError::At { error, .. } if matches!(**error, LinearError::Scene(_))), "{error}");
 }
 
@@ -164,14 +166,13 @@ fn a_sweep_keeps_what_begins_at_another_value() {
 
 #[test]
 fn what_moves_is_said_with_its_rate_and_the_limit() {
-    let error = steady(&oscillator(0.5), "chetaev").expect_err("it swings");
+    let error = steady(&oscillator(0.5), CHETAEV).expect_err("it swings");
     let LinearError::NotSteady { state, rate, limit, .. } = &error else { panic!("{error}") };
     assert_eq!((&state[..], *rate), ("x'", -2.0));
     assert!((1e-9..1e-8).contains(limit), "{limit}");
     assert!(error.to_string().contains("x'' = -2"), "{error}");
     // at an instant: the same matrix, for the equations are linear
-    let frozen =
-        linearize_at(setting(&oscillator(0.5)), &choice(&oscillator(0.5), "chetaev"), 0.7, &Settings::default());
+    let frozen = linearize_at(setting(&oscillator(0.5)), &choice(&oscillator(0.5), CHETAEV), 0.7, &Settings::default());
     let frozen = frozen.expect("runs");
     assert!(!frozen.is_steady && (frozen.values[0] - 0.5 * 1.4_f64.cos()).abs() < 1e-9, "{frozen:?}");
     assert_eq!(frozen.matrix, dmatrix![0.0, 1.0; -4.0, 0.0]);
@@ -180,21 +181,21 @@ fn what_moves_is_said_with_its_rate_and_the_limit() {
 #[test]
 fn what_is_refused() {
     let driven = scene(&[("x", 0.0)], "x'^2/2 - k*x^2*cos(t)/2", &[], "\"x'\" = 0");
-    assert!(matches!(steady(&driven, "chetaev"), Err(LinearError::TimeDependent { .. })));
-    let early = linearize_at(setting(&driven), &choice(&driven, "chetaev"), -1.0, &Settings::default());
+    assert!(matches!(steady(&driven, CHETAEV), Err(LinearError::TimeDependent { .. })));
+    let early = linearize_at(setting(&driven), &choice(&driven, CHETAEV), -1.0, &Settings::default());
     assert!(matches!(early, Err(LinearError::BeforeStart { .. })));
     let found =
-        steady(&scene(&[("x", 0.0), ("y", 0.0)], "(x'^2 + y'^2)/2 - x^2", &[], "\"x'\" = 0, \"y'\" = 1"), "chetaev");
+        steady(&scene(&[("x", 0.0), ("y", 0.0)], "(x'^2 + y'^2)/2 - x^2", &[], "\"x'\" = 0, \"y'\" = 1"), CHETAEV);
     let found = found.expect("y is carried");
     assert!(matches!(found.part(&["y"]), Err(LinearError::CarriedFree { .. })));
     assert!(matches!(found.part(&["z"]), Err(LinearError::UnknownFree { .. })));
     let wall = scene(&[("x", 1.0)], "x'^2/2 + 1/x", &[], "\"x'\" = 0");
-    let late = linearize_at(setting(&wall), &choice(&wall, "chetaev"), 10.0, &Settings::default());
+    let late = linearize_at(setting(&wall), &choice(&wall, CHETAEV), 10.0, &Settings::default());
     assert!(matches!(late, Err(LinearError::NotReached { .. })), "{late:?}");
     let cone = [("x", 0.0), ("y", 0.0), ("z", 0.0)];
     let cone = scene(&cone, "(x'^2 + y'^2 + z'^2)/2", &["z'^2 - x'^2 - y'^2"], "\"x'\" = 1, \"y'\" = 0, \"z'\" = 1");
     assert!(matches!(find_steady(setting(&cone)), Err(LinearError::NotLinear)));
-    assert!(linearize(setting(&cone), &choice(&cone, "chetaev")).is_ok());
+    assert!(linearize(setting(&cone), &choice(&cone, CHETAEV)).is_ok());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use linear::{Growth, LinearError, find_steady, linearize};
 
-use deltaq::setting;
+use deltaq::{CHETAEV, setting};
 
 use super::{choice, scene};
 
@@ -18,7 +18,7 @@ fn traps_of_any_width_hold_and_hills_repel() {
         for omega in [1e-12, 2.0, 10.0, 1e9] {
             for (sign, expected) in [("+", (0.0, omega)), ("-", (omega, 0.0))] {
                 let scene = trap(sign, omega, width, 0.0);
-                let part = linearize(setting(&scene), &choice(&scene, "chetaev")).and_then(|found| found.part(&[]));
+                let part = linearize(setting(&scene), &choice(&scene, CHETAEV)).and_then(|found| found.part(&[]));
                 let part = part.unwrap_or_else(|error| panic!("{sign} {omega} {width}: {error}"));
                 let first = part.eigenvalues.first().unwrap_or_else(|| panic!("{sign} {omega} {width}: none"));
                 let (re, im) = (first.value.re, first.value.im.abs());
@@ -36,7 +36,7 @@ fn what_is_slow_or_small_is_no_steady_motion() {
     for width in [1e3, 1.0, 1e-6, 1e-9] {
         for omega in [1e-12, 1.0, 1e9] {
             let scene = trap("+", omega, width, 0.3 * width);
-            let found = linearize(setting(&scene), &choice(&scene, "chetaev"));
+            let found = linearize(setting(&scene), &choice(&scene, CHETAEV));
             assert!(matches!(found, Err(LinearError::NotSteady { .. })), "{omega} {width}: {found:?}");
             let found = find_steady(setting(&scene)).unwrap_or_else(|error| panic!("{omega} {width}: {error}"));
             assert!(found.q[0].abs() < 1e-9 * width, "{omega} {width}: {found:?}");

@@ -9,6 +9,7 @@ use scenery::Drawn;
 use crate::pictures::{drawn, style};
 use deltaq::words::short;
 use program::File;
+use substitution::SUBSTITUTION;
 
 /// The bodies of `[view]` under the formulations, but not under the control; none for a scene without bodies.
 ///
@@ -19,7 +20,7 @@ pub fn bodies(comparison: &mut Comparison) -> Result<Option<File>> {
     let mut motions = Vec::new();
     for (i, run) in comparison.runs.iter_mut().enumerate() {
         let (style, mut label) = (style(run), run.choice.label.clone());
-        let is_shown = shown.contains(&i) && run.choice.formulation != substitution::NAME;
+        let is_shown = shown.contains(&i) && run.choice.formulation != &SUBSTITUTION;
         let (true, Ok(motion)) = (is_shown, &mut run.outcome) else { continue };
         if let Ending::Stopped { t, .. } = motion.ending {
             label += &format!("; stops at {} s", short(t));

@@ -1,7 +1,7 @@
 //! The vakonomic motions of a scene over a line of `μ₀`, for pictures.
 
 use anyhow::Result;
-use deltaq::{Answer, Comparison, Ensemble, EnsembleOptions, MemberMotion, Settings, Verdict};
+use deltaq::{Answer, CHETAEV, Comparison, Ensemble, EnsembleOptions, MemberMotion, Settings, VAKONOMIC, Verdict};
 use picture::{Curve, Style};
 
 use deltaq::words::short;
@@ -21,7 +21,7 @@ pub(crate) fn family(
     times: &[f64],
     read: impl Fn(&[f64]) -> (f64, f64),
 ) -> Result<Vec<Curve>> {
-    let Some((run, target)) = comparison.run("vakonomic").zip(comparison.run("chetaev")) else { return Ok(Vec::new()) };
+    let Some((run, target)) = comparison.run(VAKONOMIC).zip(comparison.run(CHETAEV)) else { return Ok(Vec::new()) };
     let different = comparison.pair(run, target).is_some_and(|pair| pair.gap.verdict == Verdict::Different);
     let decided = comparison.membership().and_then(|found| found.as_ref().ok());
     let decided = decided.filter(|found| matches!(found.answer(), Answer::SomeProved | Answer::Some { .. }));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use deltaq::{Comparison, Run, Verdict};
+use deltaq::{CHETAEV, Comparison, REMOVED_CONSTRAINT, Run, VAKONOMIC, Verdict};
 use equations::Outputs;
 use mechanics::Observables;
 use scene::Scene;
@@ -11,6 +11,7 @@ use scene::Scene;
 use crate::family::family;
 use picture::{Axis, Curve, Panel, Picture, Style};
 use program::File;
+use substitution::SUBSTITUTION;
 
 /// Dots on a path, at most, and instants drawn from one to the next.
 const DOTS: f64 = 12.0;
@@ -18,14 +19,14 @@ const INSTANTS: usize = 80;
 
 /// The colour and dash of a formulation, the same in every picture.
 pub(crate) fn style(run: &Run) -> Style {
-    Style::of_formulation(run.choice.formulation).unwrap_or(Style::Vakonomic)
+    Style::of_formulation(run.choice.formulation.name).unwrap_or(Style::Vakonomic)
 }
 
 /// The runs drawn: the first of each formulation, without the costate form (the vakonomic motion again).
 pub(crate) fn drawn(comparison: &Comparison) -> Vec<usize> {
-    ["chetaev", "vakonomic", "removed-constraint", substitution::NAME]
+    [CHETAEV, VAKONOMIC, REMOVED_CONSTRAINT, &SUBSTITUTION]
         .iter()
-        .filter_map(|name| comparison.run(name))
+        .filter_map(|own| comparison.run(own))
         .filter(|&i| comparison.runs[i].outcome.is_ok())
         .collect()
 }
@@ -103,7 +104,7 @@ struct Instant {
 
 /// Is one motion not another's, those of the control left out?
 fn differ(comparison: &Comparison) -> bool {
-    let control = |i: usize| comparison.runs[i].choice.formulation == substitution::NAME;
+    let control = |i: usize| comparison.runs[i].choice.formulation == &SUBSTITUTION;
     let drawn: Vec<usize> = drawn(comparison).into_iter().filter(|&i| !control(i)).collect();
     let pairs = comparison.pairs.iter().filter(|p| drawn.contains(&p.first) && drawn.contains(&p.second));
     pairs.into_iter().any(|pair| pair.gap.verdict != Verdict::Same)
@@ -142,7 +143,7 @@ fn sample(comparison: &mut Comparison, times: &[f64]) -> Result<Vec<Drawn>> {
 /// The gaps as far as they pass the limit, which at every time is the largest of any pair up to then.
 fn gap_curves(comparison: &Comparison) -> Vec<Curve> {
     let start = comparison.scene.start.t;
-    let Some(chetaev) = comparison.run("chetaev") else { return Vec::new() };
+    let Some(chetaev) = comparison.run(CHETAEV) else { return Vec::new() };
     let others = drawn(comparison).into_iter().filter(|&i| i != chetaev);
     let pairs: Vec<_> = others.filter_map(|i| Some((i, comparison.pair(chetaev, i)?))).collect();
     let points = pairs.iter().enumerate().flat_map(|(n, (_, pair))| pair.gap.points.iter().map(move |p| (n, p)));

@@ -13,6 +13,7 @@ use crate::{membership, tables};
 use deltaq::words::Headline;
 use deltaq::words::{precise, short};
 use program::File;
+use substitution::SUBSTITUTION;
 
 /// The page of a scene and its pictures, with paths in the folder of reports.
 ///
@@ -123,8 +124,7 @@ fn system(comparison: &Comparison) -> String {
     if !parameters.is_empty() {
         let _ = writeln!(text, "Parameters: {}.", parameters.join(", "));
     }
-    let choices =
-        comparison.runs.iter().map(|run| &run.choice).filter(|choice| choice.formulation != substitution::NAME);
+    let choices = comparison.runs.iter().map(|run| &run.choice).filter(|choice| choice.formulation != &SUBSTITUTION);
     for removal in choices.filter_map(|choice| choice.removal.as_ref()) {
         let parameters: Vec<String> =
             removal.parameters.iter().map(|u| format!("${}$", g.latex_symbol(u.symbol))).collect();
@@ -137,12 +137,12 @@ fn equations(comparison: &Comparison) -> String {
     let mut text = String::from("\n## Equations\n\nPrinted from the expressions that are derived.\n");
     for run in &comparison.runs {
         let Ok(motion) = &run.outcome else { continue };
-        if run.choice.formulation == substitution::NAME {
+        if run.choice.formulation == &SUBSTITUTION {
             continue;
         }
         let scene = &comparison.scene;
         let form = motion.form.chosen.name;
-        let (derived, integrated) = if form == run.choice.formulation {
+        let (derived, integrated) = if form == run.choice.formulation.name {
             (None, String::new())
         } else {
             let as_derived = derive_at(&scene.system, &scene.start, &run.choice);

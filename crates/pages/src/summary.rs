@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use deltaq::{Comparison, Ending, Pair, Verdict, error_estimate, setting};
+use deltaq::{CHETAEV, Comparison, Ending, Pair, VAKONOMIC, Verdict, error_estimate, setting};
 
 use deltaq::words::{Headline, rows};
 use deltaq::words::{or_dash, short};
@@ -64,7 +64,7 @@ fn short_label(comparison: &Comparison, run: usize) -> String {
 fn pairs(comparison: &Comparison) -> String {
     let mut table = vec![["", "pair", "verdict", "1e-6 at", "1e-3 at", "largest gap"].map(String::from).to_vec()];
     let (label, plotted) = (|i: usize| short_label(comparison, i), plotted(comparison));
-    let principal = |p: &&Pair| ["chetaev", "vakonomic"].contains(&comparison.runs[p.first].choice.formulation);
+    let principal = |p: &&Pair| [CHETAEV, VAKONOMIC].contains(&comparison.runs[p.first].choice.formulation);
     let (shown, others): (Vec<&Pair>, Vec<&Pair>) = rows(comparison).partition(principal);
     for pair in &shown {
         let letter = plotted.iter().position(|p| (p.first, p.second) == (pair.first, pair.second));

@@ -1,9 +1,7 @@
 //! What is chosen by name: formulation, removal, constants, method.
 
-use deltaq::{
-    Choice, FORM_WORDS, FORMULATIONS, Fits, Form, Settings, default_constants, formulation, formulation_in,
-    removal_names, removals,
-};
+use deltaq::{Choice, FORM_WORDS, Fits, Form, Settings, default_constants, formulation_in, removal_names, removals};
+use equations::Formulation;
 use integrate::{Interrupt, Method, Projection};
 use mechanics::{ConstantsRule, Removal};
 use pyo3::IntoPyObjectExt;
@@ -96,19 +94,18 @@ pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'
     errors::unknown(format!("unknown {what} `{name}`; known: {}", known.collect::<Vec<_>>().join(", ")))
 }
 
-/// The name of the formulation in that form.
-pub(crate) fn in_form<'a>(word: &str, formulation: &'a str) -> PyResult<(&'a str, Form)> {
+/// The formulation of that name.
+pub(crate) fn formulation(name: &str) -> PyResult<&'static Formulation> {
+    deltaq::formulation(name).map_err(|error| errors::unknown(error.to_string()))
+}
+
+/// The formulation of that name in that form.
+pub(crate) fn in_form(word: &str, name: &str) -> PyResult<(&'static Formulation, Form)> {
     if !FORM_WORDS.contains(&word) {
         return Err(unknown("form", word, FORM_WORDS.into_iter()));
     }
-    match formulation_in(word, formulation) {
-        Some((entry, form)) => Ok((entry.name, form)),
-        None if deltaq::formulation(formulation).is_some() => {
-            Err(PyValueError::new_err(format!("{formulation} has no form `{word}`")))
-        }
-        // its name is refused where it is looked up
-        None => Ok((formulation, Form::Suited)),
-    }
+    let no_such_form = || PyValueError::new_err(format!("{name} has no form `{word}`"));
+    formulation_in(word, formulation(name)?).ok_or_else(no_such_form)
 }
 
 /// The choice of a formulation, a removal and constants for a scene, which it comes back with: a removal is
@@ -117,26 +114,28 @@ pub(crate) fn choice(
     py: Python<'_>,
     interrupt: &Interrupt,
     scene: Scene,
-    (name, removal): (&str, Option<&str>),
+    (formulation, removal): (&'static Formulation, Option<&str>),
     constants: Option<ConstantsRule>,
 ) -> PyResult<(Scene, Choice)> {
     background::run(py, interrupt, move || {
-        let choice = chosen(&scene, name, removal, constants)?;
+        let choice = chosen(&scene, formulation, removal, constants)?;
         Ok((scene, choice))
     })?
 }
 
-fn chosen(scene: &Scene, name: &str, removal: Option<&str>, constants: Option<ConstantsRule>) -> PyResult<Choice> {
-    let Some(entry) = formulation(name) else {
-        return Err(unknown("formulation", name, FORMULATIONS.iter().map(|f| f.name)));
-    };
-    if removal.is_some() && !entry.needs_removal {
-        return Err(PyValueError::new_err(format!("the {name} formulation takes no removal")));
+fn chosen(
+    scene: &Scene,
+    formulation: &'static Formulation,
+    removal: Option<&str>,
+    constants: Option<ConstantsRule>,
+) -> PyResult<Choice> {
+    if removal.is_some() && !formulation.needs_removal {
+        return Err(PyValueError::new_err(format!("the {} formulation takes no removal", formulation.name)));
     }
-    let removal = if entry.needs_removal { Some(pick(scene, removal)?) } else { None };
-    let usual = || removal.as_ref().map_or_else(|| default_constants(entry, scene), |r| r.constants.clone());
+    let removal = if formulation.needs_removal { Some(pick(scene, removal)?) } else { None };
+    let usual = || removal.as_ref().map_or_else(|| default_constants(formulation, scene), |r| r.constants.clone());
     let constants = constants.unwrap_or_else(usual);
-    Ok(Choice { label: entry.title.into(), formulation: entry.name, removal, constants })
+    Ok(Choice { label: formulation.title.into(), formulation, removal, constants })
 }
 
 /// The removal of that name, by default the first.

@@ -332,7 +332,10 @@ impl Comparison {
                 Err(error) => (None, Some(error.to_string())),
             };
             let removal = choice.removal.map(|r| r.name);
-            Py::new(py, Run { label: choice.label, formulation: choice.formulation.into(), removal, motion, error })
+            Py::new(
+                py,
+                Run { label: choice.label, formulation: choice.formulation.name.into(), removal, motion, error },
+            )
         };
         let membership = |d: deltaq::Decided| {
             Py::new(py, Decided::new(py, labels[d.family].clone(), labels[d.curve].clone(), d.outcome)?)

@@ -249,7 +249,7 @@ impl Ensemble {
         }
         Ok(Ensemble {
             system: system.clone().unbind(),
-            formulation: choice.formulation.into(),
+            formulation: choice.formulation.name.into(),
             removal: choice.removal.map(|removal| removal.name),
             times: fixed(py, times, Some(k), &[])?.unbind(),
             varied: varied.unbind(),

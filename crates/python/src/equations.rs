@@ -6,7 +6,7 @@ use std::time::Instant;
 use deltaq::{
     EquationStyle, Language, Prepared, SolveError, code, constant_names, derive_at, equations_text, prepare, setting,
 };
-use equations::{Compiled, EvaluationFailure, Role};
+use equations::{Compiled, EvaluationFailure, Formulation, Role};
 use integrate::{Dense, Method, Options, Status};
 use mechanics::{ConstantsRule, Observables};
 use numpy::PyArrayDyn;
@@ -80,7 +80,7 @@ impl Equations {
     /// Derives and compiles those of a scene; constants that are natural at a horizon are zero by default.
     pub(crate) fn derived(
         system: &Bound<'_, System>,
-        (formulation, removal): (&str, Option<&str>),
+        (formulation, removal): (&'static Formulation, Option<&str>),
         given: Option<ConstantsRule>,
     ) -> PyResult<Equations> {
         let (py, scene) = (system.py(), system.get().scene().clone());

@@ -90,7 +90,6 @@ pub(crate) fn solve(error: impl Into<deltaq::SolveError>) -> PyErr {
         | Error::Step { .. }
         | Error::Breakpoint { .. }
         | Error::Member { .. } => SolveError::new_err(text),
-        Error::UnknownFormulation { .. } => unknown(text),
     }
 }
 

@@ -142,7 +142,7 @@ impl Asked<'_> {
     fn arguments<'py>(&self, py: Python<'py>, end: f64, is_complete: bool) -> PyResult<Bound<'py, PyDict>> {
         let Asked { choice, form, times, settings } = self;
         let arguments = PyDict::new(py);
-        arguments.set_item("formulation", choice.formulation)?;
+        arguments.set_item("formulation", choice.formulation.name)?;
         arguments.set_item("removal", choice.removal.as_ref().map(|removal| &removal.name))?;
         arguments.set_item("constants", rule_value(py, &choice.constants)?)?;
         arguments.set_item("form", form)?;

@@ -43,7 +43,7 @@ impl System {
         constants: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Equations> {
         let given = arguments::constants(constants.as_ref(), mu0)?;
-        Equations::derived(slf, (formulation, removal), given)
+        Equations::derived(slf, (arguments::formulation(formulation)?, removal), given)
     }
 
     /// The equations of motion to first order about the start, which has to be a steady motion.
@@ -67,6 +67,7 @@ impl System {
         let given = arguments::constants(constants.as_ref(), mu0)?;
         let scene = self.scene().clone();
         let interrupt = Interrupt::default();
+        let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), given)?;
         Linearization::about(py, scene, choice, free.unwrap_or_default(), (at, find))
     }
@@ -96,6 +97,7 @@ impl System {
         let name: String = name.extract()?;
         let values = list(&name, &values.extract()?)?;
         let scene = slf.get().scene().clone();
+        let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &Interrupt::default(), scene, (formulation, removal), given)?;
         LinearizationSweep::over(slf, scene, choice, (&name, values), (free.unwrap_or_default(), find))
     }
@@ -201,6 +203,7 @@ impl System {
         let (py, constants) = (slf.py(), arguments::constants(constants.as_ref(), mu0)?);
         let (settings, interrupt) = arguments::settings("taylor", tolerance, project, max_steps, max_step, time_limit)?;
         let (scene, given) = (slf.get().scene().clone(), constants.is_some());
+        let formulation = arguments::formulation(formulation)?;
         let (scene, choice) = arguments::choice(py, &interrupt, scene, (formulation, removal), constants)?;
         let (times, end) = times.map_or_else(
             || Ok((vec![setting(&scene).end], setting(&scene).end)),
@@ -258,6 +261,10 @@ impl System {
     ) -> PyResult<Bound<'py, PyDict>> {
         let (settings, interrupt) = arguments::settings("auto", tolerance, true, max_steps, max_step, time_limit)?;
         let values: Vec<f64> = values.as_array().iter().copied().collect();
+        let read = |[first, second]: [String; 2]| {
+            PyResult::Ok([arguments::formulation(&first)?, arguments::formulation(&second)?])
+        };
+        let formulations = formulations.map(read).transpose()?;
         let (name, width) = (self.name(), names.len());
         let work = || -> Result<Vec<SweepPoint>, deltaq::SolveError> {
             let sweep = Sweep::new(&name, &self.text, &self.overrides, &names, formulations, &settings)?;

@@ -106,8 +106,17 @@ def test_wrong_arguments(sledge, system):
         sledge.system(start={"x": object(), "y": 0, "phi": 0})
     with pytest.raises(TypeError):
         deltaq.System(["x"])
-    with pytest.raises(ValueError, match="unknown formulation `hertz`; known: chetaev"):
-        system.solve("hertz")
+    for wrong in (
+        lambda: system.solve("vakonomik"), lambda: system.solve("vakonomik", form="quasi-velocities"),
+        lambda: system.equations("vakonomik"), lambda: system.linearize("vakonomik"),
+        lambda: system.linearize_over({"g": [1.0]}, "vakonomik"), lambda: system.ensemble("vakonomik", vary={"g": [1.0]}),
+        lambda: deltaq.ensemble(system, "vakonomik", vary={"g": [1.0]}),
+        lambda: deltaq.sweep(system, {"g": [1.0]}, formulations=("chetaev", "vakonomik")),
+    ):
+        with pytest.raises(deltaq.UnknownNameError, match="`vakonomik`, did you mean `vakonomic`\\?; known: chetaev"):
+            wrong()
+    with pytest.raises(ValueError, match="unknown formulation `substitution`; known: chetaev"):
+        system.solve("substitution")
     with pytest.raises(ValueError, match="unknown removal `tangent`; known: arc-length"):
         system.solve("removed-constraint", removal="tangent")
     with pytest.raises(ValueError, match="takes no removal"):

@@ -10,13 +10,26 @@
 //! (`w` in neither `L` nor `B`), and wrong nearly everywhere else. A harness that does not notice is broken.
 
 use deltaq::{Choice, Run, Settings, setting, solve};
-use equations::{Block, Equations, Role, StateVariable, Statement};
+use equations::{Block, Derivation, DerivationError, Equations, Formulation, Role, StateVariable, Statement};
 use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
 use symbolic::Expr;
 
-/// Name of the control in tables and files.
-pub const NAME: &str = "substitution";
+/// The control: beside the table of formulations, so that nobody picks it by name.
+pub static SUBSTITUTION: Formulation = Formulation {
+    name: "substitution",
+    title: "substitution (wrong on purpose)",
+    needs_removal: true,
+    starts_multipliers: false,
+    takes_forces: false,
+    parameter: None,
+    derive: derive_for,
+};
+
+fn derive_for(system: &System, derivation: &Derivation) -> Result<Equations, DerivationError> {
+    let missing = DerivationError::RemovalMissing { formulation: SUBSTITUTION.name };
+    derivation.removal.map(|removal| derive(system, removal)).ok_or(missing)
+}
 
 /// The wrong equations for `removal`.
 ///
@@ -24,7 +37,7 @@ pub const NAME: &str = "substitution";
 pub fn derive(system: &System, removal: &Removal) -> Equations {
     let system = system.clone();
     let g = &system.graph;
-    let mut equations = Equations::new(NAME, &system);
+    let mut equations = Equations::new(SUBSTITUTION.name, &system);
     let lagrangian = removal.rewrite(&system, system.lagrangian);
     let flow = removal.flow(&system);
     let mut residuals = Vec::new();
@@ -69,8 +82,8 @@ pub fn run(scene: &Scene, choices: &[Choice], settings: &Settings) -> Option<Run
     let removal = choices.iter().find_map(|choice| choice.removal.clone())?;
     let equations = derive(&scene.system, &removal);
     let choice = Choice {
-        label: "substitution (wrong on purpose)".into(),
-        formulation: NAME,
+        label: SUBSTITUTION.title.into(),
+        formulation: &SUBSTITUTION,
         removal: Some(removal),
         constants: ConstantsRule::Zero,
     };

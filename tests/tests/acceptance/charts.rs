@@ -1,6 +1,10 @@
 //! Motions go on where pivots vanish: by other pivots they are those of the equations with multipliers.
 
-use deltaq::{Choice, Ending, Motion, Settings, costates_of, multipliers_of, solve_choice};
+use deltaq::{
+    Choice, Ending, Motion, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, Settings, VAKONOMIC, costates_of,
+    multipliers_of, solve_choice,
+};
+use equations::Formulation;
 use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 
@@ -54,19 +58,15 @@ fn car() -> Scene {
 
 fn removed(scene: &Scene, constants: ConstantsRule) -> (Removal, Motion) {
     let removal = Removal::by_coordinates(&scene.system, &scene.start).expect("linear constraints");
-    let choice = Choice {
-        label: "removed".into(),
-        formulation: "removed-constraint",
-        removal: Some(removal.clone()),
-        constants,
-    };
+    let choice =
+        Choice { label: "removed".into(), formulation: REMOVED_CONSTRAINT, removal: Some(removal.clone()), constants };
     (removal, solve_choice(scene, &choice, &tight()).unwrap_or_else(|e| panic!("{e}")))
 }
 
 /// The form in quasi-velocities.
-fn reduced(scene: &Scene, formulation: &'static str, mu0: &[f64]) -> Motion {
+fn reduced(scene: &Scene, formulation: &'static Formulation, mu0: &[f64]) -> Motion {
     let constants = ConstantsRule::Given(mu0.to_vec());
-    let choice = Choice { label: formulation.into(), formulation, removal: None, constants };
+    let choice = Choice { label: formulation.title.into(), formulation, removal: None, constants };
     complete(scene, solve_choice(scene, &choice, &tight()).unwrap_or_else(|e| panic!("{e}")))
 }
 
@@ -121,7 +121,7 @@ fn classic_systems_go_on_by_other_charts_as_with_multipliers() {
             if scene.name == "snakeboard" { vec![0.1, 0.1] } else { vec![0.0; scene.system.constraints.len()] };
         let (removal, mut motion) = removed(&scene, ConstantsRule::Given(costates.clone()));
         let mu0 = multipliers_of(&scene, &removal, &costates).unwrap().expect("coordinates");
-        let equations = equations(&scene.system, "vakonomic", None);
+        let equations = equations(&scene.system, VAKONOMIC, None);
         let mut vakonomic = motion_of(&scene, equations, &mu0, &tight());
         let (apart, end) = known_gap(&mut motion, &mut vakonomic);
         changes(&scene.name, &motion);
@@ -166,11 +166,11 @@ fn what_is_read_off_after_a_change_is_what_the_first_chart_means() {
 #[test]
 fn quasi_velocities_go_on_where_their_pivot_vanishes() {
     let scene = car();
-    let mut own = reduced(&scene, "chetaev-reduced", &[]);
+    let mut own = reduced(&scene, REDUCED_CHETAEV, &[]);
     assert_eq!(changes("Chetaev", &own), 1);
     must("car, Chetaev in quasi-velocities over 20 s", gap(&mut own, &mut chetaev(&scene)).0, 1e-9);
     let mu0 = [0.02, -0.01];
-    let (mut own, mut whole) = (reduced(&scene, "vakonomic-reduced", &mu0), vakonomic(&scene, &mu0));
+    let (mut own, mut whole) = (reduced(&scene, REDUCED_VAKONOMIC, &mu0), vakonomic(&scene, &mu0));
     assert_eq!(changes("vakonomic", &own), 1);
     must("car, vakonomic in quasi-velocities over 20 s", gap(&mut own, &mut whole).0, 1e-9);
     for t in [1.0, 2.5, 11.0, 20.0] {
@@ -191,7 +191,7 @@ fn quasi_velocities_without_a_pole_have_none() {
         assert_eq!(g.denominators(&rates), [], "{texts:?}");
         removal.verify(&scene.system).unwrap_or_else(|e| panic!("{e}"));
         let constants = ConstantsRule::Given(vec![0.01; removal.memory.len()]);
-        let choice = Choice { label: "u".into(), formulation: "removed-constraint", removal: Some(removal), constants };
+        let choice = Choice { label: "u".into(), formulation: REMOVED_CONSTRAINT, removal: Some(removal), constants };
         complete(&scene, solve_choice(&scene, &choice, &tight()).unwrap_or_else(|e| panic!("{e}")));
     }
 }
@@ -203,7 +203,7 @@ fn unknowns_that_vanish_are_found() {
     let constraints = "\"y'*cos(phi) - x'*sin(phi) + 0.3*z'*z\", \"z'*cos(phi) + 0.7*x'*sin(z) - 0.2*phi'\"";
     let scene = parsed("x y z=0.7 phi=0.3", lagrangian, constraints, "\"x'\" = 0, \"phi'\" = 0", 3.0);
     for mu0 in [[0.31, 0.47], [-0.2, 0.83], [0.6, -0.09]] {
-        let (mut own, mut whole) = (reduced(&scene, "vakonomic-reduced", &mu0), vakonomic(&scene, &mu0));
+        let (mut own, mut whole) = (reduced(&scene, REDUCED_VAKONOMIC, &mu0), vakonomic(&scene, &mu0));
         must("from rest, in quasi-velocities", gap(&mut own, &mut whole).0, 1e-9);
     }
 }
@@ -214,7 +214,7 @@ fn all_charts_of_a_run_share_its_limits() {
     let (removal, whole) = removed(&scene, ConstantsRule::Zero);
     let limit = (whole.work.steps + whole.work.rejected) / 2;
     let constants = ConstantsRule::Zero;
-    let choice = Choice { label: "half".into(), formulation: "removed-constraint", removal: Some(removal), constants };
+    let choice = Choice { label: "half".into(), formulation: REMOVED_CONSTRAINT, removal: Some(removal), constants };
     let half = solve_choice(&scene, &choice, &Settings { max_steps: limit, ..tight() }).unwrap();
     let Ending::Stopped { t, cause } = &half.ending else { panic!("{:?}", half.ending) };
     assert!(cause.contains(&format!("more than {limit} steps")) && *t > 5.0 && *t < 15.0, "t = {t}: {cause}");
@@ -236,7 +236,7 @@ fn only_charts_of_our_own_are_changed() {
     removal.chart.clear();
     let choice = Choice {
         label: "by hand".into(),
-        formulation: "removed-constraint",
+        formulation: REMOVED_CONSTRAINT,
         removal: Some(removal),
         constants: ConstantsRule::Zero,
     };

@@ -1,5 +1,6 @@
 //! Quasi-velocities in a frame against Maggi and costate form: bodies turn, roll, slide to the frame's end.
 
+use deltaq::{CHETAEV, REDUCED_CHETAEV, REDUCED_VAKONOMIC, VAKONOMIC};
 use std::cell::Cell;
 
 use equations::Role;
@@ -51,7 +52,7 @@ fn rates_in_a_frame_are_those_by_maggi_and_those_of_the_costate_form() {
     let strategy = (0_usize..5, proptest::collection::vec(-1.0_f64..1.0, 15));
     let outcome = proptest::test_runner::TestRunner::new(config).run(&strategy, |(kind, x)| {
         let scene = framed(kind, &x).map_err(|e| TestCaseError::fail(format!("{e}, kind {kind}, {x:?}")))?;
-        let reduced = derived(&scene, "chetaev-reduced", None, Some(&scene.start));
+        let reduced = derived(&scene, REDUCED_CHETAEV, None, Some(&scene.start));
         let reduced = reduced.map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = reduced_form::differences(&scene, &reduced, &scene.start);
         let others = reduced_vakonomic::differences(&scene, &some_multipliers(&scene));
@@ -76,7 +77,7 @@ fn rates_in_a_frame_are_those_by_maggi_and_those_of_the_costate_form() {
 fn balls_are_written_in_a_frame() {
     for name in ["ball-in-cone", "turntable"] {
         let scene = scene(name, &[]);
-        for form in ["chetaev-reduced", "vakonomic-reduced"] {
+        for form in [REDUCED_CHETAEV, REDUCED_VAKONOMIC] {
             let equations = equations(&scene.system, form, None);
             assert!(
                 equations.chosen.iter().any(|words| words.contains("sin(theta)")),
@@ -87,7 +88,7 @@ fn balls_are_written_in_a_frame() {
         }
     }
     // the constraint as printed contains 1/rho in the frame: at rho = 0 only the frame would end
-    let printed = equations(&scene("ball-in-cone-as-printed", &[]).system, "chetaev-reduced", None);
+    let printed = equations(&scene("ball-in-cone-as-printed", &[]).system, REDUCED_CHETAEV, None);
     assert!(printed.chosen.is_empty(), "{:?}", printed.chosen);
 }
 
@@ -103,20 +104,20 @@ fn motions_near_the_ends_of_the_frame_are_those_of_the_multiplier_form() {
     ];
     for (name, overrides) in near {
         let scene = scene(name, overrides);
-        for form in ["chetaev", "vakonomic"] {
-            let mu = if form == "vakonomic" { some_multipliers(&scene) } else { Vec::new() };
+        for (form, reduced) in [(CHETAEV, REDUCED_CHETAEV), (VAKONOMIC, REDUCED_VAKONOMIC)] {
+            let mu = if form == VAKONOMIC { some_multipliers(&scene) } else { Vec::new() };
             let whole = equations(&scene.system, form, None);
             let mut multiplier = motion_of(&scene, whole, &mu, &tight());
             for method in [Method::Dop853, Method::Taylor] {
                 let settings = deltaq::Settings { method: Some(method), ..tight() };
-                let reduced = equations(&scene.system, &format!("{form}-reduced"), None);
+                let reduced = equations(&scene.system, reduced, None);
                 let mut framed = motion_of(&scene, reduced, &mu, &settings);
                 let (gap, end) = known_gap(&mut multiplier, &mut framed);
                 println!(
-                    "{name} {overrides:?} {form} {method:?}: {gap:.1e} to {end:.2}; {:?}, {:?}",
+                    "{name} {overrides:?} {form:?} {method:?}: {gap:.1e} to {end:.2}; {:?}, {:?}",
                     framed.ending, multiplier.ending
                 );
-                must(&format!("{name} {overrides:?}: {form} in a frame by {method:?}, to {end:.2} s"), gap, 1e-7);
+                must(&format!("{name} {overrides:?}: {form:?} in a frame by {method:?}, to {end:.2} s"), gap, 1e-7);
                 assert!(end > 0.0);
             }
         }

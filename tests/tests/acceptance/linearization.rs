@@ -1,6 +1,6 @@
 //! Steady motions of the literature: eigenvalues and critical speeds that are known otherwise.
 
-use deltaq::{Settings, choices, setting};
+use deltaq::{KAPPA, Settings, choices, setting};
 use linear::{Eigenvalue, LinearError, find_steady, linearize, linearize_at, sweep};
 use mechanics::ConstantsRule;
 use scene::Scene;
@@ -91,12 +91,9 @@ fn a_rattleback_has_its_way() {
 fn an_equilibrium_in_a_bowl_is_the_same_for_all() {
     let rest = scene("bowl", &[("x", 0.0), ("y", 0.0), ("x'", 0.0), ("y'", 0.0)]);
     let known = [0.8, 1.3].map(|k: f64| (9.81 * k).sqrt());
-    for mut choice in choices(&rest).into_iter().filter(|c| c.formulation != "kappa") {
-        choice.constants = if choice.formulation.starts_with("vakonomic") {
-            ConstantsRule::Given(vec![0.0])
-        } else {
-            ConstantsRule::Zero
-        };
+    for mut choice in choices(&rest).into_iter().filter(|c| c.formulation != KAPPA) {
+        choice.constants =
+            if choice.formulation.starts_multipliers { ConstantsRule::Given(vec![0.0]) } else { ConstantsRule::Zero };
         let found = linearize(setting(&rest), &choice).unwrap_or_else(|error| panic!("{}: {error}", choice.label));
         let found = found.part(&[]).expect("all").eigenvalues;
         for k in known {

@@ -1,6 +1,6 @@
 //! Removed-constraint motions inside the vakonomic family, and outside of it (T2, T3).
 
-use deltaq::{Metric, best_fit, setting};
+use deltaq::{Metric, VAKONOMIC, best_fit, setting};
 use scene::Scene;
 
 use super::support::{
@@ -49,7 +49,7 @@ fn sledge_with_the_matching_horizon_is_vakonomic() {
 fn sledge_with_another_horizon_is_on_no_vakonomic_motion() {
     let scene = scene("sledge", &[("duration", 3.0)]);
     let arc = removal(&scene, "arc-length");
-    let vakonomic_equations = equations(&scene.system, "vakonomic", None);
+    let vakonomic_equations = equations(&scene.system, VAKONOMIC, None);
     let mut metric = Metric::new(&scene.system).expect("compiles");
     let (matching, gravity) = sledge_horizon(&scene);
     for (t1, there_is_one) in [(matching, true), (matching + 1.0, false), (0.0, false), (10.0, false)] {

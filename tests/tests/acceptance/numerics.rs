@@ -3,7 +3,10 @@
 use std::f64::consts::FRAC_PI_2;
 
 use catalogue::trailer::{self, Coordinates};
-use deltaq::{Choice, Ending, Motion, Settings, choices, solve_choice};
+use deltaq::{
+    CHETAEV, Choice, Ending, Motion, REDUCED_CHETAEV, REDUCED_VAKONOMIC, Settings, VAKONOMIC_COSTATE, choices,
+    solve_choice,
+};
 use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
@@ -31,7 +34,7 @@ fn every_method_reaches_the_closed_form_of_the_sledge() {
         (Method::Radau5, 1e-6, 100.0),
     ] {
         let settings = Settings { method: Some(method), tolerance, ..Settings::default() };
-        let mut motion = motion_of(&scene, equations(&scene.system, "chetaev", None), &[], &settings);
+        let mut motion = motion_of(&scene, equations(&scene.system, CHETAEV, None), &[], &settings);
         assert!(motion.is_complete(), "{method:?}: {:?}", motion.ending);
         let now = at(&mut motion, 10.0).coordinates;
         let error = super::support::largest_difference(&now, &[end.x, end.y, end.phi]) / size;
@@ -58,9 +61,9 @@ fn jacobians_are_exact_for_every_formulation_on_every_scene() {
 #[test]
 fn jacobians_of_reduced_forms_are_exact() {
     for scene in [scene("disc", &[]), trailer::scene(4, Coordinates::Maximal).expect("parses")] {
-        for (form, constants) in [("chetaev-reduced", vec![]), ("vakonomic-reduced", some_multipliers(&scene))] {
+        for (form, constants) in [(REDUCED_CHETAEV, vec![]), (REDUCED_VAKONOMIC, some_multipliers(&scene))] {
             let (error, size) = jacobian_error(&scene, &equations(&scene.system, form, None), &constants);
-            must(&format!("{}, {form}: Jacobian", scene.name), error / size, 1e-7);
+            must(&format!("{}, {form:?}: Jacobian", scene.name), error / size, 1e-7);
         }
     }
 }
@@ -70,7 +73,7 @@ fn implicit_methods_use_those_jacobians() {
     let scene = scene("ball-in-cone", &[("duration", 1.0)]);
     let run = |method| {
         let settings = Settings { method: Some(method), tolerance: 1e-7, ..Settings::default() };
-        motion_of(&scene, equations(&scene.system, "chetaev", None), &[], &settings)
+        motion_of(&scene, equations(&scene.system, CHETAEV, None), &[], &settings)
     };
     let mut reference: Motion = run(Method::Dop853);
     for method in [Method::Bdf, Method::Esdirk34] {
@@ -89,7 +92,7 @@ const NEAR_A_FOLD: &str = include_str!("../scenes/near-a-fold.toml");
 fn costate_form_keeps_to_its_branch_near_a_fold() {
     let scene = Scene::parse("fold", NEAR_A_FOLD).unwrap_or_else(|e| panic!("{e}"));
     let mut multiplier = vakonomic(&scene, &scene.multipliers);
-    let costate = motion_of(&scene, equations(&scene.system, "vakonomic-costate", None), &scene.multipliers, &tight());
+    let costate = motion_of(&scene, equations(&scene.system, VAKONOMIC_COSTATE, None), &scene.multipliers, &tight());
     let mut costate = complete(&scene, costate);
     must("near a fold: multiplier form and costate form", gap(&mut multiplier, &mut costate).0, 1e-9);
     // read off backwards, far from where it was read last: the start velocities come out again

@@ -1,6 +1,7 @@
 //! Chetaev in quasi-velocities is Chetaev: against the saddle-point form and Maggi's, derived independently.
 
 use catalogue::trailer::{self, Coordinates};
+use deltaq::REDUCED_CHETAEV;
 use equations::{Compiled, Equations};
 use mechanics::State;
 use proptest::{prop_assert, test_runner::TestCaseError};
@@ -14,7 +15,7 @@ use super::support::{
 };
 
 pub fn reduced(scene: &Scene) -> Equations {
-    equations(&scene.system, "chetaev-reduced", None)
+    equations(&scene.system, REDUCED_CHETAEV, None)
 }
 
 fn train(trailers: usize, coordinates: Coordinates) -> Scene {
@@ -71,7 +72,7 @@ fn reduced_rates_are_those_by_maggi_on_every_scene() {
 fn reduced_rates_are_those_by_maggi_on_random_systems() {
     let worst = std::cell::Cell::new(0.0_f64);
     for_all_linear(1894, |scene| {
-        let equations = derived(scene, "chetaev-reduced", None, Some(&scene.start));
+        let equations = derived(scene, REDUCED_CHETAEV, None, Some(&scene.start));
         let equations = equations.map_err(|e| TestCaseError::fail(e.to_string()))?;
         let (rates, velocities) = differences(scene, &equations.leave_out_unneeded(), &scene.start);
         worst.set(worst.get().max(rates));
@@ -138,6 +139,6 @@ fn the_train_with_three_trailers_is_the_scene() {
 
 #[test]
 fn constraints_that_are_not_linear_are_refused() {
-    let error = derived(&scene("appell-hamel", &[]), "chetaev-reduced", None, None).err().expect("refused").to_string();
+    let error = derived(&scene("appell-hamel", &[]), REDUCED_CHETAEV, None, None).err().expect("refused").to_string();
     assert!(error.contains("not linear in the velocities"), "{error}");
 }

@@ -3,8 +3,8 @@
 use std::cell::Cell;
 
 use catalogue::trailer::{self, Coordinates};
-use deltaq::Settings;
-use equations::{Compiled, Equations, Outputs, Plan};
+use deltaq::{REDUCED_VAKONOMIC, Settings, VAKONOMIC, VAKONOMIC_COSTATE};
+use equations::{Compiled, Equations, Formulation, Outputs, Plan};
 use integrate::Method;
 use proptest::prop_assert;
 use reduction::Frame;
@@ -15,7 +15,7 @@ use super::support::{
     scene, some_multipliers, start, tight, vakonomic,
 };
 
-fn raw(scene: &Scene, name: &str) -> Equations {
+fn raw(scene: &Scene, name: &Formulation) -> Equations {
     derived(scene, name, None, Some(&scene.start)).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -57,7 +57,7 @@ fn in_the_states_of_a_frame(scene: &Scene, y: &[f64], rates: &[f64]) -> Vec<f64>
 
 /// Differences of rates, velocities and multipliers of the two forms; the reduced one as chosen and plain.
 pub fn differences(scene: &Scene, mu: &[f64]) -> [f64; 3] {
-    let (costate, reduced) = (raw(scene, "vakonomic-costate"), raw(scene, "vakonomic-reduced"));
+    let (costate, reduced) = (raw(scene, VAKONOMIC_COSTATE), raw(scene, REDUCED_VAKONOMIC));
     let (rates, outputs) = instant(scene, &costate, Compiled::plain(&costate).expect("compiles"), mu);
     let rates = match &reduced.chosen[..] {
         [] => rates,
@@ -115,8 +115,8 @@ fn rates_are_those_of_the_costate_form_on_random_systems() {
 fn motions_are_those_of_the_multiplier_form() {
     for scene in linear_scenes() {
         let mu: Vec<f64> = some_multipliers(&scene).iter().map(|mu| 0.3 * mu).collect();
-        let mut reference = motion_of(&scene, equations(&scene.system, "vakonomic", None), &mu, &tight());
-        let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &mu, &tight());
+        let mut reference = motion_of(&scene, equations(&scene.system, VAKONOMIC, None), &mu, &tight());
+        let mut motion = motion_of(&scene, equations(&scene.system, REDUCED_VAKONOMIC, None), &mu, &tight());
         let (distance, end) = known_gap(&mut reference, &mut motion);
         let guards = motion.equations.guards.len();
         must(&format!("{}: quasi-velocities, {guards} guards, to {end:.2} s", scene.name), distance, 1e-9);
@@ -132,7 +132,7 @@ fn multipliers_and_series_follow_along_the_motion() {
         let mu: Vec<f64> = some_multipliers(&scene).iter().map(|mu| 0.3 * mu).collect();
         let mut reference = vakonomic(&scene, &mu);
         let settings = Settings { method: Some(Method::Taylor), tolerance: TIGHT, ..tight() };
-        let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &mu, &settings);
+        let mut motion = motion_of(&scene, equations(&scene.system, REDUCED_VAKONOMIC, None), &mu, &settings);
         let (distance, end) = known_gap(&mut reference, &mut motion);
         must(&format!("{}: by Taylor series, to {end:.2} s", scene.name), distance, 1e-9);
         let t = scene.start.t + 0.5 * (end - scene.start.t);
@@ -153,7 +153,7 @@ fn a_lagrangian_that_is_not_quadratic_is_solved_by_newton() {
     let mut reference = vakonomic(&scene, &[0.4]);
     for method in [Method::Dop853, Method::Taylor] {
         let settings = Settings { method: Some(method), ..tight() };
-        let mut motion = motion_of(&scene, equations(&scene.system, "vakonomic-reduced", None), &[0.4], &settings);
+        let mut motion = motion_of(&scene, equations(&scene.system, REDUCED_VAKONOMIC, None), &[0.4], &settings);
         must(&format!("quartic: {method:?}"), known_gap(&mut reference, &mut motion).0, 1e-10);
     }
 }
@@ -161,7 +161,7 @@ fn a_lagrangian_that_is_not_quadratic_is_solved_by_newton() {
 #[test]
 fn a_train_takes_two_unknowns_whatever_its_length() {
     let scene = trailer::scene(12, Coordinates::Maximal).expect("parses");
-    let equations = raw(&scene, "vakonomic-reduced");
+    let equations = raw(&scene, REDUCED_VAKONOMIC);
     assert_eq!(equations.unknowns().len(), 2);
     assert!(equations.guards.is_empty());
     let form = Plan::choose(&equations, None).expect("compiles");
@@ -173,7 +173,7 @@ fn a_train_takes_two_unknowns_whatever_its_length() {
 
 #[test]
 fn forces_and_constraints_that_are_not_linear_are_refused() {
-    let refusal = |scene: &Scene| derived(scene, "vakonomic-reduced", None, None).err().expect("refused").to_string();
+    let refusal = |scene: &Scene| derived(scene, REDUCED_VAKONOMIC, None, None).err().expect("refused").to_string();
     let error = refusal(&scene("appell-hamel", &[]));
     assert!(error.contains("not linear in the velocities"), "{error}");
     let pulled = QUARTIC.replace("[start.velocities]", "[system.forces]\nx = \"1\"\n[start.velocities]");

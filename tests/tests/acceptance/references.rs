@@ -1,7 +1,7 @@
 //! Every formulation against reference states from code that shares nothing with the solvers.
 
 use crate::references::{Motion, REFERENCES, Reference};
-use deltaq::{SolveError, setting, solve};
+use deltaq::{CHETAEV, REMOVED_CONSTRAINT, SolveError, VAKONOMIC, setting, solve};
 use mechanics::ConstantsRule;
 
 use super::support::{at, equations, largest_difference, must, scene, tight};
@@ -18,13 +18,13 @@ fn costates(scene: &scene::Scene, named: &[(&str, f64)]) -> Vec<f64> {
 /// The names of the formulation and of the constants, and the motion itself.
 fn motion(reference: &Reference, scene: &scene::Scene, natural: bool) -> Result<deltaq::Motion, SolveError> {
     let (name, removal, rule) = match &reference.motion {
-        Motion::Chetaev => ("chetaev", None, ConstantsRule::Zero),
-        Motion::Vakonomic { multipliers } => ("vakonomic", None, ConstantsRule::Given(multipliers.to_vec())),
+        Motion::Chetaev => (CHETAEV, None, ConstantsRule::Zero),
+        Motion::Vakonomic { multipliers } => (VAKONOMIC, None, ConstantsRule::Given(multipliers.to_vec())),
         Motion::Removed { horizon: Some(horizon), .. } if natural => {
-            ("removed-constraint", scene.removals.first(), ConstantsRule::Natural { horizon: *horizon })
+            (REMOVED_CONSTRAINT, scene.removals.first(), ConstantsRule::Natural { horizon: *horizon })
         }
         Motion::Removed { costates: named, .. } => {
-            ("removed-constraint", scene.removals.first(), ConstantsRule::Given(costates(scene, named)))
+            (REMOVED_CONSTRAINT, scene.removals.first(), ConstantsRule::Given(costates(scene, named)))
         }
     };
     solve(setting(scene), equations(&scene.system, name, removal), &rule, &tight())

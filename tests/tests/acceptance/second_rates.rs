@@ -9,7 +9,7 @@
 //!
 //! Newton's motion only where the free constant `p₀` is `ẋ₀`.
 
-use deltaq::Motion;
+use deltaq::{Motion, REMOVED_CONSTRAINT};
 use equations::{DerivationError, Role};
 use scene::Scene;
 
@@ -43,7 +43,7 @@ fn exact(t: f64, momentum: f64) -> (f64, f64) {
 #[test]
 fn the_one_free_constant_is_the_momentum() {
     let scene = oscillator();
-    let equations = equations(&scene.system, "removed-constraint", Some(&scene.removals[0]));
+    let equations = equations(&scene.system, REMOVED_CONSTRAINT, Some(&scene.removals[0]));
     let names = deltaq::constant_names(&equations);
     assert_eq!(names, ["p0_u"]);
     let roles: Vec<Role> = equations.states.iter().map(|y| y.role).collect();
@@ -109,9 +109,9 @@ fn energy_of_second_order_is_constant() {
 fn a_singular_highest_hessian_is_refused_with_its_rank() {
     let scene = scene("three-cylinders", &[]);
     let paper = super::support::removal(&scene, "paper");
-    match derived(&scene, "removed-constraint", Some(paper), None) {
+    match derived(&scene, REMOVED_CONSTRAINT, Some(paper), None) {
         Err(DerivationError::SingularHighestHessian { formulation, removal, second_rates, rank, size }) => {
-            assert_eq!((formulation, removal.as_str()), ("removed-constraint", "paper"));
+            assert_eq!((formulation, removal.as_str()), (REMOVED_CONSTRAINT.name, "paper"));
             assert_eq!((rank, size), (1, 2));
             assert!(second_rates.contains("u''"), "{second_rates}");
         }
@@ -126,7 +126,7 @@ const HALF_BLIND: &str = include_str!("../scenes/half-blind.toml");
 #[test]
 fn a_singular_highest_hessian_is_refused_where_only_some_parameters_are_of_second_order() {
     let scene = Scene::parse("half-blind", HALF_BLIND).unwrap_or_else(|e| panic!("{e}"));
-    match derived(&scene, "removed-constraint", scene.removals.first(), None) {
+    match derived(&scene, REMOVED_CONSTRAINT, scene.removals.first(), None) {
         Err(DerivationError::SingularHighestHessian { rank, size, .. }) => assert_eq!((rank, size), (1, 2)),
         Err(other) => panic!("{other}"),
         Ok(_) => panic!("not refused"),

@@ -2,8 +2,10 @@
 
 use std::collections::HashMap;
 
-use deltaq::{Choice, Metric, Motion, Settings, derive, formulation, setting, solve};
-use equations::{Compiled, Derivation, DerivationError, Equations, Outputs};
+use deltaq::{
+    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, VAKONOMIC_COSTATE, derive, setting, solve,
+};
+use equations::{Compiled, Derivation, DerivationError, Equations, Formulation, Outputs};
 use mechanics::{ConstantsRule, Removal, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
@@ -71,31 +73,30 @@ pub fn parameter(scene: &Scene, name: &str) -> f64 {
 }
 
 /// What a formulation is asked for.
-pub fn choice(name: &str, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
-    let entry = formulation(name).unwrap_or_else(|| panic!("no formulation {name}"));
-    Choice { label: entry.title.into(), formulation: entry.name, removal: removal.cloned(), constants }
+pub fn choice(formulation: &'static Formulation, removal: Option<&Removal>, constants: ConstantsRule) -> Choice {
+    Choice { label: formulation.title.into(), formulation, removal: removal.cloned(), constants }
 }
 
 /// The equations of a formulation.
-pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Equations {
-    let derived = derive(system, &choice(name, removal, ConstantsRule::Zero));
-    derived.unwrap_or_else(|e| panic!("{name}: {e}"))
+pub fn equations(system: &System, formulation: &'static Formulation, removal: Option<&Removal>) -> Equations {
+    let derived = derive(system, &choice(formulation, removal, ConstantsRule::Zero));
+    derived.unwrap_or_else(|e| panic!("{formulation:?}: {e}"))
 }
 
 /// The derivation itself, with nothing left out.
-pub fn derived(scene: &Scene, name: &str, removal: Option<&Removal>, start: Option<&State>) -> Derived {
-    let entry = formulation(name).unwrap_or_else(|| panic!("no formulation {name}"));
-    (entry.derive)(&scene.system, &Derivation { removal, start, ..Default::default() })
+pub fn derived(scene: &Scene, formulation: &Formulation, removal: Option<&Removal>, start: Option<&State>) -> Derived {
+    (formulation.derive)(&scene.system, &Derivation { removal, start, ..Default::default() })
 }
 
 /// The equations of every formulation and regular removal of a scene, with their name and some constants.
 pub fn all_equations(scene: &Scene) -> Vec<(String, Equations, Vec<f64>)> {
     let mu = some_multipliers(scene);
-    let of =
-        |(name, constants): (&str, &[f64])| (name.to_string(), equations(&scene.system, name, None), constants.into());
-    let plain = [("chetaev", &[][..]), ("vakonomic", &mu), ("vakonomic-costate", &mu)].map(of);
+    let of = |(own, constants): (&'static Formulation, &[f64])| {
+        (own.name.to_string(), equations(&scene.system, own, None), constants.into())
+    };
+    let plain = [(CHETAEV, &[][..]), (VAKONOMIC, &mu), (VAKONOMIC_COSTATE, &mu)].map(of);
     let removed = regular_removals(scene).into_iter().map(|removal| {
-        let equations = equations(&scene.system, "removed-constraint", Some(&removal));
+        let equations = equations(&scene.system, REMOVED_CONSTRAINT, Some(&removal));
         let constants = vec![0.1; equations.free_constants.len()];
         (format!("removal {}", removal.name), equations, constants)
     });
@@ -111,17 +112,17 @@ pub fn motion_of(scene: &Scene, equations: Equations, constants: &[f64], setting
 
 /// The Chetaev motion, which must reach the end.
 pub fn chetaev(scene: &Scene) -> Motion {
-    complete(scene, motion_of(scene, equations(&scene.system, "chetaev", None), &[], &tight()))
+    complete(scene, motion_of(scene, equations(&scene.system, CHETAEV, None), &[], &tight()))
 }
 
 /// The vakonomic motion with multipliers `mu0`, which must reach the end.
 pub fn vakonomic(scene: &Scene, mu0: &[f64]) -> Motion {
-    complete(scene, motion_of(scene, equations(&scene.system, "vakonomic", None), mu0, &tight()))
+    complete(scene, motion_of(scene, equations(&scene.system, VAKONOMIC, None), mu0, &tight()))
 }
 
 /// The removed-constraint motion with `P(t₀)`; it may stop where the removal's chart ends.
 pub fn removed(scene: &Scene, removal: &Removal, constants: &[f64]) -> Motion {
-    motion_of(scene, equations(&scene.system, "removed-constraint", Some(removal)), constants, &tight())
+    motion_of(scene, equations(&scene.system, REMOVED_CONSTRAINT, Some(removal)), constants, &tight())
 }
 
 /// A removal of the scene by name.

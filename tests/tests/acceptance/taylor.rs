@@ -1,6 +1,6 @@
 //! Taylor series of motions: their slope against the rates, and whole motions against DOP853.
 
-use deltaq::Settings;
+use deltaq::{CHETAEV, Settings, VAKONOMIC};
 use equations::Equations;
 use integrate::{Method, Projection};
 use mechanics::ConstantsRule;
@@ -57,7 +57,7 @@ fn the_series_of_every_formulation_satisfies_its_equations_on_every_scene() {
 fn motions_are_those_of_dop853() {
     for scene in scenes() {
         let mu0 = some_multipliers(&scene);
-        for (name, constants) in [("chetaev", &[][..]), ("vakonomic", &mu0)] {
+        for (name, constants) in [(CHETAEV, &[][..]), (VAKONOMIC, &mu0)] {
             for projection in [Projection::EveryStep, Projection::Off] {
                 let run = |method| {
                     let settings =
@@ -68,13 +68,13 @@ fn motions_are_those_of_dop853() {
                 assert_eq!(
                     taylor.is_complete(),
                     reference.is_complete(),
-                    "{}, {name}: {:?}",
+                    "{}, {name:?}: {:?}",
                     scene.name,
                     taylor.ending
                 );
                 let (gap, end) = known_gap(&mut taylor, &mut reference);
-                println!("{}, {name}: {} and {} steps to {end}", scene.name, taylor.work.steps, reference.work.steps);
-                must(&format!("{}, {name}, {projection:?}: Taylor against DOP853", scene.name), gap, 1e-9);
+                println!("{}, {name:?}: {} and {} steps to {end}", scene.name, taylor.work.steps, reference.work.steps);
+                must(&format!("{}, {name:?}, {projection:?}: Taylor against DOP853", scene.name), gap, 1e-9);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Scenes written by vectors and rotations move as those whose components were worked out by hand.
 
-use deltaq::{Settings, solve_choice};
+use deltaq::{CHETAEV, Settings, VAKONOMIC, solve_choice};
 use mechanics::ConstantsRule;
 use scene::Scene;
 
@@ -43,7 +43,7 @@ fn vectors_give_the_motions_of_components_by_hand() {
         assert_eq!(by_hand.start.q, by_vectors.start.q, "{title}");
         let h = by_hand.system.constraints.len();
         // multipliers belong to constraints as they are written: μ₀ = 0 says the same of both
-        for (name, constants) in [("chetaev", Vec::new()), ("vakonomic", vec![0.0; h])] {
+        for (name, constants) in [(CHETAEV, Vec::new()), (VAKONOMIC, vec![0.0; h])] {
             let choice = choice(name, None, ConstantsRule::Given(constants));
             let [mut one, mut two] = [&by_hand, &by_vectors].map(|scene| {
                 let motion = solve_choice(scene, &choice, &settings).unwrap_or_else(|e| panic!("{title}: {e}"));
@@ -51,7 +51,7 @@ fn vectors_give_the_motions_of_components_by_hand() {
                 motion
             });
             let (apart, end) = gap(&mut one, &mut two);
-            must(&format!("{title}, {name}, over {end} s"), apart, 1e-12);
+            must(&format!("{title}, {name:?}, over {end} s"), apart, 1e-12);
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Every scene, and systems that nobody chose: discrete motions of order 8 come to the derived ones.
 
 use catalogue::{SCENES, find};
-use deltaq::{Choice, Motion, Settings, SolveError, Steps, choices, solve_by_steps, solve_choice};
+use deltaq::{
+    Choice, Motion, REMOVED_CONSTRAINT, Settings, SolveError, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
+};
 use discrete::{Composition, DiscreteError};
 use integrate::Method;
 use mechanics::ConstantsRule;
@@ -68,7 +70,7 @@ fn discrete_motions_come_to_those_of_every_scene() {
         let scene = Scene { duration: sign * found.duration.min(HORIZON), ..found };
         let some: Vec<f64> = (0..scene.system.constraints.len()).map(|i| [0.4, -0.3, 0.2, -0.1][i % 4]).collect();
         let choices = choices(&scene).into_iter().flat_map(|choice| match choice.formulation {
-            "vakonomic" => vec![given(&choice, &some), choice],
+            own if own == VAKONOMIC => vec![given(&choice, &some), choice],
             _ => vec![choice],
         });
         for choice in choices {
@@ -102,7 +104,7 @@ fn discrete_motions_come_to_those_of_random_systems() {
         for mut r in removed {
             let choice = Choice {
                 label: r.removal.name.clone(),
-                formulation: "removed-constraint",
+                formulation: REMOVED_CONSTRAINT,
                 removal: Some(r.removal),
                 constants: ConstantsRule::Zero,
             };

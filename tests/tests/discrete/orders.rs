@@ -1,8 +1,11 @@
 //! Orders of discrete principles and compositions: error against step, above the plateau of round-off.
 
 use catalogue::find;
-use deltaq::{Choice, Motion, Settings, Steps, choices, solve_by_steps, solve_choice};
+use deltaq::{
+    CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, Steps, VAKONOMIC, choices, solve_by_steps, solve_choice,
+};
 use discrete::Composition;
+use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 use validation::scaling::exponent;
@@ -20,7 +23,7 @@ const GRIDS: u32 = 48;
 /// So many of the finest grids over the plateau give the slope.
 const POINTS: usize = 3;
 
-fn choice(scene: &Scene, formulation: &str, constants: Option<Vec<f64>>) -> Choice {
+fn choice(scene: &Scene, formulation: &Formulation, constants: Option<Vec<f64>>) -> Choice {
     let found = choices(scene).into_iter().find(|c| c.formulation == formulation).expect("a formulation");
     let constants = constants.map_or(found.constants.clone(), ConstantsRule::Given);
     Choice { constants, ..found }
@@ -68,7 +71,7 @@ fn measure(scene: &Scene, choice: &Choice, composition: Composition) {
     assert!((order - nominal).abs() < limit, "{what}: {order}; {points:?}");
 }
 
-fn measure_all(name: &str, duration: f64, formulation: &str, constants: Option<Vec<f64>>) {
+fn measure_all(name: &str, duration: f64, formulation: &Formulation, constants: Option<Vec<f64>>) {
     let mut scene = find(name, &[]).unwrap();
     scene.duration = duration;
     let choice = choice(&scene, formulation, constants);
@@ -79,14 +82,14 @@ fn measure_all(name: &str, duration: f64, formulation: &str, constants: Option<V
 
 #[test]
 fn chetaev_has_its_orders() {
-    measure_all("sledge", 2.0, "chetaev", None);
-    measure_all("ball-in-cone", 0.2, "chetaev", None);
-    measure_all("particle", 4.0, "chetaev", None);
+    measure_all("sledge", 2.0, CHETAEV, None);
+    measure_all("ball-in-cone", 0.2, CHETAEV, None);
+    measure_all("particle", 4.0, CHETAEV, None);
     // a nonlinear constraint, in the potential −x y, so that the run bends
     let mut hamel = find("appell-hamel", &[("duration".into(), 0.5.into())]).unwrap();
     let bend = hamel.system.expression("x*y").unwrap();
     hamel.system.lagrangian = hamel.system.graph.add(hamel.system.lagrangian, bend);
-    let choice = choice(&hamel, "chetaev", None);
+    let choice = choice(&hamel, CHETAEV, None);
     // of higher orders four steps leave round-off only
     [Composition::Second, Composition::Fourth]
         .into_iter()
@@ -95,13 +98,13 @@ fn chetaev_has_its_orders() {
 
 #[test]
 fn vakonomic_has_its_orders() {
-    measure_all("sledge", 2.0, "vakonomic", Some(vec![0.5]));
-    measure_all("ball-in-cone", 0.2, "vakonomic", Some(vec![0.2, -0.1]));
-    measure_all("particle", 4.0, "vakonomic", Some(vec![0.7]));
+    measure_all("sledge", 2.0, VAKONOMIC, Some(vec![0.5]));
+    measure_all("ball-in-cone", 0.2, VAKONOMIC, Some(vec![0.2, -0.1]));
+    measure_all("particle", 4.0, VAKONOMIC, Some(vec![0.7]));
 }
 
 #[test]
 fn removed_constraint_has_its_orders() {
-    measure_all("sledge", 2.0, "removed-constraint", Some(vec![2.0]));
-    measure_all("ball-in-cone", 0.2, "removed-constraint", Some(vec![0.3]));
+    measure_all("sledge", 2.0, REMOVED_CONSTRAINT, Some(vec![2.0]));
+    measure_all("ball-in-cone", 0.2, REMOVED_CONSTRAINT, Some(vec![0.3]));
 }

@@ -1,5 +1,7 @@
 //! Judges: what is wrong with equations, from the values of `L`, `f` and `Q` alone.
 
+use deltaq::{CHETAEV, REDUCED_CHETAEV};
+use equations::Formulation;
 use nalgebra::DVector;
 use symbolic::Symbol;
 
@@ -66,11 +68,11 @@ pub enum Principle {
 }
 
 impl Principle {
-    /// That of a formulation or form, from its name.
-    pub fn of(formulation: &str) -> Principle {
-        match formulation.trim_end_matches("-reduced") {
-            "chetaev" => Principle::Chetaev,
-            "kappa" => Principle::Vakonomic { kappa: KAPPA },
+    /// That of a formulation or form.
+    pub fn of(formulation: &Formulation) -> Principle {
+        match formulation {
+            own if [CHETAEV, REDUCED_CHETAEV].contains(&own) => Principle::Chetaev,
+            own if own == deltaq::KAPPA => Principle::Vakonomic { kappa: KAPPA },
             _ => Principle::Vakonomic { kappa: 0.0 },
         }
     }

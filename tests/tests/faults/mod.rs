@@ -103,7 +103,7 @@ fn ways(scene: &Scene, guards: Guards) -> Vec<Way<'_>> {
         };
         removals.into_iter().flat_map(stages)
     };
-    FORMULATIONS.iter().chain(FORMS).flat_map(of).collect()
+    FORMULATIONS.iter().chain(FORMS).copied().flat_map(of).collect()
 }
 
 /// Where an operation is asked for, and what goes wrong with it.
@@ -122,7 +122,7 @@ fn words((at, what): &Place) -> String {
 /// A fault, on which road it was put, and what became of it.
 struct Fault {
     road: String,
-    formulation: &'static str,
+    formulation: &'static Formulation,
     stage: Stage,
     place: Place,
     outcome: Outcome,
@@ -196,10 +196,10 @@ fn faults_are_noticed() {
         counted(format!("{stage:?}"), &|fault| fault.stage == stage);
     }
     let mut untried = Vec::new();
-    for Formulation { name, .. } in FORMULATIONS.iter().chain(FORMS) {
+    for own in FORMULATIONS.iter().chain(FORMS) {
         for stage in &Stage::ALL[1..] {
-            let noticed = counted(format!("{name}, {stage:?}"), &|f| (f.formulation, f.stage) == (*name, *stage));
-            untried.extend((noticed == 0).then_some((name, stage)));
+            let noticed = counted(format!("{own:?}, {stage:?}"), &|f| (f.formulation, f.stage) == (*own, *stage));
+            untried.extend((noticed == 0).then_some((own, stage)));
         }
     }
     let places: BTreeSet<Place> = faults.iter().map(|fault| fault.place).collect();

@@ -1,5 +1,6 @@
 //! Automatic removals, judged by whether they lead to every admissible velocity and to no other.
 
+use equations::Formulation;
 use mechanics::Removal;
 use scene::Scene;
 use symbolic::faults;
@@ -11,7 +12,7 @@ use super::road::{STATES, Stage, Trial};
 use super::truth::{Point, Truth, slope, slopes};
 
 /// Finds a removal anew, with faults.
-pub fn trial(scene: &Scene, removal: &Removal, formulation: &'static str) -> Option<Trial<'static>> {
+pub fn trial(scene: &Scene, removal: &Removal, formulation: &'static Formulation) -> Option<Trial<'static>> {
     let find = match removal.name.as_str() {
         "coordinates" => Removal::by_coordinates,
         "quasi-velocities" => Removal::by_quasi_velocities,

@@ -1,6 +1,7 @@
 //! Roads from a system to what is handed over, and who judges them.
 
-use equations::{Derivation, Plan};
+use deltaq::FORMS;
+use equations::{Derivation, Formulation, Plan};
 use symbolic::faults::{self, Chance};
 
 use super::judge::{self, Findings, Principle};
@@ -40,7 +41,7 @@ type WithFault<'a> = Box<dyn Fn(usize) -> Result<(Findings, f64), String> + 'a>;
 /// Work into which faults are put: one formulation of one scene, at one stage.
 pub struct Trial<'a> {
     pub name: String,
-    pub formulation: &'static str,
+    pub formulation: &'static Formulation,
     pub stage: Stage,
     pub chances: Vec<Chance>,
     /// What judges find without a fault.
@@ -64,7 +65,7 @@ impl<'a> Trial<'a> {
         let Way { scene, guards, formulation, ref removal, stage } = *way;
         let removal = removal.clone();
         if stage == Stage::Remove {
-            return removal::trial(scene, &removal?, formulation.name);
+            return removal::trial(scene, &removal?, formulation);
         }
         let truth = Truth::new(&scene.system);
         let title = removal.as_ref().map_or(String::new(), |r| format!(", {}", r.name));
@@ -100,8 +101,8 @@ impl<'a> Trial<'a> {
             sound = read(&equations, plan.as_ref(), &samples, near.as_deref()).unwrap_or_else(refused);
         }
         let earlier = before.map(|before| read(&before, None, &samples, near.as_deref()).unwrap_or_else(refused));
-        let guardless = guards == Guards::None && formulation.name.ends_with("reduced");
-        let principle = Principle::of(formulation.name);
+        let guardless = guards == Guards::None && FORMS.contains(&formulation);
+        let principle = Principle::of(formulation);
         let states = samples.clone();
         let judged = move |reading: &Reading| match (&earlier, &parametrized) {
             (Some(earlier), _) => judge::same_motion(earlier, reading),
@@ -119,8 +120,7 @@ impl<'a> Trial<'a> {
             let reading = read(&equations, plan.as_ref(), &samples, near.as_deref())?;
             Ok((judged(&reading), reading.change(&sound)))
         };
-        let (formulation, with_fault) = (formulation.name, Box::new(with_fault));
-        Some(Trial { name, formulation, stage, chances, sound: findings, with_fault })
+        Some(Trial { name, formulation, stage, chances, sound: findings, with_fault: Box::new(with_fault) })
     }
 
     /// What becomes of a fault.

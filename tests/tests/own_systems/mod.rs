@@ -3,7 +3,7 @@
 
 mod families;
 
-use deltaq::{Ensemble, EnsembleOptions, Metric, Motion, Settings, choices, derive, error_estimates, setting};
+use deltaq::{CHETAEV, Ensemble, EnsembleOptions, Metric, Motion, Settings, choices, derive, error_estimates, setting};
 use equations::Outputs;
 use families::{Draw, FAMILIES, Family};
 use reference::{DoubleDouble, Entry, Question, Reference, ReferenceError, reference};
@@ -95,7 +95,7 @@ fn judge(scene: &Scene, motion: &mut Motion, times: &[f64]) -> Result<Reference,
 }
 
 fn chetaev(scene: &Scene) -> deltaq::Choice {
-    choices(scene).into_iter().find(|c| c.formulation == "chetaev").expect("it is there")
+    choices(scene).into_iter().find(|c| c.formulation == CHETAEV).expect("it is there")
 }
 
 fn size(values: &[DoubleDouble]) -> Vec<f64> {

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::mem::swap;
 
-use deltaq::{Membership, Pairing, SolveError, choices};
+use deltaq::{CHETAEV, Membership, Pairing, SolveError, choices};
 use program::parallel::map;
 use proptest::strategy::ValueTree;
 use random::{Batch, CHECKS, Case, Fault, Finding, Findings, Kind, Word, draw_recipe, equations, make, null_test};
@@ -52,7 +52,7 @@ const FORGOTTEN: &str = "the constraints forgotten in Chetaev's motion";
 fn forgotten(case: &mut Case) -> Result<(), SolveError> {
     let mut system = case.scene.system.clone();
     system.constraints.clear();
-    let equations = equations(&system, "chetaev", None)?;
+    let equations = equations(&system, CHETAEV, None)?;
     case.chetaev = case.solve(&system, &case.scene.start, case.end(), equations, &[])?;
     Ok(())
 }
@@ -63,7 +63,7 @@ fn rubbed(case: &mut Case) -> Result<(), SolveError> {
     let mut system = case.scene.system.clone();
     let (g, v) = (&system.graph, system.velocities());
     system.forces = v.iter().map(|&v| g.mul(g.ratio(-1, 10), g.variable(v))).collect();
-    let equations = equations(&system, "chetaev", None)?;
+    let equations = equations(&system, CHETAEV, None)?;
     case.chetaev = case.solve(&system, &case.scene.start, case.end(), equations, &[])?;
     Ok(())
 }
@@ -120,7 +120,7 @@ fn proved_elsewhere(case: &mut Case) -> Result<(), SolveError> {
 }
 
 fn planted(case: &mut Case) -> Result<(), SolveError> {
-    case.planted = "chetaev";
+    case.planted = CHETAEV;
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! The chosen form of the equations has the rates of the plain one.
 
-use deltaq::Motion;
+use deltaq::{Motion, REMOVED_CONSTRAINT, VAKONOMIC};
 use equations::{Compiled, Equations, Plan};
 use nalgebra::DMatrix;
 use proptest::test_runner::TestCaseError;
@@ -125,7 +125,7 @@ fn scenes_need_no_factorization_and_have_the_rates_of_the_plain_form() {
 
 #[test]
 fn motions_on_which_pivots_go_through_zero_are_those_of_the_plain_form() {
-    for (name, formulation) in [("trailer", "vakonomic"), ("ball-in-cone", "removed-constraint")] {
+    for (name, formulation) in [("trailer", VAKONOMIC), ("ball-in-cone", REMOVED_CONSTRAINT)] {
         let scene = catalogue::find(name, &[]).expect("a scene");
         let choices = deltaq::choices(&scene);
         let choice = choices.iter().find(|c| c.formulation == formulation).expect("a choice");

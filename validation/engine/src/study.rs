@@ -1,6 +1,6 @@
 //! What the engine's motion tends to as its time step shrinks.
 
-use deltaq::{Ending, Settings, choices, solve_choice};
+use deltaq::{CHETAEV, Ending, Settings, VAKONOMIC_COSTATE, choices, solve_choice};
 use scene::Scene;
 use validation::scaling::exponent;
 
@@ -85,10 +85,10 @@ impl Study {
     pub fn of_scene(scene: &Scene, ladder: Ladder) -> Result<Study, EngineError> {
         let mapping = Mapping::new(scene)?;
         let mut targets = Vec::new();
-        for choice in choices(scene).into_iter().filter(|c| c.formulation != "vakonomic-costate") {
+        for choice in choices(scene).into_iter().filter(|c| c.formulation != VAKONOMIC_COSTATE) {
             let mut target = Target {
                 label: choice.label.clone(),
-                formulation: choice.formulation.into(),
+                formulation: choice.formulation.name.into(),
                 poses: vec![],
                 remark: None,
             };
@@ -128,7 +128,7 @@ impl Study {
         });
         let closed = Target {
             label: "5/7 g sin α".into(),
-            formulation: "chetaev".into(),
+            formulation: CHETAEV.name.into(),
             poses: poses.collect(),
             remark: Some("all formulations agree: the constraint is integrable".into()),
         };

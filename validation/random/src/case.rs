@@ -1,10 +1,10 @@
 //! One random system with its motions, on which claims are tested.
 
 use deltaq::{
-    Ending, Gap, Membership, Metric, Motion, Sampling, Setting, Settings, SolveError, TIGHTER, Verdict,
-    compare_motions_by, membership, setting,
+    CHETAEV, Ending, Gap, Membership, Metric, Motion, REMOVED_CONSTRAINT, Sampling, Setting, Settings, SolveError,
+    TIGHTER, VAKONOMIC, Verdict, compare_motions_by, membership, setting,
 };
-use equations::Equations;
+use equations::{Equations, Formulation};
 use mechanics::{ConstantsRule, Removal, SingularValues, State, System};
 use nalgebra::DMatrix;
 use referees::maggi::{self, MaggiError};
@@ -16,6 +16,7 @@ use super::finding::{Finding, Findings, Word};
 use super::found_out::referee;
 use super::recipe::Recipe;
 use crate::realization::{constraint_jacobian, numbers};
+use substitution::SUBSTITUTION;
 
 /// Tolerances tried one after the other: what round-off does not allow is asked for less sharply.
 const TOLERANCES: [f64; 3] = [1e-11, 1e-9, 1e-7];
@@ -67,7 +68,7 @@ pub struct Case {
     /// What was found so far.
     pub found: Findings,
     /// The formulation of the motion that is planted in the vakonomic family.
-    pub planted: &'static str,
+    pub planted: &'static Formulation,
     /// What [`Case::membership`] has said, if it was asked.
     pub membership: Option<Membership>,
     /// Stands for the motion of the scene's removal with constants natural at the end, if it is given.
@@ -101,11 +102,11 @@ impl Case {
         let system = &scene.system;
         let floor = floor(system, &scene.start, &scene.multipliers)?;
         let run = |equations: Equations, constants: &[f64]| solve(setting(scene), equations, constants, floor, false);
-        let chetaev = run(equations(system, "chetaev", None)?, &[])?;
-        let vakonomic = run(equations(system, "vakonomic", None)?, &scene.multipliers)?;
+        let chetaev = run(equations(system, CHETAEV, None)?, &[])?;
+        let vakonomic = run(equations(system, VAKONOMIC, None)?, &scene.multipliers)?;
         let mut removed = Vec::new();
         for removal in deltaq::removals(scene)? {
-            let equations = equations(system, "removed-constraint", Some(&removal))?;
+            let equations = equations(system, REMOVED_CONSTRAINT, Some(&removal))?;
             let costates = some_costates(recipe, &equations, removal.memory.len());
             let motion = run(equations.clone(), &free_constants(&equations, &costates))?;
             removed.push(Removed { removal, costates, motion });
@@ -117,7 +118,7 @@ impl Case {
         };
         let forced = match recipe.drawn.forced(system) {
             Some(forced) => {
-                let motion = run(equations(&forced, "chetaev", None)?, &[])?;
+                let motion = run(equations(&forced, CHETAEV, None)?, &[])?;
                 Some((forced, motion))
             }
             None => None,
@@ -134,7 +135,7 @@ impl Case {
             shortened: None,
             floor,
             found: Findings::default(),
-            planted: "vakonomic",
+            planted: VAKONOMIC,
             membership: None,
             natural: None,
             referee: None,
@@ -171,7 +172,7 @@ impl Case {
             Ending::Completed => None,
         };
         let removed = self.removed.iter().map(|r| (format!("removed constraint ({})", r.removal.name), &r.motion));
-        let control = self.control.iter().map(|(_, motion)| ("substitution".to_string(), motion));
+        let control = self.control.iter().map(|(_, motion)| (SUBSTITUTION.name.to_string(), motion));
         [("Chetaev".to_string(), &self.chetaev), ("vakonomic".to_string(), &self.vakonomic)]
             .into_iter()
             .chain(removed)

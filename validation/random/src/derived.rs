@@ -1,18 +1,21 @@
-//! Equations by the name of a formulation.
+//! Equations by a formulation.
 
-use deltaq::{Choice, SolveError, derive, formulation};
-use equations::Equations;
+use deltaq::{Choice, SolveError, derive};
+use equations::{Equations, Formulation};
 use mechanics::{ConstantsRule, Removal, System};
 
-/// The equations of a formulation of the table.
+/// The equations of a formulation.
 ///
 /// # Errors
 /// [`SolveError`] where it has none for this system.
-pub fn equations(system: &System, name: &str, removal: Option<&Removal>) -> Result<Equations, SolveError> {
-    let entry = formulation(name).unwrap_or(&deltaq::FORMULATIONS[0]);
+pub fn equations(
+    system: &System,
+    formulation: &'static Formulation,
+    removal: Option<&Removal>,
+) -> Result<Equations, SolveError> {
     let choice = Choice {
-        label: entry.title.into(),
-        formulation: entry.name,
+        label: formulation.title.into(),
+        formulation,
         removal: removal.cloned(),
         constants: ConstantsRule::Zero,
     };

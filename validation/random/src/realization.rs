@@ -13,7 +13,7 @@
 
 use std::collections::HashMap;
 
-use deltaq::{Metric, Motion, Setting, Settings, SolveError, solve};
+use deltaq::{CHETAEV, Metric, Motion, Setting, Settings, SolveError, solve};
 use integrate::Method;
 use mechanics::{ConstantsRule, Parameter, Removal, State, System, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
@@ -122,7 +122,7 @@ pub fn distance(limit: &mut Motion, motion: &mut Motion, metric: &mut Metric) ->
 
 /// Newton's motion of an unconstrained system, read off in its first coordinates.
 fn run(setting: Setting, method: Method, coordinates: usize) -> Result<Motion, SolveError> {
-    let mut equations = equations(setting.system, "chetaev", None)?;
+    let mut equations = equations(setting.system, CHETAEV, None)?;
     equations.coordinates.truncate(coordinates);
     equations.velocities.truncate(coordinates);
     let at = |tolerance: f64| {

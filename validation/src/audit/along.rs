@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result};
-use deltaq::{Settings, setting, solve};
+use deltaq::{REMOVED_CONSTRAINT, Settings, setting, solve};
 use mechanics::ConstantsRule;
 
 use super::context::Context;
@@ -20,7 +20,7 @@ const STEP: f64 = 2.5e-4;
 pub(super) fn along(context: &Context, scene: &str, lines: &[String]) -> Result<Vec<f64>> {
     let scene = catalogue::find(scene, &[])?;
     let removal = scene.removals.first().context("no removal")?;
-    let derived = equations(&scene.system, "removed-constraint", Some(removal))?;
+    let derived = equations(&scene.system, REMOVED_CONSTRAINT, Some(removal))?;
     let ConstantsRule::Natural { horizon } = removal.constants else { anyhow::bail!("no horizon") };
     let mut motion = solve(setting(&scene), derived, &removal.constants, &Settings::default())?;
     let g = &context.graph;

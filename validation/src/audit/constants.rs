@@ -1,7 +1,11 @@
 //! What the paper's constants of integration are: numbers for it.
 
 use anyhow::{Context as _, Result};
-use deltaq::{Metric, Motion, Setting, Settings, best_fit, compare_motions, setting, solve};
+use deltaq::{
+    CHETAEV, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC, best_fit, compare_motions, setting,
+    solve,
+};
+use equations::Formulation;
 use mechanics::{ConstantsRule, Removal};
 use scene::Scene;
 
@@ -40,10 +44,10 @@ impl Constants {
         let (v, phi) = (&sledge.start.v, sledge.start.q[2]);
         let matching = -(v[0] * phi.cos() + v[1] * phi.sin()) / (pull * phi.cos());
         let multiplier = pull * matching * phi.sin();
-        let vakonomic = |mu: f64| motion(&sledge, "vakonomic", None, ConstantsRule::Given(vec![mu]));
-        let with = |c: f64| motion(&sledge, "removed-constraint", Some(arc), ConstantsRule::Given(vec![c]));
+        let vakonomic = |mu: f64| motion(&sledge, VAKONOMIC, None, ConstantsRule::Given(vec![mu]));
+        let with = |c: f64| motion(&sledge, REMOVED_CONSTRAINT, Some(arc), ConstantsRule::Given(vec![c]));
         let gap = compare_motions(&mut with(pull * matching)?, &mut vakonomic(multiplier)?, metric)?.largest;
-        let family = equations(&sledge.system, "vakonomic", None)?;
+        let family = equations(&sledge.system, VAKONOMIC, None)?;
         let mut horizons = Vec::new();
         for horizon in [matching, matching + 0.2, 0.0, DURATION, 10.0] {
             let mut target = with(pull * horizon)?;
@@ -61,7 +65,7 @@ impl Constants {
         let two_gap = compare_motions(&mut one, &mut two, metric)?.largest;
         let mut natural_motions = Vec::new();
         for horizon in HORIZONS {
-            natural_motions.push(motion(&sledge, "removed-constraint", Some(arc), ConstantsRule::Natural { horizon })?);
+            natural_motions.push(motion(&sledge, REMOVED_CONSTRAINT, Some(arc), ConstantsRule::Natural { horizon })?);
         }
         let natural = HORIZONS.iter().zip(&natural_motions).map(|(&t, m)| [t, m.constants[0]]).collect();
         let [first, second] = &mut natural_motions[..] else { anyhow::bail!("two horizons") };
@@ -102,10 +106,10 @@ fn planar_body() -> Result<([f64; 2], f64)> {
     let body = catalogue::find("planar-body", &[])?;
     let metric = &mut Metric::new(&body.system)?;
     let frame = removal(&body, "turning-frame")?;
-    let mut newton = motion(&body, "chetaev", None, ConstantsRule::Zero)?;
+    let mut newton = motion(&body, CHETAEV, None, ConstantsRule::Zero)?;
     let v = &body.start.v;
-    let mut zero = motion(&body, "removed-constraint", Some(frame), ConstantsRule::Zero)?;
-    let mut right = motion(&body, "removed-constraint", Some(frame), ConstantsRule::Given(vec![-v[0], -v[1]]))?;
+    let mut zero = motion(&body, REMOVED_CONSTRAINT, Some(frame), ConstantsRule::Zero)?;
+    let mut right = motion(&body, REMOVED_CONSTRAINT, Some(frame), ConstantsRule::Given(vec![-v[0], -v[1]]))?;
     let end = newton.end();
     let rotation = (zero.at(end)?.coordinates[2] - newton.at(end)?.coordinates[2]).abs();
     let off = compare_motions(&mut newton, &mut zero, metric)?.largest;
@@ -118,10 +122,10 @@ fn on_augmented(name: &'static str, of: &str, costates: &[f64]) -> Result<(&'sta
     let removal = removal(&scene, of)?;
     let setting = setting(&scene);
     let rule = ConstantsRule::Given(costates.to_vec());
-    let mut removed = motion(&scene, "removed-constraint", Some(removal), rule)?;
+    let mut removed = motion(&scene, REMOVED_CONSTRAINT, Some(removal), rule)?;
     let (system, start, multipliers) = augmented_start(setting, removal, costates)?;
     let large = Setting { system: &system, start: &start, end: setting.end };
-    let bridge = equations(&system, "vakonomic", None)?;
+    let bridge = equations(&system, VAKONOMIC, None)?;
     let mut bridge = solve(large, bridge, &ConstantsRule::Given(multipliers), &Settings::default())?;
     let mut gap = 0.0_f64;
     for t in removed.grid(50) {
@@ -131,10 +135,15 @@ fn on_augmented(name: &'static str, of: &str, costates: &[f64]) -> Result<(&'sta
     Ok((name, removed.constants, gap))
 }
 
-fn motion(scene: &Scene, formulation: &str, removal: Option<&Removal>, rule: ConstantsRule) -> Result<Motion> {
+fn motion(
+    scene: &Scene,
+    formulation: &'static Formulation,
+    removal: Option<&Removal>,
+    rule: ConstantsRule,
+) -> Result<Motion> {
     let equations = equations(&scene.system, formulation, removal)?;
     let motion = solve(setting(scene), equations, &rule, &Settings::default())?;
-    anyhow::ensure!(motion.is_complete(), "{formulation} on {}: {:?}", scene.name, motion.ending);
+    anyhow::ensure!(motion.is_complete(), "{} on {}: {:?}", formulation.name, scene.name, motion.ending);
     Ok(motion)
 }
 

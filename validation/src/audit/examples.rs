@@ -7,6 +7,7 @@
 //! Ṗ_k = −Σ_i (p_i ∂V_i/∂w_k + L_{q_i} ∂q_i/∂w_k) − Σ_j P_j ∂B_j/∂w_k .
 //! ```
 
+use deltaq::REMOVED_CONSTRAINT;
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result};
@@ -39,7 +40,7 @@ const SHORT: usize = 6;
 pub fn cone() -> Result<Example> {
     let scene = catalogue::find("ball-in-cone", &[])?;
     let removal = removal(&scene, "paper")?;
-    let derived = equations(&scene.system, "removed-constraint", Some(removal))?;
+    let derived = equations(&scene.system, REMOVED_CONSTRAINT, Some(removal))?;
     Writer::new(&scene.system, removal, derived).write()
 }
 
@@ -49,7 +50,7 @@ pub fn cone() -> Result<Example> {
 /// Where they can.
 pub fn refusal() -> Result<String> {
     let scene = catalogue::find("three-cylinders", &[])?;
-    match equations(&scene.system, "removed-constraint", Some(removal(&scene, "paper")?)) {
+    match equations(&scene.system, REMOVED_CONSTRAINT, Some(removal(&scene, "paper")?)) {
         Err(error) => Ok(error.to_string()),
         Ok(_) => anyhow::bail!("the paper's parametrization of example 3 is not refused"),
     }

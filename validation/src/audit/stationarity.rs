@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use anyhow::{Context as _, Result, anyhow};
-use deltaq::{Setting, Settings, solve};
+use deltaq::{REMOVED_CONSTRAINT, Setting, Settings, solve};
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, integrate};
 use mechanics::{ConstantsRule, State};
 use scene::Scene;
@@ -184,7 +184,7 @@ fn gap_to_derivation(
     let mut scene = Scene::parse("second-order", SCENE).map_err(|e| anyhow!("{e}"))?;
     let speed = number("x'")?;
     scene.start = State { t: SPAN[0], q: vec![number("x")?, number("lambda")?], v: vec![speed, speed * speed / 2.0] };
-    let equations = equations(&scene.system, "removed-constraint", scene.removals.first())?;
+    let equations = equations(&scene.system, REMOVED_CONSTRAINT, scene.removals.first())?;
     let setting = Setting { system: &scene.system, start: &scene.start, end: SPAN[1] };
     let mut derived = solve(setting, equations, &constants, &Settings::default())?;
     let mut gap = 0.0_f64;

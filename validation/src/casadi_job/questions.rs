@@ -3,8 +3,11 @@
 use std::collections::HashMap;
 
 use anyhow::{Context, Result, bail};
-use deltaq::{Answer, Choice, Motion, Settings, choices, formulation, setting, solve};
-use equations::{Compiled, Derivation, Equations, Role};
+use deltaq::{
+    Answer, CHETAEV, Choice, Motion, REMOVED_CONSTRAINT, Settings, VAKONOMIC, VAKONOMIC_COSTATE, choices, setting,
+    solve,
+};
+use equations::{Compiled, Derivation, Equations, Formulation, Role};
 use mechanics::{ConstantsRule, complete_removal_start};
 use scene::Scene;
 use serde::Serialize;
@@ -162,7 +165,7 @@ impl Question {
     /// # Errors
     /// Where a motion of ours cannot be computed or read off.
     pub fn with_transcription(mut self, scene: &Scene, horizon: f64, intervals: usize) -> Result<Question> {
-        let variational = |c: &&Choice| ["vakonomic", "removed-constraint"].contains(&c.formulation);
+        let variational = |c: &&Choice| [VAKONOMIC, REMOVED_CONSTRAINT].contains(&c.formulation);
         let by_hand = |c: &&Choice| !is_automatic(scene, c);
         for choice in choices(scene).iter().filter(variational).filter(by_hand) {
             self.transcriptions.extend(transcription(scene, choice, horizon, intervals)?);
@@ -177,7 +180,7 @@ impl Question {
     pub fn corrupt(
         &mut self,
         scene: &Scene,
-        formulation: &str,
+        formulation: &Formulation,
         states: usize,
         change: impl Fn(&mut Equations),
     ) -> Result<()> {
@@ -195,8 +198,8 @@ impl Question {
 
 /// The equations as derived, nothing left out; `None` where the formulation refuses.
 fn equations(scene: &Scene, choice: &Choice) -> Option<Equations> {
-    let formulation = formulation(choice.formulation)?;
-    (formulation.derive)(&scene.system, &Derivation { removal: choice.removal.as_ref(), ..Derivation::default() }).ok()
+    let derivation = Derivation { removal: choice.removal.as_ref(), ..Derivation::default() };
+    (choice.formulation.derive)(&scene.system, &derivation).ok()
 }
 
 fn is_automatic(scene: &Scene, choice: &Choice) -> bool {
@@ -205,7 +208,7 @@ fn is_automatic(scene: &Scene, choice: &Choice) -> bool {
 
 fn case(scene: &Scene, choice: &Choice, amount: Amount) -> Result<Option<Case>> {
     let Some(full) = equations(scene, choice) else { return Ok(None) };
-    let costate_form = choice.formulation == "vakonomic-costate";
+    let costate_form = choice.formulation == VAKONOMIC_COSTATE;
     let samples = if costate_form { None } else { samples(scene, choice, &full, amount.states)? };
     let tags = if costate_form { Vec::new() } else { tags(&full) };
     let all: HashMap<String, Tag> = names(&full).into_iter().zip(tags.clone()).collect();
@@ -219,14 +222,14 @@ fn case(scene: &Scene, choice: &Choice, amount: Amount) -> Result<Option<Case>> 
     if samples.is_none() && motion.is_none() {
         return Ok(None);
     }
-    let solvers = match (&motion, choice.formulation) {
-        (None, _) => vec![],
-        (Some(_), "chetaev") => vec!["CVODES", "IDAS"],
-        (Some(_), _) => vec!["CVODES"],
+    let solvers = match &motion {
+        None => vec![],
+        Some(_) if choice.formulation == CHETAEV => vec!["CVODES", "IDAS"],
+        Some(_) => vec!["CVODES"],
     };
     Ok(Some(Case {
         label: choice.label.clone(),
-        formulation: choice.formulation,
+        formulation: choice.formulation.name,
         removal: choice.removal.as_ref().map(|r| r.name.clone()),
         automatic: is_automatic(scene, choice),
         tags,
@@ -311,7 +314,7 @@ fn samples(scene: &Scene, choice: &Choice, equations: &Equations, count: usize) 
         if !solved {
             continue;
         }
-        if choice.formulation == "chetaev" && !outputs.multipliers.is_empty() {
+        if choice.formulation == CHETAEV && !outputs.multipliers.is_empty() {
             samples.multipliers.push(outputs.multipliers);
         }
         samples.rates.push(rates.clone());
@@ -331,7 +334,7 @@ fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: u
     let times: Vec<f64> = motion.grid(times).into_iter().map(|t| begin + fraction * (t - begin)).collect();
     let differences = times.iter().map(|&t| motion.difference_of_runs(t)).collect::<Result<_, _>>()?;
     let outputs = times.iter().map(|&t| motion.at(t)).collect::<Result<Vec<_>, _>>()?;
-    let vakonomic = motion.equations.formulation.starts_with("vakonomic");
+    let vakonomic = [VAKONOMIC.name, VAKONOMIC_COSTATE.name].contains(&motion.equations.formulation);
     let (tags, start) = if motion.equations.removal.is_some() {
         let tags = names(&motion.equations).iter().filter_map(|name| all.get(name).cloned()).collect();
         (tags, motion.states_at(times[0])?)
@@ -358,9 +361,10 @@ fn table(scene: &Scene, mut motion: Motion, all: &HashMap<String, Tag>, times: u
 /// removed-constraint motion with `P(t₁) = 0` at the horizon, at the ends and middles of the intervals.
 fn transcription(scene: &Scene, choice: &Choice, horizon: f64, intervals: usize) -> Result<Option<Transcription>> {
     let Some(full) = equations(scene, choice) else { return Ok(None) };
-    let constants = match choice.formulation {
-        "vakonomic" => choice.constants.clone(),
-        _ => ConstantsRule::Natural { horizon: scene.start.t + horizon },
+    let constants = if choice.formulation == VAKONOMIC {
+        choice.constants.clone()
+    } else {
+        ConstantsRule::Natural { horizon: scene.start.t + horizon }
     };
     let mut short = scene.clone();
     short.duration = horizon;
@@ -374,7 +378,7 @@ fn transcription(scene: &Scene, choice: &Choice, horizon: f64, intervals: usize)
     let states = times.iter().map(|&t| motion.states_at(t)).collect::<Result<_, _>>()?;
     Ok(Some(Transcription {
         label: choice.label.clone(),
-        formulation: choice.formulation,
+        formulation: choice.formulation.name,
         removal: choice.removal.as_ref().map(|r| r.name.clone()),
         automatic: false,
         tags,

@@ -1,7 +1,7 @@
 //! The page about the benchmark bicycle.
 
 use anyhow::{Context, Result, bail};
-use deltaq::{Choice, default_constants, formulation};
+use deltaq::{CHETAEV, Choice, default_constants};
 use linear::{Sweep, SweepPoint, equidistant, sweep};
 use nalgebra::Complex;
 use serde_json::{Value, json};
@@ -115,9 +115,8 @@ impl BicycleReport {
 /// Lean and steer of the upright bicycle at these speeds.
 fn bicycle((from, to, count): (f64, f64, usize)) -> Result<Sweep> {
     let scene = catalogue::find("bicycle", &[])?;
-    let chetaev = formulation("chetaev").context("no formulation chetaev")?;
-    let constants = default_constants(chetaev, &scene);
-    let choice = Choice { label: chetaev.title.into(), formulation: chetaev.name, removal: None, constants };
+    let constants = default_constants(CHETAEV, &scene);
+    let choice = Choice { label: CHETAEV.title.into(), formulation: CHETAEV, removal: None, constants };
     Ok(sweep(&scene, &choice, &["lean", "steer"], ("v", &equidistant(from, to, count)), false)?)
 }
 

@@ -1,8 +1,9 @@
 //! What is said of the control on scenes, and what Maggi's equations say of that.
 
 use deltaq::words::{enumerate, short};
-use deltaq::{Comparison, Metric, Setting, Verdict, setting};
+use deltaq::{CHETAEV, Comparison, Metric, Setting, Verdict, setting};
 use random::{FoundOut, Unjudged, Word, found_out, referee};
+use substitution::SUBSTITUTION;
 
 /// The control on one scene.
 pub(super) struct Control {
@@ -16,7 +17,7 @@ pub(super) struct Control {
 impl Control {
     /// Where both Chetaev's and the control's motion are there.
     pub(super) fn on(comparison: &Comparison) -> Option<Control> {
-        let (chetaev, control) = (comparison.run("chetaev")?, comparison.run(substitution::NAME)?);
+        let (chetaev, control) = (comparison.run(CHETAEV)?, comparison.run(&SUBSTITUTION)?);
         let gap = &comparison.pair(chetaev, control)?.gap;
         let judged = || -> Result<FoundOut, Unjudged> {
             let scene = &comparison.scene;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{Answer, Contradicted, Finding, Membership, Pairing, Section, choices, membership};
+use deltaq::{Answer, Contradicted, Finding, Membership, Pairing, Section, VAKONOMIC, choices, membership};
 use mechanics::Removal;
 use program::parallel;
 use scene::{Number, Scene};
@@ -62,7 +62,7 @@ impl Asked {
             let removal = Removal::by_coordinates(&scene.system, &scene.start)?;
             let curve = substitution::derive(&scene.system, &removal);
             let constants = vec![0.0; curve.free_constants.len()];
-            let vakonomic = choices(&scene).into_iter().find(|choice| choice.formulation == "vakonomic");
+            let vakonomic = choices(&scene).into_iter().find(|choice| choice.formulation == VAKONOMIC);
             let family = vakonomic.context("no vakonomic formulation")?;
             Pairing::with_curve(&scene, curve, constants, &family).and_then(|pairing| pairing.decide(end)).map(Some)
         } else {

@@ -1,12 +1,14 @@
 //! The page about published claims: what each says, what was computed, and the word that follows.
 
+use equations::Formulation;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
-use deltaq::{Settings, choices, solve_choice};
+use deltaq::{CHETAEV, Settings, choices, formulation, solve_choice};
 use program::parallel;
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use crate::report::equivalence::{Asked, Found, Written};
@@ -68,10 +70,15 @@ struct Case {
     outside: bool,
 }
 
+fn named<'de, D: Deserializer<'de>>(from: D) -> Result<&'static Formulation, D::Error> {
+    formulation(&String::deserialize(from)?).map_err(D::Error::custom)
+}
+
 /// A quantity along a motion.
 #[derive(Deserialize)]
 struct Along {
-    formulation: String,
+    #[serde(deserialize_with = "named")]
+    formulation: &'static Formulation,
     /// An expression in coordinates, velocities, parameters and `t`.
     quantity: String,
     during: [f64; 2],
@@ -115,7 +122,7 @@ impl Case {
     fn found_put_in(&self) -> Result<Found> {
         let scene = self.asked.scene(&BTreeMap::new())?;
         let (choices, settings) = (choices(&scene), Settings::default());
-        let chetaev = choices.iter().find(|choice| choice.formulation == "chetaev").context("no such formulation")?;
+        let chetaev = choices.iter().find(|choice| choice.formulation == CHETAEV).context("no such formulation")?;
         let control = substitution::run(&scene, &choices, &settings).context("no control")?;
         let [mut one, mut other] = [solve_choice(&scene, chetaev, &settings)?, control.outcome?];
         let end = scene.start.t + scene.duration;
@@ -138,9 +145,9 @@ impl Case {
             None if self.put_in => format!("{link}: does $L$ with the constraint put into it give Chetaev's motion?"),
             None if self.almost_every_start => format!("{link}: almost every start"),
             None => format!("{link}: this start"),
-            Some(Along { formulation, quantity, during: [from, to], between }) => {
+            Some(Along { formulation: Formulation { name, .. }, quantity, during: [from, to], between }) => {
                 let [low, high] = between.map(short);
-                format!("{link}, {formulation}: from {from} s to {to} s {low} ≤ `{quantity}` ≤ {high}")
+                format!("{link}, {name}: from {from} s to {to} s {low} ≤ `{quantity}` ≤ {high}")
             }
         }
     }
@@ -280,5 +287,13 @@ mod tests {
         assert_eq!(claim("qualified", &format!("condition = ''\n{mixed}")), Ok(()));
         let told = claim("confirmed", &mixed).expect_err("a word that does not follow");
         assert!(told.contains("it is contradicted"), "{told}");
+        let along = "along = { formulation = 'vakonomik', quantity = 'x', during = [0, 1], between = [0, 1] }\n";
+        let data = format!(
+            "[[claim]]\nsource = ''\nread = ''\nabout = ''\nsays = ''\nword = 'open'\n{}{along}",
+            case("disc", "yes", false)
+        );
+        let told =
+            LiteratureReport::of(&data, true).err().map(|error| format!("{error:#}")).expect("no such formulation");
+        assert!(told.contains("`vakonomik`, did you mean `vakonomic`?"), "{told}");
     }
 }

@@ -1,6 +1,7 @@
 //! The first page of the reports.
 
-use deltaq::{Answer, Comparison, Fit, Membership, Verdict};
+use deltaq::{Answer, CHETAEV, Comparison, Fit, Membership, REMOVED_CONSTRAINT, VAKONOMIC, Verdict};
+use equations::Formulation;
 
 use crate::report::control::{self, Control};
 use deltaq::words::{enumerate, precise, short};
@@ -25,7 +26,7 @@ pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String 
     )
 }
 
-fn gap_words(comparison: &Comparison, a: &str, b: &str) -> String {
+fn gap_words(comparison: &Comparison, a: &Formulation, b: &Formulation) -> String {
     let (Some(a), Some(b)) = (comparison.run(a), comparison.run(b)) else { return "–".into() };
     match comparison.pair(a, b) {
         Some(pair) => match &pair.gap.verdict {
@@ -36,11 +37,11 @@ fn gap_words(comparison: &Comparison, a: &str, b: &str) -> String {
     }
 }
 
-fn verdict_of<'a>(comparison: &'a Comparison, a: &str, b: &str) -> Option<&'a Verdict> {
+fn verdict_of<'a>(comparison: &'a Comparison, a: &Formulation, b: &Formulation) -> Option<&'a Verdict> {
     comparison.pair(comparison.run(a)?, comparison.run(b)?).map(|p| &p.gap.verdict)
 }
 
-fn fit_of<'a>(comparison: &'a Comparison, run: &str, target: &str) -> Option<&'a Fit> {
+fn fit_of<'a>(comparison: &'a Comparison, run: &Formulation, target: &Formulation) -> Option<&'a Fit> {
     let (run, target) = (comparison.run(run)?, comparison.run(target)?);
     comparison.fits.iter().find(|f| f.run == run && f.target == target)
 }
@@ -49,7 +50,7 @@ fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
     let columns = ["scene", "constraint", "Chetaev – vakonomic", "any $\\mu_0$?", "gap reached", "Chetaev – removed"];
     let mut table = Table::new(columns.into_iter().chain(["vakonomic – removed", "control"]));
     for (c, control) in comparisons.iter().zip(controls) {
-        let after = match fit_of(c, "vakonomic", "chetaev").map(|f| &f.fitted) {
+        let after = match fit_of(c, VAKONOMIC, CHETAEV).map(|f| &f.fitted) {
             None => "–".into(),
             Some(None) => "no fit".into(),
             Some(Some(fitted)) if fitted.gap.verdict == Verdict::Same => "same".to_string(),
@@ -58,7 +59,7 @@ fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
         let control = control.as_ref().map_or("–", Control::word);
         let constraint = c.integrability.to_string();
         let constraint = constraint.split([':', '(']).next().unwrap_or("").trim();
-        let pairs = [("chetaev", "vakonomic"), ("chetaev", "removed-constraint"), ("vakonomic", "removed-constraint")];
+        let pairs = [(CHETAEV, VAKONOMIC), (CHETAEV, REMOVED_CONSTRAINT), (VAKONOMIC, REMOVED_CONSTRAINT)];
         let [first, second, third] = pairs.map(|(a, b)| gap_words(c, a, b));
         let name = format!("[{0}](scenes/{0}.md)", c.scene.name);
         let decided = membership::words(c);
@@ -68,7 +69,7 @@ fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
 }
 
 fn all_same(c: &Comparison) -> bool {
-    [("chetaev", "vakonomic"), ("chetaev", "removed-constraint"), ("vakonomic", "removed-constraint")]
+    [(CHETAEV, VAKONOMIC), (CHETAEV, REMOVED_CONSTRAINT), (VAKONOMIC, REMOVED_CONSTRAINT)]
         .iter()
         .all(|(a, b)| verdict_of(c, a, b) == Some(&Verdict::Same))
 }
@@ -79,8 +80,7 @@ fn names<'a>(comparisons: impl Iterator<Item = &'a Comparison>) -> Vec<String> {
 
 fn headline(comparisons: &[Comparison]) -> String {
     let same = comparisons.iter().filter(|c| all_same(c)).count();
-    let apart =
-        names(comparisons.iter().filter(|c| verdict_of(c, "chetaev", "vakonomic") == Some(&Verdict::Different)));
+    let apart = names(comparisons.iter().filter(|c| verdict_of(c, CHETAEV, VAKONOMIC) == Some(&Verdict::Different)));
     let count = |wanted: fn(&Answer) -> bool| {
         comparisons
             .iter()
@@ -127,7 +127,7 @@ fn findings(comparisons: &[Comparison], controls: &[Control]) -> Vec<String> {
 fn constants_of_removal(integrable: &[&Comparison]) -> Option<String> {
     let mut examples = Vec::new();
     for c in integrable {
-        let Some(fit) = fit_of(c, "removed-constraint", "chetaev") else { continue };
+        let Some(fit) = fit_of(c, REMOVED_CONSTRAINT, CHETAEV) else { continue };
         let (Some(fitted), Some(pair)) = (&fit.fitted, c.pair(fit.run, fit.target)) else { continue };
         let constants: Vec<String> =
             fitted.constants.iter().map(|(name, x)| format!("{name} = {}", precise(*x))).collect();
@@ -155,8 +155,8 @@ fn parametrizations(comparisons: &[Comparison]) -> String {
     for c in comparisons {
         let run = |i: usize| &c.runs[i].choice;
         let removal = |i: usize| run(i).removal.as_ref().map_or("", |r| r.name.as_str());
-        let removed = |i: usize| run(i).formulation == "removed-constraint";
-        for d in c.decided.iter().filter(|d| removed(d.family) && run(d.curve).formulation == "vakonomic") {
+        let removed = |i: usize| run(i).formulation == REMOVED_CONSTRAINT;
+        for d in c.decided.iter().filter(|d| removed(d.family) && run(d.curve).formulation == VAKONOMIC) {
             let words = format!("`{}` ({})", c.scene.name, removal(d.family));
             match d.outcome.as_ref().map(Membership::answer) {
                 Ok(Answer::SomeProved | Answer::Some { .. }) => has.push(words),

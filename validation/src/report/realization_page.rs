@@ -1,7 +1,11 @@
 //! The page about realizations.
 
 use anyhow::{Context, Result};
-use deltaq::{Metric, Motion, Setting, Settings, SolveError, choices, setting, solve, solve_choice};
+use deltaq::{
+    CHETAEV, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, VAKONOMIC, choices, setting, solve,
+    solve_choice,
+};
+use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 use serde_json::{Map, Value, json};
@@ -191,12 +195,12 @@ fn of_scene(name: &str, duration: f64) -> Result<Vec<Approach>> {
     }
     let settings = deltaq::Settings::default();
     let choice =
-        |name: &str| choices(&scene).into_iter().find(|c| c.formulation == name).context("no such formulation");
+        |own: &Formulation| choices(&scene).into_iter().find(|c| c.formulation == own).context("no such formulation");
     let mut metric = Metric::new(&scene.system)?;
     let setting = setting(&scene);
-    let mut chetaev = solve_choice(&scene, &choice("chetaev")?, &settings)?;
-    let mut vakonomic = solve_choice(&scene, &choice("vakonomic")?, &settings)?;
-    let mut removed = choice("removed-constraint")?;
+    let mut chetaev = solve_choice(&scene, &choice(CHETAEV)?, &settings)?;
+    let mut vakonomic = solve_choice(&scene, &choice(VAKONOMIC)?, &settings)?;
+    let mut removed = choice(REMOVED_CONSTRAINT)?;
     removed.constants = ConstantsRule::Zero;
     let mut limit = solve_choice(&scene, &removed, &settings)?;
     let removal = removed.removal.context("no removal")?;
@@ -233,7 +237,7 @@ fn approaches(
     let system = with_kappa(setting.system, KAPPA);
     let (rule, settings) = (ConstantsRule::Given(multipliers.to_vec()), Settings::default());
     let mut between =
-        solve(Setting { system: &system, ..setting }, equations(&system, "kappa", None)?, &rule, &settings)?;
+        solve(Setting { system: &system, ..setting }, equations(&system, deltaq::KAPPA, None)?, &rule, &settings)?;
     Ok(vec![
         approach(FRICTION, Style::Chetaev, chetaev, metric, &plain(Realization::Friction))?,
         approach(ADDED_MASS, Style::Vakonomic, vakonomic, metric, &plain(Realization::AddedMass))?,

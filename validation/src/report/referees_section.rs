@@ -1,7 +1,7 @@
 //! The section of a scene page that says what the referees found.
 
 use anyhow::Result;
-use deltaq::{Comparison, Metric};
+use deltaq::{CHETAEV, Comparison, Metric};
 
 use crate::casadi_job::{Outcome, Row, Word, referee_table};
 use referees::maggi::{Maggi, Motion};
@@ -42,7 +42,7 @@ pub fn referees_section(comparison: &mut Comparison, casadi: Option<&Outcome>) -
 
 /// Chetaev's motion by Maggi's equations, in the kinetic metric and relative to the way.
 fn maggi(comparison: &mut Comparison) -> Result<Option<Row>> {
-    let Some(index) = comparison.run("chetaev") else { return Ok(None) };
+    let Some(index) = comparison.run(CHETAEV) else { return Ok(None) };
     let (scene, run) = (&comparison.scene, &mut comparison.runs[index]);
     let what = format!("{}: motion", run.choice.label);
     let Ok(motion) = &mut run.outcome else { return Ok(None) };

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use anyhow::Result;
 
 use crate::scaling::{Exponent, FROM, Line, Point};
+use deltaq::FORMS;
 use deltaq::words::{or_dash, short};
 use pages::Table;
 use picture::{Axis, Curve, Picture, Style};
@@ -52,7 +53,12 @@ fn answer(lines: &[Line]) -> String {
             line.formulation
         ))
     };
-    lines.iter().filter(|line| line.formulation.ends_with("-reduced")).filter_map(said).collect::<String>() + "\n"
+    lines
+        .iter()
+        .filter(|line| FORMS.iter().any(|form| form.name == line.formulation))
+        .filter_map(said)
+        .collect::<String>()
+        + "\n"
 }
 
 /// The tables.
@@ -73,7 +79,7 @@ pub fn scaling_text(lines: &[Line]) -> String {
             |p| p.solve,
         ];
         let costs = costs.map(|cost| line.exponent(cost).map_or("–".into(), fitted));
-        table.cells([line.formulation.to_string(), longest.to_string()].into_iter().chain(costs));
+        table.cells([line.formulation.clone(), longest.to_string()].into_iter().chain(costs));
     }
     text += &table.to_string();
     for line in lines {
@@ -103,8 +109,8 @@ fn fitted(exponent: Exponent) -> String {
 
 fn picture(lines: &[Line], title: &str, label: &str, cost: impl Fn(&Point) -> Option<f64>) -> Result<String> {
     let curve = |line: &Line| Curve {
-        label: line.formulation.into(),
-        style: Style::of_formulation(line.formulation).unwrap_or(Style::RemovedConstraint),
+        label: line.formulation.clone(),
+        style: Style::of_formulation(&line.formulation).unwrap_or(Style::RemovedConstraint),
         points: line.points.iter().filter_map(|p| Some((p.trailers as f64, cost(p)?))).collect(),
     };
     let curves = lines.iter().map(curve).collect();

@@ -10,8 +10,11 @@ mod fit;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use deltaq::{Prepared, Setting, Settings, default_constants, formulation, prepare, setting, solve};
-use equations::{Compiled, Derivation};
+use deltaq::{
+    CHETAEV, Prepared, REDUCED_CHETAEV, REDUCED_VAKONOMIC, REMOVED_CONSTRAINT, Setting, Settings, VAKONOMIC,
+    VAKONOMIC_COSTATE, default_constants, prepare, setting, solve,
+};
+use equations::{Compiled, Derivation, Formulation};
 use mechanics::{ConstantsRule, Removal, System};
 use scene::Scene;
 use serde::Serialize;
@@ -27,14 +30,14 @@ pub const TRAILERS: [usize; 9] = [1, 2, 5, 10, 20, 40, 80, 160, 320];
 pub const FROM: usize = 20;
 
 /// Formulations that are measured, with the coordinates of the train in each.
-pub const FORMULATIONS: [&str; 7] = [
-    "chetaev-reduced",
-    "chetaev",
-    "vakonomic-reduced",
-    "vakonomic",
-    "vakonomic-costate",
-    "removed-constraint",
-    "removed-constraint (minimal coordinates)",
+pub const FORMULATIONS: [(&Formulation, Coordinates); 7] = [
+    (REDUCED_CHETAEV, Coordinates::Maximal),
+    (CHETAEV, Coordinates::Maximal),
+    (REDUCED_VAKONOMIC, Coordinates::Maximal),
+    (VAKONOMIC, Coordinates::Maximal),
+    (VAKONOMIC_COSTATE, Coordinates::Maximal),
+    (REMOVED_CONSTRAINT, Coordinates::Maximal),
+    (REMOVED_CONSTRAINT, Coordinates::Minimal),
 ];
 
 /// Tolerance of solves.
@@ -86,8 +89,8 @@ pub struct Point {
 /// One formulation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
-    /// Name of the formulation.
-    pub formulation: &'static str,
+    /// Name of the formulation, and of the coordinates.
+    pub formulation: String,
     /// By rising length.
     pub points: Vec<Point>,
     /// Why longer trains are missing, where they are.
@@ -107,21 +110,29 @@ impl Line {
 /// # Errors
 /// Where a train has no equations or no motion.
 pub fn measure(limits: &Limits, progress: &mut dyn FnMut(&str, usize)) -> Result<Vec<Line>> {
-    FORMULATIONS.into_iter().map(|name| line(name, limits, progress)).collect()
+    FORMULATIONS.into_iter().map(|measured| line(measured, limits, progress)).collect()
 }
 
 /// One formulation.
 ///
 /// # Errors
 /// As [`measure`].
-pub fn line(name: &'static str, limits: &Limits, progress: &mut dyn FnMut(&str, usize)) -> Result<Line> {
-    let mut line = Line { formulation: name, points: Vec::new(), ended: None };
+pub fn line(
+    measured: (&'static Formulation, Coordinates),
+    limits: &Limits,
+    progress: &mut dyn FnMut(&str, usize),
+) -> Result<Line> {
+    let name = match measured {
+        (formulation, Coordinates::Maximal) => formulation.name.into(),
+        (formulation, Coordinates::Minimal) => format!("{} (minimal coordinates)", formulation.name),
+    };
+    let mut line = Line { formulation: name.clone(), points: Vec::new(), ended: None };
     for trailers in TRAILERS.into_iter().filter(|&n| n <= limits.trailers) {
-        progress(name, trailers);
+        progress(&name, trailers);
         let before = line.points.last().and_then(|p| p.evaluations);
         let solves = line.points.iter().all(|p| p.solve.is_some());
         let evaluations = if solves { before.or(Some(0)) } else { None };
-        let point = match point(name, trailers, limits, evaluations) {
+        let point = match point(measured, trailers, limits, evaluations) {
             Ok(point) => point,
             Err(error) if line.points.is_empty() => {
                 return Err(error.context(format!("{name} with {trailers} trailers")));
@@ -146,15 +157,13 @@ pub fn line(name: &'static str, limits: &Limits, progress: &mut dyn FnMut(&str, 
 ///
 /// # Errors
 /// As [`measure`].
-pub fn counts(name: &str, trailers: usize) -> Result<(usize, usize)> {
-    let scene = train(name, trailers)?;
-    let derived = derivation(name, &scene)?;
+pub fn counts(
+    (formulation, coordinates): (&'static Formulation, Coordinates),
+    trailers: usize,
+) -> Result<(usize, usize)> {
+    let scene = scene(trailers, coordinates)?;
+    let derived = derivation(formulation, &scene)?;
     Ok((derived.ready.equations.graph.nodes(), derived.ready.compiled.cost()[1].operations()))
-}
-
-fn train(name: &str, trailers: usize) -> Result<Scene> {
-    let minimal = name.contains("minimal");
-    Ok(scene(trailers, if minimal { Coordinates::Minimal } else { Coordinates::Maximal })?)
 }
 
 /// What a derivation comes to. The removal's expressions live in the graph of `system`.
@@ -165,9 +174,7 @@ struct Derived {
 }
 
 /// From `System` to compiled tape, in the form for the scene's start; free constants not given are zero.
-fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
-    let name = name.split(' ').next().unwrap_or(name);
-    let entry = formulation(name).with_context(|| format!("no formulation {name}"))?;
+fn derivation(entry: &Formulation, scene: &Scene) -> Result<Derived> {
     // on a graph of its own: what was derived before is in that of the scene
     let system = scene.system.clone();
     let removal = if entry.needs_removal { Some(Removal::by_quasi_velocities(&system, &scene.start)?) } else { None };
@@ -189,13 +196,18 @@ fn derivation(name: &str, scene: &Scene) -> Result<Derived> {
 }
 
 /// `evaluations` is how many a shorter train took; none where its solve already was too long.
-fn point(name: &str, trailers: usize, limits: &Limits, evaluations: Option<usize>) -> Result<Point> {
-    let scene = train(name, trailers)?;
+fn point(
+    (formulation, coordinates): (&'static Formulation, Coordinates),
+    trailers: usize,
+    limits: &Limits,
+    evaluations: Option<usize>,
+) -> Result<Point> {
+    let scene = scene(trailers, coordinates)?;
     let mut derived = None;
     let mut best = f64::INFINITY;
     for _ in 0..limits.repeats {
         let clock = Instant::now();
-        derived = Some(derivation(name, &scene)?);
+        derived = Some(derivation(formulation, &scene)?);
         let seconds = clock.elapsed().as_secs_f64();
         best = best.min(seconds);
         if seconds > limits.seconds {

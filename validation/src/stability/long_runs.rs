@@ -1,8 +1,12 @@
 //! A million steps: what a long run loses of its energy, of its constraints and of its way.
 
 use anyhow::{Context, Result};
-use deltaq::{Choice, Metric, Motion, Setting, Settings, Stepping, Steps, derive_at, solve, solve_by_steps};
+use deltaq::{
+    CHETAEV, Choice, Metric, Motion, REMOVED_CONSTRAINT, Setting, Settings, Stepping, Steps, VAKONOMIC, derive_at,
+    solve, solve_by_steps,
+};
 use discrete::Composition;
+use equations::Formulation;
 use integrate::Method;
 use mechanics::ConstantsRule;
 use scene::Scene;
@@ -40,25 +44,25 @@ pub struct Long {
     /// A scene of the catalogue.
     pub scene: &'static str,
     /// Its formulation.
-    pub formulation: &'static str,
+    pub formulation: &'static Formulation,
     /// How long.
     pub duration: f64,
     /// Every free constant, where it is not that of the scene.
     pub constants: Option<f64>,
     /// What is known of it, in a formulation.
-    pub reference: Option<fn(&str) -> Reference>,
+    pub reference: Option<fn(&Formulation) -> Reference>,
 }
 
 /// The long motions: those of the sledge have a reference. Its vakonomic and its removed-constraint motion
 /// turn ever faster, as `g t/k`, so that equal steps do for a time only.
 pub const LONG: [Long; 4] = [
-    sledge("chetaev", 20_000.0),
-    sledge("vakonomic", 50.0),
-    sledge("removed-constraint", 50.0),
-    Long { scene: "disc", formulation: "vakonomic", duration: 5_000.0, constants: Some(0.1), reference: None },
+    sledge(CHETAEV, 20_000.0),
+    sledge(VAKONOMIC, 50.0),
+    sledge(REMOVED_CONSTRAINT, 50.0),
+    Long { scene: "disc", formulation: VAKONOMIC, duration: 5_000.0, constants: Some(0.1), reference: None },
 ];
 
-const fn sledge(formulation: &'static str, duration: f64) -> Long {
+const fn sledge(formulation: &'static Formulation, duration: f64) -> Long {
     Long { scene: "sledge", formulation, duration, constants: None, reference: Some(sledge_reference) }
 }
 
@@ -97,7 +101,7 @@ pub struct LongRun {
 pub fn long_runs(quiet: bool) -> Result<Vec<LongRun>> {
     let asked: Vec<(&Long, Stepping)> =
         LONG.iter().flat_map(|long| COMPARED.into_iter().map(move |stepping| (long, stepping))).collect();
-    let name = |(long, _): &(&Long, Stepping)| format!("{}, {}", long.scene, long.formulation);
+    let name = |(long, _): &(&Long, Stepping)| format!("{}, {}", long.scene, long.formulation.name);
     parallel::try_map(&asked, quiet, name, |asked| asked.0.run(asked.1).with_context(|| name(asked)))
 }
 
@@ -114,7 +118,7 @@ impl Long {
         }
         let mut run = LongRun {
             scene: self.scene,
-            formulation: deltaq::formulation(self.formulation).map_or(self.formulation, |f| f.title).into(),
+            formulation: self.formulation.title.into(),
             duration: self.duration,
             stepping,
             steps: 0,

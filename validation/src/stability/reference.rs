@@ -1,6 +1,7 @@
 //! What a motion should have been: closed forms, and equations derived by hand in other variables.
 
 use deltaq::{Choice, Ending, Motion, Setting, Settings, derive_at, solve};
+use equations::Formulation;
 use integrate::{DenseOutput, EvaluationError, Options, Problem, Start, Status, integrate};
 use mechanics::{ConstantsRule, State, System};
 use referees::maggi::{self, Maggi};
@@ -29,7 +30,7 @@ pub enum Reference {
         /// The system and the start.
         posed: Posed,
         /// The formulation, which has no removal.
-        formulation: &'static str,
+        formulation: &'static Formulation,
     },
     /// Equations in other variables, derived by hand and well conditioned where the judged ones are not.
     Ode {
@@ -132,9 +133,14 @@ impl Reference {
     }
 }
 
-fn derived(system: &System, start: &State, end: f64, formulation: &'static str) -> Result<Motion, deltaq::SolveError> {
+fn derived(
+    system: &System,
+    start: &State,
+    end: f64,
+    formulation: &'static Formulation,
+) -> Result<Motion, deltaq::SolveError> {
     let constants = ConstantsRule::Zero;
-    let choice = Choice { label: formulation.into(), formulation, removal: None, constants: constants.clone() };
+    let choice = Choice { label: formulation.title.into(), formulation, removal: None, constants: constants.clone() };
     let settings = Settings { tolerance: MAGGI[0], max_steps: STEPS, ..Settings::default() };
     solve(Setting { system, start, end }, derive_at(system, start, &choice)?, &constants, &settings)
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use equations::Formulation;
 
 use super::range::{Range, range};
 use super::{Format, SceneArguments};
@@ -13,8 +14,8 @@ pub struct MotionArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// chetaev, vakonomic, removed-constraint, kappa; or one of their forms, `show` lists them.
-    #[arg(long, short)]
-    pub formulation: String,
+    #[arg(long, short, value_parser = deltaq::formulation)]
+    pub formulation: &'static Formulation,
     /// Form of the equations of chetaev and vakonomic: the one that suits the system, or with multipliers,
     /// costates (vakonomic), or quasi-velocities (constraints linear in the velocities).
     #[arg(long, default_value = "auto", value_parser = clap::builder::PossibleValuesParser::new(deltaq::FORM_WORDS))]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use equations::Formulation;
 
 use super::SceneArguments;
 use super::ensemble::FreeArguments;
@@ -14,8 +15,8 @@ pub struct LinearizeArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// chetaev, vakonomic, removed-constraint, kappa; in quasi-velocities where there are any.
-    #[arg(long, short, default_value = "chetaev")]
-    pub formulation: String,
+    #[arg(long, short, default_value = deltaq::CHETAEV.name, value_parser = deltaq::formulation)]
+    pub formulation: &'static Formulation,
     #[command(flatten)]
     pub free_constants: FreeArguments,
     /// Linearize about the motion at this time, steady or not: the eigenvalues are those of an instant.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use equations::Formulation;
 use scene::{Number, Scene};
 
 use catalogue::NotFound;
@@ -61,8 +62,8 @@ pub struct ShowArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Formulations and forms to show, by name; all if left out, and of equations over 30 kB the size only.
-    #[arg(short, long, value_name = "NAME,…", value_delimiter = ',')]
-    pub formulation: Vec<String>,
+    #[arg(short, long, value_name = "NAME,…", value_delimiter = ',', value_parser = deltaq::formulation)]
+    pub formulation: Vec<&'static Formulation>,
     /// Formulas in LaTeX.
     #[arg(long)]
     pub latex: bool,

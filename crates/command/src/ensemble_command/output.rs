@@ -103,7 +103,7 @@ impl<'a> Answers<'a> {
         }
         let value = json!({
             "scene": self.scene.name,
-            "formulation": self.choice.formulation,
+            "formulation": self.choice.formulation.name,
             "removal": self.choice.removal.as_ref().map(|r| &r.name),
         });
         pretty("ensemble", &value).trim_end_matches("\n}\n").to_string() + ",\n  \"members\": ["

@@ -53,7 +53,7 @@ impl Costates {
             match known.iter().position(|known| known == name) {
                 Some(memory) => varied.push((place, memory)),
                 None if is_costate(name) && known.is_empty() => {
-                    return Err(format!("`{name}` varies, and {} has no memory variables", choice.formulation));
+                    return Err(format!("`{name}` varies, and {} has no memory variables", choice.formulation.name));
                 }
                 None if is_costate(name) => {
                     return Err(format!("no costate `{name}` that could vary; there are {}", known.join(", ")));

@@ -1,11 +1,15 @@
 //! Members against single runs of scenes that are derived and compiled for themselves.
 
+use equations::Formulation;
 use mechanics::ConstantsRule;
 use scene::Scene;
 use symbolic::LANES;
 
 use super::{Ensemble, EnsembleMember, EnsembleOptions, EnsembleStart};
-use crate::{Choice, Ending, MemberRun, Settings, SolveError, choices, constants_of, solve_choice};
+use crate::{
+    CHETAEV, Choice, Ending, MemberRun, REMOVED_CONSTRAINT, Settings, SolveError, VAKONOMIC, choices, constants_of,
+    solve_choice,
+};
 use integrate::Method;
 
 const SLEDGE: &str = include_str!("../../../catalogue/scenes/sledge.toml");
@@ -37,7 +41,7 @@ fn scene(text: &str, overrides: &[(&str, f64)]) -> Scene {
     Scene::parse_with("member", text, &overrides).unwrap()
 }
 
-fn choice(scene: &Scene, formulation: &str) -> Choice {
+fn choice(scene: &Scene, formulation: &Formulation) -> Choice {
     choices(scene).into_iter().find(|c| c.formulation == formulation).unwrap()
 }
 
@@ -70,7 +74,7 @@ fn run(ensemble: &Ensemble, members: &[EnsembleMember], times: &[f64], threads: 
     ensemble.run(members, times, &options).into_iter().map(Result::unwrap).collect()
 }
 
-fn ready(scenes: &[Scene], formulation: &str, parameters: &[&str]) -> (Ensemble, Vec<EnsembleMember>) {
+fn ready(scenes: &[Scene], formulation: &Formulation, parameters: &[&str]) -> (Ensemble, Vec<EnsembleMember>) {
     let choice = choice(&scenes[0], formulation);
     let mut ensemble = Ensemble::new(&scenes[0], &choice, parameters, &settings()).unwrap();
     let start = |scene| EnsembleStart::of(scene, parameters, constants_of(&choice, scene));
@@ -81,7 +85,7 @@ fn ready(scenes: &[Scene], formulation: &str, parameters: &[&str]) -> (Ensemble,
 #[test]
 fn a_member_is_the_same_to_the_last_bit_whatever_runs_beside_it() {
     let scenes = sledges(3 * LANES + 1);
-    let (ensemble, members) = ready(&scenes, "vakonomic", &["alpha", "k"]);
+    let (ensemble, members) = ready(&scenes, VAKONOMIC, &["alpha", "k"]);
     let times = [0.5, 1.0];
     let all = run(&ensemble, &members, &times, 1);
     assert_eq!(run(&ensemble, &members, &times, 3), all);
@@ -98,7 +102,7 @@ fn a_member_is_the_same_to_the_last_bit_whatever_runs_beside_it() {
 fn members_that_stop_do_so_alone_and_where_they_should() {
     let speeds = [0.5, 2.0, 0.1, 1.0, -1.0, 0.9, 0.3, 0.6, 4.0, 0.2];
     let scenes: Vec<Scene> = speeds.iter().map(|&u| scene(BLOW_UP, &[("x'", u), ("b", 1.0)])).collect();
-    let (ensemble, members) = ready(&scenes, "chetaev", &["b"]);
+    let (ensemble, members) = ready(&scenes, CHETAEV, &["b"]);
     for (u, run) in speeds.into_iter().zip(run(&ensemble, &members, &[0.2, 1.5], 1)) {
         // u' = b u², x = −ln(1 − b u₀ t)/b
         let stops = u * 1.5 > 1.0;
@@ -117,7 +121,7 @@ fn members_that_stop_do_so_alone_and_where_they_should() {
 fn members_that_take_too_many_steps_are_given_up_where_only_complete_ones_are_asked_for() {
     let speeds = [0.5, 4.0, 0.1, 2.0, -1.0, 8.0, 0.3, 0.2];
     let scenes: Vec<Scene> = speeds.iter().map(|&u| scene(BLOW_UP, &[("x'", u), ("b", 1.0)])).collect();
-    let (ensemble, members) = ready(&scenes, "chetaev", &["b"]);
+    let (ensemble, members) = ready(&scenes, CHETAEV, &["b"]);
     let ensemble = ensemble.at_most(20);
     let [all, complete] = [ensemble.clone(), ensemble.only_complete()].map(|e| run(&e, &members, &[0.1, 1.5], 1));
     for ((u, all), complete) in speeds.into_iter().zip(all).zip(complete) {
@@ -135,7 +139,7 @@ fn members_that_take_too_many_steps_are_given_up_where_only_complete_ones_are_as
 #[test]
 fn what_is_no_member_is_refused() {
     let base = scene(SLEDGE, &[]);
-    let chetaev = choice(&base, "chetaev");
+    let chetaev = choice(&base, CHETAEV);
     let refused =
         |names: &[&str]| matches!(Ensemble::new(&base, &chetaev, names, &settings()), Err(SolveError::Member { .. }));
     assert!(refused(&["g", "g"]) && refused(&["mu0_1"]));
@@ -150,7 +154,7 @@ fn what_is_no_member_is_refused() {
         let refused = Ensemble::new(&base, &chetaev, &[], &settings);
         assert!(matches!(refused, Err(SolveError::Tolerance { .. })), "tolerance {tolerance}");
     }
-    let natural = choice(&base, "removed-constraint");
+    let natural = choice(&base, REMOVED_CONSTRAINT);
     assert!(Ensemble::new(&base, &natural, &["g"], &settings()).is_ok());
     assert!(Ensemble::new(&base, &natural, &[], &settings()).is_ok());
 }
@@ -158,7 +162,7 @@ fn what_is_no_member_is_refused() {
 #[test]
 fn costates_vary_as_given_constants() {
     let base = scene(SLEDGE, &[]);
-    let removed = choice(&base, "removed-constraint");
+    let removed = choice(&base, REMOVED_CONSTRAINT);
     let names = ["P0_y", "phi'", "P0_x"];
     let ensemble = Ensemble::new(&base, &removed, &names, &settings()).unwrap();
     let rows: Vec<[f64; 3]> = (0..12).map(|i| [golden(i) - 0.5, 1.0 + golden(i + 20), 2.0 * golden(i + 40)]).collect();
@@ -173,7 +177,7 @@ fn costates_vary_as_given_constants() {
             assert!((one - other).abs() < 1e-9, "{one} and {other}");
         }
     }
-    let without = choice(&base, "chetaev");
+    let without = choice(&base, CHETAEV);
     for (choice, name) in [(&removed, "P0_phi"), (&without, "P0_x")] {
         let refused = Ensemble::new(&base, choice, &[name], &settings());
         assert!(matches!(refused, Err(SolveError::Member { reason }) if reason.contains(name)));
@@ -183,7 +187,7 @@ fn costates_vary_as_given_constants() {
 #[test]
 fn members_that_fail_at_the_start_do_not_disturb_the_others() {
     let scenes = sledges(LANES + 5);
-    let (mut ensemble, mut members) = ready(&scenes, "vakonomic", &["alpha", "k"]);
+    let (mut ensemble, mut members) = ready(&scenes, VAKONOMIC, &["alpha", "k"]);
     let times = [0.7];
     let expected = run(&ensemble, &members, &times, 1);
     // a start that is no number, and one without a length
@@ -221,7 +225,7 @@ fn members_that_fail_at_the_start_do_not_disturb_the_others() {
 fn starts_and_natural_constants_do_not_depend_on_threads_and_order() {
     let scenes = sledges(LANES + 1);
     let base = scene(SLEDGE, &[]);
-    let removed = choice(&base, "removed-constraint");
+    let removed = choice(&base, REMOVED_CONSTRAINT);
     let mut ensemble = Ensemble::new(&base, &removed, &["phi", "phi'"], &settings()).unwrap();
     let rows: Vec<[f64; 2]> = scenes.iter().map(|scene| [scene.start.q[2], scene.start.v[2]]).collect();
     let members: Vec<EnsembleMember> = ensemble.members(&rows, 3).into_iter().map(Result::unwrap).collect();
@@ -241,7 +245,7 @@ fn starts_and_natural_constants_do_not_depend_on_threads_and_order() {
 fn members_with_very_different_steps_do_not_wait_for_one_another_in_their_results() {
     let rates = [0.01, 300.0, 1.0, 30.0, 0.1, 100.0, 3.0, 10.0, 0.03, 200.0, 0.3];
     let scenes: Vec<Scene> = rates.iter().map(|&w| scene(SLEDGE, &[("phi'", w), ("duration", 2.0)])).collect();
-    let (ensemble, members) = ready(&scenes, "chetaev", &[]);
+    let (ensemble, members) = ready(&scenes, CHETAEV, &[]);
     let runs = run(&ensemble, &members, &[1.1, 2.0], 2);
     let steps: Vec<usize> = runs.iter().map(|run| run.work.steps).collect();
     assert!(steps[1] > 50 * steps[0], "{steps:?}");
@@ -255,7 +259,7 @@ fn members_with_very_different_steps_do_not_wait_for_one_another_in_their_result
         let speed = state[3..].iter().map(|found| (found - u).abs()).fold(f64::INFINITY, f64::min);
         assert!((state[2] - phi).abs() < 1e-9 * (1.0 + phi.abs()), "w = {w}: {state:?}, phi = {phi}");
         assert!(speed < 1e-9 * (1.0 + u.abs()), "w = {w}: {state:?}, u = {u}");
-        let single = solve_choice(scene, &choice(scene, "chetaev"), &settings()).unwrap();
+        let single = solve_choice(scene, &choice(scene, CHETAEV), &settings()).unwrap();
         assert_eq!(run.work.steps.abs_diff(single.work.steps), 0, "w = {w}");
     }
 }
@@ -265,7 +269,7 @@ fn an_interrupt_ends_members_on_the_way() {
     let interrupt = integrate::Interrupt::default();
     let endless = scene(SLEDGE, &[("duration", 1e9)]);
     let settings = Settings { interrupt: Some(interrupt.clone()), max_steps: usize::MAX, ..settings() };
-    let mut ensemble = Ensemble::new(&endless, &choice(&endless, "chetaev"), &[], &settings).unwrap();
+    let mut ensemble = Ensemble::new(&endless, &choice(&endless, CHETAEV), &[], &settings).unwrap();
     let members = vec![ensemble.member(&[]).unwrap(); 3];
     std::thread::scope(|scope| {
         scope.spawn(|| {

@@ -1,7 +1,7 @@
 //! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
 use super::numbers::{precise, short};
-use crate::{Answer, Comparison, Decided, Membership};
+use crate::{Answer, CHETAEV, Comparison, Decided, Membership, VAKONOMIC};
 
 /// Sentences for the head of the page of a scene, about multipliers and Chetaev's motion.
 pub(super) fn sentences(comparison: &Comparison) -> Vec<String> {
@@ -106,7 +106,7 @@ fn gap_reached(comparison: &Comparison, answer: &Answer) -> Option<String> {
     if matches!(answer, Answer::SomeProved | Answer::Some { .. }) {
         return None;
     }
-    let (run, target) = (comparison.run("vakonomic")?, comparison.run("chetaev")?);
+    let (run, target) = (comparison.run(VAKONOMIC)?, comparison.run(CHETAEV)?);
     let fitted = comparison.fits.iter().find(|f| f.run == run && f.target == target)?.fitted.as_ref()?;
     let constants: Vec<String> = fitted.constants.iter().map(|(_, c)| precise(*c)).collect();
     let (constants, gap) = (constants.join(", "), short(fitted.gap.largest));

@@ -8,7 +8,8 @@ use equations::Role;
 use super::decision;
 use super::numbers::{enumerate, precise, short};
 use crate::contradiction::FAULT;
-use crate::{CERTAINTY, Comparison, Gap, Pair, Verdict, formulation};
+use crate::table::is_in_table;
+use crate::{CERTAINTY, CHETAEV, Comparison, Gap, Pair, REMOVED_CONSTRAINT, VAKONOMIC, VAKONOMIC_COSTATE, Verdict};
 
 /// Three answers, each in a few sentences.
 pub struct Headline {
@@ -40,13 +41,13 @@ fn label(comparison: &Comparison, run: usize) -> &str {
 }
 
 /// Whether a run is of the table of formulations, not the control.
-fn is_in_table(comparison: &Comparison, run: usize) -> bool {
-    formulation(comparison.runs[run].choice.formulation).is_some()
+fn is_listed(comparison: &Comparison, run: usize) -> bool {
+    is_in_table(comparison.runs[run].choice.formulation)
 }
 
 /// The pairs without the control.
 pub fn rows(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
-    comparison.pairs.iter().filter(|p| is_in_table(comparison, p.first) && is_in_table(comparison, p.second))
+    comparison.pairs.iter().filter(|p| is_listed(comparison, p.first) && is_listed(comparison, p.second))
 }
 
 /// Motions in classes: all rows between two of a class say the same, and each is in one of them.
@@ -54,7 +55,7 @@ fn classes(comparison: &Comparison) -> Vec<Vec<usize>> {
     let verdict = |a: usize, b: usize| comparison.pair(a, b).map(|p| p.gap.verdict == Verdict::Same);
     let mut classes: Vec<Vec<usize>> = Vec::new();
     for run in 0..comparison.runs.len() {
-        if comparison.runs[run].outcome.is_err() || !is_in_table(comparison, run) {
+        if comparison.runs[run].outcome.is_err() || !is_listed(comparison, run) {
             continue;
         }
         let joins = |class: &&mut Vec<usize>| {
@@ -71,7 +72,7 @@ fn classes(comparison: &Comparison) -> Vec<Vec<usize>> {
 
 /// Labels of a class; that a formulation agrees with a second form of itself goes without saying.
 fn names(comparison: &Comparison, class: &[usize]) -> Vec<String> {
-    let second = |i: &usize| class.len() > 1 && comparison.runs[*i].choice.formulation == "vakonomic-costate";
+    let second = |i: &usize| class.len() > 1 && comparison.runs[*i].choice.formulation == VAKONOMIC_COSTATE;
     class.iter().filter(|i| !second(i)).map(|&i| label(comparison, i).to_owned()).collect()
 }
 
@@ -105,8 +106,7 @@ fn verdicts(comparison: &Comparison) -> Vec<String> {
             sentences.extend(shared.map(none));
         }
     }
-    let first = |name: &str| comparison.run(name);
-    let main = [first("chetaev"), first("vakonomic"), first("removed-constraint")];
+    let main = [CHETAEV, VAKONOMIC, REMOVED_CONSTRAINT].map(|own| comparison.run(own));
     for p in rows(comparison) {
         let both = format!("{} and {}", label(comparison, p.first), label(comparison, p.second));
         match &p.gap.verdict {
@@ -175,10 +175,10 @@ fn alone(comparison: &Comparison, run: usize) -> String {
 
 /// Which formulations have no motion, and why.
 fn without_motion(comparison: &Comparison) -> Vec<String> {
-    let in_table = comparison.runs.iter().filter(|run| formulation(run.choice.formulation).is_some());
+    let in_table = comparison.runs.iter().filter(|run| is_in_table(run.choice.formulation));
     let refused = in_table.filter_map(|run| {
         // a reason may begin with the name of the formulation
-        let (reason, name) = (run.outcome.as_ref().err()?.to_string(), format!("{}: ", run.choice.formulation));
+        let (reason, name) = (run.outcome.as_ref().err()?.to_string(), format!("{}: ", run.choice.formulation.name));
         Some((reason.strip_prefix(&name).unwrap_or(&reason).to_owned(), run.choice.label.clone()))
     });
     let told = by_reason(refused.collect()).into_iter();
@@ -188,7 +188,7 @@ fn without_motion(comparison: &Comparison) -> Vec<String> {
 /// Why the motions part, or do not.
 fn why(comparison: &Comparison) -> Vec<String> {
     let mut sentences = vec![format!("Constraint: {}.", comparison.integrability)];
-    let pair = comparison.run("chetaev").zip(comparison.run("vakonomic")).and_then(|(a, b)| comparison.pair(a, b));
+    let pair = comparison.run(CHETAEV).zip(comparison.run(VAKONOMIC)).and_then(|(a, b)| comparison.pair(a, b));
     if let Some((predicted, measured)) = pair.and_then(|p| p.predicted.as_ref().zip(p.growth.as_ref())) {
         sentences.push(format!(
             "Its curvature at the start predicts that Chetaev and vakonomic part as {} t^{}; measured: {} t^{:.2}.",
@@ -216,7 +216,7 @@ fn substituted(comparison: &Comparison) -> impl Iterator<Item = usize> {
     comparison.runs.iter().enumerate().filter_map(move |(i, run)| {
         let motion = run.outcome.as_ref().ok().filter(|_| constrained && run.choice.removal.is_some())?;
         let costate = motion.equations.states.iter().any(|y| y.role == Role::MemoryCostate);
-        (!costate && is_in_table(comparison, i)).then_some(i)
+        (!costate && is_listed(comparison, i)).then_some(i)
     })
 }
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _parts
-from ._native import FORMULATIONS, System, UnknownNameError, __version__
+from ._native import System, __version__
 from ._needs import needed
 from ._tables import arrow_with_units, units, with_units
 
@@ -143,9 +143,6 @@ def sweep(
         raise ValueError("over is empty; it needs values for something that varies")
     if formulations is not None and len(formulations) != 2:
         raise ValueError(f"formulations names {len(formulations)}; two can be compared")
-    for name in formulations or ():
-        if name not in FORMULATIONS:
-            raise UnknownNameError(f"unknown formulation `{name}`; known: {', '.join(FORMULATIONS)}")
     chosen = None if formulations is None else list(formulations)
     limits = (chosen, tolerance, max_steps, max_step, time_limit)
     lists = {name: numbers.tolist() for name, numbers in values.items()}

@@ -1,7 +1,8 @@
 //! T1, T2, T3, T11, T14: where formulations give the same motion.
 
 use deltaq::{
-    Choice, Setting, SolveError, costates_of, derive, growth, integrability, integrals_by_ranks, multipliers_of,
+    Choice, REMOVED_CONSTRAINT, Setting, SolveError, VAKONOMIC, costates_of, derive, growth, integrability,
+    integrals_by_ranks, multipliers_of,
 };
 use mechanics::{ConstantsRule, Integrability, Removal, SingularValues, complete_removal_start};
 use nalgebra::{DMatrix, DVector};
@@ -107,7 +108,7 @@ pub(super) fn bridge(case: &mut Case) -> Result<(), CheckError> {
         let n = case.scene.system.dimension();
         let setting = Setting { system: &case.scene.system, start: &case.scene.start, end: case.end() };
         let (system, start, multipliers) = augmented_start(setting, &removal, &case.removed[i].costates)?;
-        let mut equations = equations(&system, "vakonomic", None)?;
+        let mut equations = equations(&system, VAKONOMIC, None)?;
         equations.coordinates.truncate(n);
         equations.velocities.truncate(n);
         let mut motion = case.solve(&system, &start, case.end(), equations, &multipliers)?;
@@ -122,12 +123,12 @@ pub(super) fn bijection(case: &mut Case) -> Result<(), CheckError> {
     for i in (0..case.removed.len()).filter(|_| !given.is_empty()).collect::<Vec<_>>() {
         let (removal, costates) = (case.removed[i].removal.clone(), case.removed[i].costates.clone());
         let Some(mu) = multipliers_of(&case.scene, &removal, &costates)? else { continue };
-        let mut motion = case.run(equations(&system, "vakonomic", None)?, &mu)?;
+        let mut motion = case.run(equations(&system, VAKONOMIC, None)?, &mu)?;
         case.same(3, "coordinate removal is the vakonomic motion with mu = -P - L_w'", Which::Removed(i), &mut motion);
         let Some(costates) = costates_of(&case.scene, &removal, &given)? else { continue };
         let choice = Choice {
             label: removal.name.clone(),
-            formulation: "removed-constraint",
+            formulation: REMOVED_CONSTRAINT,
             removal: Some(removal),
             constants: ConstantsRule::Given(costates.clone()),
         };
@@ -188,7 +189,7 @@ pub(super) fn sanity(case: &mut Case) -> Result<(), CheckError> {
         return Ok(());
     };
     let removal = case.removed[place].removal.clone();
-    let equations = equations(&system, "removed-constraint", Some(&removal))?;
+    let equations = equations(&system, REMOVED_CONSTRAINT, Some(&removal))?;
     let rates: Vec<Symbol> = removal.parameters.iter().map(|u| u.rate).collect();
     let phi = g.jacobian(&removal.velocities(&system), &rates);
     let mut values = system.values_at(&case.scene.start);

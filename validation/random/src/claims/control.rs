@@ -1,7 +1,7 @@
 //! T12: the deliberately wrong formulation.
 
 use decision::Verdict;
-use deltaq::{Setting, multipliers_of, setting};
+use deltaq::{Setting, VAKONOMIC, multipliers_of, setting};
 
 use super::CheckError;
 use crate::case::Which;
@@ -47,7 +47,7 @@ fn criterion(case: &mut Case) -> Result<(), CheckError> {
         return Ok(());
     }
     let Some(mu) = multipliers_of(&case.scene, &removal, &vec![0.0; removal.memory.len()])? else { return Ok(()) };
-    let mut motion = case.run(equations(&system, "vakonomic", None)?, &mu)?;
+    let mut motion = case.run(equations(&system, VAKONOMIC, None)?, &mu)?;
     case.same(12, "substitution is the vakonomic motion with c = 0", Which::Control, &mut motion);
     let Some(found) = case.membership()? else { return Ok(()) };
     let (verdict, gap) = (found.decision.verdict_at(&mu), case.gap(Which::Chetaev, Which::Control)?);

@@ -1,7 +1,7 @@
 //! T9: whether a motion is vakonomic for some multipliers: decided, proved, and fitted.
 
 use decision::{Finding, Verdict};
-use deltaq::{Answer, Membership, Pairing, Settings, best_fit, choices, setting};
+use deltaq::{Answer, Membership, Pairing, Settings, VAKONOMIC, best_fit, choices, setting};
 
 use super::CheckError;
 use crate::case::Which;
@@ -54,7 +54,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     }
     match decision.verdict {
         Verdict::Contained => {
-            let equations = equations(&case.scene.system, "vakonomic", None)?;
+            let equations = equations(&case.scene.system, VAKONOMIC, None)?;
             let mut motion = case.run(equations, &decision.set.point)?;
             case.same(9, "the multipliers found give Chetaev's motion", Which::Chetaev, &mut motion);
         }
@@ -85,7 +85,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
 fn planted(case: &mut Case) -> Result<(), CheckError> {
     let (choices, multipliers) = (choices(&case.scene), &case.scene.multipliers);
     let [Some(family), Some(curve)] =
-        ["vakonomic", case.planted].map(|name| choices.iter().find(|choice| choice.formulation == name))
+        [VAKONOMIC, case.planted].map(|own| choices.iter().find(|choice| choice.formulation == own))
     else {
         return Ok(());
     };
@@ -123,7 +123,7 @@ pub(super) fn fit(case: &mut Case) -> Result<(), CheckError> {
     }
     let Some(found) = case.membership()? else { return Ok(()) };
     let settings = Settings { max_steps: 3_000, ..Settings::default() };
-    let equations = equations(&case.scene.system, "vakonomic", None)?;
+    let equations = equations(&case.scene.system, VAKONOMIC, None)?;
     let (mut chetaev, mut metric) = (case.chetaev.clone(), case.metric.clone());
     let guesses = [found.decision.set.point.clone()];
     let fitted = best_fit(setting(&case.scene), &equations, &mut chetaev, &guesses, &mut metric, &settings)?;

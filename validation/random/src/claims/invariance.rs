@@ -1,6 +1,6 @@
 //! T4 and T10: what a formulation does not depend on.
 
-use deltaq::{CERTAINTY, Motion, Sampling, SolveError, compare_motions};
+use deltaq::{CERTAINTY, CHETAEV, Motion, REMOVED_CONSTRAINT, Sampling, SolveError, VAKONOMIC, compare_motions};
 use equations::Outputs;
 use mechanics::{State, System};
 use nalgebra::DMatrix;
@@ -26,13 +26,13 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
         let mu = nalgebra::DVector::from_vec(case.scene.multipliers.clone());
         let Some(mu) = factor.transpose().lu().solve(&mu) else { return Ok(()) };
         let other = recombined(&system, &mixing);
-        let mut chetaev = case.run(equations(&other, "chetaev", None)?, &[])?;
+        let mut chetaev = case.run(equations(&other, CHETAEV, None)?, &[])?;
         case.same(4, "Chetaev: constraints recombined", Which::Chetaev, &mut chetaev);
-        let mut vakonomic = case.run(equations(&other, "vakonomic", None)?, mu.as_slice())?;
+        let mut vakonomic = case.run(equations(&other, VAKONOMIC, None)?, mu.as_slice())?;
         case.same(4, "vakonomic: constraints recombined", Which::Vakonomic, &mut vakonomic);
     }
     if let Some((forced, _)) = case.forced.clone().filter(|_| h > 0) {
-        let other = equations(&recombined(&forced, &self::mixing(&forced)), "chetaev", None)?;
+        let other = equations(&recombined(&forced, &self::mixing(&forced)), CHETAEV, None)?;
         case.same(4, "Chetaev with forces: constraints recombined", Which::Forced, &mut case.run(other, &[])?);
     }
     let n = system.dimension();
@@ -44,7 +44,7 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
         start.v[i] -= rate * y.cos() / 4.0;
     }
     for (name, which, constants) in
-        [("chetaev", Which::Chetaev, Vec::new()), ("vakonomic", Which::Vakonomic, case.scene.multipliers.clone())]
+        [(CHETAEV, Which::Chetaev, Vec::new()), (VAKONOMIC, Which::Vakonomic, case.scene.multipliers.clone())]
     {
         let equations = rewritten.outputs(equations(&rewritten.system, name, None)?);
         let mut motion = case.solve(&rewritten.system, &start, case.end(), equations, &constants)?;
@@ -53,7 +53,7 @@ pub(super) fn writing(case: &mut Case) -> Result<(), CheckError> {
     }
     if let Some((forced, _)) = case.forced.clone() {
         let rewritten = Rewritten::new(&forced, &shift(&forced));
-        let equations = rewritten.outputs(equations(&rewritten.system, "chetaev", None)?);
+        let equations = rewritten.outputs(equations(&rewritten.system, CHETAEV, None)?);
         let mut motion = case.solve(&rewritten.system, &start, case.end(), equations, &[])?;
         case.same(4, "Chetaev with forces: other coordinates", Which::Forced, &mut motion);
     }
@@ -143,7 +143,7 @@ fn run_back(
     let state = State { t: case.end(), q: end.coordinates.clone(), v: end.velocities.clone() };
     let names: Vec<String> = case.motion(which).equations.multipliers.iter().map(|m| m.name.clone()).collect();
     let (equations, constants) = match which {
-        Which::Chetaev | Which::Forced => (equations(other, "chetaev", None)?, Vec::new()),
+        Which::Chetaev | Which::Forced => (equations(other, CHETAEV, None)?, Vec::new()),
         Which::Removed(i) => {
             let removal = &case.removed[i].removal;
             let graph = &case.scene.system.graph;
@@ -153,11 +153,11 @@ fn run_back(
             };
             let costates: Vec<f64> = removal.memory.iter().map(costate).collect();
             let costates = reversal.costates(removal, &costates);
-            let equations = equations(other, "removed-constraint", Some(&reversal.removal(other, removal)))?;
+            let equations = equations(other, REMOVED_CONSTRAINT, Some(&reversal.removal(other, removal)))?;
             let constants = free_constants(&equations, &costates);
             (equations, constants)
         }
-        _ => (equations(other, "vakonomic", None)?, reversal.multipliers(&end.multipliers)),
+        _ => (equations(other, VAKONOMIC, None)?, reversal.multipliers(&end.multipliers)),
     };
     // velocities of the reversed system are those of the motion backwards
     let start = reversal.state(&state);
@@ -171,22 +171,22 @@ fn units(case: &mut Case, scaling: &Scaling) -> Result<(), CheckError> {
     let end = case.end() / scaling.time;
     let clock = Sampling { rate: 1.0 / scaling.time, offset: 0.0, ..Sampling::default() };
     let mut runs = vec![
-        (Which::Chetaev, "Chetaev in other units", equations(&other, "chetaev", None)?, Vec::new()),
+        (Which::Chetaev, "Chetaev in other units", equations(&other, CHETAEV, None)?, Vec::new()),
         (
             Which::Vakonomic,
             "vakonomic in other units",
-            equations(&other, "vakonomic", None)?,
+            equations(&other, VAKONOMIC, None)?,
             scaling.multipliers(&case.scene.multipliers),
         ),
     ];
     for (i, removed) in case.removed.iter().enumerate() {
         let removal = scaling.removal(&other, &removed.removal);
-        let equations = equations(&other, "removed-constraint", Some(&removal))?;
+        let equations = equations(&other, REMOVED_CONSTRAINT, Some(&removal))?;
         let constants = free_constants(&equations, &scaling.costates(&removal, &removed.costates));
         runs.push((Which::Removed(i), "removed constraint in other units", equations, constants));
     }
     if let Some((forced, _)) = &case.forced {
-        let equations = equations(&scaling.system(forced), "chetaev", None)?;
+        let equations = equations(&scaling.system(forced), CHETAEV, None)?;
         runs.push((Which::Forced, "Chetaev with forces in other units", equations, Vec::new()));
     }
     for (which, claim, equations, constants) in runs {

@@ -1,6 +1,6 @@
 //! Constants that are natural at a horizon: costates vanish there, in whatever units.
 
-use deltaq::{CERTAINTY, Motion, Setting, Settings, SolveError, TIGHTER, solve};
+use deltaq::{CERTAINTY, Motion, REMOVED_CONSTRAINT, Setting, Settings, SolveError, TIGHTER, solve};
 use mechanics::{ConstantsRule, Removal};
 use symbolic::Expr;
 
@@ -51,7 +51,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
 
 /// The motion with natural constants, judged, or what the case has `planted`; `None` where none is found.
 fn judged(case: &mut Case, setting: Setting, removal: &Removal, planted: bool) -> Result<Option<Motion>, CheckError> {
-    let equations = equations(setting.system, "removed-constraint", Some(removal))?;
+    let equations = equations(setting.system, REMOVED_CONSTRAINT, Some(removal))?;
     if equations.free_constants.is_empty() {
         return Ok(None);
     }

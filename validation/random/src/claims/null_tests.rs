@@ -1,6 +1,7 @@
 //! T13: systems on which formulations agree, or differ in a known way, with random numbers in them.
 
-use deltaq::{Motion, SolveError, setting, solve};
+use deltaq::{CHETAEV, Motion, SolveError, VAKONOMIC, setting, solve};
+use equations::Formulation;
 use mechanics::ConstantsRule;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -109,8 +110,8 @@ fn scene(text: &str, overrides: &[(&str, f64)]) -> Scene {
     Scene::parse_with("null test", text, &overrides).unwrap_or_else(|error| unreachable!("built in: {error}"))
 }
 
-fn motion(scene: &Scene, name: &str, constants: &[f64]) -> Result<Motion, SolveError> {
-    let equations = equations(&scene.system, name, None)?;
+fn motion(scene: &Scene, formulation: &'static Formulation, constants: &[f64]) -> Result<Motion, SolveError> {
+    let equations = equations(&scene.system, formulation, None)?;
     solve(setting(scene), equations, &ConstantsRule::Given(constants.to_vec()), &deltaq::Settings::default())
 }
 
@@ -157,8 +158,8 @@ fn appell_hamel(found: &mut Findings, numbers: &NullTest, scene: &Scene) -> Resu
         let s = speed * t - deceleration * t * t / 2.0;
         vec![s * heading.cos(), s * heading.sin(), a * s]
     };
-    found.bound(13, "Appell–Hamel: Chetaev runs straight", error(&mut motion(scene, "chetaev", &[])?, &exact)?, LIMIT);
-    let vakonomic = error(&mut motion(scene, "vakonomic", &scene.multipliers)?, &exact)?;
+    found.bound(13, "Appell–Hamel: Chetaev runs straight", error(&mut motion(scene, CHETAEV, &[])?, &exact)?, LIMIT);
+    let vakonomic = error(&mut motion(scene, VAKONOMIC, &scene.multipliers)?, &exact)?;
     found.bound(13, "Appell–Hamel: vakonomic runs the same line", vakonomic, LIMIT);
     Ok(())
 }
@@ -174,8 +175,8 @@ fn heisenberg(found: &mut Findings, numbers: &NullTest, scene: &Scene) -> Result
     let (x0, y0) = (scene.start.q[0], scene.start.q[1]);
     let z = |x: f64, y: f64| (x0 * y - y0 * x) / 2.0;
     let line = |t: f64| vec![x0 + vx * t, y0 + vy * t, z(x0 + vx * t, y0 + vy * t)];
-    found.bound(13, "Heisenberg: Chetaev runs straight", error(&mut motion(scene, "chetaev", &[])?, &line)?, LIMIT);
-    let mut vakonomic = motion(scene, "vakonomic", &scene.multipliers)?;
+    found.bound(13, "Heisenberg: Chetaev runs straight", error(&mut motion(scene, CHETAEV, &[])?, &line)?, LIMIT);
+    let mut vakonomic = motion(scene, VAKONOMIC, &scene.multipliers)?;
     // v turns at the rate μ, in one sense or the other: d²/dt² v = −μ² v, and speed is kept
     let (mut worst, speed) = (0.0_f64, vx.hypot(vy));
     for t in vakonomic.grid(INSTANTS) {
@@ -202,10 +203,10 @@ fn disc(found: &mut Findings, numbers: &NullTest, scene: &Scene) -> Result<(), S
         let circle = radius * roll / turn;
         vec![circle * (angle.sin() - heading.sin()), circle * (heading.cos() - angle.cos()), roll * t, angle]
     };
-    found.bound(13, "disc: Chetaev rolls uniformly", error(&mut motion(scene, "chetaev", &[])?, &exact)?, LIMIT);
-    let special = error(&mut motion(scene, "vakonomic", &scene.multipliers)?, &exact)?;
+    found.bound(13, "disc: Chetaev rolls uniformly", error(&mut motion(scene, CHETAEV, &[])?, &exact)?, LIMIT);
+    let special = error(&mut motion(scene, VAKONOMIC, &scene.multipliers)?, &exact)?;
     found.bound(13, "disc: the special multipliers give the Chetaev motion", special, LIMIT);
-    let plain = error(&mut motion(scene, "vakonomic", &[0.0, 0.0])?, &exact)?;
+    let plain = error(&mut motion(scene, VAKONOMIC, &[0.0, 0.0])?, &exact)?;
     found.require(13, "disc: zero multipliers do not", plain > 1e-6, format!("distance {plain:.1e}"));
     Ok(())
 }

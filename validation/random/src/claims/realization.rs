@@ -80,7 +80,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
         "the family between tends to Chetaev with forces at rate 1/kappa",
         "kappa with forces: distance at 100 over that at 1000",
         |case, power| {
-            let family = equations(&with_kappa(&forced, KAPPA * power), "kappa", None)?;
+            let family = equations(&with_kappa(&forced, KAPPA * power), deltaq::KAPPA, None)?;
             apart(case, Which::Forced, &mut case.run(family, &multipliers)?)
         },
     )
@@ -95,8 +95,9 @@ fn apart(case: &mut Case, which: Which, motion: &mut Motion) -> Result<[f64; 2],
 /// `d/dt 𝓛_v − 𝓛_q = Q − κ Aᵀ μ` is vakonomic at `κ = 0`, and tends to Chetaev at the rate `1/κ`.
 fn between(case: &mut Case) -> Result<(), CheckError> {
     let (system, multipliers) = (case.scene.system.clone(), case.scene.multipliers.clone());
-    let motion =
-        |case: &mut Case, kappa: f64| case.run(equations(&with_kappa(&system, kappa), "kappa", None)?, &multipliers);
+    let motion = |case: &mut Case, kappa: f64| {
+        case.run(equations(&with_kappa(&system, kappa), deltaq::KAPPA, None)?, &multipliers)
+    };
     let mut at_zero = motion(case, 0.0)?;
     case.same(8, "the family between begins at vakonomic", Which::Vakonomic, &mut at_zero);
     judge(

@@ -1,6 +1,6 @@
 //! What must hold within each formulation.
 
-use deltaq::Setting;
+use deltaq::{Setting, VAKONOMIC_COSTATE};
 use mechanics::{SingularValues, State, System};
 use referees::maggi;
 
@@ -21,7 +21,7 @@ pub(super) fn check(case: &mut Case) -> Result<(), CheckError> {
     }
     maggi(case)?;
     let multipliers = case.scene.multipliers.clone();
-    let mut costate_form = case.run(equations(&system, "vakonomic-costate", None)?, &multipliers)?;
+    let mut costate_form = case.run(equations(&system, VAKONOMIC_COSTATE, None)?, &multipliers)?;
     case.same(0, "vakonomic: multiplier form and costate form", Which::Vakonomic, &mut costate_form);
     let removed = (0..case.removed.len()).map(Which::Removed);
     for which in [Which::Chetaev, Which::Vakonomic].into_iter().chain(removed) {

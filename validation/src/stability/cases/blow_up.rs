@@ -1,17 +1,18 @@
 //! Infinite speed within a finite time.
 
+use equations::Formulation;
 use scene::Scene;
 
 use crate::stability::question::Question;
 use crate::stability::reference::Reference;
 
 /// The particle from height `y` at speed `ẋ`, up to twice the time of the pole.
-pub(super) fn questions(y: f64, speed: f64, names: &[&'static str]) -> Vec<Question> {
+pub(super) fn questions(y: f64, speed: f64, formulations: &[&'static Formulation]) -> Vec<Question> {
     let scene = move || {
         let numbers = [("y", y), ("x'", speed), ("duration", 2.0 / y)].map(|(name, x)| (name.to_string(), x));
         Scene::parse_with("blow-up", include_str!("blow-up.toml"), &numbers)
     };
-    super::questions(y, scene, names, |_| closed(y, speed))
+    super::questions(y, scene, formulations, |_| closed(y, speed))
 }
 
 /// With `C = ẋ₀√(1 + y₀²)` and `dt = dy/y²`: `x = C ∫ dy/(y²√(1 + y²))`, `z = C ∫ dy/(y√(1 + y²))`.

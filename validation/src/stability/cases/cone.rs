@@ -1,5 +1,7 @@
 //! The ball near the apex of the cone, and near the ends of its chart.
 
+use deltaq::{CHETAEV, REMOVED_CONSTRAINT, VAKONOMIC};
+use equations::Formulation;
 use mechanics::State;
 use nalgebra::Vector3;
 use scene::{Scene, SceneError};
@@ -17,7 +19,7 @@ const GYRATION: f64 = 0.4 * RADIUS * RADIUS;
 const COMPARED: usize = 2;
 
 /// Near the apex both vakonomic forms have the same equations of one instant; one of them will do.
-const NAMES: [&str; 3] = ["chetaev", "vakonomic", "removed-constraint"];
+const FORMULATIONS: [&Formulation; 3] = [CHETAEV, VAKONOMIC, REMOVED_CONSTRAINT];
 
 pub(super) fn apex(d: f64) -> Vec<Question> {
     questions(d, &[("r", RADIUS / HALF_ANGLE.tan() + d), ("r'", -0.3), ("duration", 1.0)])
@@ -39,7 +41,7 @@ fn questions(point: f64, overrides: &[(&str, f64)]) -> Vec<Question> {
         )
     };
     let start = scene().map(|scene| scene.start);
-    let mut questions = super::questions(point, scene, &NAMES, |name| match &start {
+    let mut questions = super::questions(point, scene, &FORMULATIONS, |name| match &start {
         Ok(start) => Ball::at(start).reference(name),
         // the scene is refused, and nothing is compared
         Err(_) => Reference::Closed(Box::new(|_| vec![f64::NAN; COMPARED])),
@@ -99,11 +101,11 @@ impl Ball {
     }
 
     /// Vakonomic with `μ₀ = 0`; removed with `P(t₀) = 0`, the vakonomic motion without momenta of r, γ (T2).
-    fn reference(&self, formulation: &str) -> Reference {
+    fn reference(&self, formulation: &Formulation) -> Reference {
         let rho = centre(self.r);
         match formulation {
-            "chetaev" => self.newton(),
-            "removed-constraint" => {
+            own if own == CHETAEV => self.newton(),
+            own if own == REMOVED_CONSTRAINT => {
                 let turning = rho * rho * self.gamma_rate + GYRATION * self.spin.z;
                 self.lie_poisson(-turning / (self.r * HALF_ANGLE.sin()), -self.r_rate)
             }

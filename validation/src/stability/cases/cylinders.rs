@@ -1,5 +1,7 @@
 //! Three rough cylinders near the singularities of their constraints.
 
+use deltaq::{CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE};
+use equations::Formulation;
 use mechanics::{State, System};
 use scene::{Scene, SceneError};
 
@@ -32,16 +34,17 @@ pub(super) fn questions(point: f64, name: &str, start: f64) -> Vec<Question> {
         Scene::parse_with("three-cylinders", &text.replace(LAST[0], last), &overrides)
     };
     let judged = scene.clone();
-    let reference = |name: &'static str| {
-        let (scene, last) = (scene.clone(), if name == "chetaev" { LAST[0] } else { LAST[1] });
+    let reference = |formulation: &Formulation| {
+        let (scene, last) = (scene.clone(), if formulation == CHETAEV { LAST[0] } else { LAST[1] });
         let posed = move || -> Result<(System, State), String> {
             let start = scene(CONSTRAINT[0], LAST[0]).map_err(|error| error.to_string())?.start;
             Ok((scene(CONSTRAINT[1], last).map_err(|error| error.to_string())?.system, start))
         };
-        match name {
-            "chetaev" => Reference::Maggi(Box::new(posed)),
-            _ => Reference::Equivalent { posed: Box::new(posed), formulation: "vakonomic-costate" },
+        if formulation == CHETAEV {
+            Reference::Maggi(Box::new(posed))
+        } else {
+            Reference::Equivalent { posed: Box::new(posed), formulation: VAKONOMIC_COSTATE }
         }
     };
-    super::questions(point, move || judged(CONSTRAINT[0], LAST[0]), &["chetaev", "vakonomic"], reference)
+    super::questions(point, move || judged(CONSTRAINT[0], LAST[0]), &[CHETAEV, VAKONOMIC], reference)
 }

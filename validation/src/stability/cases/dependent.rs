@@ -1,5 +1,7 @@
 //! Two constraints that are nearly one.
 
+use deltaq::{CHETAEV, REMOVED_CONSTRAINT};
+use equations::Formulation;
 use scene::Scene;
 
 use super::FORMULATIONS;
@@ -24,14 +26,14 @@ pub(super) fn questions(exponent: i32) -> Vec<Question> {
 /// ```
 ///
 /// The removed-constraint motion with `P(t₀) = 0` is the vakonomic one with `p_z = p_w = 0` (T2).
-fn reference(formulation: &'static str) -> Reference {
+fn reference(formulation: &Formulation) -> Reference {
     let [x, y, dx, dy] = START;
     let solve = |x: f64, y: f64, a: f64, b: f64| {
         let (g, h, k) = (1.0 + 2.0 * y * y, -x * y, 1.0 + x * x);
         let determinant = g * k - h * h;
         ((k * a - h * b) / determinant, (g * b - h * a) / determinant)
     };
-    if formulation == "chetaev" {
+    if formulation == CHETAEV {
         return Reference::Ode {
             y: vec![x, y, 0.0, 0.0, dx, dy],
             rates: Box::new(move |_, s, rates| {
@@ -42,7 +44,7 @@ fn reference(formulation: &'static str) -> Reference {
             read: Box::new(|_, s| s[..4].to_vec()),
         };
     }
-    let (pz, pw) = if formulation == "removed-constraint" { (0.0, 0.0) } else { (y * dx, x * dy - y * dx) };
+    let (pz, pw) = if formulation == REMOVED_CONSTRAINT { (0.0, 0.0) } else { (y * dx, x * dy - y * dx) };
     let (along_x, along_y) = ((1.0 + 2.0 * y * y) * dx - x * y * dy, (1.0 + x * x) * dy - x * y * dx);
     Reference::Ode {
         y: vec![x, y, 0.0, 0.0, along_x - y * (pz - pw), along_y - x * pw],

@@ -1,5 +1,6 @@
 //! A disc that rolls: what pushes, holds or brakes it.
 
+use deltaq::CHETAEV;
 use std::sync::Arc;
 
 use scene::{Scene, SceneError};
@@ -61,7 +62,7 @@ impl Disc {
             let road = road.clone();
             Reference::Closed(Box::new(move |t| road(t).to_vec()))
         };
-        let mut question = super::questions(point, move || self.scene(), &["chetaev"], reference).remove(0);
+        let mut question = super::questions(point, move || self.scene(), &[CHETAEV], reference).remove(0);
         question.formulation += &format!(", {kind}");
         question.compared = 2;
         question

@@ -1,6 +1,6 @@
 //! Masses of very different size, put in (added mass) or given (mass ratios).
 
-use deltaq::Setting;
+use deltaq::{CHETAEV, REMOVED_CONSTRAINT, Setting};
 use mechanics::{ConstantsRule, State};
 use referees::closed_forms::Particle;
 use scene::Scene;
@@ -32,7 +32,7 @@ fn massive(strength: f64) -> Result<Subject, String> {
     let system = with_added_mass(&scene.system, strength);
     let setting = Setting { system: &scene.system, start: &scene.start, end: scene.duration };
     let start = at_momentum(setting, &system, &[MULTIPLIER]).map_err(|error| error.to_string())?;
-    let equations = equations(&system, "chetaev", None).map_err(|error| error.to_string())?;
+    let equations = equations(&system, CHETAEV, None).map_err(|error| error.to_string())?;
     Ok(Subject {
         system,
         start,
@@ -51,8 +51,8 @@ pub(super) fn ratio(mass: f64) -> Vec<Question> {
         mass,
         move || Scene::parse("particle", &text),
         &FORMULATIONS,
-        |name| match name {
-            "chetaev" => {
+        |formulation| match formulation {
+            own if own == CHETAEV => {
                 let s = mass.sqrt();
                 let [x, y, z] = START.0;
                 let particle = Particle { position: [x, s * y, s * z], x_speed: START.1[0], y_speed: s * START.1[1] };
@@ -62,7 +62,7 @@ pub(super) fn ratio(mass: f64) -> Vec<Question> {
                 }))
             }
             // P(t₀) = 0: the vakonomic motion of the multiplier that leaves z no momentum (T2)
-            "removed-constraint" => Reduced { z_mass: mass, weakness: 0.0 }.from(START, -mass * START.1[2]),
+            own if own == REMOVED_CONSTRAINT => Reduced { z_mass: mass, weakness: 0.0 }.from(START, -mass * START.1[2]),
             _ => Reduced { z_mass: mass, weakness: 0.0 }.from(START, 0.0),
         },
     )

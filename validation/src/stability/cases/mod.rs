@@ -15,10 +15,14 @@ mod units;
 mod viscous;
 mod wall;
 
+use equations::Formulation;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use deltaq::{Choice, Settings, Steps, choices, derive_at, formulation, solve_by_steps};
+use deltaq::{
+    CHETAEV, Choice, REMOVED_CONSTRAINT, Settings, Steps, VAKONOMIC, VAKONOMIC_COSTATE, choices, derive_at,
+    solve_by_steps,
+};
 use mechanics::ConstantsRule;
 use scene::{Scene, SceneError};
 
@@ -59,7 +63,7 @@ const QUESTIONS: [Asked; 33] = [
     ("unit-of-time", || powers(-12, 12, 4).flat_map(|unit| units::questions(unit, [0, 1, 2, 1])).collect()),
     ("unit-of-mass", || powers(-12, 12, 4).flat_map(|unit| units::questions(unit, [0, 0, -1, 0])).collect()),
     ("blow-up", || powers(-2, 2, 1).flat_map(|y| blow_up::questions(y, 0.0, &FORMULATIONS)).collect()),
-    ("blow-up-across", || powers(-2, 2, 1).flat_map(|y| blow_up::questions(y, 1.0, &["chetaev"])).collect()),
+    ("blow-up-across", || powers(-2, 2, 1).flat_map(|y| blow_up::questions(y, 1.0, &[CHETAEV])).collect()),
     ("pulse-at-rest", || half_powers(-6).flat_map(|width| pulse::forces(width, [0.0, 0.0])).collect()),
     ("pulse-rolling", || half_powers(-6).flat_map(|width| pulse::forces(width, [0.5, 0.2])).collect()),
     ("potential-at-rest", || half_powers(-6).flat_map(|width| pulse::potentials(width, 0.0)).collect()),
@@ -78,17 +82,17 @@ const QUESTIONS: [Asked; 33] = [
 ];
 
 /// What is known of the sledge of the scene, in a formulation.
-pub(super) fn sledge_reference(formulation: &str) -> Reference {
+pub(super) fn sledge_reference(formulation: &Formulation) -> Reference {
     sledge::Sledge { k: sledge::RADIUS }.reference(formulation)
 }
 
 /// The formulations of a scene that has multipliers: two forms of the vakonomic one among them.
-const FORMULATIONS: [&str; 4] = ["chetaev", "vakonomic", "vakonomic-costate", "removed-constraint"];
+const FORMULATIONS: [&Formulation; 4] = [CHETAEV, VAKONOMIC, VAKONOMIC_COSTATE, REMOVED_CONSTRAINT];
 
 /// The first choice of a scene with that formulation, free constants zero where the scene gives none.
-pub(super) fn choice(scene: &Scene, name: &str) -> Result<Choice, String> {
-    let found = choices(scene).into_iter().find(|c| c.formulation == name);
-    let mut choice = found.ok_or_else(|| format!("no formulation {name}"))?;
+pub(super) fn choice(scene: &Scene, formulation: &Formulation) -> Result<Choice, String> {
+    let found = choices(scene).into_iter().find(|c| c.formulation == formulation);
+    let mut choice = found.ok_or_else(|| format!("no formulation {}", formulation.name))?;
     if choice.removal.is_some() {
         choice.constants = ConstantsRule::Zero;
     }
@@ -109,22 +113,22 @@ fn subject(scene: &Scene, choice: &Choice) -> Result<Subject, String> {
     })
 }
 
-/// One question a formulation in `names`; where the scene itself is refused, that is the answer.
+/// One question per formulation; where the scene itself is refused, that is the answer.
 fn questions(
     point: f64,
     scene: impl Fn() -> Result<Scene, SceneError> + Clone + Send + Sync + 'static,
-    names: &[&'static str],
-    reference: impl Fn(&'static str) -> Reference,
+    formulations: &[&'static Formulation],
+    reference: impl Fn(&'static Formulation) -> Reference,
 ) -> Vec<Question> {
-    let one = |&name: &&'static str| {
+    let one = |&formulation: &&'static Formulation| {
         let scene = scene.clone();
         let subject = move || {
             let scene = scene().map_err(|error| error.to_string())?;
-            subject(&scene, &choice(&scene, name)?)
+            subject(&scene, &choice(&scene, formulation)?)
         };
-        Question::new(point, formulation(name).map_or(name, |f| f.title), subject, reference(name))
+        Question::new(point, formulation.title, subject, reference(formulation))
     };
-    names.iter().map(one).collect()
+    formulations.iter().map(one).collect()
 }
 
 /// The same by structure-preserving steps of this length.
@@ -132,14 +136,14 @@ fn stepped(
     mut questions: Vec<Question>,
     step: f64,
     scene: impl Fn() -> Result<Scene, SceneError> + Clone + Send + Sync + 'static,
-    names: &[&'static str],
+    formulations: &[&'static Formulation],
 ) -> Vec<Question> {
-    for (question, &name) in questions.iter_mut().zip(names) {
+    for (question, &formulation) in questions.iter_mut().zip(formulations) {
         let scene = scene.clone();
         question.stepped = Some(Box::new(move |composition| {
             let scene = scene().map_err(|error| error.to_string())?;
             let settings = Settings { max_steps: MAX_STEPS, ..Settings::default() };
-            let choice = choice(&scene, name)?;
+            let choice = choice(&scene, formulation)?;
             solve_by_steps(&scene, &choice, Steps { step, composition }, &settings).map_err(|error| error.to_string())
         }));
     }

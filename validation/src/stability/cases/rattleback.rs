@@ -1,5 +1,6 @@
 //! The rattleback, by Newton's and Euler's equations.
 
+use deltaq::CHETAEV;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use scene::Scene;
 
@@ -16,7 +17,7 @@ const START: [f64; 8] = [0.0, 0.0, 0.3, 0.0, 0.0, 0.1, 0.4, 3.0];
 pub(super) fn questions(duration: f64) -> Vec<Question> {
     let text = include_str!("../../../../crates/catalogue/classics/rattleback.toml");
     let scene = move || Scene::parse_with("rattleback", text, &[("duration".into(), duration)]);
-    let mut questions = super::questions(duration, scene, &["chetaev"], |_| Reference::Ode {
+    let mut questions = super::questions(duration, scene, &[CHETAEV], |_| Reference::Ode {
         y: START.to_vec(),
         rates: Box::new(|_, y, rates| {
             let ((sin, cos), spin) = (y[4].sin_cos(), Vector3::new(y[5], y[6], y[7]));

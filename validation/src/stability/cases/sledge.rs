@@ -1,5 +1,7 @@
 //! The sledge with a mass that hardly resists turning, or hardly turns; and for a long time.
 
+use deltaq::{CHETAEV, REMOVED_CONSTRAINT};
+use equations::Formulation;
 use referees::closed_forms;
 use scene::{Scene, SceneError};
 
@@ -36,10 +38,10 @@ const SPEED: f64 = 0.5;
 
 impl Sledge {
     /// Chetaev; vakonomic with `μ₀ = 0`; removed constraint by arc length with `P(t₀) = 0`.
-    pub(super) fn reference(&self, formulation: &str) -> Reference {
+    pub(super) fn reference(&self, formulation: &Formulation) -> Reference {
         let (sin, cos) = PHI.sin_cos();
         match formulation {
-            "chetaev" => {
+            own if own == CHETAEV => {
                 let gravity_along = GRAVITY * SLOPE.sin();
                 let sledge =
                     closed_forms::Sledge { gravity_along, x: 0.0, y: 0.0, phi: PHI, speed: SPEED, omega: OMEGA };
@@ -48,7 +50,7 @@ impl Sledge {
                     vec![state.x, state.y, state.phi]
                 }))
             }
-            "removed-constraint" => self.by_heading([0.0, 0.0]),
+            own if own == REMOVED_CONSTRAINT => self.by_heading([0.0, 0.0]),
             _ => self.by_heading([SPEED * cos, SPEED * sin]),
         }
     }

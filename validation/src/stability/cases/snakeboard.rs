@@ -1,5 +1,6 @@
 //! The vakonomic snakeboard, by Hamilton's equations in the speed of the board.
 
+use deltaq::{VAKONOMIC, VAKONOMIC_COSTATE};
 use scene::Scene;
 
 use crate::stability::question::Question;
@@ -18,7 +19,7 @@ pub(super) fn questions(duration: f64) -> Vec<Question> {
     let text = include_str!("../../../../crates/catalogue/classics/snakeboard.toml");
     let scene = move || Scene::parse_with("snakeboard", text, &[("duration".into(), duration)]);
     let mut questions =
-        super::questions(duration, scene, &["vakonomic", "vakonomic-costate"], |_| Board::at_start().reference());
+        super::questions(duration, scene, &[VAKONOMIC, VAKONOMIC_COSTATE], |_| Board::at_start().reference());
     for question in &mut questions {
         question.each = true;
     }

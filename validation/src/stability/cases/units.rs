@@ -1,6 +1,6 @@
 //! The sledge in units that are far too large or far too small.
 
-use deltaq::formulation;
+use equations::Formulation;
 use mechanics::ConstantsRule;
 
 use super::sledge::Sledge;
@@ -13,19 +13,18 @@ use random::{Scaling, equations};
 pub(super) fn questions(unit: f64, [length, time, action, constraint]: [i32; 4]) -> Vec<Question> {
     let [length, time, action, constraint] = [length, time, action, constraint].map(|power| unit.powi(power));
     let scaling = Scaling { lengths: vec![length, length, 1.0], time, action, constraint };
-    let one = |name: &'static str| {
-        let (scaling, reference) = (scaling.clone(), in_time_unit(Sledge { k: 0.7 }.reference(name), time));
-        let title = formulation(name).map_or(name, |f| f.title);
-        Question::new(unit, title, move || subject(&scaling, name), reference)
+    let one = |formulation: &'static Formulation| {
+        let (scaling, reference) = (scaling.clone(), in_time_unit(Sledge { k: 0.7 }.reference(formulation), time));
+        Question::new(unit, formulation.title, move || subject(&scaling, formulation), reference)
     };
     FORMULATIONS.into_iter().map(one).collect()
 }
 
-fn subject(scaling: &Scaling, name: &str) -> Result<Subject, String> {
+fn subject(scaling: &Scaling, formulation: &'static Formulation) -> Result<Subject, String> {
     let scene = catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
     let system = scaling.system(&scene.system);
-    let removal = choice(&scene, name)?.removal.map(|removal| scaling.removal(&system, &removal));
-    let equations = equations(&system, name, removal.as_ref()).map_err(|error| error.to_string())?;
+    let removal = choice(&scene, formulation)?.removal.map(|removal| scaling.removal(&system, &removal));
+    let equations = equations(&system, formulation, removal.as_ref()).map_err(|error| error.to_string())?;
     Ok(Subject {
         start: scaling.state(&scene.start),
         end: scene.duration / scaling.time,

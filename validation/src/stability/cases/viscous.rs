@@ -1,5 +1,6 @@
 //! Friction in the place of a constraint: stiff.
 
+use deltaq::CHETAEV;
 use nalgebra::Complex;
 
 use crate::stability::question::{Question, Subject};
@@ -13,7 +14,7 @@ pub(super) fn questions(strength: f64) -> Vec<Question> {
     let subject = move || {
         let scene = catalogue::find("sledge", &[]).map_err(|error| error.to_string())?;
         let system = with_friction(&scene.system, strength);
-        let mut equations = equations(&system, "chetaev", None).map_err(|error| error.to_string())?;
+        let mut equations = equations(&system, CHETAEV, None).map_err(|error| error.to_string())?;
         equations.coordinates.truncate(3);
         Ok(Subject {
             system,
