@@ -31,6 +31,8 @@
 //! ```
 //!
 //! with one solution if `A` has full row rank and `M` is regular on ker `A`. `M` itself may be singular.
+//! Where `A` depends on the velocities it may lose rank along a motion, at the tip of a cone `f = 0`, and
+//! several motions go on from there: the run stops.
 //!
 //! **What the motion depends on.** On `(q₀, v₀)` with `f(q₀, v₀, t₀) = 0`, and nothing else.
 //!
@@ -114,6 +116,7 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, mass matrix regular on its kernel",
     }];
+    equations.guard(g, &[]);
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
     equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();

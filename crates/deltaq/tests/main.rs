@@ -3,6 +3,7 @@
 mod answers;
 mod beginnings;
 mod charts;
+mod cones;
 mod contradictions;
 mod errors;
 mod estimates;

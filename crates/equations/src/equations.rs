@@ -229,15 +229,18 @@ impl Equations {
     }
 
     /// Guards against singular equations of the instant where their matrix `∂R/∂z`, in the graph `g`, depends
-    /// on multipliers or costates: its determinant may change its sign along a motion, and a step that passes
-    /// over that goes on in one of several motions.
+    /// on velocities, multipliers or costates: its determinant may change its sign along a motion, or touch
+    /// zero where `∂f/∂v` of constraints not linear in the velocities loses rank, and a step that passes over
+    /// that goes on in one of several motions.
     fn guard_determinants(&mut self, g: &Graph) {
-        let own = |y: &&StateVariable| matches!(y.role, Role::Multiplier | Role::MemoryCostate);
-        let costates: HashSet<Symbol> = self.states.iter().filter(own).map(|y| y.symbol).collect();
+        let own = |y: &&StateVariable| {
+            matches!(y.role, Role::Velocity | Role::ParameterRate | Role::Multiplier | Role::MemoryCostate)
+        };
+        let moving: HashSet<Symbol> = self.states.iter().filter(own).map(|y| y.symbol).collect();
         for block in &self.blocks {
             let entries = g.sparse_jacobian(&block.residuals, &block.unknowns);
             let symbols: HashSet<Symbol> = entries.iter().flatten().flat_map(|&(_, e)| g.symbols_of(e)).collect();
-            if !symbols.is_disjoint(&costates) && block.unknowns.iter().all(|z| !symbols.contains(z)) {
+            if !symbols.is_disjoint(&moving) && block.unknowns.iter().all(|z| !symbols.contains(z)) {
                 let matrix = g.jacobian(&block.residuals, &block.unknowns);
                 let rows: Vec<Vec<Expr>> = (0..matrix.rows()).map(|i| matrix.row(i).to_vec()).collect();
                 self.guards.push(determinant(g, &rows));

@@ -131,8 +131,8 @@ impl EventWatch {
         Ok(first)
     }
 
-    /// The first function that touches zero near the beginning of this part: it is least there, and nearly
-    /// zero at its minimum.
+    /// The first function that touches zero near the beginning of this part, or in the last one: it is least
+    /// there, and nearly zero at its minimum.
     fn first_touch(&self, system: &System, segment: &Segment, part: usize) -> Result<Option<Found>, Failure> {
         /// Parts of what it is to one side, at most, where it is least: 0.58 for the root of a distance.
         const DIPS: f64 = 0.6;
@@ -145,6 +145,13 @@ impl EventWatch {
                 let range = [part.saturating_sub(2), part].map(|part| part as f64 / PARTS as f64);
                 let (theta, least) = self.least(system, segment, index, range)?;
                 if least < TOUCH * self.largest[index] {
+                    return Ok(Some(Found { index, theta }));
+                }
+            }
+            // a zero of a high order is as flat: before this step's end, and not within reach of the next one
+            if part == PARTS && after < TOUCH * self.largest[index] {
+                let (theta, least) = self.least(system, segment, index, [1.0 - 1.0 / PARTS as f64, 1.0])?;
+                if least < 0.5 * after {
                     return Ok(Some(Found { index, theta }));
                 }
             }

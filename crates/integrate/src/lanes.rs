@@ -5,16 +5,15 @@
 //! what comes out for a motion is the same to the last bit, whichever motions run beside it.
 //!
 //! [`crate::integrate`] takes over, as every lane would wait, where the problem does not trust the rates, a
-//! coefficient is not finite, an event function changes sign or is nearly zero, or steps get too short or too
-//! many: all rare.
+//! coefficient is not finite, an event function may vanish, or steps get too short or too many: all rare.
 
+mod events;
 mod inside;
 mod poles;
 mod problem;
 
 use std::array::from_fn;
 
-use crate::events::{PARTS, TOUCH};
 use crate::interrupt::Interrupt;
 use crate::options::{Options, Projection};
 use crate::pace::Pace;
@@ -22,6 +21,7 @@ use crate::status::{ProjectionReport, Work};
 use crate::stepper::shortest_step;
 use crate::taylor_step::{Ends, longest_step, once, order};
 use crate::time_loop::HALVINGS;
+use events::Events;
 use inside::finite;
 use poles::Poles;
 pub use problem::{LANES, Lane, LaneProblem, LaneRun, LaneStart, Left};
@@ -67,15 +67,10 @@ struct Lanes<'a, P> {
     trusted: [bool; LANES],
     finite: [bool; LANES],
     smooth: [bool; LANES],
-    eventless: [bool; LANES],
-    /// Event functions at the time reached.
-    events: Vec<Lane>,
-    events_next: Vec<Lane>,
-    /// Under this an event function is nearly zero.
-    events_least: Vec<Lane>,
     inner: Vec<Lane>,
     inner_slope: Vec<Lane>,
     inner_rates: Vec<Lane>,
+    events: Events,
     poles: Poles,
 }
 
@@ -110,9 +105,11 @@ pub fn integrate_lanes<P: LaneProblem>(
             return;
         }
         lanes.expand();
+        lanes.look_at_events();
         lanes.look_inside();
         let adopted = from_fn(|lane| lanes.judge(lane, done));
         lanes.adopt(&adopted);
+        lanes.adopt_events(&adopted);
         lanes.poles.adopt(&adopted);
         for lane in 0..LANES {
             lanes.choose(lane, done);
@@ -149,13 +146,10 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             trusted: [true; LANES],
             finite: [true; LANES],
             smooth: [true; LANES],
-            eventless: [true; LANES],
-            events: zeros(events),
-            events_next: zeros(events),
-            events_least: zeros(events),
             inner: zeros(n),
             inner_slope: zeros(n),
             inner_rates: zeros(n),
+            events: Events::new(events),
             poles: Poles::new(divisors),
         }
     }
@@ -165,7 +159,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         (self.t[lane], self.taken_to[lane]) = (start.t, start.t);
         (self.taken[lane], self.moved[lane]) = (0.0, 0.0);
         self.next_unit[lane] = (start.end - start.t).abs();
-        self.events_least.iter_mut().for_each(|least| least[lane] = 0.0);
+        self.events.board(lane);
         for (i, y) in start.y.iter().enumerate() {
             self.candidate[i][lane] = *y;
             self.reached[i][lane] = *y;
@@ -179,7 +173,7 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
 
     /// The coefficients at the ends of the candidates, and all that tells whether these are to be kept.
     fn expand(&mut self) {
-        let (problem, order) = (&mut *self.problem, self.orders - 1);
+        let problem = &mut *self.problem;
         self.trusted = problem.taylor(&self.taken_to, &self.candidate, &self.next_unit, &mut self.next_coefficients);
         let (coefficients, share) = (&self.next_coefficients, from_fn(|l| self.taken[l] / self.next_unit[l]));
         let (reached, candidate, slope) = (&self.reached, &self.candidate, &self.slope);
@@ -193,33 +187,6 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
                 (finite(coefficients), from_fn(|l| defect.component(l).is_none() && !defect.is_far(l)))
             },
         );
-        if self.events.is_empty() {
-            return;
-        }
-        self.eventless = [true; LANES];
-        for part in 1..=PARTS {
-            let theta = part as f64 / PARTS as f64;
-            let share: Lane = from_fn(|l| theta * self.taken[l] / self.unit[l]);
-            let t = if part == PARTS { self.taken_to } else { from_fn(|l| self.t[l] + theta * self.taken[l]) };
-            let (coefficients, inner) = (&self.coefficients, &mut self.inner);
-            let last = theta.powi(order as i32);
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || {
-                    for ((y, row), i) in inner.iter_mut().zip(coefficients.chunks_exact(order + 1)).zip(0..) {
-                        *y = row.iter().rev().fold([0.0; LANES], |sum, c| from_fn(|l| c[l] + share[l] * sum[l]));
-                        *y = from_fn(|l| y[l] + last * (candidate[i][l] - reached[i][l]));
-                    }
-                },
-            );
-            self.problem.event_values(&t, inner, &mut self.events_next);
-            for ((before, after), least) in self.events.iter().zip(&self.events_next).zip(&self.events_least) {
-                for l in 0..LANES {
-                    self.eventless[l] &=
-                        before[l] * after[l].signum() > 0.0 && after[l].abs() > least[l] && after[l].is_finite();
-                }
-            }
-        }
     }
 
     /// Whether the lane goes on from its candidate: not if its motion is over or left, or the step too long.
@@ -246,8 +213,8 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
             self.step[lane] = 0.5 * self.taken[lane].abs();
             return if rider.failures > HALVINGS { self.leave(lane, Left::StepTooSmall, done) } else { false };
         }
-        if !self.eventless[lane] || self.poles.suspected[lane] {
-            let why = if self.eventless[lane] { Left::Divisor } else { Left::Event };
+        if !self.events.none[lane] || self.poles.suspected[lane] {
+            let why = if self.events.none[lane] { Left::Divisor } else { Left::Event };
             return self.leave(lane, why, done);
         }
         rider.failures = 0;
@@ -325,14 +292,6 @@ impl<'a, P: LaneProblem> Lanes<'a, P> {
         for l in (0..LANES).filter(|&l| lanes[l]) {
             (self.t[l], self.unit[l]) = (self.taken_to[l], self.next_unit[l]);
             self.step[l] = theta[l] * self.unit[l];
-        }
-        if !self.events.is_empty() {
-            self.problem.event_values(&self.taken_to, &self.candidate, &mut self.events_next);
-            let events = self.events.iter_mut().zip(&mut self.events_least);
-            for ((event, least), next) in events.zip(&self.events_next) {
-                *event = from_fn(|l| if lanes[l] { next[l] } else { event[l] });
-                *least = from_fn(|l| least[l].max(TOUCH * event[l].abs()));
-            }
         }
     }
 

@@ -62,7 +62,7 @@ pub enum Left {
     /// A coefficient, a state or an event function is NaN or infinite.
     #[error("not finite on the way")]
     NotFinite,
-    /// An event function changes its sign or is nearly zero.
+    /// An event function changes its sign or may touch zero.
     #[error("an event on the way")]
     Event,
     /// A divisor changes its sign or comes near zero within a step.
