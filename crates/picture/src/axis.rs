@@ -2,8 +2,9 @@
 //!
 //! Everything works in the *measure* of an axis: the value, or on a logarithmic axis its decimal logarithm.
 
+use super::error::PictureError;
+use super::plot::{Axis, Scale};
 use super::text::{decimal, power_of_ten, width};
-use super::{Axis, PictureError, Scale};
 
 /// Values beyond are treated as not finite, so that differences of two values stay finite.
 const LARGEST: f64 = 1e300;

@@ -1,17 +1,28 @@
 //! The SVG document.
 
 use super::axis::TICK_SIZE;
+use super::error::PictureError;
 use super::frame::{BOLD, Frame, Framed, LEGEND_ROW, TITLE_SIZE};
 use super::layout::{self, Entry, LABEL_SIZE, Measured, SWATCH, WIDTH};
+use super::plot::{Curve, Picture};
 use super::style::{INK, INKS, Stroke, Style};
 use super::text::{decimal, escape, fit, px, width};
 use super::trace::{Coarseness, Extent, Place, Trace};
-use super::{Curve, Picture, PictureError};
 
 /// What a file should not pass, in bytes.
 pub(super) const BUDGET: usize = 60_000;
 
-pub(super) fn document(plots: &Picture) -> Result<String, PictureError> {
+impl Picture {
+    /// The picture as a complete SVG document.
+    ///
+    /// # Errors
+    /// [`PictureError`], where an axis cannot be drawn.
+    pub fn to_svg(&self) -> Result<String, PictureError> {
+        document(self)
+    }
+}
+
+fn document(plots: &Picture) -> Result<String, PictureError> {
     let measured: Vec<Vec<Measured>> = plots
         .panels
         .iter()

@@ -2,10 +2,10 @@
 
 use super::axis::{self, Direction, Interval, TICK_SIZE, Ticks};
 use super::layout::{self, Entry, Measured, WIDTH};
+use super::plot::{Curve, Panel, Picture};
 use super::style::Style;
 use super::text::{width, wrap};
 use super::trace::{Extent, Place};
-use super::{Curve, Panel, Picture};
 
 /// Font size of the headline, in pixels.
 pub(super) const TITLE_SIZE: f64 = 15.0;

@@ -3,9 +3,9 @@
 use super::axis::{Direction, Interval, TICK_SIZE, measure, ticks};
 use super::draw::{headline, opening, text};
 use super::frame::{BOLD, TITLE_SIZE};
+use super::plot::{Axis, Scale};
 use super::style::INK;
 use super::text::{escape, px, wrap};
-use super::{Axis, Scale};
 
 /// Width and height of the cells together, in pixels; what stands around them.
 const SIDE: f64 = 360.0;

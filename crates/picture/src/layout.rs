@@ -1,9 +1,10 @@
 //! Where things stand: points in the measures of their axes, ranges, legend.
 
 use super::axis::{self, Interval, LeftOut};
+use super::error::PictureError;
+use super::plot::{Axis, Curve, Panel, Picture};
 use super::style::{MARKS, Style};
 use super::text::{fit, width};
-use super::{Axis, Curve, Panel, Picture, PictureError};
 
 /// Width of every picture in pixels.
 pub(super) const WIDTH: f64 = 720.0;

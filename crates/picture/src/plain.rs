@@ -1,7 +1,9 @@
 //! The first panel of a picture in characters, for terminals: a letter a curve, dots for a threshold.
 
 use super::axis::{Direction, Interval, TICK_SIZE, around, given, measure, ticks};
-use super::{Axis, Curve, Picture, PictureError, Style};
+use super::error::PictureError;
+use super::plot::{Axis, Curve, Picture};
+use super::style::Style;
 
 /// Columns of the labels of the vertical axis, and of the least plot beside them.
 const LABELS: usize = 7;
@@ -10,8 +12,19 @@ const LEAST: usize = 20;
 /// Pixels of a character, by which ticks are chosen.
 const CELL: (f64, f64) = (0.6 * TICK_SIZE, 1.5 * TICK_SIZE);
 
+impl Picture {
+    /// The first panel in characters: lines of at most `width`, `height` rows of curves, axes and a legend;
+    /// the first curve in letters `a`, the second in `b`, thresholds dotted.
+    ///
+    /// # Errors
+    /// [`PictureError`], where an axis cannot be drawn.
+    pub fn to_text(&self, width: usize, height: usize) -> Result<String, PictureError> {
+        text(self, width, height)
+    }
+}
+
 /// Curves are `a`, `b`, … in their order, those before over those behind.
-pub(super) fn text(picture: &Picture, width: usize, height: usize) -> Result<String, PictureError> {
+fn text(picture: &Picture, width: usize, height: usize) -> Result<String, PictureError> {
     let curves = picture.panels.first().map_or(&[][..], |panel| &panel.curves);
     let vertical = picture.panels.first().map_or(&picture.x, |panel| &panel.y);
     let points = || curves.iter().flat_map(|curve| &curve.points);

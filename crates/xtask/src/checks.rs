@@ -3,13 +3,12 @@
 //! All that compiles is compiled in the release profile: integration needs the optimisation, the reports are
 //! written by a release build, and so the dependencies are built once.
 
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 
+use crate::tools::{Outcome, build, cargo, outside, succeed, target};
 use crate::{dependencies, explore, lint, python, sources};
 
 /// One thing that must hold.
@@ -19,14 +18,6 @@ pub(crate) struct Check {
     /// What to do when it fails.
     mend: &'static str,
     run: fn() -> Result<Outcome>,
-}
-
-/// A check that did not fail.
-pub(crate) enum Outcome {
-    /// It holds: what was looked at, if that needs saying.
-    Passed(String),
-    /// Some of it was not looked at, as something is lacking.
-    NotRun(String),
 }
 
 /// All checks, cheap ones first: name, what it is about, what mends it.
@@ -168,42 +159,8 @@ pub(crate) fn engine() -> Result<Outcome> {
     succeed(cargo().args(["run", "--release", "--package", "engine"]))
 }
 
-/// The cargo that runs this.
-pub(crate) fn cargo() -> Command {
-    outside(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-}
-
-/// A program that runs as if nobody had run this one.
-pub(crate) fn outside(program: impl AsRef<OsStr>) -> Command {
-    let mut command = Command::new(program);
-    // What cargo says of this package is not meant for the ones it is asked about.
-    for (name, _) in std::env::vars_os() {
-        if name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_")) {
-            command.env_remove(name);
-        }
-    }
-    command
-}
-
-/// Runs a program that must succeed.
-pub(crate) fn succeed(command: &mut Command) -> Result<Outcome> {
-    let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy().into_owned()).collect();
-    let program = Path::new(command.get_program()).file_stem().unwrap_or_default().to_string_lossy();
-    let line = format!("{program} {}", arguments.join(" "));
-    let status = command.status().with_context(|| line.clone())?;
-    if !status.success() {
-        bail!("`{line}` ended with {status}");
-    }
-    Ok(Outcome::Passed(String::new()))
-}
-
 fn fmt() -> Result<Outcome> {
     succeed(cargo().args(["fmt", "--all", "--check"]))
-}
-
-/// Everything, with one set of features; programs are in the folder `release` of [`target`] then.
-pub(crate) fn build() -> Result<Outcome> {
-    succeed(cargo().args(["build", "--release", "--workspace", "--all-targets"]))
 }
 
 fn tests() -> Result<Outcome> {
@@ -218,12 +175,6 @@ fn reports() -> Result<Outcome> {
     // the features of one package would build every dependency once more
     build()?;
     succeed(outside(target()?.join("release").join("evidence")).args(["reports", "--check"]))
-}
-
-/// The folder of build results.
-pub(crate) fn target() -> Result<PathBuf> {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    std::path::absolute(target).context("the folder of build results")
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::checks::{Outcome, cargo, outside, succeed, target};
 use crate::python;
+use crate::tools::{Outcome, cargo, outside, succeed, target};
 
 /// Packages compiled at most, ours included: for the library, for the program `deltaq`, and for the evidence.
 const MOST: [(&str, usize); 3] = [("deltaq", 70), ("deltaq-cli", 105), ("deltaq-validation", 176)];

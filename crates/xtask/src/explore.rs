@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::checks::{Outcome, build, cargo, outside, succeed, target};
+use crate::tools::{Outcome, build, cargo, outside, succeed, target};
 
 /// The sources of the page, and of what answers it.
 const PAGE: &str = "crates/explore/page";

@@ -10,7 +10,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result};
 
-use crate::checks::{Outcome, cargo, succeed, target};
+use crate::tools::{Outcome, cargo, succeed, target};
 
 /// Set for the calls that are to be linted: the folder of the tools.
 const TOOLS: &str = "XTASK_LINT_TOOLS";

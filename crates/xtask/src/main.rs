@@ -6,6 +6,7 @@ mod explore;
 mod lint;
 mod python;
 mod sources;
+mod tools;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

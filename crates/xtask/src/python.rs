@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::checks::{Outcome, build, outside, succeed, target};
+use crate::tools::{Outcome, build, outside, succeed, target};
 
 /// The crate, from the root of the project.
 const CRATE: &str = "crates/python";

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::checks::Outcome;
+use crate::tools::Outcome;
 
 /// Longest Rust source, in lines; widest comment in it, in columns.
 const LINES: usize = 400;

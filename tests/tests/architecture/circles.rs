@@ -16,19 +16,9 @@ type Arrows = BTreeMap<String, BTreeSet<String>>;
 type Circle = BTreeSet<String>;
 
 /// Circles that are left: crate, files, reason.
-const EXCEPTIONS: [(&str, &[&str], &str); 4] = [
+const EXCEPTIONS: [(&str, &[&str], &str); 2] = [
     ("symbolic", &["faults", "graph"], "a fault is put into operations of the graph, which asks for it"),
     ("decision", &["curve", "family", "lift", "scales", "series"], "not untied yet"),
-    (
-        "picture",
-        &["axis", "draw", "frame", "layout", "lib", "plain"],
-        "pictures are defined in the root: not untied yet",
-    ),
-    (
-        "xtask",
-        &["checks", "dependencies", "explore", "lint", "python", "sources"],
-        "the list of chores and the chores: not untied yet",
-    ),
 ];
 
 /// Arrows without those from a child to the file of its own folder, where that is not the root.
