@@ -165,3 +165,14 @@ fn what_is_listed_as_constant_and_is_not_is_doubted() {
         }
     }
 }
+
+/// x' = a + (t/2)^41/20.5, which is a before the middle of the run to the last digit.
+#[test]
+fn a_members_doubt_begins_at_the_last_instant_at_which_all_was_well() {
+    let listed = FREE.replace("[start.velocities]", "[invariants]\nspeed = \"x'\"\n[start.velocities]");
+    for member in started(&listed.replace("FORCE", "(t/2)^40"), &[0.5, 1.0, 3.0], &Settings::default(), true) {
+        let doubt = member.doubt.as_ref().expect("x' is not constant");
+        assert!(doubt.because.starts_with("speed is not constant"), "{}", doubt.because);
+        assert!((0.5..2.0).contains(&doubt.from), "{}", doubt.from);
+    }
+}

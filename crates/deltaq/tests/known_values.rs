@@ -188,6 +188,64 @@ fn where_a_motion_is_doubted_nothing_is_certain_any_more() {
 }
 
 #[test]
+fn of_two_doubts_that_of_the_first_motion_is_told() {
+    let mut motions = ["one", "other"].map(|because| {
+        let mut motion = motion(0.0, [0.0; 2], &by(FINE));
+        motion.doubt = Some(Doubt { from: 0.5, because: because.into() });
+        motion
+    });
+    let mut metric = Metric::new(&pushed(0.0, [0.0; 2]).system).expect("a metric");
+    let [one, other] = &mut motions;
+    let mut word =
+        |first: &mut Motion, second: &mut Motion| compare_motions(first, second, &mut metric).expect("a gap").verdict;
+    assert_eq!((word(one, other), word(other, one)), (undecided("one"), undecided("other")));
+    // and one that there is, whichever it is of
+    one.doubt = None;
+    assert_eq!((word(one, other), word(other, one)), (undecided("other"), undecided("other")));
+}
+
+fn undecided(because: &str) -> Verdict {
+    Verdict::Undecided { because: because.into() }
+}
+
+/// A limit is never under ten times round-off of the way: the estimate of a motion on a straight line is 0.
+#[test]
+fn a_limit_has_a_floor_where_the_runs_agree_to_the_last_digit() {
+    let text = "title = \"free\"\n[coordinates]\nx = { start = 4 }\n[system]\nlagrangian = \"x'^2/2\"\n\
+                [start.velocities]\n\"x'\" = 2\n[run]\nduration = 8\n";
+    let scene = Scene::parse("free", text).unwrap_or_else(|e| panic!("{e}"));
+    let [mut one, mut other] =
+        [(); 2].map(|()| solve_choice(&scene, &choices(&scene)[0], &Settings::default()).expect("a motion"));
+    let mut metric = Metric::new(&scene.system).expect("a metric");
+    let gap = compare_motions(&mut one, &mut other, &mut metric).expect("a gap");
+    assert_eq!(gap.verdict, Verdict::Same);
+    assert!(gap.estimates.iter().all(|estimate| *estimate < 2e-14), "{:?}", gap.estimates);
+    for point in &gap.points {
+        let size = 4.0 + 2.0 * point.t;
+        assert!(point.limit >= 1e-13 * size && point.limit < 2e-13 * size, "{}: {:e}", point.t, point.limit);
+    }
+}
+
+/// Two oscillators of hardly any inertia beside a particle: the one that is known least is named.
+#[test]
+fn of_what_is_not_known_well_enough_the_worst_is_named() {
+    for (y, z, worst) in [(5, 3, "y"), (3, 5, "z")] {
+        let text = format!(
+            "title = \"beside\"\n[coordinates]\nx = {{ start = 1 }}\ny = {{ start = 1 }}\nz = {{ start = 1 }}\n[system]\n\
+             lagrangian = \"x'^2/2 + 1e-20*(y'^2 - {y}^2*y^2 + z'^2 - {z}^2*z^2)/2\"\n[start.velocities]\n\
+             \"x'\" = 1\n\"y'\" = 0\n\"z'\" = 0\n[run]\nduration = 3\n"
+        );
+        let scene = Scene::parse("beside", &text).unwrap_or_else(|e| panic!("{e}"));
+        let run = || solve_choice(&scene, &choices(&scene)[0], &by(1e-4)).expect("a motion");
+        let (mut one, mut other) = (run(), run());
+        let mut metric = Metric::new(&scene.system).expect("a metric");
+        let gap = compare_motions(&mut one, &mut other, &mut metric).expect("a gap");
+        let Verdict::Undecided { because } = gap.verdict else { panic!("{:?}", gap.verdict) };
+        assert!(because.starts_with(&format!("relative error estimate of {worst} ")), "{because}");
+    }
+}
+
+#[test]
 fn of_a_motion_back_every_limit_is_that_of_the_end() {
     let from_there = [("x".to_string(), -1.0), ("z".to_string(), -1.0)];
     let there = Scene::parse_with("pushed", PUSHED, &from_there).unwrap_or_else(|e| panic!("{e}"));

@@ -5,6 +5,7 @@ mod beginnings;
 mod charts;
 mod cones;
 mod contradictions;
+mod endings;
 mod errors;
 mod estimates;
 mod examples;

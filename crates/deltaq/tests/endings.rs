@@ -1,0 +1,38 @@
+//! Why a motion stops: the guard that is nearly zero and the unknowns that are lost are named, and no others.
+
+use deltaq::{Ending, Settings, choices, solve_choice};
+use scene::Scene;
+
+/// Why the motion of a particle ends by this formulation.
+fn cause(formulation: &str, system: &str, [x, y, z]: [f64; 3]) -> String {
+    let multipliers = if system.contains("constraints") { "[vakonomic]\nmultipliers = [0.1]\n" } else { "" };
+    let text = format!(
+        "title = \"ending\"\n[coordinates]\nx = {{ start = 1 }}\ny = {{ start = 1 }}\nz = {{ start = 0 }}\n[system]\n\
+         {system}\n[start]\nvelocities = {{ \"x'\" = {x:?}, \"y'\" = {y:?}, \"z'\" = {z:?} }}\n\
+         {multipliers}[run]\nduration = 3\n"
+    );
+    let scene = Scene::parse("ending", &text).unwrap_or_else(|e| panic!("{text}: {e}"));
+    let choice = choices(&scene).into_iter().find(|c| c.formulation == formulation).expect("it is there");
+    match solve_choice(&scene, &choice, &Settings::default()).expect("a motion").ending {
+        Ending::Stopped { cause, .. } => cause,
+        Ending::Completed => panic!("{formulation}, {system}: completed"),
+    }
+}
+
+/// The determinant vanishes at the tip of a cone, and a divisor of the constraint is far from that.
+#[test]
+fn of_two_guards_the_one_that_is_nearly_zero_is_named() {
+    let system = "lagrangian = \"(x'^2 + y'^2 + z'^2)/2 - z\"\nconstraints = [\"(x'^2 - z'^2/4)/(5 + y)\"]";
+    let cause = cause("vakonomic", system, [0.5, 0.0, 1.0]);
+    let near = cause.split("a singularity is near; ").nth(1).unwrap_or_else(|| panic!("{cause}"));
+    assert!(near.contains("x'^2") && near.contains("by which the equations divide, is down to "), "{cause}");
+}
+
+/// A mass that vanishes with its coordinate, beside one that is coupled to it.
+#[test]
+fn the_unknown_that_is_lost_is_named() {
+    for (lost, kinetic) in [("x", "x*x'^2 + 0.5*x*x'*y' + y'^2"), ("y", "x'^2 + 0.5*y*x'*y' + y*y'^2")] {
+        let cause = cause("chetaev", &format!("lagrangian = \"({kinetic} + z'^2)/2 - {lost}\""), [0.0; 3]);
+        assert!(cause.contains(&format!("the equations for {lost}'' are nearly dependent")), "{cause}");
+    }
+}
