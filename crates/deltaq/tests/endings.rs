@@ -12,7 +12,7 @@ fn cause(formulation: &str, system: &str, [x, y, z]: [f64; 3]) -> String {
          {multipliers}[run]\nduration = 3\n"
     );
     let scene = Scene::parse("ending", &text).unwrap_or_else(|e| panic!("{text}: {e}"));
-    let choice = choices(&scene).into_iter().find(|c| c.formulation == formulation).expect("it is there");
+    let choice = choices(&scene).into_iter().find(|c| c.formulation.name == formulation).expect("it is there");
     match solve_choice(&scene, &choice, &Settings::default()).expect("a motion").ending {
         Ending::Stopped { cause, .. } => cause,
         Ending::Completed => panic!("{formulation}, {system}: completed"),
