@@ -184,3 +184,73 @@ fn disturbance(compiled: &mut Compiled, looked: &[Looked], looser: &[Vec<f64>], 
 pub(crate) fn names_of_states(equations: &Equations) -> Vec<String> {
     equations.states.iter().map(|state| equations.graph.name(state.symbol)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use scene::Scene;
+
+    use super::*;
+    use crate::{choices, derive_at};
+
+    const EPS: f64 = f64::EPSILON;
+
+    /// Two instants a time 1 apart at which a state is 1, with this much added up to its rate at both.
+    fn looked(terms: f64) -> [Looked; 2] {
+        [0.0, 1.0].map(|t| (t, vec![1.0], vec![terms]))
+    }
+
+    #[test]
+    fn round_off_is_small_up_to_256_last_digits_and_to_four_times_what_the_runs_differ_by() {
+        for (apart, size, between, limit) in
+            [(0.0, 1.0, 1.0, 256.0), (0.0, 3.0, 1.0, 768.0), (0.0, 1.0, 8.0, 32.0), (100.0, 1.0, 1.0, 400.0)]
+        {
+            let looser = [vec![1.0], vec![1.0 + apart * EPS]];
+            let small = |terms: f64| is_small(&looked(terms), &looser, &[size], between);
+            assert!(small(0.98 * limit) && !small(1.02 * limit), "{apart}, {size}, {between}");
+        }
+    }
+
+    #[test]
+    fn a_state_is_as_large_as_it_was_at_any_instant() {
+        let looked = [(0.0, vec![-3.0, 0.5]), (1.0, vec![2.0, 0.25])].map(|(t, y)| (t, y, vec![0.0; 2]));
+        assert_eq!(largest(&looked, vec![1.0; 2]), [3.0, 1.0]);
+    }
+
+    /// A free particle at speed 2, where this much is added up to the rate of its place in each of two times
+    /// 1, and the looser run is this much apart at the end of both.
+    fn of_a_particle(terms: f64, apart: f64) -> RoundOff {
+        let text = "title = \"free\"\n[coordinates]\nx = { start = 0 }\n[system]\nlagrangian = \"x'^2/2\"\n\
+                    [start.velocities]\n\"x'\" = 2\n[run]\nduration = 2\n";
+        let scene = Scene::parse("free", text).unwrap_or_else(|e| panic!("{e}"));
+        let equations = derive_at(&scene.system, &scene.start, &choices(&scene)[0]).expect("equations");
+        let mut compiled = Compiled::new(&equations).expect("compiled");
+        let looked = [0.0, 1.0, 2.0].map(|t| (t, vec![2.0 * t, 2.0], vec![terms, 0.0]));
+        let looser = [0.0, 1.0, 2.0].map(|t| vec![2.0 * t + if t > 0.0 { apart } else { 0.0 }, 2.0]);
+        round_off(&mut compiled, &|| names_of_states(&equations), &looked, &looser, &[1.0, 2.0])
+    }
+
+    #[test]
+    fn round_off_is_doubted_over_a_millionth_of_a_state_and_ten_times_what_the_runs_differ_by() {
+        // 2 ε terms within a time of 2
+        let of = |sum: f64| 0.5 * sum / EPS;
+        for (apart, limit) in [(0.0, 1e-6), (9e-7, 9e-6), (-9e-7, 9e-6)] {
+            let RoundOff::Doubted(doubt) = of_a_particle(of(1.02 * limit), apart) else { panic!("over {limit:e}") };
+            assert_eq!(doubt.from, 1.0);
+            assert!(doubt.because.contains("the rate of x is a difference of larger terms"), "{}", doubt.because);
+            assert!(matches!(of_a_particle(of(0.98 * limit), apart), RoundOff::Counts(_)), "{limit:e}");
+        }
+    }
+
+    /// `d = ± ε/2` of what is added up to the rate, and `η` its part of the rate, to that side where the
+    /// looser run is.
+    #[test]
+    fn what_counts_is_half_a_last_digit_of_what_is_added_up() {
+        for (apart, sign) in [(1e-9, 1.0), (-1e-9, -1.0)] {
+            let RoundOff::Counts(found) = of_a_particle(1e8, apart) else { panic!("{apart}") };
+            let d = sign * 0.5 * EPS * 1e8;
+            for (found, known) in found.iter().zip([d, 0.0, 0.5 * d, 0.0]) {
+                assert!((found - known).abs() <= 1e-12 * known.abs(), "{found:e}, {known:e}");
+            }
+        }
+    }
+}

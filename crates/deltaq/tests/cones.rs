@@ -17,7 +17,7 @@ fn scene(constraint: &str, velocities: [f64; 3], sideways: f64, duration: f64) -
 }
 
 fn choice(scene: &Scene, formulation: &str) -> Choice {
-    choices(scene).into_iter().find(|c| c.formulation == formulation).expect("it is there")
+    choices(scene).into_iter().find(|c| c.formulation.name == formulation).expect("it is there")
 }
 
 /// Where x, y, z are at the end with the largest of their estimates, or why they are not.
