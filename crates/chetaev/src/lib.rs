@@ -116,7 +116,10 @@ pub fn derive(system: &System, _: &Derivation) -> Result<Equations, DerivationEr
         guess: Vec::new(),
         regular: "constraint Jacobian of full row rank, mass matrix regular on its kernel",
     }];
-    equations.guard(g, &[]);
+    let moves = |&a: &Expr| g.symbols_of(a).iter().any(|symbol| v.contains(symbol));
+    if (0..jacobian.rows()).any(|i| jacobian.row(i).iter().any(moves)) {
+        equations.guard_rank(g);
+    }
     equations.coordinates = g.variables(&q);
     equations.velocities = g.variables(&v);
     equations.multipliers = lambda.iter().map(|&s| Named { name: g.name(s), expression: g.variable(s) }).collect();

@@ -225,18 +225,22 @@ impl Equations {
     /// Guards against what these expressions of `g` are singular by, and singular equations of the instant.
     pub fn guard(&mut self, g: &Graph, of: &[Expr]) {
         self.guards = self.singularities(g, of);
-        self.guard_determinants(g);
+        self.guard_determinants(g, |role| matches!(role, Role::Multiplier | Role::MemoryCostate));
+    }
+
+    /// Guards against equations of the instant that become singular where `∂f/∂v` of constraints not linear
+    /// in the velocities loses rank.
+    ///
+    /// Not for a mass matrix that depends on velocities: under strong masses its determinant is round-off.
+    pub fn guard_rank(&mut self, g: &Graph) {
+        self.guard_determinants(g, |role| role == Role::Velocity);
     }
 
     /// Guards against singular equations of the instant where their matrix `∂R/∂z`, in the graph `g`, depends
-    /// on velocities, multipliers or costates: its determinant may change its sign along a motion, or touch
-    /// zero where `∂f/∂v` of constraints not linear in the velocities loses rank, and a step that passes over
-    /// that goes on in one of several motions.
-    fn guard_determinants(&mut self, g: &Graph) {
-        let own = |y: &&StateVariable| {
-            matches!(y.role, Role::Velocity | Role::ParameterRate | Role::Multiplier | Role::MemoryCostate)
-        };
-        let moving: HashSet<Symbol> = self.states.iter().filter(own).map(|y| y.symbol).collect();
+    /// on such states: its determinant may change its sign along a motion, or touch zero, and a step that
+    /// passes over that goes on in one of several motions.
+    fn guard_determinants(&mut self, g: &Graph, of: impl Fn(Role) -> bool) {
+        let moving: HashSet<Symbol> = self.states.iter().filter(|y| of(y.role)).map(|y| y.symbol).collect();
         for block in &self.blocks {
             let entries = g.sparse_jacobian(&block.residuals, &block.unknowns);
             let symbols: HashSet<Symbol> = entries.iter().flatten().flat_map(|&(_, e)| g.symbols_of(e)).collect();
