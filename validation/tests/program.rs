@@ -2,11 +2,10 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
 
 use serde_json::Value;
 
-use crate::support::{all_refused, answer, command, elsewhere, refused, text};
+use crate::support::{all_may_be_left, all_refused, answer, commands, elsewhere, none_is_lost, refused, text};
 
 /// Reports of the main job.
 const REPORTS: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/main-job");
@@ -22,36 +21,23 @@ const ANSWERS: [&[&str]; 5] = [
 
 #[test]
 fn every_command_is_called() {
-    let (help, _) = answer(&["--help"], 0);
-    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
-    let commands: Vec<&str> = listed.filter_map(|line| line.strip_prefix("  ")?.split(' ').next()).collect();
-    assert!(commands.contains(&"stability"), "{help}");
-    for command in commands.iter().filter(|command| !["", "reports", "help"].contains(command)) {
-        assert!(ANSWERS.iter().any(|call| call[0] == *command), "{command}");
+    let commands = commands();
+    assert!(commands.iter().any(|name| name == "stability"), "{commands:?}");
+    for command in commands.into_iter().filter(|name| !["reports", "help"].contains(&name.as_str())) {
+        assert!(ANSWERS.iter().any(|call| call[0] == command), "{command}");
     }
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn an_answer_that_cannot_be_written_is_an_error() {
-    for arguments in ANSWERS {
-        let full = fs::File::options().write(true).open("/dev/full").expect("the device that is always full");
-        let output = command(arguments).stdout(full).output().expect("the command runs");
-        let stderr = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
-        assert!(stderr.contains("cannot write the answer") && stderr.contains("No space left"), "{stderr}");
-    }
+    none_is_lost(&ANSWERS);
     refused(&["random", "--count", "1", "--quiet", "--log", "/dev/full"], &["is no file"]);
 }
 
 #[test]
 fn a_reader_that_has_seen_enough_is_no_error() {
-    for arguments in ANSWERS {
-        let mut child = command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
-        drop(child.stdout.take());
-        let output = child.wait_with_output().expect("the command ends");
-        assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""), "{arguments:?}");
-    }
+    all_may_be_left(&ANSWERS);
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! Where answers and files go: nothing is lost in silence, and nothing is written where nobody asked for it.
 
 use std::fs;
-use std::process::Stdio;
 
-use crate::support::{answer, command, elsewhere, refused, text};
+use crate::support::{all_may_be_left, answer, command, commands, elsewhere, none_is_lost, refused, text};
 
 /// A scene with faults.
 const BAD: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/bad.toml");
@@ -29,25 +28,17 @@ const ANSWERS: [&[&str]; 15] = [
 
 #[test]
 fn every_command_is_called() {
-    let (help, _) = answer(&["--help"], 0);
-    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
-    let commands: Vec<&str> = listed.filter_map(|line| line.strip_prefix("  ")?.split(' ').next()).collect();
-    assert!(commands.contains(&"solve"), "{help}");
-    for command in commands.iter().filter(|command| !command.is_empty()) {
-        assert!(ANSWERS.iter().any(|call| call[0] == *command), "{command}");
+    let commands = commands();
+    assert!(commands.iter().any(|name| name == "solve"), "{commands:?}");
+    for command in commands {
+        assert!(ANSWERS.iter().any(|call| call[0] == command), "{command}");
     }
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn an_answer_that_cannot_be_written_is_an_error() {
-    for arguments in ANSWERS {
-        let full = fs::File::options().write(true).open("/dev/full").expect("the device that is always full");
-        let output = command(arguments).stdout(full).output().expect("the command runs");
-        let stderr = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
-        assert!(stderr.contains("cannot write the answer") && stderr.contains("No space left"), "{stderr}");
-    }
+    none_is_lost(&ANSWERS);
     for file in [&["ensemble", "sledge", "-f", "chetaev", "--vary", "phi=0..0.3:2"][..], &["prove", "sledge"]] {
         let (_, stderr) = answer(&[file, &["--out", "/dev/full"]].concat(), 1);
         for words in ["cannot write", "/dev/full", "No space left"] {
@@ -65,12 +56,7 @@ fn an_answer_that_cannot_be_written_is_an_error() {
 
 #[test]
 fn a_reader_that_has_seen_enough_is_no_error() {
-    for arguments in ANSWERS {
-        let mut child = command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
-        drop(child.stdout.take());
-        let output = child.wait_with_output().expect("the command ends");
-        assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""), "{arguments:?}");
-    }
+    all_may_be_left(&ANSWERS);
 }
 
 #[test]

@@ -60,3 +60,40 @@ pub fn all_refused(calls: &str) {
         refused(&call.split(' ').collect::<Vec<_>>(), &words);
     }
 }
+
+/// The names of the commands that the help lists.
+pub fn commands() -> Vec<String> {
+    let (help, _) = answer(&["--help"], 0);
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = listed
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next().map(String::from))
+        .filter(|name| !name.is_empty());
+    names.collect()
+}
+
+/// Of each of these calls, an answer that cannot be written is an error.
+#[track_caller]
+pub fn none_is_lost(calls: &[&[&str]]) {
+    for arguments in calls {
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("the device that is always full");
+        let output = command(arguments).stdout(full).output().expect("the command runs");
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(stderr.contains("cannot write the answer") && stderr.contains("No space left"), "{stderr}");
+    }
+}
+
+/// Of each of these calls, a reader that has seen enough and closes the pipe is no error.
+#[track_caller]
+pub fn all_may_be_left(calls: &[&[&str]]) {
+    for arguments in calls {
+        let mut child = command(arguments)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("it runs");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("the command ends");
+        assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""), "{arguments:?}");
+    }
+}
