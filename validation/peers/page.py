@@ -1,6 +1,7 @@
 """The page `peers.md`."""
 
 import math
+import re
 
 from problems import MEMBERS
 from race import OURS, TARGETS, short
@@ -123,6 +124,12 @@ def derivations(races):
 
 
 def page(races, provenance):
+    """The page; in its tables the minus of an exponent is U+2212, where no line breaks."""
+    lines = written(races, provenance).split("\n")
+    return "\n".join(re.sub(r"(?<=\d)e-(?=\d)", "e\u2212", line) if line.startswith("|") else line for line in lines)
+
+
+def written(races, provenance):
     """The page; `provenance` has date, commit, seconds, machine, effort, ours and versions."""
     scenes = [race for race in races if not race.case.trailers and not race.case.vary]
     trains = [race for race in races if race.case.trailers and race.rungs]
@@ -197,11 +204,15 @@ Milliseconds for derivation, compilation and one run, of the setting for which t
 
 ## Error over time
 
-{"".join(f"![{race.case.title}](peers-{race.case.name}.svg){2 * chr(10)}" for race in races if race.rungs and not race.case.vary)}## What did not come off
+{"".join(f"![{race.case.title}](peers-{race.case.name}.svg){2 * chr(10)}" for race in races if race.rungs and not race.case.vary)}## What was not measured, and why
+
+<details><summary>{len(failures)} settings</summary>
 
 | problem | who | what | what became of it |
 |---|---|---|---|
 {"".join("| " + " | ".join(map(words, failure)) + " |" + chr(10) for failure in failures)}
+</details>
+
 ## Checks
 
 | problem | our DOP853 at 1e-14 from the reference | right-hand sides at the start, largest relative difference from ours |

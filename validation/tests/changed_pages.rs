@@ -16,7 +16,8 @@ fn pages() -> Vec<(PathBuf, String)> {
     let mut files: Vec<PathBuf> =
         files.filter(|file| file.extension().is_some_and(|e| e == "md" || e == "svg")).collect();
     files.sort();
-    files.into_iter().map(|file| (file.clone(), fs::read_to_string(file).expect("a page"))).collect()
+    let text = |file: &Path| fs::read_to_string(file).expect("a page").replace('\u{2212}', "-");
+    files.into_iter().map(|file| (file.clone(), text(&file))).collect()
 }
 
 /// Where numbers stand on a page, and their lengths; of a picture in its texts. Behind a letter or within a

@@ -34,8 +34,8 @@ fn said(comparisons: &[Comparison], words: &[&str]) {
 #[test]
 fn the_control_is_flagged_where_it_is_wrong_and_called_right_where_it_is_right() {
     let comparisons = ["sledge", "particle", "disc", "heisenberg"].map(|name| compared(name, |_, _| {}));
-    let found = "violates Maggi's equations, which share nothing with the formulations, on 2 scenes";
-    let flagged = "It is flagged on `sledge` and `particle`, and called right on `disc` and `heisenberg`";
+    let found = "violates Maggi's equations on 2 scenes";
+    let flagged = ": flagged on 2. It is called right on `disc` and `heisenberg`";
     said(&comparisons, &["**The wrong formulation is found out.**", found, flagged, "| flagged |", "| right here |"]);
 }
 

@@ -16,6 +16,7 @@ mod random_command;
 mod scaling;
 #[path = "../../crates/command/tests/support.rs"]
 mod support;
+mod widths;
 
 /// The program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_evidence");

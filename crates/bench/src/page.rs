@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::{Bench, Entry, Fastest, MEMBERS, Measurements, Series, TARGETS, Throughput, Time};
 use deltaq::words::{enumerate, short};
 use pages::Table;
-use pages::markdown::{inert, link};
+use pages::markdown::{folded, inert, link};
 use picture::{Axis, Curve, Panel, Picture, PictureError, Style};
 use program::File;
 
@@ -42,12 +42,13 @@ pub fn bench_files(benches: &[Bench], ensembles: &[Throughput]) -> Result<Vec<Fi
     let mut files = Vec::new();
     let mut page = format!("# Error against run time\n\n**{}**\n\n", bench_headline(benches));
     page += "One run of the integrator from compiled equations, dense output included: the least time of several runs, on one processor; what it takes to get to the \
-             equations stands apart. The error is the largest distance from the reference in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine \
+             equations stands apart. Of each motion there is a table of milliseconds (and evaluations) per method and error. The error is the largest distance from the reference in the kinetic metric $\\sqrt{\\Delta q^T M \\Delta q}$ at 20 times. Times differ from machine to machine \
              and from run to run; the numbers of evaluations do not. (`solve` and the other reports integrate every motion twice, for the sake of an error estimate.)\n\n\
              ";
     page += &usual_section(benches);
     page += "\n## The fastest setting\n\n";
-    page += &bench_table(benches);
+    page += &folded("For each motion and error, what reaches it first", &bench_table(benches));
+    page += "\n";
     page += &ensemble_section(ensembles);
     for bench in benches {
         let _ = writeln!(page, "\n## {}\n", inert(&bench.title));
@@ -74,17 +75,8 @@ const WANTED: f64 = 2.5;
 /// What one gets who gives nothing but a tolerance, beside the fastest single run of all forms and settings.
 fn usual_section(benches: &[Bench]) -> String {
     let mut table = Table::new(
-        [
-            "scene",
-            "formulation",
-            "form, method",
-            ">both runs (ms)",
-            ">error",
-            ">its estimate",
-            ">fastest single run (ms)",
-            ">ratio",
-        ]
-        .map(String::from),
+        ["scene", "formulation", "form, method", ">both runs (ms)", ">error", ">estimate", ">single (ms)", ">ratio"]
+            .map(String::from),
     );
     let (mut within, mut all, mut below) = (0, 0, 0);
     for bench in benches {
@@ -120,7 +112,11 @@ fn usual_section(benches: &[Bench]) -> String {
     }
     format!(
         "## Without options\n\nNothing is given but a tolerance, 1e-10: form, method and plan are chosen, and both runs made. On {within} of {all} motions that takes at most {WANTED} times \
-         the fastest single run, of all forms, methods and tolerances below, that has this error. The error is over its estimate on {below}.\n\n{table}"
+         the fastest single run, of all forms, methods and tolerances below, that has this error. The error is over its estimate on {below}.\n\n{}\n",
+        folded(
+            &format!("{all} motions: both runs, their error and estimate, the fastest single run"),
+            &table.to_string()
+        )
     )
 }
 
@@ -178,33 +174,33 @@ pub fn ensemble_text(measured: &[Throughput]) -> String {
         first.threads,
         if measured.iter().all(|m| m.over_cores == 0.0) { "" } else { " (**not so here**)" },
     );
-    let columns =
-        ["formulation", ">members", ">steps, one by one and in lanes", ">start (µs each)", ">one by one (µs each)"];
-    let more =
-        [">lanes (µs each)", ">all cores (µs each)", ">lanes", ">cores", ">processor time", ">difference", ">alone"];
-    let mut table = Table::new(columns.into_iter().chain(more));
+    let columns = ["formulation", ">members", ">steps, one by one and in lanes", ">start", ">one by one", ">lanes"];
+    let mut times = Table::new(columns.into_iter().chain([">all cores"]));
+    let columns = ["formulation", ">lanes", ">cores", ">processor time", ">difference", ">alone"];
+    let mut ratios = Table::new(columns);
     for m in measured {
-        let head =
-            [m.label.clone(), m.members.to_string(), m.mean_steps().map(|steps| format!("{steps:.1}")).join(", ")];
+        let steps = m.mean_steps().map(|steps| format!("{steps:.1}")).join(", ");
         let [single, lanes, cores] = m.microseconds();
-        let times = [1e6 * m.prepare / m.members as f64, single, lanes, cores].map(short);
-        let ratios = [m.over_single(), m.over_one_core()].map(|ratio| format!("{ratio:.2}"));
+        let each = [1e6 * m.prepare / m.members as f64, single, lanes, cores].map(short);
+        times.cells([m.label.clone(), m.members.to_string(), steps].into_iter().chain(each));
+        let over = [m.over_single(), m.over_one_core()].map(|ratio| format!("{ratio:.2}"));
         let efficiency = m.efficiency().map_or("–".into(), |e| format!("{e:.2}"));
-        let tail = [efficiency, format!("{:.1e}", m.difference), m.alone.0.to_string()];
-        table.cells(head.into_iter().chain(times).chain(ratios).chain(tail));
+        let rest = [efficiency, format!("{:.1e}", m.difference), m.alone.0.to_string()];
+        ratios.cells([m.label.clone()].into_iter().chain(over).chain(rest));
     }
-    text += &table.to_string();
+    let _ = write!(text, "Microseconds per member:\n\n{times}\nRatios:\n\n{ratios}");
     for (label, why) in measured.iter().filter_map(|m| Some((&m.label, m.alone.1.as_ref()?))) {
         let _ = writeln!(text, "\n{label}, the first that went alone: {why}.");
     }
     text
 }
 
+/// A motion, folded away: for each method and error, milliseconds and, in parentheses, evaluations.
 fn section(entry: &Entry) -> String {
-    let mut text = format!("\n### {}\n\n", entry.label);
+    let mut text = String::new();
     let m = match &entry.outcome {
         Ok(m) => m,
-        Err(reason) => return text + "Not measured: " + reason + ".\n",
+        Err(reason) => return format!("\n{}: not measured: {reason}.\n", entry.label),
     };
     let shortened = if m.shortened { ", a little before the motion's own end" } else { "" };
     let _ = writeln!(
@@ -216,12 +212,12 @@ fn section(entry: &Entry) -> String {
         m.reference,
         m.reference_error
     );
-    let targets = TARGETS.into_iter().flat_map(|target| [format!(">ms to {target:.0e}"), ">evaluations".into()]);
+    let targets = TARGETS.map(|target| format!(">to {target:.0e}"));
     let mut table = Table::new(["method".to_string()].into_iter().chain(targets).chain([">least error".to_string()]));
     for series in &m.series {
-        let found = TARGETS.into_iter().flat_map(|target| match m.fastest(target, Some(series.method)) {
-            Some(f) => [short(1e3 * f.seconds), f.work.evaluations.to_string()],
-            None => ["–", "–"].map(String::from),
+        let found = TARGETS.map(|target| match m.fastest(target, Some(series.method)) {
+            Some(f) => format!("{} ({})", short(1e3 * f.seconds), f.work.evaluations),
+            None => "–".into(),
         });
         let least = series.points.iter().filter_map(|p| Some(p.outcome.as_ref().ok()?.error)).reduce(f64::min);
         let least = least.map_or("–".into(), |e| format!("{e:.1e}"));
@@ -232,7 +228,7 @@ fn section(entry: &Entry) -> String {
     if !failures.is_empty() {
         let _ = writeln!(text, "\nFailed: {}.", failures.join("; "));
     }
-    text
+    format!("\n{}\n", folded(&inert(&entry.label), &text))
 }
 
 /// Failed settings of a method, those with the same cause together.

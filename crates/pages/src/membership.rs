@@ -1,6 +1,6 @@
 //! Words for the decisions: is there a `μ₀` with which the vakonomic motion is Chetaev's, and the like.
 
-use deltaq::words::{decisions, how_far};
+use deltaq::words::decisions;
 use deltaq::{Answer, Comparison, Decided, Membership, SolveError};
 use serde_json::{Value, json};
 
@@ -11,19 +11,17 @@ pub fn is(comparison: &Comparison, wanted: fn(&Answer) -> bool) -> bool {
     matches!(comparison.membership(), Some(Ok(membership)) if wanted(&membership.answer()))
 }
 
-/// The answer for Chetaev's motion and the multipliers, in a few words.
-pub fn words(comparison: &Comparison) -> String {
+/// The answer for Chetaev's motion and the multipliers in a word, in italics where it is not proved.
+pub fn word(comparison: &Comparison) -> String {
     match comparison.membership() {
         None => "–".into(),
-        Some(Err(_)) => "undecided".into(),
+        Some(Err(_)) => "?".into(),
         Some(Ok(membership)) => match membership.answer() {
-            Answer::NoneProved { order } => format!("**none**: proved (order {order})"),
-            Answer::None { .. } => "**none**, not proved".into(),
-            Answer::SomeProved => format!("**{}**: identity", which(membership)),
-            Answer::Some { order, settled } => {
-                format!("**{}**, {}", which(membership), how_far(membership, order, settled))
-            }
-            Answer::Undecided => "undecided".into(),
+            Answer::NoneProved { .. } => "none".into(),
+            Answer::None { .. } => "*none*".into(),
+            Answer::SomeProved => which(membership),
+            Answer::Some { .. } => format!("*{}*", which(membership)),
+            Answer::Undecided => "?".into(),
         },
     }
 }
@@ -72,7 +70,7 @@ pub fn value(outcome: Option<&Result<Membership, SolveError>>) -> Value {
 fn which(membership: &Membership) -> String {
     match membership.decision.set.dimension() {
         0 => "one".into(),
-        d if d == membership.decision.constants.len() => "every one".into(),
-        d => format!("dimension {d}"),
+        d if d == membership.decision.constants.len() => "every".into(),
+        d => format!("{d} dimensions"),
     }
 }

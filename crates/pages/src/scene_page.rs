@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use deltaq::{Comparison, EquationStyle, derive_at, equations_text};
 
 use crate::bodies::bodies;
-use crate::markdown::{image, inert};
+use crate::markdown::{folded, image, inert};
 use crate::pictures::pictures;
 use crate::table::Table;
 use crate::{membership, tables};
@@ -150,7 +150,7 @@ fn equations(comparison: &Comparison) -> String {
         };
         let body = equations_text(derived.as_ref().unwrap_or(&motion.equations), EquationStyle::Latex);
         let label = inert(&run.choice.label);
-        let _ = writeln!(text, "\n<details><summary>{label}{integrated}</summary>\n\n{body}\n</details>");
+        let _ = writeln!(text, "\n{}", folded(&format!("{label}{integrated}"), &body));
     }
     text
 }

@@ -2,15 +2,16 @@
 
 use std::fmt;
 
-use crate::markdown::inert;
+use crate::markdown::{inert, unbroken};
 
-/// A table in Markdown, written row by row.
+/// A table in Markdown, written row by row. The minus of an exponent is U+2212 there, where no line breaks.
 ///
 /// ```
 /// use pages::Table;
 /// let mut table = Table::new(["scene", ">steps"]);
 /// table.row(&[&"sledge", &12]);
-/// assert_eq!(table.to_string(), "| scene | steps |\n|---|---:|\n| sledge | 12 |\n");
+/// table.row(&[&"disc", &"5e-11"]);
+/// assert_eq!(table.to_string(), "| scene | steps |\n|---|---:|\n| sledge | 12 |\n| disc | 5e\u{2212}11 |\n");
 /// ```
 pub struct Table {
     text: String,
@@ -37,8 +38,8 @@ impl Table {
 
     /// Adds a row whose cells are as many as there are columns, however many these are.
     pub fn cells(&mut self, cells: impl IntoIterator<Item = String>) {
-        let cells: Vec<String> =
-            cells.into_iter().map(|cell| inert(&cell).replace('|', "\\|").replace('\n', " ")).collect();
+        let cell = |cell: String| unbroken(&inert(&cell).replace('|', "\\|").replace('\n', " "));
+        let cells: Vec<String> = cells.into_iter().map(cell).collect();
         self.text += &line(&cells);
         self.rows += 1;
     }

@@ -96,19 +96,18 @@ fn section(study: &Study) -> String {
         let _ = writeln!(text, "{table}");
     }
     let nearest = &study.targets[0].label;
-    let targets = study.targets.iter().map(|target| format!(">to {}", target.label));
-    let extrapolated = [">order".into(), format!(">to {nearest}, extrapolated"), ">the same, 1 MHz".into()];
-    let shipped = [format!(">as shipped, to {nearest}"), ">off the surface, hard (m)".into(), ">as shipped (m)".into()];
-    let mut table = Table::new([">dt (s)".to_string()].into_iter().chain(targets).chain(extrapolated).chain(shipped));
+    let distances = [">dt (s)".into(), format!(">to {nearest}"), ">order".into(), ">extrapolated".into()];
+    let shipped = [">at 1 MHz", ">as shipped", ">off the surface, hard (m)", ">as shipped (m)"].map(String::from);
+    let mut table = Table::new(distances.into_iter().chain(shipped));
     let first = |distances: &Option<Vec<f64>>| distances.as_ref().map_or("–".into(), |distances| short(distances[0]));
     for (at, hard) in study.hard.iter().enumerate() {
         let (yielding, shipped) = (&study.yielding[at], &study.shipped[at]);
         let order = at.checked_sub(1).map(|before| (study.hard[before].distances[0] / hard.distances[0]).log2());
         let order = order.map_or("–".into(), |order| format!("{order:.2}"));
-        let distances = hard.distances.iter().map(|distance| short(*distance));
+        let distances = [format!("{:.1e}", hard.dt), short(hard.distances[0])];
         let extrapolated = [order, first(&hard.extrapolated), first(&yielding.extrapolated)];
         let shipped = [shipped.distances[0], hard.off_surface, shipped.off_surface].map(short);
-        table.cells([format!("{:.1e}", hard.dt)].into_iter().chain(distances).chain(extrapolated).chain(shipped));
+        table.cells(distances.into_iter().chain(extrapolated).chain(shipped));
     }
     text + &table.to_string()
 }

@@ -10,6 +10,7 @@ use crate::audit::{
     Constants, Example, Finding, Form, Paper, STATEMENT, Stationarity, Variant, Verdict, cone, refusal,
 };
 use deltaq::words::{enumerate, short};
+use pages::markdown::folded;
 use pages::{Table, fill};
 use program::File;
 
@@ -155,10 +156,21 @@ impl AuditReport {
     }
 }
 
-/// One equation with its formulas, remarks and other readings.
+/// One equation with its formulas, which are folded away but for short corrections.
 fn equation(f: &Finding) -> String {
     let mut text = format!("\n### {}: {}\n\n", f.number, f.title);
     let _ = writeln!(text, "**{}.** {}{}\n", capital(f.verdict.word()), f.note, scan(f));
+    let formulas = formulas(f);
+    match f.verdict {
+        _ if formulas.is_empty() => text,
+        Verdict::Misprint if !formulas.contains("```math") => text + &formulas,
+        _ => text + &folded("formulas", &formulas) + "\n",
+    }
+}
+
+/// As printed and as corrected, residuals, other readings.
+fn formulas(f: &Finding) -> String {
+    let mut text = String::new();
     let long = |form: &Form| form.lines.iter().any(|l| l.latex.len() > SHORT);
     if f.corrected.lines.is_empty() {
         text += &blocks("", &f.printed);

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use deltaq::{CHETAEV, Choice, default_constants};
-use linear::{Sweep, SweepPoint, equidistant, sweep};
+use linear::{Eigenvalue, Sweep, SweepPoint, equidistant, sweep};
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
@@ -58,8 +58,8 @@ impl BicycleReport {
     /// The first line of the page.
     pub fn headline(&self) -> String {
         format!(
-            "The bicycle of eight coordinates and five constraints, linearized by the program, has the 44 eigenvalues of the published \
-             linear equations at eleven speeds to {:.0e}, and has no eigenvalue with a positive real part from {:.9} to {:.9} m/s.",
+            "The benchmark bicycle (eight coordinates, five constraints), linearized by the program, has the 44 published \
+             eigenvalues at eleven speeds to {:.0e}; none has a positive real part from {:.9} to {:.9} m/s.",
             self.largest(),
             self.changes[0].1,
             self.changes[1].1
@@ -81,7 +81,8 @@ impl BicycleReport {
         let mut table = Table::new([">v, m/s", ">s1", ">s2", ">s3", ">s4", ">estimated error", ">difference"]);
         for (point, difference) in self.table.points.iter().zip(&self.differences) {
             let error = point.part.eigenvalues.iter().fold(0.0_f64, |a, e| a.max(e.error));
-            let mut cells = pairs(&point.part.eigenvalues);
+            let rounded = |e: &Eigenvalue| Eigenvalue { error: e.error.max(1e-9), ..*e };
+            let mut cells = pairs(&point.part.eigenvalues.iter().map(rounded).collect::<Vec<_>>());
             cells.resize(4, String::new());
             let rest = [format!("{error:.0e}"), format!("{difference:.0e}")];
             table.cells([short(point.value)].into_iter().chain(cells).chain(rest));

@@ -63,10 +63,12 @@ pub(super) fn sentence(controls: &[Control]) -> String {
     let wrong = names(&|control| control.found.as_ref().is_some_and(FoundOut::is_wrong)).len();
     let right = controls.iter().filter(|control| control.word() == RIGHT).filter_map(|control| control.found.as_ref());
     let residual = right.fold(0.0_f64, |largest, found| largest.max(found.residual));
+    let scenes = |count: usize| format!("{count} scene{}", if count == 1 { "" } else { "s" });
     format!(
-        "**{title}** Putting the constraint into $L$ violates Maggi's equations, which share nothing with the formulations, on {wrong} scenes. It is flagged on {}, \
-         and called right on {}, where their residual is at most {}.{otherwise}",
-        enumerate(&called(FLAGGED)),
+        "**{title}** The constraint put into $L$ violates Maggi's equations on \
+         {}: flagged on {}. It is called right on {}, with a residual of at most {}.{otherwise}",
+        scenes(wrong),
+        called(FLAGGED).len(),
         enumerate(&called(RIGHT)),
         short(residual)
     )
@@ -83,7 +85,7 @@ mod tests {
             Control { name: name.into(), is_same: !flagged, found: Some(found) }
         };
         let said = sentence(&[control("a", true, 0.3), control("b", false, 2e-14), control("c", false, 1e-15)]);
-        assert!(said.contains(" on 1 scenes.") && said.contains("flagged on a,"), "{said}");
-        assert!(said.ends_with("called right on b and c, where their residual is at most 2.0e-14."), "{said}");
+        assert!(said.contains(" on 1 scene: flagged on 1. "), "{said}");
+        assert!(said.ends_with("called right on b and c, with a residual of at most 2.0e-14."), "{said}");
     }
 }

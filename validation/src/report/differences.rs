@@ -33,8 +33,9 @@ impl Compared {
     /// Line and both writings.
     pub fn page(&mut self, old: &str, new: &str) -> Result<(), String> {
         self.pages += 1;
-        let [old, new] =
-            [old, new].map(|text| if text.trim_start().starts_with("<svg") { written(text) } else { text.into() });
+        let [old, new] = [old, new].map(|text| {
+            if text.trim_start().starts_with("<svg") { written(text) } else { text.replace('\u{2212}', "-") }
+        });
         let (mut olds, mut news) = (old.lines(), new.lines());
         let mut line = 0;
         loop {
@@ -182,6 +183,7 @@ mod tests {
             ("3 of 4", "3 of 5"),
             ("0.3 s", "0.4 s"),
             ("to 1e-8", "to 2e-8"),
+            ("| 2.0e\u{2212}3 |", "| 2.0e\u{2212}4 |"),
         ] {
             assert!(differs(old, new), "{old} / {new}");
             assert!(differs(new, old), "{new} / {old}");

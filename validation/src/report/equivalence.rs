@@ -260,8 +260,8 @@ impl EquivalenceReport {
         let starts: usize = self.data.system.iter().map(|system| system.start.len()).sum();
         let open = if open == 0 { String::new() } else { format!("; {open} open") };
         format!(
-            "Of {} classic systems and variants {none} have no $\\mu_0$ with which the vakonomic motion is Chetaev's at almost every start, {some} have one at almost every start{open}. \
-             {starts} further starts, on and beside the exceptional ones, are decided one by one.",
+            "Of {} classic systems and variants, {none} have no $\\mu_0$ with which the vakonomic motion is Chetaev's, at almost \
+             every start; {some} have one{open}. {starts} further starts, on and beside the exceptional ones, are decided.",
             self.rows.len()
         )
     }
@@ -327,9 +327,9 @@ mod tests {
         let open =
             systems.iter().filter(|row| row.split('|').nth(5).is_some_and(|cell| cell.contains("**open**"))).count();
         let headline = report.headline();
-        let begins = format!("Of {} classic systems and variants {none} have no $\\mu_0$", systems.len());
+        let begins = format!("Of {} classic systems and variants, {none} have no $\\mu_0$", systems.len());
         assert!(headline.starts_with(&begins), "{begins}: {headline}");
-        let some = format!("at almost every start, {} have one at almost every start", systems.len() - none - open);
+        let some = format!("at almost every start; {} have one", systems.len() - none - open);
         assert!(
             headline.contains(&some) && headline.contains(&format!(" {} further starts, ", starts.len())),
             "{headline}"

@@ -2,10 +2,10 @@
 
 use deltaq::{Answer, CHETAEV, Comparison, Fit, Membership, REMOVED_CONSTRAINT, VAKONOMIC, Verdict};
 use equations::Formulation;
+use mechanics::Integrability;
 
 use crate::report::control::{self, Control};
-use deltaq::words::{enumerate, precise, short};
-use pages::verdict_words;
+use deltaq::words::{enumerate, short};
 use pages::{Table, fill, membership};
 
 /// One page: verdict matrix, findings, further pages (`further`: a line and a path), how to regenerate.
@@ -26,14 +26,13 @@ pub fn overview(comparisons: &[Comparison], further: &[(&str, &str)]) -> String 
     )
 }
 
-fn gap_words(comparison: &Comparison, a: &Formulation, b: &Formulation) -> String {
-    let (Some(a), Some(b)) = (comparison.run(a), comparison.run(b)) else { return "–".into() };
-    match comparison.pair(a, b) {
-        Some(pair) => match &pair.gap.verdict {
-            Verdict::Undecided { .. } => "undecided".into(),
-            _ => verdict_words(&pair.gap),
-        },
-        None => "refused".into(),
+/// A sign for a pair of motions.
+fn sign(comparison: &Comparison, a: &Formulation, b: &Formulation) -> &'static str {
+    match verdict_of(comparison, a, b) {
+        Some(Verdict::Same) => "=",
+        Some(Verdict::Different) => "**≠**",
+        Some(Verdict::Undecided { .. }) => "?",
+        None => "–",
     }
 }
 
@@ -47,31 +46,37 @@ fn fit_of<'a>(comparison: &'a Comparison, run: &Formulation, target: &Formulatio
 }
 
 fn matrix(comparisons: &[Comparison], controls: &[Option<Control>]) -> Table {
-    let columns = ["scene", "constraint", "Chetaev – vakonomic", "any $\\mu_0$?", "gap reached", "Chetaev – removed"];
-    let mut table = Table::new(columns.into_iter().chain(["vakonomic – removed", "control"]));
+    let columns = ["scene", "integrable", "Chetaev, vakonomic", "Chetaev, removed", "vakonomic, removed"];
+    let mut table = Table::new(columns.into_iter().chain(["$\\mu_0$", ">closest", "control"]));
     for (c, control) in comparisons.iter().zip(controls) {
-        let after = match fit_of(c, VAKONOMIC, CHETAEV).map(|f| &f.fitted) {
+        let closest = match fit_of(c, VAKONOMIC, CHETAEV).map(|f| &f.fitted) {
             None => "–".into(),
             Some(None) => "no fit".into(),
-            Some(Some(fitted)) if fitted.gap.verdict == Verdict::Same => "same".to_string(),
-            Some(Some(fitted)) => format!("gap {}", short(fitted.gap.largest)),
+            Some(Some(fitted)) if fitted.gap.verdict == Verdict::Same => "=".to_string(),
+            Some(Some(fitted)) => short(fitted.gap.largest),
         };
         let control = control.as_ref().map_or("–", Control::word);
-        let constraint = c.integrability.to_string();
-        let constraint = constraint.split([':', '(']).next().unwrap_or("").trim();
-        let pairs = [(CHETAEV, VAKONOMIC), (CHETAEV, REMOVED_CONSTRAINT), (VAKONOMIC, REMOVED_CONSTRAINT)];
-        let [first, second, third] = pairs.map(|(a, b)| gap_words(c, a, b));
+        let integrable = match c.integrability {
+            Integrability::Unconstrained => "no constraint",
+            Integrability::Integrable { .. } => "yes",
+            Integrability::PartlyIntegrable { .. } => "partly",
+            Integrability::Nonintegrable { .. } => "no",
+            Integrability::NonlinearInVelocity => "not linear in $\\dot q$",
+            Integrability::Undecided { .. } => "?",
+        };
+        let [first, second, third] = PAIRS.map(|(a, b)| sign(c, a, b));
         let name = format!("[{0}](scenes/{0}.md)", c.scene.name);
-        let decided = membership::words(c);
-        table.row(&[&name, &constraint, &first, &decided, &after, &second, &third, &control]);
+        table.row(&[&name, &integrable, &first, &second, &third, &membership::word(c), &closest, &control]);
     }
     table
 }
 
+/// The pairs of the matrix.
+const PAIRS: [(&Formulation, &Formulation); 3] =
+    [(CHETAEV, VAKONOMIC), (CHETAEV, REMOVED_CONSTRAINT), (VAKONOMIC, REMOVED_CONSTRAINT)];
+
 fn all_same(c: &Comparison) -> bool {
-    [(CHETAEV, VAKONOMIC), (CHETAEV, REMOVED_CONSTRAINT), (VAKONOMIC, REMOVED_CONSTRAINT)]
-        .iter()
-        .all(|(a, b)| verdict_of(c, a, b) == Some(&Verdict::Same))
+    PAIRS.iter().all(|(a, b)| verdict_of(c, a, b) == Some(&Verdict::Same))
 }
 
 fn names<'a>(comparisons: impl Iterator<Item = &'a Comparison>) -> Vec<String> {
@@ -88,34 +93,36 @@ fn headline(comparisons: &[Comparison]) -> String {
             .count()
     };
     format!(
-        "On {same} of {} scenes no difference between the three formulations is above the error estimates. Chetaev's and the vakonomic motion part on {}; \
-         on {} of these it is proved that no choice of the free multipliers brings them together, on {} a choice that does is known.",
-        comparisons.len(),
+        "Chetaev's and the vakonomic motion part on {} of {} scenes; on {} of these it is proved that no choice of the \
+         free multipliers brings them together, on {} a choice that does is known. On {same} scenes no difference between \
+         the three formulations is above the error estimates.",
         apart.len(),
+        comparisons.len(),
         count(|answer| matches!(answer, Answer::NoneProved { .. })),
         count(|answer| matches!(answer, Answer::SomeProved | Answer::Some { .. })),
     )
 }
 
+/// At most 40 words each.
 fn findings(comparisons: &[Comparison], controls: &[Control]) -> Vec<String> {
     let mut findings = Vec::new();
     let integrable: Vec<&Comparison> = comparisons.iter().filter(|c| c.integrability.is_integrable()).collect();
     let agreeing = names(integrable.iter().copied().filter(|c| all_same(c)));
     findings.push(format!(
-        "**Where the constraint can be integrated, the formulations agree on the scenes tried.** Frobenius' test finds {} integrable or free of constraints; all formulations agree on {}.",
-        enumerate(&names(integrable.iter().copied())),
+        "**Where the constraint can be integrated, the formulations agree on the scenes tried.** Frobenius' test finds \
+         {} scenes integrable or free of constraints; all formulations agree on {}.",
+        integrable.len(),
         enumerate(&agreeing)
     ));
-    let decided = |wanted: fn(&Answer) -> bool| {
-        let nonintegrable = comparisons.iter().filter(|c| !c.integrability.is_integrable());
-        enumerate(&names(nonintegrable.filter(|c| membership::is(c, wanted))))
-    };
+    let nonintegrable: Vec<&Comparison> = comparisons.iter().filter(|c| !c.integrability.is_integrable()).collect();
+    let decided =
+        |wanted: fn(&Answer) -> bool| names(nonintegrable.iter().copied().filter(|c| membership::is(c, wanted)));
     findings.extend(constants_of_removal(&integrable));
     findings.push(format!(
-        "**Vakonomic is a family, Chetaev one motion.** Where the constraint cannot be integrated, some $\\mu_0$ gives the Chetaev motion on {}; \
-         on {} none does, and that is proved for the start of the scene and for almost every other.",
-        decided(|answer| matches!(answer, Answer::SomeProved | Answer::Some { .. })),
-        decided(|answer| matches!(answer, Answer::NoneProved { .. })),
+        "**Vakonomic is a family, Chetaev one motion.** Where the constraint cannot be integrated, some $\\mu_0$ gives \
+         Chetaev's motion on {}; none does on {} scenes: proved for their start and almost every other.",
+        enumerate(&decided(|answer| matches!(answer, Answer::SomeProved | Answer::Some { .. }))),
+        decided(|answer| matches!(answer, Answer::NoneProved { .. })).len(),
     ));
     findings.push(parametrizations(comparisons));
     findings.push(control::sentence(controls));
@@ -123,62 +130,50 @@ fn findings(comparisons: &[Comparison], controls: &[Control]) -> Vec<String> {
     findings
 }
 
-/// What the free constants of removal do where Newton's motion is beyond dispute.
+/// What the free constants of removal do where Newton's motion is beyond dispute: the scene with the largest gap.
 fn constants_of_removal(integrable: &[&Comparison]) -> Option<String> {
-    let mut examples = Vec::new();
-    for c in integrable {
-        let Some(fit) = fit_of(c, REMOVED_CONSTRAINT, CHETAEV) else { continue };
-        let (Some(fitted), Some(pair)) = (&fit.fitted, c.pair(fit.run, fit.target)) else { continue };
-        let constants: Vec<String> =
-            fitted.constants.iter().map(|(name, x)| format!("{name} = {}", precise(*x))).collect();
-        let left = match fitted.gap.verdict {
-            Verdict::Same => "it is Newton's motion".to_string(),
-            _ => format!("a gap of {} remains", short(fitted.gap.largest)),
-        };
-        examples.push(format!(
-            "on `{}` the scene's constants give a gap of {} to Newton's motion; with {} {left}",
-            c.scene.name,
-            short(pair.gap.largest),
-            constants.join(", ")
-        ));
-    }
-    (!examples.is_empty()).then(|| {
-        format!(
-            "**Removal needs its constants fixed even there.** Where the parameters are not coordinates, {}.",
-            examples.join("; ")
-        )
-    })
+    let fitted = integrable.iter().filter_map(|c| {
+        let fit = fit_of(c, REMOVED_CONSTRAINT, CHETAEV)?;
+        Some((c.scene.name.as_str(), fit.fitted.as_ref()?, c.pair(fit.run, fit.target)?.gap.largest))
+    });
+    let (scene, fitted, gap) = fitted.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let constants: Vec<String> = fitted.constants.iter().map(|(name, x)| format!("{name} = {}", short(*x))).collect();
+    let left = match fitted.gap.verdict {
+        Verdict::Same => "close it".to_string(),
+        _ => format!("leave {}", short(fitted.gap.largest)),
+    };
+    Some(format!(
+        "**Removal needs its constants fixed even there.** On `{scene}`, whose parameters are not coordinates, the scene's \
+         constants leave a gap of {} to Newton's motion; {} {left}.",
+        short(gap),
+        constants.join(", ")
+    ))
 }
 
 fn parametrizations(comparisons: &[Comparison]) -> String {
-    let (mut has, mut lacks, mut apart) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut has, mut lacks, mut apart) = (0, Vec::new(), 0);
     for c in comparisons {
         let run = |i: usize| &c.runs[i].choice;
         let removal = |i: usize| run(i).removal.as_ref().map_or("", |r| r.name.as_str());
         let removed = |i: usize| run(i).formulation == REMOVED_CONSTRAINT;
         for d in c.decided.iter().filter(|d| removed(d.family) && run(d.curve).formulation == VAKONOMIC) {
-            let words = format!("`{}` ({})", c.scene.name, removal(d.family));
             match d.outcome.as_ref().map(Membership::answer) {
-                Ok(Answer::SomeProved | Answer::Some { .. }) => has.push(words),
-                _ => lacks.push(words),
+                Ok(Answer::SomeProved | Answer::Some { .. }) => has += 1,
+                _ => lacks.push(format!("`{}` ({})", c.scene.name, removal(d.family))),
             }
         }
-        for p in c.pairs.iter().filter(|p| removed(p.first) && removed(p.second)) {
-            if p.gap.verdict == Verdict::Different {
-                apart.push(format!("`{}`, {} and {}", c.scene.name, removal(p.first), removal(p.second)));
-            }
-        }
+        let pairs = c.pairs.iter().filter(|p| removed(p.first) && removed(p.second));
+        apart += pairs.filter(|p| p.gap.verdict == Verdict::Different).count();
     }
-    let none_found = match &lacks[..] {
-        [] => "that is on each of them".to_string(),
-        lacks => format!("on {} none was found", enumerate(lacks)),
+    let otherwise = match &lacks[..] {
+        [] => String::new(),
+        lacks => format!(" (not on {})", enumerate(lacks)),
     };
     format!(
-        "**Removal by coordinates has the vakonomic motions and no others; other parameters may have more.** Of removals with variables of their own \
-         and all costates kept, some $P(t_0)$ gives the vakonomic motion on {}; {none_found}. With the constants that their rules \
-         give, two removals of one constraint have different motions on {}.",
-        enumerate(&has),
-        enumerate(&apart)
+        "**Removal by coordinates has the vakonomic motions and no others; other parameters may have more.** With \
+         variables of its own and all costates, {has} of {} removals have the vakonomic motion{otherwise}. {apart} pairs of \
+         removals of one constraint part.",
+        has + lacks.len(),
     )
 }
 
@@ -198,8 +193,8 @@ fn predictions(comparisons: &[Comparison]) -> Option<String> {
     }
     worst.map(|(off, name)| {
         format!(
-            "**How motions begin to part is predictable.** For {count} pairs of motions the leading term of the gap follows from the Taylor coefficients of their accelerations at the start; \
-             the measured one is off by at most {} % (`{name}`).",
+            "**How motions begin to part is predictable.** Taylor coefficients of the accelerations at the start give the \
+             leading term of the gap for {count} pairs, within {} % of the measured one (worst: `{name}`).",
             short(100.0 * off)
         )
     })

@@ -12,6 +12,7 @@ use crate::stability::{
     Answering, CASES, Case, Cell, LONG_RUNS, LongRun, MAX_STEPS, MILLION, Texts, Verdict, long_runs, run, tolerance,
 };
 use deltaq::words::short;
+use pages::markdown::folded;
 use pages::{Table, fill};
 use picture::{Axis, Curve, Picture, Style};
 use program::File;
@@ -129,6 +130,7 @@ impl StabilityReport {
                 ("headline", &self.headline()),
                 ("max_steps", &MAX_STEPS),
                 ("tolerances", &tolerances.join(", ")),
+                ("summary", &self.summary()),
                 ("cases", &cases.collect::<String>()),
                 ("long_runs", &self.long_runs()),
             ],
@@ -143,8 +145,8 @@ impl StabilityReport {
         if self.runs.is_empty() {
             return String::new();
         }
-        let columns = ["scene", "formulation", ">duration", "method", ">steps", ">energy", ">trend", ">constraint"];
-        let mut table = Table::new(columns.into_iter().chain(["judged", ">error", ">estimate"]));
+        let columns = ["motion", "method", ">steps", ">energy", ">trend", ">constraint"];
+        let mut table = Table::new(columns.into_iter().chain([">error", ">estimate"]));
         for run in &self.runs {
             let estimate = match run.verdict {
                 Verdict::Accurate { estimate, .. }
@@ -152,10 +154,10 @@ impl StabilityReport {
                 | Verdict::Wrong { estimate, .. } => short(estimate),
                 Verdict::Refused { .. } => String::new(),
             };
-            let run_of = [run.scene.into(), run.formulation.clone(), short(run.duration), run.stepping.name().into()];
+            let motion = format!("{}, {}, {} s", run.scene, run.formulation, short(run.duration));
+            let run_of = [motion, run.stepping.name().into()];
             let lost = [run.energy, run.trend, run.constraint].map(short);
-            let judged = if run.by_place { "places" } else { "energy, constraint" };
-            let judgement = [judged.into(), words(&run.verdict), estimate];
+            let judgement = [words(&run.verdict), estimate];
             table.cells(run_of.into_iter().chain([run.steps.to_string()]).chain(lost).chain(judgement));
         }
         fill(include_str!("pages/million-steps.md"), &[("million", &MILLION), ("table", &table)])
@@ -173,24 +175,58 @@ impl StabilityReport {
         } else {
             Composition::ALL.len()
         };
-        let methods = cells[..count].iter().map(|cell| format!(">{}", cell.method.name()));
-        let mut table = Table::new([format!(">{variable}"), "formulation".into()].into_iter().chain(methods));
-        for line in cells.chunks(count) {
-            let words = line.iter().map(|cell| words(&cell.verdict));
-            table.cells([short(line[0].point), line[0].formulation.clone()].into_iter().chain(words));
+        let mut answers = String::new();
+        let mut lines: Vec<&[&Cell]> = cells.chunks(count).collect();
+        let order: Vec<&str> = lines.iter().map(|line| &line[0].formulation[..]).collect();
+        lines.sort_by_key(|line| order.iter().position(|name| *name == line[0].formulation));
+        for lines in lines.chunk_by(|a, b| a[0].formulation == b[0].formulation) {
+            let methods = cells[..count].iter().map(|cell| format!(">{}", cell.method.name()));
+            let mut table = Table::new([format!(">{variable}")].into_iter().chain(methods));
+            for line in lines {
+                let words = line.iter().map(|cell| words(&cell.verdict));
+                table.cells([short(line[0].point)].into_iter().chain(words));
+            }
+            let _ = writeln!(answers, "{}\n\n{table}", lines[0][0].formulation);
         }
-        page += &table.to_string();
-        let mut causes: BTreeMap<String, usize> = BTreeMap::new();
+        let mut causes: BTreeMap<String, (usize, &str)> = BTreeMap::new();
         for cell in &cells {
             if let Verdict::Refused { cause, .. } = &cell.verdict {
-                *causes.entry(kind_of(cause)).or_default() += 1;
+                causes.entry(kind_of(cause)).or_insert((0, clause_of(cause))).0 += 1;
             }
         }
         if !causes.is_empty() {
-            let list: Vec<String> = causes.iter().map(|(cause, count)| format!("{count} × {cause}")).collect();
-            let _ = writeln!(page, "\nCauses: {}.", list.join("; "));
+            let of = |(count, first): (usize, &str)| match count {
+                1 => format!("- once: {first}\n"),
+                _ => format!("- {count} times, first: {first}\n"),
+            };
+            let _ = write!(answers, "Causes of refusals:\n\n{}", causes.into_values().map(of).collect::<String>());
         }
+        let _ = writeln!(page, "{}", folded(&format!("{} answers", cells.len()), &answers));
         page
+    }
+
+    /// How many answers of each case have which verdict.
+    fn summary(&self) -> Table {
+        let words = ["accurate", "admitted", "refused", "wrong"];
+        let columns = ["case", ">answers", ">accurate", ">said so", ">refused", ">wrong", ">`auto` accurate"];
+        let mut table = Table::new(columns);
+        let mut row = |case: &str, answers: &[(&Verdict, bool)]| {
+            let of = |word: &str| answers.iter().filter(|(verdict, _)| verdict.word() == word).count().to_string();
+            let auto = answers.iter().filter(|(_, auto)| *auto).collect::<Vec<_>>();
+            let accurate = auto.iter().filter(|(verdict, _)| verdict.word() == words[0]).count();
+            let auto = if auto.is_empty() { "–".into() } else { format!("{accurate} of {}", auto.len()) };
+            let counts = [answers.len().to_string()].into_iter().chain(words.map(of));
+            table.cells([format!("[{case}](#{case})")].into_iter().chain(counts).chain([auto]));
+        };
+        for case in CASES.iter().filter(|case| self.has(case.name)) {
+            let cells = self.cells.iter().filter(|cell| cell.case == case.name);
+            let answers = cells.map(|cell| (&cell.verdict, cell.method == Answering::Method(None)));
+            row(case.name, &answers.collect::<Vec<_>>());
+        }
+        if !self.runs.is_empty() {
+            row(LONG_RUNS, &self.runs.iter().map(|run| (&run.verdict, false)).collect::<Vec<_>>());
+        }
+        table
     }
 
     fn picture(&self, name: &str, formulation: &str) -> Result<String> {
@@ -231,8 +267,8 @@ fn variable(case: &str) -> &'static str {
 fn words(verdict: &Verdict) -> String {
     match verdict {
         Verdict::Accurate { error, .. } => short(*error),
-        Verdict::Admitted { error, .. } => format!("{}, *said so*", short(*error)),
-        Verdict::Refused { t: Some(t), .. } => format!("to t = {}", short(*t)),
+        Verdict::Admitted { error, .. } => format!("*{}*", short(*error)),
+        Verdict::Refused { t: Some(t), .. } => format!("to {}", short(*t)),
         Verdict::Refused { t: None, .. } => "refused".into(),
         Verdict::Wrong { error, estimate, .. } => {
             format!("**wrong**: {}, estimate {}", short(*error), short(*estimate))
@@ -251,13 +287,17 @@ fn figures(verdict: &Verdict) -> String {
     }
 }
 
-/// A cause without its place and its figures.
-fn kind_of(cause: &str) -> String {
+/// The first clause of a cause, without the place in a scene.
+fn clause_of(cause: &str) -> &str {
     let first = cause.lines().next().unwrap_or_default();
-    let kind = first.split_once(": ").filter(|(place, _)| place.contains(':')).map_or(first, |(_, rest)| rest);
-    let figure = |word: &str| word.starts_with(|c: char| c.is_ascii_digit());
-    let words: Vec<&str> = kind.split(' ').map(|word| if figure(word) { "…" } else { word }).collect();
-    words.join(" ")
+    let clause = first.split_once(": ").filter(|(place, _)| place.contains(':')).map_or(first, |(_, rest)| rest);
+    clause.split("; ").next().unwrap_or_default()
+}
+
+/// The first clause of a cause without its figures: what causes of one kind have in common.
+fn kind_of(cause: &str) -> String {
+    let figure = |word: &&str| !word.starts_with(|c: char| c.is_ascii_digit());
+    clause_of(cause).split(' ').filter(figure).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
